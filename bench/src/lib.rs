@@ -1,0 +1,1 @@
+//! pointmass: bench.

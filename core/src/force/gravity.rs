@@ -1,0 +1,34 @@
+//! Uniform gravity.
+
+use super::{Force, State};
+use core::ops::Range;
+use glam::Vec3;
+
+/// Uniform gravity: f = m g, with the potential −m g·x, zero in the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Gravity {
+    /// The acceleration g \[m/s²\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub acceleration: Vec3,
+}
+
+impl Gravity {
+    /// Standard gravity, down the y axis.
+    pub const EARTH: Self = Self { acceleration: Vec3::new(0.0, -9.80665, 0.0) };
+}
+
+impl Force for Gravity {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        for (total, &mass) in total.iter_mut().zip(&state.mass[rows]) {
+            *total += self.acceleration * mass;
+        }
+    }
+
+    fn energy(&self, state: &State<'_>) -> f64 {
+        let g = self.acceleration.to_array().map(f64::from);
+        let height = |x: &Vec3| x.to_array().iter().zip(g).map(|(&x, g)| f64::from(x) * g).sum::<f64>();
+        -state.position.iter().zip(state.mass).map(|(x, &m)| f64::from(m) * height(x)).sum::<f64>()
+    }
+}

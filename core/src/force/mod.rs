@@ -1,0 +1,106 @@
+//! What pulls and pushes particles: one file a force.
+
+mod drag;
+mod gravity;
+mod mutual;
+mod sink;
+pub(crate) mod spring;
+
+pub use drag::Drag;
+pub use gravity::Gravity;
+pub use mutual::MutualGravity;
+pub use sink::Sink;
+pub use spring::{Spring, Springs};
+
+use crate::time::Time;
+use core::ops::Range;
+use glam::Vec3;
+
+/// A force field or an interaction.
+///
+/// A tuple, slice or reference of forces is a force: their sum.
+pub trait Force: Sync {
+    /// Adds the force \[N\] on each particle of `rows` to `total`, whose first entry is that of the first row.
+    ///
+    /// Rows are independent of each other, so that any division of the work gives the same bits.
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]);
+
+    /// Potential energy \[J\]; zero for forces that have none. For reports: in double precision.
+    fn energy(&self, state: &State<'_>) -> f64 {
+        let _ = state;
+        0.0
+    }
+}
+
+/// The particles as a force sees them: one entry a row.
+#[derive(Clone, Copy, Debug)]
+pub struct State<'a> {
+    /// The instant.
+    pub time: Time,
+    /// Positions \[m\].
+    pub position: &'a [Vec3],
+    /// Velocities \[m/s\].
+    pub velocity: &'a [Vec3],
+    /// Masses \[kg\].
+    pub mass: &'a [f32],
+    /// Coefficients of linear drag \[kg/s\].
+    pub drag: &'a [f32],
+    /// The springs between them.
+    pub springs: Springs<'a>,
+}
+
+impl Force for () {
+    fn add_to(&self, _: &State<'_>, _: Range<usize>, _: &mut [Vec3]) {}
+}
+
+impl<T: Force + ?Sized> Force for &T {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        (**self).add_to(state, rows, total);
+    }
+    fn energy(&self, state: &State<'_>) -> f64 {
+        (**self).energy(state)
+    }
+}
+
+impl<T: Force> Force for [T] {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        for force in self {
+            force.add_to(state, rows.clone(), total);
+        }
+    }
+    fn energy(&self, state: &State<'_>) -> f64 {
+        self.iter().map(|force| force.energy(state)).sum()
+    }
+}
+
+impl<T: Force, const N: usize> Force for [T; N] {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        self.as_slice().add_to(state, rows, total);
+    }
+    fn energy(&self, state: &State<'_>) -> f64 {
+        self.as_slice().energy(state)
+    }
+}
+
+macro_rules! tuples {
+    ($($name:ident)+) => {
+        impl<$($name: Force),+> Force for ($($name,)+) {
+            fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.add_to(state, rows.clone(), total);)+
+            }
+            fn energy(&self, state: &State<'_>) -> f64 {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                0.0 $(+ $name.energy(state))+
+            }
+        }
+    };
+}
+tuples!(A);
+tuples!(A B);
+tuples!(A B C);
+tuples!(A B C D);
+tuples!(A B C D E);
+tuples!(A B C D E F);

@@ -1,0 +1,84 @@
+//! Newton's law of gravitation between all particles, summed directly.
+
+use super::{Force, State};
+use crate::math::sqrt;
+use core::ops::Range;
+use glam::Vec3;
+
+/// Every two particles attract each other with G m₁ m₂ / (d² + s²), s being the softening (Plummer's): f = G m₁ m₂ d⃗ /
+/// (d² + s²)^{3/2}. Two that coincide do not act on each other. Costs the square of their number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MutualGravity {
+    /// The constant of gravitation G \[m³/(kg s²)\].
+    pub constant: f32,
+    /// Softening length s \[m\]; zero is Newton's law, singular where particles meet.
+    pub softening: f32,
+}
+
+/// How many partial sums run side by side. Their number is part of the definition: it decides how sums round.
+const LANES: usize = 8;
+
+impl MutualGravity {
+    /// Newton's law with the constant of CODATA 2006, which the `.scn` format uses.
+    pub const NEWTON: Self = Self { constant: 6.674_28e-11, softening: 0.0 };
+}
+
+impl Default for MutualGravity {
+    fn default() -> Self {
+        Self::NEWTON
+    }
+}
+
+impl Force for MutualGravity {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        let square = self.softening * self.softening;
+        for (total, row) in total.iter_mut().zip(rows) {
+            let field = field(state.position[row], state.position, state.mass, square);
+            *total += field * (self.constant * state.mass[row]);
+        }
+    }
+
+    fn energy(&self, state: &State<'_>) -> f64 {
+        let square = f64::from(self.softening * self.softening);
+        let bodies = || state.position.iter().zip(state.mass);
+        let mut sum = 0.0;
+        for (i, (x, &m)) in bodies().enumerate() {
+            for (y, &n) in bodies().skip(i + 1) {
+                let d = (*x - *y).to_array().map(f64::from);
+                let r2 = d.iter().map(|d| d * d).sum::<f64>() + square;
+                if r2 > 0.0 {
+                    sum += f64::from(m) * f64::from(n) / libm::sqrt(r2);
+                }
+            }
+        }
+        -f64::from(self.constant) * sum
+    }
+}
+
+/// Σ m d⃗ / (d² + `square`)^{3/2} at `place`: eight sums side by side, then a tree over them.
+fn field(place: Vec3, position: &[Vec3], mass: &[f32], square: f32) -> Vec3 {
+    let mut sums = [[0.0f32; LANES]; 3];
+    let chunks = position.chunks(LANES).zip(mass.chunks(LANES));
+    for (x, m) in chunks {
+        // Lanes beyond the end stay at the place itself, without mass.
+        let mut d = [[0.0f32; LANES]; 3];
+        let mut w = [0.0f32; LANES];
+        for (lane, (x, &m)) in x.iter().zip(m).enumerate() {
+            let offset = *x - place;
+            (d[0][lane], d[1][lane], d[2][lane], w[lane]) = (offset.x, offset.y, offset.z, m);
+        }
+        for lane in 0..LANES {
+            let r2 = d[0][lane] * d[0][lane] + d[1][lane] * d[1][lane] + d[2][lane] * d[2][lane] + square;
+            let weight = w[lane] / (r2 * sqrt(r2));
+            w[lane] = if r2 > 0.0 { weight } else { 0.0 };
+        }
+        for axis in 0..3 {
+            for lane in 0..LANES {
+                sums[axis][lane] += w[lane] * d[axis][lane];
+            }
+        }
+    }
+    Vec3::from_array(sums.map(|s| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))))
+}

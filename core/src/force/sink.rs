@@ -1,0 +1,94 @@
+//! A sink: it pulls, and what touches it is gone.
+
+use super::{Force, State};
+use crate::math::length;
+use crate::shape::{Collider, Hit, Segment, Shape, Surface};
+use core::ops::Range;
+use glam::Vec3;
+
+/// A surface that pulls every particle toward its nearest point with intensity / (ca + la d + qa d²), d being the
+/// distance, whatever the particle's mass, and that removes the particles that touch it.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sink<M> {
+    /// Its surface.
+    pub shape: Shape<M>,
+    /// Strength of the pull \[N, if `ca` has no unit\]; below zero it repels.
+    pub intensity: f32,
+    /// Constant term: it keeps the force finite at the surface.
+    pub ca: f32,
+    /// Linear term \[1/m\].
+    pub la: f32,
+    /// Quadratic term \[1/m²\].
+    pub qa: f32,
+}
+
+impl<M: Surface + Sync> Force for Sink<M> {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        for (total, &x) in total.iter_mut().zip(&state.position[rows]) {
+            let toward = self.shape.nearest(x) - x;
+            let d = length(toward);
+            let resistance = self.ca + d * (self.la + d * self.qa);
+            // On the surface the pull has no direction.
+            if d > 0.0 && resistance != 0.0 {
+                *total += toward * (self.intensity / (resistance * d));
+            }
+        }
+    }
+
+    /// Zero at the surface.
+    fn energy(&self, state: &State<'_>) -> f64 {
+        let distance = |x: &Vec3| f64::from(length(self.shape.nearest(*x) - *x));
+        state.position.iter().map(|x| self.work_from_surface(distance(x))).sum()
+    }
+}
+
+impl<M: Collider> Collider for Sink<M> {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        self.shape.first_hit(segment)
+    }
+}
+
+impl<M> Sink<M> {
+    /// ∫₀ᵈ intensity / (ca + la s + qa s²) ds \[J\], in closed form.
+    fn work_from_surface(&self, d: f64) -> f64 {
+        let [c, b, a] = [self.ca, self.la, self.qa].map(f64::from);
+        let integral = if a == 0.0 && b == 0.0 {
+            d / c
+        } else if a == 0.0 {
+            libm::log1p(b * d / c) / b
+        } else {
+            let discriminant = 4.0 * a * c - b * b;
+            if discriminant > 0.0 {
+                let root = libm::sqrt(discriminant);
+                2.0 / root * (libm::atan((2.0 * a * d + b) / root) - libm::atan(b / root))
+            } else if discriminant < 0.0 {
+                let root = libm::sqrt(-discriminant);
+                let part = |s: f64| libm::log(((2.0 * a * s + b - root) / (2.0 * a * s + b + root)).abs());
+                (part(d) - part(0.0)) / root
+            } else {
+                2.0 / b - 2.0 / (2.0 * a * d + b)
+            }
+        };
+        f64::from(self.intensity) * integral
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{Mesh, Sphere};
+
+    #[test]
+    fn the_potential_is_the_integral_of_the_pull() {
+        for (ca, la, qa) in [(1.0, 0.5, 0.25), (1.0, 0.0, 0.0), (2.0, 0.5, 0.0), (1.0, 3.0, 0.5), (1.0, 2.0, 1.0)] {
+            let shape = Shape::<Mesh<'_>>::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
+            let sink = Sink { shape, intensity: 10.0, ca, la, qa };
+            let n = 100_000;
+            let pull = |s: f64| 10.0 / (f64::from(ca) + f64::from(la) * s + f64::from(qa) * s * s);
+            let sum: f64 = (0..n).map(|i| pull((f64::from(i) + 0.5) * 3.0 / f64::from(n)) * 3.0 / f64::from(n)).sum();
+            assert!((sink.work_from_surface(3.0) - sum).abs() < 1e-8, "{ca} {la} {qa}");
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The two Euler methods.
+
+use super::{Dynamics, Integrator, Motion, add_scaled};
+use crate::time::Time;
+
+/// Explicit Euler: x += h v, then v += h a, both from the step's beginning.
+///
+/// Order 1, one evaluation. An undamped oscillation grows at any step; with damping ratio ζ ≤ 1 it is stable for
+/// h ω ≤ 2ζ. For comparison, not for use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Euler;
+
+/// Symplectic (semi-implicit) Euler: v += h a, then x += h v with the new v.
+///
+/// Order 1, one evaluation, and the energy of an oscillation stays bounded for h ω ≤ 2. The cheapest method that can
+/// be trusted: effects with many particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Symplectic;
+
+impl Integrator for Euler {
+    fn columns(&self) -> usize {
+        1
+    }
+
+    fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
+        let [a] = motion.work.take();
+        world.accelerations(time, motion.position, motion.velocity, a);
+        add_scaled(motion.position, step.seconds(), motion.velocity);
+        add_scaled(motion.velocity, step.seconds(), a);
+    }
+}
+
+impl Integrator for Symplectic {
+    fn columns(&self) -> usize {
+        1
+    }
+
+    fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
+        let [a] = motion.work.take();
+        world.accelerations(time, motion.position, motion.velocity, a);
+        add_scaled(motion.velocity, step.seconds(), a);
+        add_scaled(motion.position, step.seconds(), motion.velocity);
+    }
+}

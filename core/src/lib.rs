@@ -1,0 +1,80 @@
+//! Particle systems that are exact, bounded and the same everywhere.
+//!
+//! A [`Scene`] is immutable data that says what the world does; a [`System`] is the state it is done to;
+//! [`System::step`] is the only verb. Nothing allocates, nothing panics, every bound is counted in the [`Report`], and
+//! the same scene, seed and step give the same bits on every target, which [`System::hash`] proves.
+//!
+//! Units are SI, angles are radians, y points up, and the axes are right-handed.
+//!
+//! ```
+//! use pointmass::{Emitter, Gravity, Inline, Scene, Spread, System, Time, Varied, Vec3};
+//! use pointmass::shape::{Disc, Mesh, Plane, Shape};
+//!
+//! let nozzle = Shape::<Mesh>::Circle(Disc { center: Vec3::ZERO, normal: Vec3::Y, radius: 0.1 });
+//! let jet = Emitter {
+//!     speed: Varied { mean: 6.0, variance: 0.5 },
+//!     spread: Spread::Uniform(0.2),
+//!     lifetime: Varied::exactly(1.5),
+//!     ..Emitter::new(nozzle, 40.0)
+//! };
+//! let ground = Plane { point: Vec3::new(0.0, -0.1, 0.0), normal: Vec3::Y };
+//! let scene = Scene { emitters: &jet, forces: &Gravity::EARTH, colliders: &ground, ..Scene::EMPTY };
+//!
+//! // Room for 64 particles, 1 emitter, no springs, 3 columns to work with: all in this value, none on the heap.
+//! let mut fountain = System::with(Inline::<64, 1, 0, 3>::new());
+//! fountain.start(&scene, 7)?;
+//! for frame in 1..=120 {
+//!     fountain.step(&scene, Time::frame(frame, 60) - fountain.time());
+//! }
+//! assert_eq!(fountain.totals().born, 80);
+//! assert!(fountain.particles().position.iter().all(|x| x.y > -0.1));
+//! # Ok::<(), pointmass::Unfit>(())
+//! ```
+//!
+//! # Map
+//! `system` holds the step; `emit` creates, `force` and `integrate` move, `collide` and `shape` collide, `retire`
+//! deletes, `measure` and `report` tell what happened; `storage` owns the memory; `scene` (feature `alloc`) reads and
+//! writes scene files.
+//!
+//! # Features
+//! `alloc`: storage on the heap. `serde`: declared scenes as data. `schema`: their JSON Schema. `std`: the host's
+//! faster square root, with the same bits. Without features: no allocation at all.
+
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+mod collide;
+pub mod emit;
+pub mod force;
+mod hash;
+pub mod integrate;
+pub mod math;
+mod measure;
+mod particles;
+mod report;
+mod retire;
+pub mod rng;
+pub mod shape;
+mod storage;
+mod system;
+mod time;
+
+pub use emit::{Emit, Emitter, Spread, Varied};
+pub use force::{Drag, Force, Gravity, MutualGravity, Sink, Spring};
+pub use glam::{Mat3, Vec3};
+pub use hash::Fnv;
+pub use integrate::{Integrator, Method};
+pub use measure::{Energy, Measures};
+pub use particles::{Color, Full, Id, Particle, WHITE};
+pub use report::{Caps, Died, Report};
+pub use retire::Fate;
+#[cfg(feature = "alloc")]
+pub use storage::Heap;
+pub use storage::{Columns, Inline, Size, Slices, Storage};
+pub use system::{Scene, System, Unfit};
+pub use time::Time;

@@ -1,0 +1,161 @@
+//! The few mathematical functions everybody here uses, each the same bits on every target.
+//!
+//! `core` has no square root, and a platform's sine differs from machine to machine, so nothing else in the
+//! crate calls a transcendental function on the path of a step.
+
+use glam::Vec3;
+
+/// Square root, correctly rounded on every target.
+#[inline(always)]
+#[must_use]
+pub fn sqrt(x: f32) -> f32 {
+    #[cfg(feature = "std")]
+    return std::primitive::f32::sqrt(x);
+    #[cfg(not(feature = "std"))]
+    return libm::sqrtf(x);
+}
+
+/// Length of a vector.
+#[inline(always)]
+#[must_use]
+pub fn length(v: Vec3) -> f32 {
+    sqrt(v.dot(v))
+}
+
+/// `v` over its length; zero where it has none that an `f32` can hold.
+#[inline]
+#[must_use]
+pub fn unit(v: Vec3) -> Vec3 {
+    // Dividing by the largest coordinate first keeps the squares of tiny and huge vectors in range.
+    let largest = max(max(v.x.abs(), v.y.abs()), v.z.abs());
+    if !(largest > 0.0 && largest < f32::INFINITY) {
+        return Vec3::ZERO;
+    }
+    let scaled = v / largest;
+    scaled / length(scaled)
+}
+
+/// The larger of two numbers, the second where they are equal: unlike `f32::max` it treats −0 alike everywhere.
+#[inline(always)]
+#[must_use]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, the second where they are equal.
+#[inline(always)]
+#[must_use]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// `x` held in `[low, high]`.
+#[inline(always)]
+#[must_use]
+pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    min(max(x, low), high)
+}
+
+/// The largest coordinate's magnitude.
+#[inline]
+#[must_use]
+pub fn largest(v: Vec3) -> f32 {
+    max(max(v.x.abs(), v.y.abs()), v.z.abs())
+}
+
+/// Sine and cosine of `turns` × 2π, within 1.2e-7 for up to a million turns.
+///
+/// Cephes' single-precision polynomials on an eighth of a turn, in `f32` alone: about 30 instructions with an FPU,
+/// where libm's `sinf` goes through `f64`.
+#[must_use]
+pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
+    let quarter = floor(turns * 4.0 + 0.5);
+    let x = (turns - quarter * 0.25) * core::f32::consts::TAU;
+    let z = x * x;
+    let s = x + x * z * (-1.666_665_5e-1 + z * (8.332_161e-3 + z * -1.951_529_6e-4));
+    let c = 1.0 - 0.5 * z + z * z * (4.166_664_6e-2 + z * (-1.388_731_6e-3 + z * 2.443_315_7e-5));
+    match quarter as i32 & 3 {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+/// Sine and cosine of an angle in radians, within 3e-7 for a few turns.
+#[must_use]
+pub fn sin_cos(radians: f32) -> (f32, f32) {
+    sin_cos_turns(radians * (1.0 / core::f32::consts::TAU))
+}
+
+/// The largest whole number not above `x`; `x` itself beyond ±2³⁰.
+#[inline]
+#[must_use]
+pub fn floor(x: f32) -> f32 {
+    if !(x > -1_073_741_824.0 && x < 1_073_741_824.0) {
+        return x;
+    }
+    let whole = x as i32 as f32;
+    if whole > x { whole - 1.0 } else { whole }
+}
+
+/// Two unit vectors that complete the unit vector `n` to a right-handed frame (Duff et al., "Building an
+/// Orthonormal Basis, Revisited", JCGT 2017).
+#[must_use]
+pub fn frame(n: Vec3) -> (Vec3, Vec3) {
+    let sign = if n.z < 0.0 { -1.0 } else { 1.0 };
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    let tangent = Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    let bitangent = Vec3::new(b, sign + n.y * n.y * a, -n.y);
+    (tangent, bitangent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_and_cosine_are_within_their_bound() {
+        for i in -40_000..40_000 {
+            let turns = i as f32 * 0.000_123;
+            let (s, c) = sin_cos_turns(turns);
+            let exact = f64::from(turns) * core::f64::consts::TAU;
+            assert!((f64::from(s) - libm::sin(exact)).abs() < 1.2e-7, "sin at {turns} turns");
+            assert!((f64::from(c) - libm::cos(exact)).abs() < 1.2e-7, "cos at {turns} turns");
+        }
+    }
+
+    #[test]
+    fn floor_agrees_with_libm() {
+        for x in [-2.5, -2.0, -0.5, -0.0, 0.0, 0.25, 1.0, 7.99, -1e9, 1e20, f32::INFINITY] {
+            assert_eq!(floor(x), libm::floorf(x), "floor of {x}");
+        }
+        assert!(floor(f32::NAN).is_nan());
+    }
+
+    #[test]
+    fn a_frame_is_orthonormal_and_right_handed() {
+        for i in 0..1000 {
+            let (s, c) = sin_cos_turns(i as f32 * 0.618_034);
+            let z = -1.0 + 2.0 * (i as f32 + 0.5) / 1000.0;
+            let r = sqrt(1.0 - z * z);
+            let n = Vec3::new(r * c, r * s, z);
+            let (t, b) = frame(n);
+            for dot in [n.dot(t), n.dot(b), t.dot(b), length(t) - 1.0, length(b) - 1.0] {
+                assert!(dot.abs() < 1e-6);
+            }
+            assert!((t.cross(b) - n).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn unit_copes_with_any_length() {
+        for scale in [1e-38, 1e-20, 1.0, 1e20, 3e38] {
+            let u = unit(Vec3::new(0.6, -0.8, 0.0) * scale);
+            assert!((length(u) - 1.0).abs() < 1e-6, "scale {scale}");
+        }
+        assert_eq!(unit(Vec3::ZERO), Vec3::ZERO);
+        assert_eq!(unit(Vec3::splat(f32::NAN)), Vec3::ZERO);
+    }
+}

@@ -1,0 +1,105 @@
+//! What a particle is, and what it is called.
+
+use glam::Vec3;
+
+/// Red, green, blue and opacity, each 0 to 255, in sRGB.
+pub type Color = [u8; 4];
+
+/// Opaque white.
+pub const WHITE: Color = [255; 4];
+
+/// A particle as it is put into a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Particle {
+    /// Where it is \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub position: Vec3,
+    /// How it moves \[m/s\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub velocity: Vec3,
+    /// Mass \[kg\], above zero; of a fixed particle zero will do.
+    pub mass: f32,
+    /// It never moves, but still attracts and pulls at its springs.
+    pub fixed: bool,
+    /// Coefficient of linear drag \[kg/s\].
+    pub drag: f32,
+    /// The share of the normal speed it keeps when it hits something, 0 to 1.
+    pub elasticity: f32,
+    /// How long it lives \[s\]; zero or less: for ever.
+    pub lifetime: f32,
+    /// Number of its material in the scene, if it has one.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub material: Option<u16>,
+    /// Its colour; without one, that of its material.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub color: Option<Color>,
+}
+
+impl Particle {
+    /// A particle of 1 kg at rest in the origin, free, without drag, immortal.
+    pub const REST: Self = Self {
+        position: Vec3::ZERO,
+        velocity: Vec3::ZERO,
+        mass: 1.0,
+        fixed: false,
+        drag: 0.0,
+        elasticity: 0.5,
+        lifetime: 0.0,
+        material: None,
+        color: None,
+    };
+
+    /// Whether every number of it can be used: finite, the mass above zero (or fixed and not below zero).
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let finite = self.position.is_finite()
+            && self.velocity.is_finite()
+            && [self.mass, self.drag, self.elasticity, self.lifetime].iter().all(|x| x.is_finite());
+        // The inverse of a mass below 3e-39 kg overflows.
+        let heavy = if self.fixed { self.mass >= 0.0 } else { self.mass > 0.0 && (1.0 / self.mass).is_finite() };
+        finite && heavy
+    }
+}
+
+impl Default for Particle {
+    fn default() -> Self {
+        Self::REST
+    }
+}
+
+/// What a particle is called for as long as it lives; never given again within 2³² births.
+///
+/// Ids order by slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Id {
+    pub(crate) slot: u32,
+    pub(crate) serial: u32,
+}
+
+impl Id {
+    /// How many particles the system had taken in before it: unique over a run (of up to 2³² births), 0 for the first.
+    #[must_use]
+    pub const fn serial(self) -> u32 {
+        self.serial
+    }
+
+    /// The place it holds while it lives, below the system's capacity; given again after its death.
+    #[must_use]
+    pub const fn slot(self) -> u32 {
+        self.slot
+    }
+}
+
+/// There is no room for another particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Full;
+
+impl core::fmt::Display for Full {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("the system is full: no room for another particle")
+    }
+}
+
+impl core::error::Error for Full {}

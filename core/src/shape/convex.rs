@@ -1,0 +1,96 @@
+//! First hits on closed convex solids: shapes say what is inside and where a line runs inside; the rest is here, once.
+
+use super::{Hit, Segment};
+use crate::math::{clamp, unit};
+use glam::Vec3;
+
+/// A closed convex solid.
+pub(super) trait Convex {
+    /// Whether `point` lies strictly inside; a pure function of the point, so that two paths that share an end agree.
+    fn contains(&self, point: Vec3) -> bool;
+
+    /// Where the line `from` + t × `step` runs inside, if anywhere; `step` is not zero.
+    fn span(&self, from: Vec3, step: Vec3) -> Option<Span>;
+
+    /// How far its surface reaches from the origin \[m\], about.
+    fn reach(&self) -> f32;
+}
+
+/// The part of a line inside a solid: its ends and the outward unit normals there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) enter: f32,
+    pub(super) leave: f32,
+    pub(super) enter_normal: Vec3,
+    pub(super) leave_normal: Vec3,
+}
+
+impl Span {
+    /// The whole line.
+    pub(super) const ALL: Self =
+        Self { enter: f32::NEG_INFINITY, leave: f32::INFINITY, enter_normal: Vec3::ZERO, leave_normal: Vec3::ZERO };
+
+    /// What two spans share, if anything.
+    pub(super) fn and(self, other: Self) -> Option<Self> {
+        let (enter, enter_normal) =
+            if other.enter > self.enter { (other.enter, other.enter_normal) } else { (self.enter, self.enter_normal) };
+        let (leave, leave_normal) =
+            if other.leave < self.leave { (other.leave, other.leave_normal) } else { (self.leave, self.leave_normal) };
+        (enter < leave).then_some(Self { enter, leave, enter_normal, leave_normal })
+    }
+
+    /// Where a line with coordinate `from` + t × `step` lies between `low` and `high` along `axis`.
+    pub(super) fn slab(from: f32, step: f32, low: f32, high: f32, axis: Vec3) -> Option<Self> {
+        if step == 0.0 {
+            return (low < from && from < high).then_some(Self::ALL);
+        }
+        let (a, b) = ((low - from) / step, (high - from) / step);
+        Some(if step > 0.0 {
+            Self { enter: a, leave: b, enter_normal: -axis, leave_normal: axis }
+        } else {
+            Self { enter: b, leave: a, enter_normal: axis, leave_normal: -axis }
+        })
+    }
+}
+
+/// The first hit of a segment on a convex solid, from outside or from inside.
+///
+/// Which side an end lies on is decided by `contains` alone, so that what a particle crosses it also hits, whatever
+/// the rounding of the crossing's time.
+pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
+    let step = segment.step();
+    let (starts_inside, ends_inside) = (solid.contains(segment.from), solid.contains(segment.to));
+    if step == Vec3::ZERO || (starts_inside && ends_inside) {
+        return None;
+    }
+    let slack = segment.slack(solid.reach());
+    let Some(span) = solid.span(segment.from, step) else {
+        // The ends differ but the line just misses: it runs within rounding of the surface.
+        return (starts_inside != ends_inside).then(|| Hit { time: 0.0, normal: -unit(step), slack });
+    };
+    let hit = |time, normal| Some(Hit { time: clamp(time, 0.0, 1.0), normal, slack });
+    match (starts_inside, ends_inside) {
+        (true, _) => hit(span.leave, -span.leave_normal),
+        (false, true) => hit(span.enter, span.enter_normal),
+        // Straight through. A start within rounding of the surface may seem inside the span: it enters if the
+        // entrance is the nearer end, and else it leaves.
+        (false, false) => {
+            let ahead = span.enter >= 0.0 || -span.enter < span.leave;
+            (ahead && span.enter <= 1.0 && step.dot(span.enter_normal) < 0.0)
+                .then(|| hit(span.enter, span.enter_normal))
+                .flatten()
+        }
+    }
+}
+
+/// Implements `Collider` for convex solids.
+macro_rules! convex_collider {
+    ($($solid:ty),+) => {$(
+        impl crate::shape::Collider for $solid {
+            fn first_hit(&self, segment: &crate::shape::Segment) -> Option<crate::shape::Hit> {
+                crate::shape::convex::first_hit(self, segment)
+            }
+        }
+    )+};
+}
+pub(super) use convex_collider;

@@ -1,0 +1,83 @@
+//! A cylinder about the y axis.
+
+use super::convex::{Convex, Span, convex_collider};
+use super::sphere::circle_span;
+use super::{Aabb, Spot, Surface, revolve};
+use crate::math::{largest, sin_cos_turns, sqrt, unit};
+use core::f32::consts::PI;
+use glam::{Vec2, Vec3};
+
+/// A cylinder about the y axis with its two caps, hit from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Cylinder {
+    /// The middle of its axis \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub center: Vec3,
+    /// Its radius \[m\].
+    pub radius: f32,
+    /// Its height \[m\].
+    pub height: f32,
+}
+
+impl Surface for Cylinder {
+    fn area(&self) -> f32 {
+        2.0 * PI * self.radius * (self.radius + self.height)
+    }
+
+    fn sample(&self, u: [f32; 3]) -> Spot {
+        let (sin, cos) = sin_cos_turns(u[1]);
+        let around = Vec3::new(cos, 0.0, sin);
+        // Areas over 2πr: the side h, each cap r / 2.
+        let target = u[0] * (self.height + self.radius);
+        let half = 0.5 * self.height;
+        let (offset, normal) = if target < self.height {
+            (around * self.radius + Vec3::Y * (self.height * u[2] - half), around)
+        } else {
+            let up = if target - self.height < 0.5 * self.radius { Vec3::NEG_Y } else { Vec3::Y };
+            (around * (self.radius * sqrt(u[2])) + up * half, up)
+        };
+        Spot { point: self.center + offset, normal }
+    }
+
+    fn nearest(&self, point: Vec3) -> Vec3 {
+        let (r, h) = (self.radius, 0.5 * self.height);
+        revolve::nearest(
+            self.center,
+            point,
+            &[Vec2::new(0.0, -h), Vec2::new(r, -h), Vec2::new(r, h), Vec2::new(0.0, h)],
+        )
+    }
+
+    fn bounds(&self) -> Aabb {
+        let reach = Vec3::new(self.radius, 0.5 * self.height, self.radius);
+        Aabb { min: self.center - reach, max: self.center + reach }
+    }
+}
+
+impl Convex for Cylinder {
+    fn contains(&self, point: Vec3) -> bool {
+        let o = point - self.center;
+        o.x * o.x + o.z * o.z < self.radius * self.radius && o.y.abs() < 0.5 * self.height
+    }
+
+    fn span(&self, from: Vec3, step: Vec3) -> Option<Span> {
+        let offset = from - self.center;
+        let half = 0.5 * self.height;
+        let slab = Span::slab(offset.y, step.y, -half, half, Vec3::Y)?;
+        let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
+        let (offset, step) = (flat(offset), flat(step));
+        if step == Vec3::ZERO {
+            return (offset.dot(offset) < self.radius * self.radius).then_some(slab);
+        }
+        let (enter, leave) = circle_span(offset, step, self.radius)?;
+        let normal = |t: f32| unit(offset + step * t);
+        slab.and(Span { enter, leave, enter_normal: normal(enter), leave_normal: normal(leave) })
+    }
+
+    fn reach(&self) -> f32 {
+        largest(self.center) + self.radius + self.height
+    }
+}
+convex_collider!(Cylinder);

@@ -1,0 +1,63 @@
+//! A filled disc.
+
+use super::plane::crossing;
+use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
+use crate::math::{frame, largest, length, max, sin_cos_turns, sqrt, unit};
+use core::f32::consts::PI;
+use glam::Vec3;
+
+/// A filled disc, hit from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Disc {
+    /// Its middle \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub center: Vec3,
+    /// Its normal, the side that births leave by, of any length but zero.
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub normal: Vec3,
+    /// Its radius \[m\].
+    pub radius: f32,
+}
+
+impl Surface for Disc {
+    fn area(&self) -> f32 {
+        PI * self.radius * self.radius
+    }
+
+    fn sample(&self, u: [f32; 3]) -> Spot {
+        let normal = unit(self.normal);
+        let (a, b) = frame(normal);
+        let (sin, cos) = sin_cos_turns(u[1]);
+        let r = self.radius * sqrt(u[0]);
+        Spot { point: self.center + a * (r * cos) + b * (r * sin), normal }
+    }
+
+    fn nearest(&self, point: Vec3) -> Vec3 {
+        let normal = unit(self.normal);
+        let offset = point - self.center;
+        let flat = offset - normal * normal.dot(offset);
+        let r = length(flat);
+        self.center + if r > self.radius { flat * (self.radius / r) } else { flat }
+    }
+
+    fn bounds(&self) -> Aabb {
+        let n = unit(self.normal);
+        // A disc reaches r √(1 − nᵢ²) along axis i.
+        let reach = Vec3::new(1.0 - n.x * n.x, 1.0 - n.y * n.y, 1.0 - n.z * n.z);
+        let reach = Vec3::new(sqrt(max(reach.x, 0.0)), sqrt(max(reach.y, 0.0)), sqrt(max(reach.z, 0.0))) * self.radius;
+        Aabb { min: self.center - reach, max: self.center + reach }
+    }
+}
+
+impl Collider for Disc {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let normal = unit(self.normal);
+        let (time, normal) =
+            crossing(normal, normal.dot(segment.from - self.center), normal.dot(segment.to - self.center))?;
+        let offset = segment.at(time) - self.center;
+        let slack = segment.slack(largest(self.center) + self.radius);
+        (offset.dot(offset) <= self.radius * self.radius).then_some(Hit { time, normal, slack })
+    }
+}

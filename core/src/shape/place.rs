@@ -1,0 +1,115 @@
+//! A shape put elsewhere: turned, scaled, sheared and moved.
+
+use super::{Collider, Hit, Segment};
+use crate::math::{length, unit};
+use glam::{Mat3, Vec3};
+
+/// A linear map and a shift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine {
+    /// Turning, scaling, shearing.
+    pub linear: Mat3,
+    /// The image of the origin \[m\].
+    pub shift: Vec3,
+}
+
+/// A collider in coordinates of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed<C> {
+    collider: C,
+    to_world: Affine,
+    to_local: Affine,
+}
+
+impl Affine {
+    /// Everything stays where it is.
+    pub const IDENTITY: Self = Self { linear: Mat3::IDENTITY, shift: Vec3::ZERO };
+
+    /// The image of a point.
+    #[must_use]
+    pub fn point(&self, p: Vec3) -> Vec3 {
+        self.linear * p + self.shift
+    }
+
+    /// First `inner`, then this.
+    #[must_use]
+    pub fn after(&self, inner: &Self) -> Self {
+        Self { linear: self.linear * inner.linear, shift: self.point(inner.shift) }
+    }
+
+    /// The way back, if there is one.
+    #[must_use]
+    pub fn inverse(&self) -> Option<Self> {
+        let linear = self.linear.inverse();
+        let sound = self.linear.determinant() != 0.0 && linear.is_finite();
+        sound.then(|| Self { linear, shift: -(linear * self.shift) })
+    }
+}
+
+impl<C> Placed<C> {
+    /// Puts `collider` where `to_world` says; `None` if that flattens space, so that there is no way back.
+    #[must_use]
+    pub fn new(collider: C, to_world: Affine) -> Option<Self> {
+        Some(Self { collider, to_world, to_local: to_world.inverse()? })
+    }
+}
+
+impl<C: Collider> Collider for Placed<C> {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        if self.to_world == Affine::IDENTITY {
+            return self.collider.first_hit(segment);
+        }
+        // Lines stay lines and fractions stay fractions; normals go by the inverse transpose.
+        let local = Segment { from: self.to_local.point(segment.from), to: self.to_local.point(segment.to) };
+        let hit = self.collider.first_hit(&local)?;
+        let columns = self.to_world.linear;
+        let stretch = length(Vec3::new(length(columns.x_axis), length(columns.y_axis), length(columns.z_axis)));
+        Some(Hit {
+            time: hit.time,
+            normal: unit(self.to_local.linear.transpose() * hit.normal),
+            slack: hit.slack * stretch + segment.slack(crate::math::largest(self.to_world.shift)),
+        })
+    }
+
+    fn is_empty(&self) -> bool {
+        self.collider.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Sphere;
+
+    #[test]
+    fn a_squashed_sphere_is_hit_where_the_ellipsoid_is() {
+        let map = Affine { linear: Mat3::from_diagonal(Vec3::new(2.0, 1.0, 0.5)), shift: Vec3::new(1.0, 0.0, 0.0) };
+        let unit_sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
+        let placed = Placed::new(unit_sphere, map).expect("it can be undone");
+        let hit = placed.first_hit(&Segment { from: Vec3::new(5.0, 0.0, 0.0), to: Vec3::new(1.0, 0.0, 0.0) });
+        let hit = hit.expect("it goes in");
+        assert!((hit.time - 0.5).abs() < 1e-6 && (hit.normal - Vec3::X).length() < 1e-6);
+        // At (1 + √2, √½, 0) the normal is along (x/4, y, 0).
+        let p = Vec3::new(core::f32::consts::SQRT_2, core::f32::consts::FRAC_1_SQRT_2, 0.0);
+        let normal = unit(Vec3::new(p.x / 4.0, p.y, 0.0));
+        let p = p + Vec3::X;
+        let hit = placed.first_hit(&Segment { from: p + normal, to: p - normal }).expect("it goes in");
+        assert!((hit.time - 0.5).abs() < 1e-6 && (hit.normal - normal).length() < 1e-5);
+    }
+
+    #[test]
+    fn a_flattening_map_is_refused() {
+        let flat = Affine { linear: Mat3::from_diagonal(Vec3::new(1.0, 0.0, 1.0)), shift: Vec3::ZERO };
+        assert_eq!(Placed::new((), flat), None);
+    }
+
+    #[test]
+    fn maps_compose_and_invert() {
+        let a = Affine { linear: Mat3::from_cols(Vec3::Y, -Vec3::X, Vec3::Z), shift: Vec3::new(1.0, 2.0, 3.0) };
+        let b = Affine { linear: Mat3::from_diagonal(Vec3::new(2.0, -3.0, 0.5)), shift: Vec3::new(-1.0, 0.5, 0.0) };
+        let p = Vec3::new(0.3, -0.7, 1.9);
+        assert!((a.after(&b).point(p) - a.point(b.point(p))).length() < 1e-6);
+        let back = a.after(&b).inverse().expect("it can be undone");
+        assert!((back.point(a.after(&b).point(p)) - p).length() < 1e-6);
+    }
+}

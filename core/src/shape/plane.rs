@@ -1,0 +1,59 @@
+//! An infinite plane.
+
+use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
+use crate::math::{largest, unit};
+use glam::Vec3;
+
+/// An infinite plane, hit from both sides. It cannot give birth: all of `sample` is its point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Plane {
+    /// A point of it \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub point: Vec3,
+    /// Its normal, of any length but zero.
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub normal: Vec3,
+}
+
+impl Surface for Plane {
+    fn area(&self) -> f32 {
+        f32::INFINITY
+    }
+
+    fn sample(&self, _: [f32; 3]) -> Spot {
+        Spot { point: self.point, normal: unit(self.normal) }
+    }
+
+    fn nearest(&self, point: Vec3) -> Vec3 {
+        let normal = unit(self.normal);
+        point - normal * normal.dot(point - self.point)
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY }
+    }
+}
+
+impl Collider for Plane {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let normal = unit(self.normal);
+        let (time, normal) =
+            crossing(normal, normal.dot(segment.from - self.point), normal.dot(segment.to - self.point))?;
+        Some(Hit { time, normal, slack: segment.slack(largest(self.point)) })
+    }
+}
+
+/// When a path with signed distances `before` and `after` to a plane meets it, and the normal on the side it comes
+/// from. A path that begins on the plane leaves it, whichever way it goes.
+#[inline]
+pub(super) fn crossing(normal: Vec3, before: f32, after: f32) -> Option<(f32, Vec3)> {
+    if before > 0.0 && after <= 0.0 {
+        Some((before / (before - after), normal))
+    } else if before < 0.0 && after >= 0.0 {
+        Some((before / (before - after), -normal))
+    } else {
+        None
+    }
+}

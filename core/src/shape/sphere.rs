@@ -1,0 +1,77 @@
+//! The surface of a sphere.
+
+use super::convex::{Convex, Span, convex_collider};
+use super::{Aabb, Spot, Surface};
+use crate::math::{largest, max, sin_cos_turns, sqrt, unit};
+use core::f32::consts::PI;
+use glam::Vec3;
+
+/// The surface of a sphere, hit from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sphere {
+    /// Its middle \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub center: Vec3,
+    /// Its radius \[m\].
+    pub radius: f32,
+}
+
+impl Surface for Sphere {
+    fn area(&self) -> f32 {
+        4.0 * PI * self.radius * self.radius
+    }
+
+    /// Archimedes: the height of a uniform point is uniform.
+    fn sample(&self, u: [f32; 3]) -> Spot {
+        let y = 1.0 - 2.0 * u[0];
+        let r = sqrt(max(1.0 - y * y, 0.0));
+        let (sin, cos) = sin_cos_turns(u[1]);
+        let normal = Vec3::new(r * cos, y, r * sin);
+        Spot { point: self.center + normal * self.radius, normal }
+    }
+
+    fn nearest(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        self.center + if offset == Vec3::ZERO { Vec3::Y } else { unit(offset) } * self.radius
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb { min: self.center - self.radius, max: self.center + self.radius }
+    }
+}
+
+impl Convex for Sphere {
+    fn contains(&self, point: Vec3) -> bool {
+        let offset = point - self.center;
+        offset.dot(offset) < self.radius * self.radius
+    }
+
+    fn span(&self, from: Vec3, step: Vec3) -> Option<Span> {
+        let offset = from - self.center;
+        let (enter, leave) = circle_span(offset, step, self.radius)?;
+        let normal = |t: f32| unit(offset + step * t);
+        Some(Span { enter, leave, enter_normal: normal(enter), leave_normal: normal(leave) })
+    }
+
+    fn reach(&self) -> f32 {
+        largest(self.center) + self.radius
+    }
+}
+convex_collider!(Sphere);
+
+/// Where the line `offset` + t × `step` lies within `radius` of the origin.
+///
+/// It measures from the point of nearest approach, which keeps its digits where the textbook's b² − 4ac loses them.
+pub(super) fn circle_span(offset: Vec3, step: Vec3, radius: f32) -> Option<(f32, f32)> {
+    let square = step.dot(step);
+    let middle = -offset.dot(step) / square;
+    let nearest = offset + step * middle;
+    let rest = radius * radius - nearest.dot(nearest);
+    if !(rest > 0.0) {
+        return None;
+    }
+    let half = sqrt(rest / square);
+    Some((middle - half, middle + half))
+}

@@ -1,0 +1,266 @@
+//! Where a system's memory comes from: inline arrays, borrowed slices, or the heap, once.
+//!
+//! Capacity belongs to the owner of the memory and to nothing else: every algorithm works on `Slices`.
+
+use crate::emit::Tally;
+use crate::particles::Color;
+use crate::retire::Fate;
+use crate::time::Time;
+use glam::Vec3;
+
+/// Memory that a system can live in. Fresh memory is all zeros.
+pub trait Storage {
+    /// All of it, for changing.
+    fn slices(&mut self) -> Slices<'_>;
+    /// All of it, for reading.
+    fn columns(&self) -> Columns<'_>;
+}
+
+/// Writes every list of columns once: the two views and the two owners are made from it.
+macro_rules! storage {
+    (
+        particle { $($(#[$p_doc:meta])* $p:ident: $p_ty:ty = $p_zero:expr,)+ }
+        emitter { $($(#[$e_doc:meta])* $e:ident: $e_ty:ty = $e_zero:expr,)+ }
+        spring { $($(#[$s_doc:meta])* $s:ident: $s_ty:ty = $s_zero:expr,)+ }
+        work { $($(#[$w_doc:meta])* $w:ident: $w_ty:ty = $w_zero:expr,)+ }
+    ) => {
+        /// A system's memory, borrowed: one slice a column. It is an owner itself, for memory that lies elsewhere.
+        ///
+        /// The columns of particles should be equally long; what is longer than the shortest goes unused.
+        #[derive(Debug)]
+        pub struct Slices<'a> {
+            $($(#[$p_doc])* pub $p: &'a mut [$p_ty],)+
+            $($(#[$e_doc])* pub $e: &'a mut [$e_ty],)+
+            $($(#[$s_doc])* pub $s: &'a mut [$s_ty],)+
+            $($(#[$w_doc])* pub $w: &'a mut [$w_ty],)+
+        }
+
+        /// A system's memory, for reading.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Columns<'a> {
+            $($(#[$p_doc])* pub $p: &'a [$p_ty],)+
+            $($(#[$e_doc])* pub $e: &'a [$e_ty],)+
+            $($(#[$s_doc])* pub $s: &'a [$s_ty],)+
+            $($(#[$w_doc])* pub $w: &'a [$w_ty],)+
+        }
+
+        impl Storage for Slices<'_> {
+            fn slices(&mut self) -> Slices<'_> {
+                Slices {
+                    $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($w: self.$w,)+
+                }
+            }
+            fn columns(&self) -> Columns<'_> {
+                Columns {
+                    $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($w: self.$w,)+
+                }
+            }
+        }
+
+        impl Columns<'_> {
+            /// How many particles fit.
+            #[must_use]
+            pub fn capacity(&self) -> usize {
+                [$(self.$p.len()),+].into_iter().fold(usize::MAX, usize::min)
+            }
+        }
+
+        impl Slices<'_> {
+            /// Moves row `from` onto row `to`; both exist.
+            pub(crate) fn move_row(&mut self, from: usize, to: usize) {
+                // The columns by slot and by number are no rows, but nothing reads them at `to` unless it is theirs.
+                storage!(@move self, from, to, $($p)+);
+            }
+        }
+
+        /// Memory in the value itself: a `static`, a field, or a small stack variable.
+        ///
+        /// `COLUMNS` is how many `Vec3` the scene needs to work with for each particle: see
+        /// [`Scene::columns`](crate::Scene::columns).
+        #[derive(Clone, Debug)]
+        pub struct Inline<const PARTICLES: usize, const EMITTERS: usize, const SPRINGS: usize, const COLUMNS: usize> {
+            $($p: [$p_ty; PARTICLES],)+
+            $($e: [$e_ty; EMITTERS],)+
+            $($s: [[$s_ty; 2]; SPRINGS],)+
+            $($w: [[$w_ty; PARTICLES]; COLUMNS],)+
+        }
+
+        impl<const P: usize, const E: usize, const S: usize, const C: usize> Inline<P, E, S, C> {
+            /// Fresh memory, all zeros: in a `static` it costs no flash.
+            #[must_use]
+            pub const fn new() -> Self {
+                Self {
+                    $($p: [$p_zero; P],)+
+                    $($e: [$e_zero; E],)+
+                    $($s: [[$s_zero; 2]; S],)+
+                    $($w: [[$w_zero; P]; C],)+
+                }
+            }
+        }
+
+        impl<const P: usize, const E: usize, const S: usize, const C: usize> Default for Inline<P, E, S, C> {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+
+        impl<const P: usize, const E: usize, const S: usize, const C: usize> Storage for Inline<P, E, S, C> {
+            fn slices(&mut self) -> Slices<'_> {
+                Slices {
+                    $($p: &mut self.$p,)+
+                    $($e: &mut self.$e,)+
+                    $($s: self.$s.as_flattened_mut(),)+
+                    $($w: self.$w.as_flattened_mut(),)+
+                }
+            }
+            fn columns(&self) -> Columns<'_> {
+                Columns {
+                    $($p: &self.$p,)+
+                    $($e: &self.$e,)+
+                    $($s: self.$s.as_flattened(),)+
+                    $($w: self.$w.as_flattened(),)+
+                }
+            }
+        }
+
+        /// Memory on the heap, asked for once.
+        #[cfg(feature = "alloc")]
+        #[derive(Clone, Debug)]
+        pub struct Heap {
+            $($p: alloc::vec::Vec<$p_ty>,)+
+            $($e: alloc::vec::Vec<$e_ty>,)+
+            $($s: alloc::vec::Vec<$s_ty>,)+
+            $($w: alloc::vec::Vec<$w_ty>,)+
+        }
+
+        #[cfg(feature = "alloc")]
+        impl Heap {
+            /// Fresh memory of the given size.
+            #[must_use]
+            pub fn new(size: Size) -> Self {
+                Self {
+                    $($p: alloc::vec![$p_zero; size.particles],)+
+                    $($e: alloc::vec![$e_zero; size.emitters],)+
+                    $($s: alloc::vec![$s_zero; 2 * size.springs],)+
+                    $($w: alloc::vec![$w_zero; size.particles * size.columns],)+
+                }
+            }
+        }
+
+        #[cfg(feature = "alloc")]
+        impl Storage for Heap {
+            fn slices(&mut self) -> Slices<'_> {
+                Slices {
+                    $($p: &mut self.$p,)+ $($e: &mut self.$e,)+ $($s: &mut self.$s,)+ $($w: &mut self.$w,)+
+                }
+            }
+            fn columns(&self) -> Columns<'_> {
+                Columns {
+                    $($p: &self.$p,)+ $($e: &self.$e,)+ $($s: &self.$s,)+ $($w: &self.$w,)+
+                }
+            }
+        }
+    };
+    // By slot or by number of the start, not by row: these stay where they are.
+    (@move $self:ident, $from:ident, $to:ident, $($p:ident)+) => {
+        $(storage!(@one $self, $from, $to, $p);)+
+    };
+    (@one $self:ident, $from:ident, $to:ident, row_of) => {};
+    (@one $self:ident, $from:ident, $to:ident, last_spring) => {};
+    (@one $self:ident, $from:ident, $to:ident, $p:ident) => {
+        $self.$p[$to] = $self.$p[$from];
+    };
+}
+
+storage! {
+    particle {
+        /// Where it is \[m\], by row.
+        position: Vec3 = Vec3::ZERO,
+        /// How it moves \[m/s\], by row.
+        velocity: Vec3 = Vec3::ZERO,
+        /// Mass \[kg\], by row.
+        mass: f32 = 0.0,
+        /// Inverse mass \[1/kg\], by row; zero pins the particle.
+        inverse_mass: f32 = 0.0,
+        /// Coefficient of linear drag \[kg/s\], by row.
+        drag: f32 = 0.0,
+        /// Share of the normal speed kept in a hit, by row.
+        elasticity: f32 = 0.0,
+        /// When it was born, by row.
+        born: Time = Time::ZERO,
+        /// When it dies of age, by row.
+        dies: Time = Time::ZERO,
+        /// Its colour, by row.
+        color: Color = [0; 4],
+        /// Number of its material plus one, by row; zero: none.
+        material: u16 = 0,
+        /// Why it will be removed at the end of this step, by row.
+        fate: Fate = Fate::Lives,
+        /// How many particles came into the system before it, by row.
+        serial: u32 = 0,
+        /// The slot it holds, by row.
+        slot: u32 = 0,
+        /// Its row, by slot; of a free slot the next free one plus one, zero ending the list.
+        row_of: u32 = 0,
+        /// The end of its list of springs, by number of the particle in the scene's start.
+        last_spring: u32 = 0,
+    }
+    emitter {
+        /// What each emitter has done so far.
+        tallies: Tally = Tally::NEW,
+    }
+    spring {
+        /// The springs at each particle of the start, one list behind the other.
+        incident: u32 = 0,
+    }
+    work {
+        /// Columns to work with, one behind the other.
+        work: Vec3 = Vec3::ZERO,
+    }
+}
+
+/// How much memory a system has, or a scene needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Size {
+    /// Particles alive at once.
+    pub particles: usize,
+    /// Emitters.
+    pub emitters: usize,
+    /// Springs.
+    pub springs: usize,
+    /// Vectors to work with for each particle.
+    pub columns: usize,
+}
+
+impl<T: Storage + ?Sized> Storage for &mut T {
+    fn slices(&mut self) -> Slices<'_> {
+        (**self).slices()
+    }
+    fn columns(&self) -> Columns<'_> {
+        (**self).columns()
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Storage + ?Sized> Storage for alloc::boxed::Box<T> {
+    fn slices(&mut self) -> Slices<'_> {
+        (**self).slices()
+    }
+    fn columns(&self) -> Columns<'_> {
+        (**self).columns()
+    }
+}
+
+impl Columns<'_> {
+    /// How much there is.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        let particles = self.capacity();
+        Size {
+            particles,
+            emitters: self.tallies.len(),
+            springs: self.incident.len() / 2,
+            columns: self.work.len().checked_div(particles).unwrap_or(usize::MAX),
+        }
+    }
+}
