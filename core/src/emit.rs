@@ -296,7 +296,7 @@ impl<M: Surface + Sync> Emit for Emitter<M> {
     }
 }
 
-impl<M: Surface> Emitter<M> {
+impl<M> Emitter<M> {
     /// An emitter of `rate` births per second that are at rest, of 1 kg, immortal.
     #[must_use]
     pub const fn new(shape: Shape<M>, rate: f32) -> Self {
@@ -321,7 +321,9 @@ impl<M: Surface> Emitter<M> {
             color_variance: [0; 4],
         }
     }
+}
 
+impl<M: Surface> Emitter<M> {
     /// The bursts whose instants lie in [from, to): one at zero belongs to the first step.
     fn emit_bursts(&self, burst: &Burst, [from, to]: [Time; 2], births: &mut Births<'_>, number: usize) {
         let (first, every) = (Time::from_seconds(burst.at).ticks(), Time::from_seconds(burst.every).ticks());
@@ -420,6 +422,16 @@ impl<T: Emit> Emit for [T] {
 }
 
 impl<T: Emit, const N: usize> Emit for [T; N] {
+    fn count(&self) -> usize {
+        self.as_slice().count()
+    }
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        self.as_slice().emit(from, to, births);
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Emit> Emit for alloc::vec::Vec<T> {
     fn count(&self) -> usize {
         self.as_slice().count()
     }

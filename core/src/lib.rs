@@ -37,7 +37,8 @@
 //! writes scene files.
 //!
 //! # Features
-//! `alloc`: storage on the heap. `serde`: declared scenes as data. `schema`: their JSON Schema. `std`: the host's
+//! `alloc`: storage on the heap, declared scenes. `serde`: the domain types as data. `json`: scenes as JSON. `schema`: their
+//! JSON Schema. `std`: the host's
 //! faster square root, with the same bits. Without features: no allocation at all.
 
 #![no_std]
@@ -59,6 +60,7 @@ mod particles;
 mod report;
 mod retire;
 pub mod rng;
+pub mod scene;
 pub mod shape;
 mod storage;
 mod system;

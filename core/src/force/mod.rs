@@ -82,6 +82,16 @@ impl<T: Force, const N: usize> Force for [T; N] {
     }
 }
 
+#[cfg(feature = "alloc")]
+impl<T: Force> Force for alloc::vec::Vec<T> {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        self.as_slice().add_to(state, rows, total);
+    }
+    fn energy(&self, state: &State<'_>) -> f64 {
+        self.as_slice().energy(state)
+    }
+}
+
 macro_rules! tuples {
     ($($name:ident)+) => {
         impl<$($name: Force),+> Force for ($($name,)+) {

@@ -1,8 +1,7 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
-use super::plane::crossing;
-use super::{Aabb, Collider, Hit, Segment, Spot, Surface, earlier};
-use crate::math::{clamp, largest, length, max, sqrt, unit};
+use super::{Aabb, Collider, Hit, Segment, Spot, Surface, Triangle, earlier};
+use crate::math::{length, max};
 use glam::Vec3;
 
 /// A borrowed triangle mesh, hit from both sides.
@@ -83,9 +82,9 @@ impl<'a> Mesh<'a> {
         self.triangles
     }
 
-    fn corners(&self) -> impl Iterator<Item = [Vec3; 3]> + 'a {
+    fn faces(&self) -> impl Iterator<Item = Triangle> + 'a {
         let vertices = self.vertices;
-        self.triangles.iter().map(move |t| corners(vertices, t))
+        self.triangles.iter().map(move |t| face(vertices, t))
     }
 }
 
@@ -111,7 +110,7 @@ impl MeshBuf {
 
 impl Surface for Mesh<'_> {
     fn area(&self) -> f32 {
-        self.corners().map(area).sum()
+        self.faces().map(|face| face.area()).sum()
     }
 
     fn sample(&self, u: [f32; 3]) -> Spot {
@@ -121,16 +120,14 @@ impl Surface for Mesh<'_> {
         let Some(triangle) = self.triangles.get(chosen) else {
             return Spot { point: Vec3::ZERO, normal: Vec3::Y };
         };
-        let [a, b, c] = corners(self.vertices, triangle);
-        let s = sqrt(u[1]);
-        Spot { point: a * (1.0 - s) + b * (s * (1.0 - u[2])) + c * (s * u[2]), normal: unit((b - a).cross(c - a)) }
+        face(self.vertices, triangle).sample(u)
     }
 
     /// Looks at every triangle.
     fn nearest(&self, point: Vec3) -> Vec3 {
         let mut best = (f32::INFINITY, point);
-        for corners in self.corners() {
-            let candidate = nearest_on_triangle(corners, point);
+        for face in self.faces() {
+            let candidate = face.nearest(point);
             let distance = length(candidate - point);
             if distance < best.0 {
                 best = (distance, candidate);
@@ -140,16 +137,14 @@ impl Surface for Mesh<'_> {
     }
 
     fn bounds(&self) -> Aabb {
-        Aabb::around(self.corners().flatten())
+        Aabb::around(self.faces().flat_map(|face| face.corners))
     }
 }
 
 impl Collider for Mesh<'_> {
     /// Looks at every triangle. Watertight: an edge shared by two triangles is judged by the same arithmetic for both.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let hit = self.corners().fold(None, |best, corners| earlier(best, hit_triangle(corners, segment)))?;
-        let size = largest(segment.at(hit.time));
-        Some(Hit { slack: max(hit.slack, segment.slack(size)), ..hit })
+        self.faces().fold(None, |best, face| earlier(best, face.first_hit(segment)))
     }
 
     fn is_empty(&self) -> bool {
@@ -200,7 +195,7 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BadMesh> {
 
 /// Fills in running sums of areas; where all are zero (or overflow) every triangle counts alike.
 fn sum_areas(vertices: &[Vec3], triangles: &[[u32; 3]], areas: &mut [u64]) {
-    let size = |t| area(corners(vertices, t));
+    let size = |t| face(vertices, t).area();
     let greatest = triangles.iter().map(size).fold(0.0, max);
     let usable = greatest > 0.0 && greatest < f32::INFINITY;
     let mut sum = 0;
@@ -210,64 +205,14 @@ fn sum_areas(vertices: &[Vec3], triangles: &[[u32; 3]], areas: &mut [u64]) {
     }
 }
 
-fn corners(vertices: &[Vec3], triangle: &[u32; 3]) -> [Vec3; 3] {
-    triangle.map(|i| vertices.get(i as usize).copied().unwrap_or(Vec3::ZERO))
-}
-
-fn area([a, b, c]: [Vec3; 3]) -> f32 {
-    0.5 * length((b - a).cross(c - a))
-}
-
-/// Where a segment crosses a triangle, from either side.
-fn hit_triangle([a, b, c]: [Vec3; 3], segment: &Segment) -> Option<Hit> {
-    let normal = (b - a).cross(c - a);
-    let (time, normal) = crossing(normal, normal.dot(segment.from - a), normal.dot(segment.to - a))?;
-    // The line passes inside if it goes round all three edges the same way. A cross product changes only its sign
-    // when its factors change places, so the two triangles at an edge never both say no.
-    let step = segment.step();
-    let (p, q, r) = (a - segment.from, b - segment.from, c - segment.from);
-    let (u, v, w) = (step.dot(q.cross(r)), step.dot(r.cross(p)), step.dot(p.cross(q)));
-    let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-    let size = max(largest(a), max(largest(b), largest(c)));
-    inside.then(|| Hit { time, normal: unit(normal), slack: segment.slack(size) })
-}
-
-/// The point of a triangle nearest to `p` (Ericson, "Real-Time Collision Detection", 5.1.5).
-fn nearest_on_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * clamp(d1 / (d1 - d3), 0.0, 1.0);
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * clamp(d2 / (d2 - d6), 0.0, 1.0);
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * clamp((d4 - d3) / ((d4 - d3) + (d5 - d6)), 0.0, 1.0);
-    }
-    let sum = 1.0 / (va + vb + vc);
-    a + ab * (vb * sum) + ac * (vc * sum)
+fn face(vertices: &[Vec3], triangle: &[u32; 3]) -> Triangle {
+    Triangle { corners: triangle.map(|i| vertices.get(i as usize).copied().unwrap_or(Vec3::ZERO)) }
 }
 
 #[cfg(all(test, feature = "alloc"))]
 mod tests {
     use super::*;
+    use crate::math::unit;
     use crate::rng::Stream;
     use alloc::vec;
 

@@ -11,6 +11,7 @@ mod place;
 mod plane;
 mod revolve;
 mod sphere;
+mod triangle;
 
 pub use cone::Cone;
 pub use cuboid::Cuboid;
@@ -23,6 +24,7 @@ pub use mesh::{BadMesh, Mesh};
 pub use place::{Affine, Placed};
 pub use plane::Plane;
 pub use sphere::Sphere;
+pub use triangle::Triangle;
 
 use crate::math::{largest, max};
 use glam::Vec3;
@@ -116,6 +118,8 @@ pub enum Shape<M> {
     Cone(Cone),
     /// A triangle mesh.
     Mesh(M),
+    /// One triangle.
+    Triangle(Triangle),
     /// An infinite plane, hit from both sides.
     Plane(Plane),
 }
@@ -182,6 +186,7 @@ macro_rules! each {
             Shape::Cylinder($s) => $call,
             Shape::Cone($s) => $call,
             Shape::Mesh($s) => $call,
+            Shape::Triangle($s) => $call,
             Shape::Plane($s) => $call,
         }
     };
@@ -222,6 +227,7 @@ impl<M> Shape<M> {
             Self::Cylinder(s) => Shape::Cylinder(*s),
             Self::Cone(s) => Shape::Cone(*s),
             Self::Mesh(m) => Shape::Mesh(f(m)?),
+            Self::Triangle(s) => Shape::Triangle(*s),
             Self::Plane(s) => Shape::Plane(*s),
         })
     }
@@ -259,7 +265,17 @@ impl<T: Collider, const N: usize> Collider for [T; N] {
         self.as_slice().first_hit(segment)
     }
     fn is_empty(&self) -> bool {
-        self.as_slice().is_empty()
+        self.iter().all(Collider::is_empty)
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Collider> Collider for alloc::vec::Vec<T> {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        self.as_slice().first_hit(segment)
+    }
+    fn is_empty(&self) -> bool {
+        self.iter().all(Collider::is_empty)
     }
 }
 

@@ -1,0 +1,113 @@
+//! Triangle meshes from files: OFF, OBJ, STL and PLY, told apart by the file's extension.
+//!
+//! Whatever the bytes are, the answer is a mesh or one line saying what is wrong with the file: nothing here panics,
+//! and nothing is allocated because a header promises it.
+
+mod error;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use error::MeshError;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use error::Fault;
+
+/// The largest file that is read, in bytes.
+pub const MAX_BYTES: u64 = 256 << 20;
+
+/// A triangle mesh: at least one triangle, finite coordinates, every index in range.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshData {
+    /// The points that the triangles join.
+    pub vertices: Vec<[f32; 3]>,
+    /// Three indices into `vertices` each, in the order in which the file lists the corners.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl MeshData {
+    /// Adds a polygon as a fan of triangles around its first corner.
+    fn add_polygon(&mut self, corners: &[u32]) {
+        let [first, others @ ..] = corners else { return };
+        self.triangles.extend(others.windows(2).map(|edge| [*first, edge[0], edge[1]]));
+    }
+}
+
+/// Reads a mesh from a file.
+///
+/// # Errors
+///
+/// Where the extension is unknown, the file can't be read or is larger than [`MAX_BYTES`], or [`parse`] refuses it.
+pub fn load(path: &Path) -> Result<MeshData, MeshError> {
+    let name = path.display().to_string();
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    // Before the file is opened, so that a wrong name is reported even where there is no such file.
+    let reader = reader(&extension).map_err(|fault| MeshError::new(&name, fault))?;
+    let mesh = bytes_of(path).and_then(|bytes| read(reader, &bytes));
+    mesh.map_err(|fault| MeshError::new(&name, fault))
+}
+
+/// Reads a mesh from the bytes of a file; `extension` says which format they are in.
+///
+/// # Errors
+///
+/// Where the extension is unknown, the bytes are not in its format, there are more than [`MAX_BYTES`] of them, a
+/// coordinate is not a finite `f32`, a face names a vertex that isn't there, or there is no triangle at all.
+pub fn parse(name_for_messages: &str, extension: &str, bytes: &[u8]) -> Result<MeshData, MeshError> {
+    reader(extension).and_then(|reader| read(reader, bytes)).map_err(|fault| MeshError::new(name_for_messages, fault))
+}
+
+type Reader = fn(&[u8]) -> Result<MeshData, Fault>;
+
+const READERS: [(&str, Reader); 4] = [("off", off::read), ("obj", obj::read), ("stl", stl::read), ("ply", ply::read)];
+
+fn reader(extension: &str) -> Result<Reader, Fault> {
+    let known = READERS.iter().find(|(name, _)| name.eq_ignore_ascii_case(extension));
+    known.map(|(_, reader)| *reader).ok_or_else(|| {
+        let names: Vec<_> = READERS.iter().map(|(name, _)| format!(".{name}")).collect();
+        let found =
+            if extension.is_empty() { "no extension".into() } else { format!("unknown extension .{extension}") };
+        Fault::new(format!("{found}: a mesh is one of {}", names.join(", ")))
+    })
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, Fault> {
+    let unreadable = |error: std::io::Error| Fault::new(format!("can't be read: {error}"));
+    let file = File::open(path).map_err(unreadable)?;
+    let facts = file.metadata().map_err(unreadable)?;
+    if facts.is_dir() {
+        return Err(Fault::new("is a directory: name a mesh file"));
+    }
+    check_size(facts.len())?;
+    let mut bytes = Vec::new();
+    // A pipe or a device has no length to check beforehand, so the reading itself is bounded too.
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+fn read(reader: Reader, bytes: &[u8]) -> Result<MeshData, Fault> {
+    check_size(bytes.len() as u64)?;
+    if bytes.is_empty() {
+        return Err(Fault::new("is empty: expected a mesh"));
+    }
+    let mesh = reader(bytes)?;
+    if mesh.triangles.is_empty() {
+        return Err(Fault::new("has no triangles: a mesh needs at least one face"));
+    }
+    Ok(mesh)
+}
+
+fn check_size(bytes: u64) -> Result<(), Fault> {
+    if bytes > MAX_BYTES {
+        let limit = MAX_BYTES >> 20;
+        return Err(Fault::new(format!("has {bytes} bytes: at most {limit} MiB are read; simplify the mesh")));
+    }
+    Ok(())
+}

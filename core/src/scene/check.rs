@@ -1,0 +1,245 @@
+//! What a declared scene may say: every number finite, every reference to something that is there.
+
+use super::{Group, Light, SceneError, SceneFile};
+use crate::emit::{Emitter, Spread, Varied};
+use crate::math::unit;
+use crate::shape::{Affine, Shape};
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use glam::{Mat3, Vec3};
+
+type Checked = Result<(), SceneError>;
+
+impl SceneFile {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// The first that cannot be used, by its path in the file.
+    pub fn check(&self) -> Checked {
+        self.check_run()?;
+        for (i, particle) in self.particles.iter().enumerate() {
+            let at = format!("particles[{i}]");
+            if !particle.is_sound() {
+                let message =
+                    "its numbers have to be finite, and its mass above zero (3e-39 kg at least) unless it is fixed";
+                return Err(SceneError::value(at, message));
+            }
+            self.check_material(&at, particle.material)?;
+        }
+        for (i, spring) in self.springs.iter().enumerate() {
+            let at = format!("springs[{i}]");
+            finite(&at, &[spring.rest_length, spring.ks, spring.kd])?;
+            if let Some(end) = spring.ends.iter().find(|&&end| end as usize >= self.particles.len()) {
+                let count = self.particles.len();
+                return Err(SceneError::value(
+                    at,
+                    format!("particle {end} is out of range; there are {count}, from 0"),
+                ));
+            }
+        }
+        for (i, emitter) in self.emitters.iter().enumerate() {
+            self.check_emitter(&format!("emitters[{i}]"), emitter)?;
+        }
+        for (i, sink) in self.sinks.iter().enumerate() {
+            finite(&format!("sinks[{i}]"), &[sink.intensity, sink.ca, sink.la, sink.qa])?;
+            check_shape(&format!("sinks[{i}].shape"), &sink.shape)?;
+        }
+        for (i, force) in self.forces.iter().enumerate() {
+            let at = format!("forces[{i}]");
+            match force {
+                super::ForceKind::Gravity(g) => finite(&at, &g.acceleration.to_array())?,
+                super::ForceKind::Drag(_) => {}
+                super::ForceKind::MutualGravity(m) => finite(&at, &[m.constant, m.softening])?,
+            }
+        }
+        self.check_scenery()?;
+        self.check_look()
+    }
+
+    /// The groups around a piece of scenery, the outermost first.
+    pub(super) fn chain(&self, group: Option<u32>) -> Vec<u32> {
+        let mut chain = Vec::new();
+        let mut next = group;
+        while let Some(index) = next {
+            chain.push(index);
+            // Parents come before their children, so this ends.
+            next = self.groups.get(index as usize).and_then(|g| g.parent).filter(|&parent| parent < index);
+        }
+        chain.reverse();
+        chain
+    }
+
+    /// The material that a group gives, or the nearest around it that has one.
+    pub(super) fn material_of(&self, group: Option<u32>) -> Option<u16> {
+        self.chain(group).iter().rev().find_map(|&index| self.groups.get(index as usize)?.material)
+    }
+
+    fn check_run(&self) -> Checked {
+        let run = &self.run;
+        let longest = f64::from(1u32 << 31);
+        if !(run.dt > 0.0 && run.dt < longest) {
+            return Err(SceneError::value("run.dt", format!("has to be above zero seconds, not {}", run.dt)));
+        }
+        if !(run.duration >= 0.0 && run.duration < longest) {
+            return Err(SceneError::value(
+                "run.duration",
+                format!("has to be zero seconds or more, not {}", run.duration),
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_material(&self, at: &str, material: Option<u16>) -> Checked {
+        match material {
+            Some(number) if usize::from(number) >= self.materials.len() => {
+                let count = self.materials.len();
+                let message = format!("{number} is out of range; there are {count}, from 0");
+                Err(SceneError::value(format!("{at}.material"), message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_emitter(&self, at: &str, emitter: &Emitter<String>) -> Checked {
+        if !(emitter.rate >= 0.0 && emitter.rate.is_finite()) {
+            return Err(SceneError::value(
+                format!("{at}.rate"),
+                format!("has to be zero or more, not {}", emitter.rate),
+            ));
+        }
+        let Emitter { speed, mass, drag, elasticity, lifetime, .. } = emitter;
+        for (name, Varied { mean, variance }) in
+            [("speed", speed), ("mass", mass), ("drag", drag), ("elasticity", elasticity), ("lifetime", lifetime)]
+        {
+            finite(&format!("{at}.{name}"), &[*mean, *variance])?;
+        }
+        if !emitter.fixed && !(mass.mean - mass.variance.abs() > 3e-39) {
+            return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the variance counted in"));
+        }
+        let (Spread::Uniform(cutoff) | Spread::Lecture(cutoff)) = emitter.spread;
+        finite(&format!("{at}.spread"), &[cutoff])?;
+        finite(at, &[emitter.start, emitter.stop.unwrap_or(0.0), emitter.inherit])?;
+        finite(&format!("{at}.velocity"), &emitter.velocity.to_array())?;
+        if let Some(direction) = emitter.direction {
+            check_direction(&format!("{at}.direction"), direction)?;
+        }
+        if let Some(burst) = &emitter.burst {
+            finite(&format!("{at}.burst"), &[burst.at, burst.every])?;
+        }
+        if matches!(emitter.shape, Shape::Plane(_)) {
+            return Err(SceneError::value(format!("{at}.shape"), "a plane is infinite and cannot give birth"));
+        }
+        check_shape(&format!("{at}.shape"), &emitter.shape)?;
+        self.check_material(at, emitter.material)
+    }
+
+    fn check_scenery(&self) -> Checked {
+        for (i, group) in self.groups.iter().enumerate() {
+            let at = format!("groups[{i}]");
+            if let Err(message) = group.affine() {
+                return Err(SceneError::value(format!("{at}.matrix"), message));
+            }
+            if group.parent.is_some_and(|parent| parent as usize >= i) {
+                return Err(SceneError::value(format!("{at}.parent"), "has to be an earlier group"));
+            }
+            self.check_material(&at, group.material)?;
+        }
+        for (i, item) in self.scenery.iter().enumerate() {
+            let at = format!("scenery[{i}]");
+            check_shape(&format!("{at}.shape"), &item.shape)?;
+            self.check_material(&at, item.material)?;
+            if item.group.is_some_and(|group| group as usize >= self.groups.len()) {
+                let count = self.groups.len();
+                return Err(SceneError::value(
+                    format!("{at}.group"),
+                    format!("is out of range; there are {count}, from 0"),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_look(&self) -> Checked {
+        for (i, m) in self.materials.iter().enumerate() {
+            let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
+            finite(&format!("materials[{i}]"), colors.as_flattened())?;
+            finite(&format!("materials[{i}]"), &[m.shininess, m.refraction, m.size, m.glow])?;
+        }
+        for (i, light) in self.lights.iter().enumerate() {
+            let at = format!("lights[{i}]");
+            match light {
+                Light::Directional { color, direction } => finite(&at, [*color, *direction].as_flattened())?,
+                Light::Point { color, position, attenuation } => {
+                    finite(&at, [*color, *position, *attenuation].as_flattened())?;
+                }
+                Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
+                    finite(&at, [*color, *position, *direction, *attenuation].as_flattened())?;
+                    finite(&at, &[*cutoff, *dropoff])?;
+                }
+                Light::Area { color, position, direction, radius, attenuation } => {
+                    finite(&at, [*color, *position, *direction, *attenuation].as_flattened())?;
+                    finite(&at, &[*radius])?;
+                }
+            }
+        }
+        if let Some(c) = &self.camera {
+            finite("camera", [c.eye, c.towards, c.up, [c.xfov, c.near, c.far]].as_flattened())?;
+        }
+        finite("ambient", &self.ambient)?;
+        finite("background", &self.background)
+    }
+}
+
+impl Group {
+    /// Its matrix as a map of space.
+    ///
+    /// # Errors
+    /// If the last row is not 0 0 0 1, or the map cannot be undone.
+    pub fn affine(&self) -> Result<Affine, &'static str> {
+        let [a, b, c, last] = self.matrix;
+        if last != [0.0, 0.0, 0.0, 1.0] {
+            return Err("the last row of the matrix has to be 0 0 0 1");
+        }
+        let column = |i: usize| Vec3::new(a[i], b[i], c[i]);
+        let affine = Affine { linear: Mat3::from_cols(column(0), column(1), column(2)), shift: column(3) };
+        let sound = affine.shift.is_finite() && affine.inverse().is_some();
+        if sound { Ok(affine) } else { Err("the matrix flattens space: it has no inverse") }
+    }
+}
+
+fn finite(at: &str, numbers: &[f32]) -> Checked {
+    match numbers.iter().find(|x| !x.is_finite()) {
+        Some(x) => {
+            Err(SceneError::value(at, format!("has to be finite and within the range of a 32-bit float, not {x}")))
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_direction(at: &str, direction: Vec3) -> Checked {
+    finite(at, &direction.to_array())?;
+    if unit(direction) == Vec3::ZERO { Err(SceneError::value(at, "has to have a direction")) } else { Ok(()) }
+}
+
+fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
+    let rows = |rows: &[Vec3]| rows.iter().try_for_each(|row| finite(at, &row.to_array()));
+    let sizes = |sizes: &[f32]| {
+        finite(at, sizes)?;
+        match sizes.iter().find(|&&size| size < 0.0) {
+            Some(size) => Err(SceneError::value(at, format!("radius and height have to be zero or more, not {size}"))),
+            None => Ok(()),
+        }
+    };
+    match shape {
+        Shape::Line(s) => rows(&[s.from, s.to]),
+        Shape::Box(s) => rows(&[s.min, s.max]),
+        Shape::Sphere(s) => rows(&[s.center]).and(sizes(&[s.radius])),
+        Shape::Cylinder(s) => rows(&[s.center]).and(sizes(&[s.radius, s.height])),
+        Shape::Cone(s) => rows(&[s.center]).and(sizes(&[s.radius, s.height])),
+        Shape::Circle(s) => rows(&[s.center]).and(sizes(&[s.radius])).and(check_direction(at, s.normal)),
+        Shape::Triangle(s) => rows(&s.corners),
+        Shape::Plane(s) => rows(&[s.point]).and(check_direction(at, s.normal)),
+        Shape::Mesh(_) => Ok(()),
+    }
+}

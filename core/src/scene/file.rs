@@ -1,0 +1,296 @@
+//! The declared scene: everything that a scene file says, in the engine's own types.
+
+use crate::emit::Emitter;
+use crate::force::{Drag, Force, Gravity, MutualGravity, Sink, Spring, State};
+use crate::integrate::Method;
+use crate::particles::Particle;
+use crate::shape::Shape;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::Range;
+use glam::Vec3;
+
+/// Everything that a scene file says. Meshes are named by file, relative to the scene's.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SceneFile {
+    /// Where the schema of this format lies, for editors.
+    #[cfg_attr(feature = "serde", serde(rename = "$schema", skip_serializing_if = "Option::is_none"))]
+    pub schema: Option<String>,
+    /// What it shows, for people.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "String::is_empty"))]
+    pub about: String,
+    /// How it is run unless the command line says otherwise.
+    pub run: Run,
+    /// The particles it begins with; springs name them by their place here, from 0.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub particles: Vec<Particle>,
+    /// Springs between them.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub springs: Vec<Spring>,
+    /// What brings further particles into the world.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub emitters: Vec<Emitter<String>>,
+    /// What acts on all of them, in this order.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub forces: Vec<ForceKind>,
+    /// What pulls them, after the forces, and removes those that touch it.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub sinks: Vec<Sink<String>>,
+    /// What they bounce off and what is drawn.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub scenery: Vec<Item>,
+    /// Transforms that parts of the scenery share.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub groups: Vec<Group>,
+    /// Materials; others name them by their place here, from 0.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub materials: Vec<Material>,
+    /// Lights; without any, two directional ones.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub lights: Vec<Light>,
+    /// The camera; without one, it looks down −z at the scene from three radii away.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub camera: Option<Camera>,
+    /// Light from everywhere: red, green, blue.
+    pub ambient: [f32; 3],
+    /// The colour behind everything.
+    pub background: [f32; 3],
+}
+
+/// How a scene is run.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Run {
+    /// How long \[s\].
+    pub duration: f64,
+    /// The step \[s\].
+    pub dt: f64,
+    /// The method.
+    pub integrator: Method,
+    /// The seed of all randomness.
+    pub seed: u64,
+    /// Particles alive at once.
+    pub capacity: u32,
+}
+
+/// A force that acts on all particles.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum ForceKind {
+    /// Uniform gravity.
+    Gravity(Gravity),
+    /// Linear drag with each particle's own coefficient.
+    Drag(Drag),
+    /// Every two particles attract each other.
+    MutualGravity(MutualGravity),
+}
+
+/// A piece of scenery. All but lines are solid.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Item {
+    /// What it looks like.
+    pub shape: Shape<String>,
+    /// Its material; without one, that of its group or the next group around with one.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub material: Option<u16>,
+    /// The group whose transform applies, by its place in the list of groups.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub group: Option<u32>,
+}
+
+/// A transform of scenery, inside another if it has a parent. (A flat list: nesting has no depth that could overflow.)
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Group {
+    /// The rows of a 4×4 matrix; its last row has to be 0 0 0 1, and its inverse has to exist.
+    pub matrix: [[f32; 4]; 4],
+    /// The material of what stands inside and names none.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub material: Option<u16>,
+    /// The group it stands in: an earlier one.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub parent: Option<u32>,
+}
+
+/// How a surface, or a particle, looks. Colours are red, green, blue from 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Material {
+    /// Reflected from ambient light.
+    pub ambient: [f32; 3],
+    /// Reflected in all directions; the colour of particles.
+    pub diffuse: [f32; 3],
+    /// Reflected in highlights.
+    pub specular: [f32; 3],
+    /// Let through.
+    pub transmission: [f32; 3],
+    /// Emitted; the colour of particles whose diffuse colour is black.
+    pub emission: [f32; 3],
+    /// Exponent of the highlights.
+    pub shininess: f32,
+    /// Index of refraction.
+    pub refraction: f32,
+    /// The file of a texture.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub texture: Option<String>,
+    /// The diameter particles are drawn with \[m\]; zero: a size that suits the picture.
+    pub size: f32,
+    /// How particles are drawn, from 0, a lit ball, to 1, a glow.
+    pub glow: f32,
+}
+
+/// A light. Colours are red, green, blue; attenuation is ca, la, qa of 1 / (ca + la d + qa d²).
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Light {
+    /// From infinitely far.
+    Directional {
+        /// Colour.
+        color: [f32; 3],
+        /// The direction it shines in.
+        direction: [f32; 3],
+    },
+    /// From a point.
+    Point {
+        /// Colour.
+        color: [f32; 3],
+        /// Where \[m\].
+        position: [f32; 3],
+        /// ca, la, qa.
+        attenuation: [f32; 3],
+    },
+    /// From a point into a cone.
+    Spot {
+        /// Colour.
+        color: [f32; 3],
+        /// Where \[m\].
+        position: [f32; 3],
+        /// The middle of the cone.
+        direction: [f32; 3],
+        /// ca, la, qa.
+        attenuation: [f32; 3],
+        /// Half angle of the cone \[rad\].
+        cutoff: f32,
+        /// Exponent of the fall toward its edge.
+        dropoff: f32,
+    },
+    /// From a disc.
+    Area {
+        /// Colour.
+        color: [f32; 3],
+        /// Its middle \[m\].
+        position: [f32; 3],
+        /// Its normal.
+        direction: [f32; 3],
+        /// Its radius \[m\].
+        radius: f32,
+        /// ca, la, qa.
+        attenuation: [f32; 3],
+    },
+}
+
+/// From where and how the scene is seen.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Camera {
+    /// Where it stands \[m\].
+    pub eye: [f32; 3],
+    /// The direction it looks in.
+    pub towards: [f32; 3],
+    /// A direction that shall be up in the picture.
+    pub up: [f32; 3],
+    /// Half the horizontal angle it sees \[rad\].
+    pub xfov: f32,
+    /// Nothing nearer is seen \[m\].
+    pub near: f32,
+    /// Nothing farther is seen \[m\].
+    pub far: f32,
+}
+
+impl SceneFile {
+    /// A scene that says nothing.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            schema: None,
+            about: String::new(),
+            run: Run::default(),
+            particles: Vec::new(),
+            springs: Vec::new(),
+            emitters: Vec::new(),
+            forces: Vec::new(),
+            sinks: Vec::new(),
+            scenery: Vec::new(),
+            groups: Vec::new(),
+            materials: Vec::new(),
+            lights: Vec::new(),
+            camera: None,
+            ambient: [0.0; 3],
+            background: [0.0; 3],
+        }
+    }
+}
+
+impl Default for SceneFile {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self { duration: 10.0, dt: 1.0 / 60.0, integrator: Method::Rk4, seed: 1, capacity: 65_536 }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            ambient: [0.2; 3],
+            diffuse: [0.5; 3],
+            specular: [0.5; 3],
+            transmission: [0.0; 3],
+            emission: [0.0; 3],
+            shininess: 10.0,
+            refraction: 1.0,
+            texture: None,
+            size: 0.0,
+            glow: 0.0,
+        }
+    }
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self { eye: [0.0; 3], towards: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], xfov: 0.25, near: 0.01, far: 1000.0 }
+    }
+}
+
+impl Force for ForceKind {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        match self {
+            Self::Gravity(force) => force.add_to(state, rows, total),
+            Self::Drag(force) => force.add_to(state, rows, total),
+            Self::MutualGravity(force) => force.add_to(state, rows, total),
+        }
+    }
+
+    fn energy(&self, state: &State<'_>) -> f64 {
+        match self {
+            Self::Gravity(force) => force.energy(state),
+            Self::Drag(force) => force.energy(state),
+            Self::MutualGravity(force) => force.energy(state),
+        }
+    }
+}

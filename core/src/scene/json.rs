@@ -1,0 +1,77 @@
+//! The declared scene as JSON.
+
+use super::{SceneError, SceneFile};
+use alloc::string::{String, ToString};
+
+impl SceneFile {
+    /// Reads JSON; `name` is the file's name for messages.
+    ///
+    /// # Errors
+    /// If the text is no JSON, or says something that a scene does not know, with line and column.
+    pub fn from_json(name: &str, text: &str) -> Result<Self, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        serde_json::from_str(text).map_err(|error| {
+            let message = error.to_string();
+            let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);
+            SceneError::at(name, error.line(), error.column(), message)
+        })
+    }
+
+    /// Writes JSON, indented, with a line end at the end.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Numbers that JSON does not know (NaN, infinities) become null; a checked scene has none.
+        let text = serde_json::to_string_pretty(self).unwrap_or_default();
+        compact_numbers(&text)
+    }
+}
+
+/// Puts lists of plain numbers on one line: a vector is read as one thing.
+///
+/// The pretty printer puts every bracket and every entry at the end or on a line of its own, and no string spans lines.
+fn compact_numbers(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        out.push_str(line);
+        if line.ends_with('[') {
+            let is_number = |line: &&str| line.trim().trim_end_matches(',').parse::<f64>().is_ok();
+            let count = lines.clone().take_while(is_number).count();
+            let closes = lines.clone().nth(count).is_some_and(|line| line.trim_start().starts_with(']'));
+            if count > 0 && closes {
+                for (i, number) in lines.by_ref().take(count).enumerate() {
+                    out.push_str(if i == 0 { "" } else { " " });
+                    out.push_str(number.trim());
+                }
+                out.push_str(lines.next().unwrap_or_default().trim_start());
+            }
+        }
+        out.push('\n');
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_name_line_and_column() {
+        let error = SceneFile::from_json("a.json", "{\n  \"wind\": 1\n}").expect_err("unknown field");
+        assert!(error.to_string().starts_with("a.json:2:8: unknown field `wind`, expected one of"), "{error}");
+        let error = SceneFile::from_json("a.json", "{\"ambient\": [NaN, 0, 0]}").expect_err("no number");
+        assert!(error.to_string().starts_with("a.json:1:14: "), "{error}");
+        let error = SceneFile::from_json("a.json", "{\"ambient\": [0, 0").expect_err("cut off");
+        assert!(error.to_string().contains("EOF"), "{error}");
+    }
+
+    #[test]
+    fn vectors_stand_on_one_line_and_text_is_left_alone() {
+        let mut scene = SceneFile::new();
+        scene.about = "a [ b\n ] c".to_string();
+        scene.ambient = [0.1, 2.0, 1e-7];
+        let text = scene.to_json();
+        assert!(text.contains("\"ambient\": [0.1, 2.0, 1e-7]"), "{text}");
+        assert_eq!(SceneFile::from_json("", &text), Ok(scene));
+    }
+}

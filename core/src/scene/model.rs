@@ -1,0 +1,183 @@
+//! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
+
+use super::{Files, ForceKind, Material, SceneError, SceneFile, beside};
+use crate::emit::Emitter;
+use crate::force::{Sink, Spring};
+use crate::integrate::Method;
+use crate::particles::{Color, Particle};
+use crate::shape::{Affine, MeshBuf, Placed, Shape};
+use crate::storage::Size;
+use crate::system::Scene;
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// What a scene file means, owned: lend it to a system with [`Model::scene`].
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The particles it begins with.
+    pub particles: Vec<Particle>,
+    /// Springs between them.
+    pub springs: Vec<Spring>,
+    /// What brings further particles into the world.
+    pub emitters: Vec<Emitter<Arc<MeshBuf>>>,
+    /// What acts on them: forces, then the pull of the sinks.
+    pub forces: (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>),
+    /// What they bounce off.
+    pub colliders: Vec<Placed<Shape<Arc<MeshBuf>>>>,
+    /// What is drawn.
+    pub scenery: Vec<Solid>,
+    /// The method.
+    pub integrator: Method,
+}
+
+/// A piece of scenery where it stands.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    /// Its shape.
+    pub shape: Shape<Arc<MeshBuf>>,
+    /// Where it stands.
+    pub to_world: Affine,
+    /// Its material's number, if it has one.
+    pub material: Option<u16>,
+}
+
+impl Model {
+    /// Makes the scene of a file that lies at `path` ready to run.
+    ///
+    /// # Errors
+    /// If a value cannot be used or a mesh cannot be read.
+    pub fn load(file: &SceneFile, path: &str, files: &mut dyn Files) -> Result<Self, SceneError> {
+        file.check().map_err(|error| error.in_file(path))?;
+        let mut meshes = Meshes { loaded: BTreeMap::new(), path, files };
+        let mut emitters = Vec::with_capacity(file.emitters.len());
+        for (i, emitter) in file.emitters.iter().enumerate() {
+            let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
+            emitters.push(with_shape(emitter, shape, file));
+        }
+        let mut sinks = Vec::with_capacity(file.sinks.len());
+        for (i, sink) in file.sinks.iter().enumerate() {
+            let shape = meshes.shape(&format!("sinks[{i}].shape"), &sink.shape)?;
+            let Sink { intensity, ca, la, qa, .. } = *sink;
+            sinks.push(Sink { shape, intensity, ca, la, qa });
+        }
+        let mut scenery = Vec::with_capacity(file.scenery.len());
+        for (i, item) in file.scenery.iter().enumerate() {
+            let shape = meshes.shape(&format!("scenery[{i}].shape"), &item.shape)?;
+            let material = item.material.or_else(|| file.material_of(item.group));
+            scenery.push(Solid { shape, to_world: placement(file, item.group), material });
+        }
+        let solid = scenery.iter().enumerate().filter(|(_, solid)| !matches!(solid.shape, Shape::Line(_)));
+        let colliders = solid.map(|(i, solid)| {
+            Placed::new(solid.shape.clone(), solid.to_world).ok_or_else(|| {
+                let message = "its groups together flatten space: there is no inverse";
+                SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
+            })
+        });
+        Ok(Self {
+            particles: file
+                .particles
+                .iter()
+                .map(|p| Particle { color: color(file, p.color, p.material), ..*p })
+                .collect(),
+            springs: file.springs.clone(),
+            emitters,
+            colliders: colliders.collect::<Result<_, _>>()?,
+            forces: (file.forces.clone(), sinks),
+            scenery,
+            integrator: file.run.integrator,
+        })
+    }
+
+    /// The scene, for a system to step through.
+    #[must_use]
+    pub fn scene(&self) -> Scene<'_> {
+        Scene {
+            start: &self.particles,
+            springs: &self.springs,
+            emitters: &self.emitters,
+            forces: &self.forces,
+            colliders: &self.colliders,
+            sinks: &self.forces.1,
+            integrator: self.integrator.integrator(),
+        }
+    }
+
+    /// The memory it needs for `particles` alive at once.
+    #[must_use]
+    pub fn size(&self, particles: usize) -> Size {
+        Size { particles, ..self.scene().size() }
+    }
+}
+
+impl Material {
+    /// The colour of particles of this material: diffuse, or emitted where that is black.
+    #[must_use]
+    pub fn color(&self) -> Color {
+        let [r, g, b] = if self.diffuse == [0.0; 3] { self.emission } else { self.diffuse };
+        // The casts saturate.
+        let byte = |x: f32| (x * 255.0 + 0.5) as u8;
+        [byte(r), byte(g), byte(b), 255]
+    }
+}
+
+/// Meshes by name, each read once.
+struct Meshes<'a> {
+    loaded: BTreeMap<String, Arc<MeshBuf>>,
+    path: &'a str,
+    files: &'a mut dyn Files,
+}
+
+impl Meshes<'_> {
+    fn shape(&mut self, at: &str, shape: &Shape<String>) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
+        shape.with_mesh(|name| {
+            if let Some(mesh) = self.loaded.get(name) {
+                return Ok(mesh.clone());
+            }
+            let mesh = self.files.mesh(&beside(self.path, name));
+            let mesh = Arc::new(mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?);
+            self.loaded.insert(name.to_string(), mesh.clone());
+            Ok(mesh)
+        })
+    }
+}
+
+/// The product of the transforms of all groups around.
+fn placement(file: &SceneFile, group: Option<u32>) -> Affine {
+    file.chain(group).iter().fold(Affine::IDENTITY, |outer, &index| {
+        let inner = file.groups.get(index as usize).and_then(|group| group.affine().ok());
+        outer.after(&inner.unwrap_or(Affine::IDENTITY))
+    })
+}
+
+fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<Color> {
+    own.or_else(|| Some(file.materials.get(usize::from(material?))?.color()))
+}
+
+fn with_shape(emitter: &Emitter<String>, shape: Shape<Arc<MeshBuf>>, file: &SceneFile) -> Emitter<Arc<MeshBuf>> {
+    let Emitter { rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } = *emitter;
+    let Emitter { mass, fixed, drag, elasticity, lifetime, material, color: own, color_variance, .. } = *emitter;
+    let color = color(file, own, material);
+    Emitter {
+        shape,
+        rate,
+        burst,
+        start,
+        stop,
+        speed,
+        direction,
+        spread,
+        velocity,
+        inherit,
+        mass,
+        fixed,
+        drag,
+        elasticity,
+        lifetime,
+        material,
+        color,
+        color_variance,
+    }
+}

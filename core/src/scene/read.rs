@@ -1,0 +1,360 @@
+//! From a `.scn` text, with what it includes, to the declared scene.
+
+use super::scn::{Command, Index, Located, Place, ScnError, Source, commands};
+use super::{Camera, ForceKind, Group, Item, Light, Material, SceneError, SceneFile};
+use crate::emit::{Emitter, Spread, Varied};
+use crate::force::{Drag, Gravity, MutualGravity, Sink, Spring};
+use crate::shape::{MeshBuf, Shape};
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+/// How deep groups may stand in each other.
+const MAX_GROUPS: usize = 1024;
+/// How deep files may include each other.
+const MAX_INCLUDE_DEPTH: usize = 64;
+/// How many includes a scene may have in all: two files that each include the next twice grow without measure.
+const MAX_INCLUDES: usize = 4096;
+
+/// Where scenes and meshes come from; errors are one line of text that names the file.
+pub trait Files {
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    fn text(&mut self, path: &str) -> Result<String, String>;
+
+    /// A mesh.
+    ///
+    /// # Errors
+    /// If it cannot be read or is no mesh.
+    fn mesh(&mut self, path: &str) -> Result<MeshBuf, String>;
+
+    /// Whether there is such a file.
+    fn exists(&mut self, path: &str) -> bool;
+}
+
+/// Reads a `.scn` text that lies at `path`, and what it includes; the strings are warnings.
+///
+/// Names of meshes and textures come out relative to `path`'s folder, includes are flattened.
+///
+/// # Errors
+/// If anything in it is unknown, out of range, cut off or missing: with file, line and column.
+pub fn read_scn(path: &str, text: &str, files: &mut dyn Files) -> Result<(SceneFile, Vec<String>), SceneError> {
+    let mut reader = Reader {
+        files,
+        root: path,
+        scene: SceneFile::new(),
+        gravity: None,
+        warnings: Vec::new(),
+        open: Vec::new(),
+        includes: 0,
+    };
+    reader.file(path, text, "", None, &[])?;
+    let gravity = reader.gravity.map(ForceKind::Gravity);
+    let always = [ForceKind::Drag(Drag {}), ForceKind::MutualGravity(MutualGravity::NEWTON)];
+    reader.scene.forces = gravity.into_iter().chain(always).collect();
+    Ok((reader.scene, reader.warnings))
+}
+
+/// The path of `name`, which the file at `path` names: relative to its folder, with `.` and `..` resolved.
+#[must_use]
+pub fn beside(path: &str, name: &str) -> String {
+    if name.starts_with('/') {
+        return name.to_string();
+    }
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let rooted = path.starts_with('/');
+    let mut parts: Vec<&str> = Vec::new();
+    for part in folder.split('/').chain(name.split('/')) {
+        match part {
+            "" | "." => {}
+            ".." if parts.last().is_some_and(|&last| last != "..") => {
+                parts.pop();
+            }
+            part => parts.push(part),
+        }
+    }
+    let joined = parts.join("/");
+    if rooted { format!("/{joined}") } else { joined }
+}
+
+struct Reader<'a> {
+    files: &'a mut dyn Files,
+    root: &'a str,
+    scene: SceneFile,
+    gravity: Option<Gravity>,
+    warnings: Vec<String>,
+    /// The files being read, the outermost first.
+    open: Vec<String>,
+    includes: usize,
+}
+
+/// What the commands of one file refer to.
+struct Scope<'a> {
+    /// The file, as messages name it.
+    path: &'a str,
+    /// Its name relative to the folder of the outermost file; empty for that itself.
+    relative: &'a str,
+    /// Its materials so far, or those of the including file as long as it has none.
+    materials: Vec<u16>,
+    borrowed: bool,
+    /// Its particles so far.
+    particles: Vec<u32>,
+    /// Springs whose ends are still to be looked up.
+    springs: Vec<([Index; 2], Spring)>,
+    /// The group it was included in.
+    base: Option<u32>,
+    /// The groups open in it, and where they began.
+    groups: Vec<(u32, Place)>,
+}
+
+impl Scope<'_> {
+    fn error(&self, place: Place, name: &str, message: impl core::fmt::Display) -> SceneError {
+        SceneError::at(self.path, place.line as usize, place.column as usize, format!("{name}: {message}"))
+    }
+
+    fn group(&self) -> Option<u32> {
+        self.groups.last().map(|&(group, _)| group).or(self.base)
+    }
+
+    /// The name of a file relative to the folder of the outermost file.
+    fn named(&self, name: &str) -> String {
+        if self.relative.is_empty() { name.to_string() } else { beside(self.relative, name) }
+    }
+
+    fn material(&self, name: &str, index: Index) -> Result<Option<u16>, SceneError> {
+        let known = self.materials.len();
+        match usize::try_from(index.value) {
+            Ok(value) if value < known => Ok(Some(self.materials[value])),
+            Err(_) if index.value == -1 => Ok(None),
+            _ => {
+                let range = match known {
+                    0 => "there are none above it: expected -1".to_string(),
+                    _ => format!("expected -1 to {}", known - 1),
+                };
+                Err(self.error(index.place, name, format!("material {} is out of range; {range}", index.value)))
+            }
+        }
+    }
+}
+
+impl Reader<'_> {
+    fn file(
+        &mut self,
+        path: &str,
+        text: &str,
+        relative: &str,
+        base: Option<u32>,
+        materials: &[u16],
+    ) -> Result<(), SceneError> {
+        self.open.push(path.to_string());
+        let mut scope = Scope {
+            path,
+            relative,
+            materials: materials.to_vec(),
+            borrowed: true,
+            particles: Vec::new(),
+            springs: Vec::new(),
+            base,
+            groups: Vec::new(),
+        };
+        for command in commands(text) {
+            let located = command.map_err(|error: ScnError<'_>| {
+                SceneError::at(path, error.place.line as usize, error.place.column as usize, error)
+            })?;
+            self.command(&mut scope, located)?;
+        }
+        if let Some(&(_, place)) = scope.groups.last() {
+            return Err(scope.error(place, "begin", "the file ends before its 'end'"));
+        }
+        self.springs(&scope)?;
+        self.open.pop();
+        Ok(())
+    }
+
+    fn command(&mut self, scope: &mut Scope<'_>, located: Located<'_>) -> Result<(), SceneError> {
+        let Located { place, name, command } = located;
+        let scene = &mut self.scene;
+        match command {
+            Command::Particle { mut particle, material } => {
+                particle.material = self.inherited(scope, scope.material(name, material)?);
+                scope.particles.push(self.scene.particles.len() as u32);
+                self.scene.particles.push(particle);
+            }
+            Command::Source(source) => self.source(scope, place, name, source)?,
+            Command::Sink(Sink { shape, intensity, ca, la, qa }) => {
+                let shape = self.shape(scope, place, name, &shape)?;
+                self.scene.sinks.push(Sink { shape, intensity, ca, la, qa });
+            }
+            Command::Spring { ends, rest_length, ks, kd } => {
+                scope.springs.push((ends, Spring { ends: [0; 2], rest_length, ks, kd }));
+            }
+            Command::Gravity(acceleration) => self.gravity = Some(Gravity { acceleration }),
+            Command::Scenery(piece) => {
+                let material = scope.material(name, piece.material)?;
+                let shape = self.shape(scope, place, name, &piece.shape)?;
+                self.scene.scenery.push(Item { shape, material, group: scope.group() });
+            }
+            Command::Begin { material, matrix } => self.begin(scope, place, material, matrix)?,
+            Command::End => {
+                if scope.groups.pop().is_none() {
+                    return Err(scope.error(place, name, "there is no 'begin' it could end"));
+                }
+            }
+            Command::Material { colors, shininess, refraction, texture } => {
+                let texture = texture.map(|file| self.texture(scope, place, file));
+                self.material(scope, place, Material { shininess, refraction, texture, ..colored(colors) })?;
+            }
+            Command::DirectionalLight([color, direction]) => scene.lights.push(Light::Directional { color, direction }),
+            Command::PointLight([color, position, attenuation]) => {
+                scene.lights.push(Light::Point { color, position, attenuation });
+            }
+            Command::SpotLight([color, position, direction, attenuation], [cutoff, dropoff]) => {
+                scene.lights.push(Light::Spot { color, position, direction, attenuation, cutoff, dropoff });
+            }
+            Command::AreaLight([color, position, direction], radius, attenuation) => {
+                scene.lights.push(Light::Area { color, position, direction, radius, attenuation });
+            }
+            Command::Camera([eye, towards, up, [xfov, near, far]]) => {
+                scene.camera = Some(Camera { eye, towards, up, xfov, near, far });
+            }
+            Command::Ambient(color) => scene.ambient = color,
+            Command::Background(color) => scene.background = color,
+            Command::Include(file) => self.include(scope, place, file)?,
+        }
+        Ok(())
+    }
+
+    fn source(&mut self, scope: &Scope<'_>, place: Place, name: &str, source: Source<'_>) -> Result<(), SceneError> {
+        let Source { newborn, material, rate, velocity, angle_cutoff, shape } = source;
+        let shape = self.shape(scope, place, name, &shape)?;
+        let material = self.inherited(scope, scope.material(name, material)?);
+        self.scene.emitters.push(Emitter {
+            speed: Varied::exactly(velocity),
+            spread: Spread::Lecture(angle_cutoff),
+            mass: Varied::exactly(newborn.mass),
+            fixed: newborn.fixed,
+            drag: Varied::exactly(newborn.drag),
+            elasticity: Varied::exactly(newborn.elasticity),
+            lifetime: Varied::exactly(newborn.lifetime),
+            material,
+            ..Emitter::new(shape, rate)
+        });
+        Ok(())
+    }
+
+    fn begin(
+        &mut self,
+        scope: &mut Scope<'_>,
+        place: Place,
+        material: Index,
+        matrix: [[f32; 4]; 4],
+    ) -> Result<(), SceneError> {
+        let group = Group { matrix, material: scope.material("begin", material)?, parent: scope.group() };
+        if let Err(message) = group.affine() {
+            return Err(scope.error(place, "begin", message));
+        }
+        let mut depth = 0;
+        let mut around = group.parent;
+        while let Some(index) = around {
+            depth += 1;
+            around = self.scene.groups[index as usize].parent;
+        }
+        if depth >= MAX_GROUPS {
+            return Err(scope.error(place, "begin", format!("groups stand more than {MAX_GROUPS} deep in each other")));
+        }
+        scope.groups.push((self.scene.groups.len() as u32, place));
+        self.scene.groups.push(group);
+        Ok(())
+    }
+
+    fn material(&mut self, scope: &mut Scope<'_>, place: Place, material: Material) -> Result<(), SceneError> {
+        let Ok(number) = u16::try_from(self.scene.materials.len()) else {
+            return Err(scope.error(place, "material", "a scene has at most 65536 materials"));
+        };
+        if scope.borrowed {
+            scope.materials.clear();
+            scope.borrowed = false;
+        }
+        scope.materials.push(number);
+        self.scene.materials.push(material);
+        Ok(())
+    }
+
+    fn texture(&mut self, scope: &Scope<'_>, place: Place, file: &str) -> String {
+        let texture = scope.named(file);
+        if !self.files.exists(&beside(self.root, &texture)) {
+            let error = scope.error(place, "material", format!("there is no texture '{file}'; it is left out"));
+            self.warnings.push(error.to_string());
+        }
+        texture
+    }
+
+    fn include(&mut self, scope: &Scope<'_>, place: Place, file: &str) -> Result<(), SceneError> {
+        let fail = |message: String| Err(scope.error(place, "include", message));
+        let relative = scope.named(file);
+        let path = beside(self.root, &relative);
+        if self.open.iter().any(|open| beside(open, open.rsplit('/').next().unwrap_or("")) == path) {
+            return fail(format!("'{file}' includes itself, directly or through others"));
+        }
+        self.includes += 1;
+        if self.open.len() >= MAX_INCLUDE_DEPTH || self.includes > MAX_INCLUDES {
+            return fail(format!(
+                "too many includes: at most {MAX_INCLUDE_DEPTH} deep and {MAX_INCLUDES} in all are read"
+            ));
+        }
+        let text = match self.files.text(&path) {
+            Ok(text) => text,
+            Err(message) => return fail(message),
+        };
+        self.file(&path, &text, &relative, scope.group(), &scope.materials)?;
+        self.warnings.push(scope.error(place, "include", format!("'{file}' became part of the scene")).to_string());
+        Ok(())
+    }
+
+    /// A shape with its mesh named relative to the outermost file.
+    fn shape(
+        &mut self,
+        scope: &Scope<'_>,
+        place: Place,
+        name: &str,
+        shape: &Shape<&str>,
+    ) -> Result<Shape<String>, SceneError> {
+        shape.with_mesh(|file| {
+            let mesh = scope.named(file);
+            let path = beside(self.root, &mesh);
+            if self.files.exists(&path) {
+                Ok(mesh)
+            } else {
+                Err(scope.error(place, name, format!("there is no mesh file '{path}'")))
+            }
+        })
+    }
+
+    /// A material, or the one that the groups around give.
+    fn inherited(&self, scope: &Scope<'_>, material: Option<u16>) -> Option<u16> {
+        material.or_else(|| self.scene.material_of(scope.group()))
+    }
+
+    fn springs(&mut self, scope: &Scope<'_>) -> Result<(), SceneError> {
+        for (ends, spring) in &scope.springs {
+            let mut found = [0; 2];
+            for (found, index) in found.iter_mut().zip(ends) {
+                let particle = usize::try_from(index.value).ok().and_then(|i| scope.particles.get(i));
+                let Some(&particle) = particle else {
+                    let (value, count) = (index.value, scope.particles.len());
+                    let message = format!("particle {value} is out of range; this file has {count}, from 0");
+                    return Err(scope.error(index.place, "particle_spring", message));
+                };
+                *found = particle;
+            }
+            self.scene.springs.push(Spring { ends: found, ..*spring });
+        }
+        Ok(())
+    }
+}
+
+fn colored([ambient, diffuse, specular, transmission, emission]: [[f32; 3]; 5]) -> Material {
+    Material { ambient, diffuse, specular, transmission, emission, ..Material::default() }
+}

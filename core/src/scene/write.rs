@@ -1,0 +1,255 @@
+//! From the declared scene to a `.scn` text.
+
+use super::{ForceKind, Item, Light, Material, Run, SceneFile};
+use crate::emit::{Emitter, Spread};
+use crate::force::{MutualGravity, Sink};
+use crate::particles::Particle;
+use crate::shape::Shape;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt::Write;
+use glam::Vec3;
+
+/// Writes a scene as `.scn`; the warnings say what that format cannot.
+#[must_use]
+pub fn write_scn(scene: &SceneFile) -> (String, Vec<String>) {
+    let mut writer = Writer { out: String::new(), warnings: Vec::new() };
+    writer.settings(scene);
+    scene.materials.iter().for_each(|material| writer.material(material));
+    writer.look(scene);
+    writer.scenery(scene);
+    writer.forces(scene);
+    scene.particles.iter().for_each(|particle| writer.particle(particle));
+    for spring in &scene.springs {
+        let [a, b] = spring.ends;
+        let numbers = Numbers(&[spring.rest_length, spring.ks, spring.kd]);
+        writer.line(format_args!("particle_spring {a} {b} {numbers}"));
+    }
+    scene.emitters.iter().enumerate().for_each(|(i, emitter)| writer.source(i, emitter));
+    scene.sinks.iter().enumerate().for_each(|(i, sink)| writer.sink(i, sink));
+    (writer.out, writer.warnings)
+}
+
+struct Writer {
+    out: String,
+    warnings: Vec<String>,
+}
+
+/// Numbers with blanks between them, each in the shortest form that reads back the same.
+struct Numbers<'a>(&'a [f32]);
+
+impl core::fmt::Display for Numbers<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        for (i, &x) in self.0.iter().enumerate() {
+            f.write_str(if i == 0 { "" } else { " " })?;
+            if x == 0.0 || (1e-4..1e7).contains(&x.abs()) { write!(f, "{x}")? } else { write!(f, "{x:e}")? }
+        }
+        Ok(())
+    }
+}
+
+impl Writer {
+    fn line(&mut self, text: core::fmt::Arguments<'_>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.out, "{text}");
+    }
+
+    fn warn(&mut self, what: impl ToString) {
+        let what = what.to_string();
+        if !self.warnings.contains(&what) {
+            self.warnings.push(what);
+        }
+    }
+
+    fn settings(&mut self, scene: &SceneFile) {
+        if !scene.about.is_empty() {
+            scene.about.lines().for_each(|text| self.line(format_args!("# {text}")));
+            self.warn("about: kept as a comment");
+        }
+        if scene.run != Run::default() {
+            let Run { duration, dt, integrator, seed, capacity } = &scene.run;
+            self.line(format_args!(
+                "# run with --duration {duration} --dt {dt} --integrator {integrator} --seed {seed} --capacity {capacity}"
+            ));
+            self.warn("run: .scn has no settings of a run; they are kept as a comment");
+        }
+    }
+
+    fn material(&mut self, material: &Material) {
+        let Material { ambient, diffuse, specular, transmission, emission, .. } = material;
+        let colors = [*ambient, *diffuse, *specular, *transmission, *emission];
+        let texture = match material.texture.as_deref() {
+            Some(file) if file.contains(char::is_whitespace) => {
+                self.warn(format!("materials: the texture '{file}' has blanks in its name; it is left out"));
+                "0"
+            }
+            file => file.unwrap_or("0"),
+        };
+        if material.size != 0.0 || material.glow != 0.0 {
+            self.warn("materials: .scn has neither size nor glow of particles; they are left out");
+        }
+        let numbers = Numbers(colors.as_flattened());
+        let rest = Numbers(&[material.shininess, material.refraction]);
+        self.line(format_args!("material {numbers} {rest} {texture}"));
+    }
+
+    fn look(&mut self, scene: &SceneFile) {
+        if let Some(c) = &scene.camera {
+            let rows = [c.eye, c.towards, c.up, [c.xfov, c.near, c.far]];
+            self.line(format_args!("camera {}", Numbers(rows.as_flattened())));
+        }
+        for (name, color) in [("ambient", scene.ambient), ("background", scene.background)] {
+            if color != [0.0; 3] {
+                self.line(format_args!("{name} {}", Numbers(&color)));
+            }
+        }
+        for light in &scene.lights {
+            match *light {
+                Light::Directional { color, direction } => {
+                    self.line(format_args!("dir_light {}", Numbers([color, direction].as_flattened())));
+                }
+                Light::Point { color, position, attenuation } => {
+                    self.line(format_args!("point_light {}", Numbers([color, position, attenuation].as_flattened())));
+                }
+                Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
+                    let rows = [color, position, direction, attenuation];
+                    let angles = Numbers(&[cutoff, dropoff]);
+                    self.line(format_args!("spot_light {} {angles}", Numbers(rows.as_flattened())));
+                }
+                Light::Area { color, position, direction, radius, attenuation } => {
+                    let rows = [color, position, direction];
+                    let rest = Numbers(&attenuation);
+                    self.line(format_args!("area_light {} {radius} {rest}", Numbers(rows.as_flattened())));
+                }
+            }
+        }
+    }
+
+    /// Opens and closes groups as the list of scenery enters and leaves them.
+    fn scenery(&mut self, scene: &SceneFile) {
+        let mut open: Vec<u32> = Vec::new();
+        for (i, Item { shape, material, group }) in scene.scenery.iter().enumerate() {
+            let Some(shape) = self.shape(&format!("scenery[{i}]"), shape, true) else { continue };
+            self.enter(scene, &mut open, &scene.chain(*group));
+            let (name, arguments) = shape.split_once(' ').unwrap_or((&shape, ""));
+            self.line(format_args!("{name} {} {arguments}", number(*material)));
+        }
+        self.enter(scene, &mut open, &[]);
+    }
+
+    fn enter(&mut self, scene: &SceneFile, open: &mut Vec<u32>, wanted: &[u32]) {
+        let shared = open.iter().zip(wanted).take_while(|(a, b)| a == b).count();
+        while open.len() > shared {
+            open.pop();
+            self.line(format_args!("end"));
+        }
+        for &index in &wanted[shared..] {
+            let group = &scene.groups[index as usize];
+            self.line(format_args!("begin {} {}", number(group.material), Numbers(group.matrix.as_flattened())));
+            open.push(index);
+        }
+    }
+
+    /// `.scn` knows one gravity, and has drag and Newton's law always.
+    fn forces(&mut self, scene: &SceneFile) {
+        let mut gravity = Vec3::ZERO;
+        let (mut drag, mut newton) = (0, 0);
+        for force in &scene.forces {
+            match force {
+                ForceKind::Gravity(force) => gravity += force.acceleration,
+                ForceKind::Drag(_) => drag += 1,
+                ForceKind::MutualGravity(force) if *force == MutualGravity::NEWTON => newton += 1,
+                ForceKind::MutualGravity(_) => {
+                    self.warn("forces: .scn has mutual gravity with G = 6.67428e-11 and no softening only");
+                }
+            }
+        }
+        if gravity != Vec3::ZERO {
+            self.line(format_args!("particle_gravity {}", Numbers(&gravity.to_array())));
+        }
+        if newton != 1 {
+            self.warn("forces: in .scn all particles always attract each other with G = 6.67428e-11, once");
+        }
+        if drag != 1 {
+            self.warn("forces: in .scn drag always acts, once");
+        }
+    }
+
+    fn particle(&mut self, particle: &Particle) {
+        let Particle { position, velocity, mass, fixed, drag, elasticity, lifetime, material, color } = particle;
+        if color.is_some() {
+            self.warn("particles: .scn has no colours of single particles; they are left out");
+        }
+        let place = [position.to_array(), velocity.to_array()];
+        let (place, rest) = (Numbers(place.as_flattened()), Numbers(&[*drag, *elasticity, *lifetime]));
+        let (mass, fixed) = (Numbers(&[*mass]), u8::from(*fixed));
+        self.line(format_args!("particle {place} {mass} {fixed} {rest} {}", number(*material)));
+    }
+
+    fn source(&mut self, index: usize, emitter: &Emitter<String>) {
+        let at = format!("emitters[{index}]");
+        let Some(shape) = self.shape(&at, &emitter.shape, false) else { return };
+        let cutoff = match emitter.spread {
+            Spread::Lecture(cutoff) | Spread::Uniform(cutoff @ 0.0) => cutoff,
+            Spread::Uniform(cutoff) => {
+                self.warn(format!("{at}.spread: .scn knows the lecture's law only, which favours the middle"));
+                cutoff
+            }
+        };
+        let varied = [emitter.speed, emitter.mass, emitter.drag, emitter.elasticity, emitter.lifetime];
+        if varied.iter().any(|v| v.variance != 0.0) {
+            self.warn(format!("{at}: .scn has no variances; the means are kept"));
+        }
+        if emitter.burst.is_some() || emitter.start != 0.0 || emitter.stop.is_some() {
+            self.warn(format!("{at}: .scn has neither bursts nor start and stop; they are left out"));
+        }
+        if emitter.direction.is_some() || emitter.velocity != Vec3::ZERO {
+            self.warn(format!("{at}: .scn has neither a direction nor a velocity of sources; they are left out"));
+        }
+        if emitter.color.is_some() || emitter.color_variance != [0; 4] {
+            self.warn(format!("{at}: .scn has no colours of sources; they are left out"));
+        }
+        let [speed, mass, drag, elasticity, lifetime] = varied.map(|v| v.mean);
+        let (mass, rest) = (Numbers(&[mass]), Numbers(&[drag, elasticity, lifetime]));
+        let (fixed, material) = (u8::from(emitter.fixed), number(emitter.material));
+        let motion = Numbers(&[emitter.rate, speed, cutoff]);
+        self.line(format_args!("particle_source {mass} {fixed} {rest} {material} {motion} {shape}"));
+    }
+
+    fn sink(&mut self, index: usize, sink: &Sink<String>) {
+        if let Some(shape) = self.shape(&format!("sinks[{index}]"), &sink.shape, false) {
+            let numbers = Numbers(&[sink.intensity, sink.ca, sink.la, sink.qa]);
+            self.line(format_args!("particle_sink {numbers} {shape}"));
+        }
+    }
+
+    /// Name and arguments of a shape; `None`, with a warning, if `.scn` does not have it there.
+    fn shape(&mut self, at: &str, shape: &Shape<String>, is_scenery: bool) -> Option<String> {
+        let with = |name: &str, rows: &[Vec3], rest: &[f32]| {
+            let numbers: Vec<f32> = rows.iter().flat_map(|row| row.to_array()).chain(rest.iter().copied()).collect();
+            Some(format!("{name} {}", Numbers(&numbers)))
+        };
+        let kind = match shape {
+            Shape::Line(s) => return with("line", &[s.from, s.to], &[]),
+            Shape::Box(s) => return with("box", &[s.min, s.max], &[]),
+            Shape::Sphere(s) => return with("sphere", &[s.center], &[s.radius]),
+            Shape::Cylinder(s) => return with("cylinder", &[s.center], &[s.radius, s.height]),
+            Shape::Cone(s) => return with("cone", &[s.center], &[s.radius, s.height]),
+            Shape::Circle(s) if !is_scenery => return with("circle", &[s.center, s.normal], &[s.radius]),
+            Shape::Triangle(s) if is_scenery => return with("tri", &s.corners, &[]),
+            Shape::Mesh(file) if !file.contains(char::is_whitespace) => return Some(format!("mesh {file}")),
+            Shape::Mesh(_) => "a mesh with blanks in its name",
+            Shape::Circle(_) => "a circle that is solid",
+            Shape::Triangle(_) => "a triangle that gives birth or takes away",
+            Shape::Plane(_) => "a plane",
+        };
+        self.warn(format!("{at}: .scn does not have {kind}; it is left out"));
+        None
+    }
+}
+
+/// A material's number as `.scn` writes it.
+fn number(material: Option<u16>) -> i32 {
+    material.map_or(-1, i32::from)
+}

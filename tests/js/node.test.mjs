@@ -1,0 +1,41 @@
+// The npm package in Node, as it would be published: packed, unpacked, found by its name.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+import { check } from "./expected.mjs";
+import { run } from "./payload.mjs";
+
+const built = fileURLToPath(new URL("../../target/npm", import.meta.url));
+let project;
+let pointmass;
+
+before(async () => {
+  project = mkdtempSync(join(tmpdir(), "pointmass-"));
+  const installed = join(project, "node_modules", "pointmass");
+  mkdirSync(installed, { recursive: true });
+  const packed = execFileSync("npm", ["pack", "--json", "--pack-destination", project], { cwd: built });
+  const [{ filename }] = JSON.parse(packed);
+  execFileSync("tar", ["-xzf", join(project, filename), "-C", installed, "--strip-components=1"]);
+  const entry = createRequire(join(project, "main.js")).resolve("pointmass");
+  pointmass = await import(pathToFileURL(entry));
+});
+
+after(() => rmSync(project, { recursive: true, force: true }));
+
+test("is ready as soon as it is imported", () => check(run(pointmass)));
+
+test("init() is allowed, as browsers need it", async () => {
+  await pointmass.default();
+  check(run(pointmass));
+});
+
+test("declares the types of what it exports", () => {
+  const types = readFileSync(join(built, "pointmass.d.ts"), "utf8");
+  assert.match(types, /export function version\(\): string;/);
+});
