@@ -321,6 +321,19 @@ impl<M> Emitter<M> {
             color_variance: [0; 4],
         }
     }
+
+    /// The same emitter with births of exactly this mass, drag, elasticity and lifetime, fixed if this is.
+    #[must_use]
+    pub fn giving_birth_to(self, newborn: &Particle) -> Self {
+        Self {
+            mass: Varied::exactly(newborn.mass),
+            fixed: newborn.fixed,
+            drag: Varied::exactly(newborn.drag),
+            elasticity: Varied::exactly(newborn.elasticity),
+            lifetime: Varied::exactly(newborn.lifetime),
+            ..self
+        }
+    }
 }
 
 impl<M: Surface> Emitter<M> {
@@ -421,23 +434,25 @@ impl<T: Emit> Emit for [T] {
     }
 }
 
-impl<T: Emit, const N: usize> Emit for [T; N] {
-    fn count(&self) -> usize {
-        self.as_slice().count()
-    }
-    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
-        self.as_slice().emit(from, to, births);
-    }
+/// Everything that holds a slice is what the slice is.
+macro_rules! lists {
+    ($($(#[$when:meta])* [$($generics:tt)*] $list:ty;)+) => {$(
+        $(#[$when])*
+        impl<$($generics)*> Emit for $list {
+            fn count(&self) -> usize {
+                self.as_slice().count()
+            }
+            fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+                self.as_slice().emit(from, to, births);
+            }
+        }
+    )+};
 }
-
-#[cfg(feature = "alloc")]
-impl<T: Emit> Emit for alloc::vec::Vec<T> {
-    fn count(&self) -> usize {
-        self.as_slice().count()
-    }
-    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
-        self.as_slice().emit(from, to, births);
-    }
+lists! {
+    [T: Emit, const N: usize] [T; N];
+    [T: Emit, const N: usize] heapless::Vec<T, N>;
+    #[cfg(feature = "alloc")]
+    [T: Emit] alloc::vec::Vec<T>;
 }
 
 macro_rules! tuples {

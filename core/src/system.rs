@@ -132,14 +132,25 @@ struct Status {
     taken: u32,
     /// Particles of the scene's start that found room.
     start: u32,
+    /// Emitters that the scene had then.
+    emitters: usize,
     time: Time,
     seed: u64,
     totals: Report,
 }
 
 impl Status {
-    const NEW: Self =
-        Self { len: 0, slots: 0, free: 0, taken: 0, start: 0, time: Time::ZERO, seed: 0, totals: Report::NOTHING };
+    const NEW: Self = Self {
+        len: 0,
+        slots: 0,
+        free: 0,
+        taken: 0,
+        start: 0,
+        emitters: 0,
+        time: Time::ZERO,
+        seed: 0,
+        totals: Report::NOTHING,
+    };
 }
 
 impl<B> System<B> {
@@ -261,7 +272,7 @@ impl<B: Storage> System<B> {
     /// A fingerprint of time, counters, and every column in the order of ids: equal on all targets for equal states.
     pub fn hash(&self) -> u64 {
         let mut hash = Fnv::new();
-        let Status { time, seed, taken, totals, .. } = self.status;
+        let Status { time, seed, taken, emitters, totals, .. } = self.status;
         hash.long(time.ticks());
         hash.long(seed);
         hash.word(taken);
@@ -269,7 +280,7 @@ impl<B: Storage> System<B> {
             hash.long(counter);
         }
         let columns = self.particles();
-        for tally in columns.tallies {
+        for tally in columns.tallies.iter().take(emitters) {
             hash.word(tally.serial);
             hash.long(tally.phase);
         }
@@ -350,6 +361,7 @@ impl View<'_> {
 
     fn start(&mut self, scene: &Scene<'_>) {
         self.memory.tallies.fill(Default::default());
+        self.status.emitters = scene.emitters.count();
         let mut report = Report::default();
         for particle in scene.start {
             match self.spawn(particle, Time::ZERO) {

@@ -13,7 +13,28 @@ export const hashes = Object.fromEntries(
     .map((line) => line.split(/\s+/)),
 );
 
+// name -> text of the scenes that the hashes belong to.
+export const scenes = Object.fromEntries(
+  Object.keys(hashes).map((name) => [name, read(`../../scenes/${name}.scn`)]),
+);
+
 export function check(result) {
   assert.equal(result.version, JSON.parse(read("../../target/npm/package.json")).version);
-  // PLACEHOLDER: when payload.mjs computes the hashes: assert.deepEqual(result.hashes, hashes);
+  assert.deepEqual(result.hashes, hashes);
+
+  const { fountain } = result;
+  // 50 a second that live 1 s.
+  assert.ok(Math.abs(fountain.count - 50) <= 1, `${fountain.count} alive`);
+  assert.equal(fountain.capacity, 100);
+  assert.ok(Math.abs(fountain.time - 302 / 60) < 1e-6);
+  for (const [what, each] of [["length", 3], ["speeds", 3], ["colors", 4], ["ids", 1]]) {
+    assert.equal(fountain[what], each * fountain.count, what);
+  }
+  assert.ok(fountain.sameMemory && fountain.finite);
+  const { born, died, refused } = fountain.report;
+  assert.equal(born, fountain.count + died.lifetime);
+  assert.equal(refused, 0);
+
+  assert.equal(result.error, "scene:2:5: particle: expected the velocity, a number, found 'x'");
+  assert.equal(result.missing, "scene:1:1: mesh: there is no mesh file 'bunny.off'");
 }

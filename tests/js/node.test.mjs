@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
-import { check } from "./expected.mjs";
+import { check, scenes } from "./expected.mjs";
 import { run } from "./payload.mjs";
 
 const built = fileURLToPath(new URL("../../target/npm", import.meta.url));
@@ -28,14 +28,15 @@ before(async () => {
 
 after(() => rmSync(project, { recursive: true, force: true }));
 
-test("is ready as soon as it is imported", () => check(run(pointmass)));
+test("is ready as soon as it is imported", () => check(run(pointmass, scenes)));
 
 test("init() is allowed, as browsers need it", async () => {
   await pointmass.default();
-  check(run(pointmass));
+  check(run(pointmass, scenes));
 });
 
 test("declares the types of what it exports", () => {
   const types = readFileSync(join(built, "pointmass.d.ts"), "utf8");
   assert.match(types, /export function version\(\): string;/);
+  assert.match(types, /positions\(\): Float32Array;/);
 });

@@ -1,9 +1,59 @@
 // What is run in every JavaScript engine: computes only, so that a page can import it as well as Node.
-// `pointmass` is the package, initialised.
-export function run(pointmass) {
-  return {
-    version: pointmass.version(),
-    // PLACEHOLDER: name -> hash (16 hexadecimal digits) of the scenes in tests/hashes.txt.
-    hashes: {},
+// `pointmass` is the package, initialised; `scenes` the texts of the hash scenes by name.
+export function run(pointmass, scenes) {
+  const { World, Files, version } = pointmass;
+  const hashes = {};
+  for (const [name, text] of Object.entries(scenes)) {
+    const world = new World(text, undefined, 64);
+    for (let frame = 1; frame <= 600; frame++) world.stepTo(frame / 60);
+    hashes[name] = world.hash();
+    world.free();
+  }
+
+  // A world whose memory never moves: the view taken first shows the last step too.
+  const fountain = new World(JSON.stringify({
+    run: { capacity: 100, integrator: "symplectic" },
+    forces: [{ gravity: { acceleration: [0, -9.8, 0] } }],
+    emitters: [{ shape: { mesh: "nozzle" }, rate: 50, speed: 5, lifetime: 1 }],
+  }), nozzle(Files), 100, 7n);
+  fountain.step(1 / 60);
+  fountain.step(1 / 60);
+  const first = fountain.positions();
+  for (let frame = 0; frame < 300; frame++) fountain.step(1 / 60);
+  const now = fountain.positions();
+  const result = {
+    version: version(),
+    hashes,
+    fountain: {
+      count: fountain.count,
+      capacity: fountain.capacity,
+      time: fountain.time,
+      length: now.length,
+      sameMemory: first.buffer === now.buffer && first[0] === now[0] && first[2] === now[2],
+      finite: now.every(Number.isFinite),
+      ids: new Set(fountain.ids()).size,
+      colors: fountain.colors().length,
+      speeds: fountain.velocities().length,
+      report: JSON.parse(fountain.report()),
+    },
+    error: message(() => new World("particle 0 0 0\n  1 x")),
+    missing: message(() => new World("mesh -1 bunny.off")),
   };
+  fountain.free();
+  return result;
+}
+
+function nozzle(Files) {
+  const files = new Files();
+  files.addMesh("nozzle", new Float32Array([0, 0, 0, 0, 0, 1, 1, 0, 0]), new Uint32Array([0, 1, 2]));
+  return files;
+}
+
+function message(action) {
+  try {
+    action();
+    return "no error";
+  } catch (error) {
+    return error.message;
+  }
 }

@@ -1,5 +1,23 @@
 //! pointmass for JavaScript. `wasm/build` makes the npm package of it.
+//!
+//! ```js
+//! import init, { World } from "pointmass";
+//! await init();
+//! const world = new World(text);               // .json or .scn
+//! for (let frame = 1; frame <= 600; frame++) {
+//!   world.stepTo(frame / 60);
+//!   draw(world.positions(), world.count);      // Float32Array: x, y, z by x, y, z
+//! }
+//! world.free();
+//! ```
 
+mod files;
+
+pub use files::Files;
+
+use js_sys::{Float32Array, Uint8Array, Uint32Array};
+use pointmass::scene::{Model, SceneFile, read_scn};
+use pointmass::{Heap, System, Time, Vec3};
 use wasm_bindgen::prelude::*;
 
 /// The version of this package.
@@ -7,4 +25,142 @@ use wasm_bindgen::prelude::*;
 #[must_use]
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").to_owned()
+}
+
+/// A scene in motion. All its memory is taken when it is made; stepping takes none.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct World {
+    model: Model,
+    system: System<Heap>,
+    seed: u64,
+    warnings: Vec<String>,
+}
+
+#[wasm_bindgen]
+impl World {
+    /// Loads a scene from its text, JSON or `.scn`, with the files it names.
+    ///
+    /// `capacity` is how many particles may live at once and `seed` that of all randomness; by default both are what
+    /// the scene says.
+    ///
+    /// # Errors
+    /// If the scene cannot be used: one line with the place and what was expected.
+    #[wasm_bindgen(constructor)]
+    pub fn new(
+        text: &str,
+        files: Option<Files>,
+        capacity: Option<u32>,
+        seed: Option<u64>,
+    ) -> Result<World, JsError> {
+        let mut files = files.unwrap_or_default();
+        let (file, warnings) = if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+            (SceneFile::from_json("scene", text)?, Vec::new())
+        } else {
+            read_scn("scene", text, &mut files)?
+        };
+        let model = Model::load(&file, "scene", &mut files)?;
+        let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(file.particles.len() as u32));
+        let system = System::with(Heap::new(model.size(capacity as usize)));
+        let mut world = Self { model, system, seed: seed.unwrap_or(file.run.seed), warnings };
+        world.restart()?;
+        Ok(world)
+    }
+
+    /// Back to the beginning.
+    ///
+    /// # Errors
+    /// None that a loaded scene can meet.
+    pub fn restart(&mut self) -> Result<(), JsError> {
+        Ok(self.system.start(&self.model.scene(), self.seed)?)
+    }
+
+    /// Moves the world on by `seconds`.
+    pub fn step(&mut self, seconds: f64) {
+        self.system.step(&self.model.scene(), Time::from_seconds_f64(seconds));
+    }
+
+    /// Moves the world on, in one step, to the instant `seconds`; not back. Stepping to n / 60 does not drift.
+    #[wasm_bindgen(js_name = stepTo)]
+    pub fn step_to(&mut self, seconds: f64) {
+        let dt = Time::from_seconds_f64(seconds) - self.system.time();
+        self.system.step(&self.model.scene(), dt);
+    }
+
+    /// The instant it has reached \[s\].
+    #[wasm_bindgen(getter)]
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.system.time().seconds_f64()
+    }
+
+    /// Particles alive.
+    #[wasm_bindgen(getter)]
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.system.len() as u32
+    }
+
+    /// How many particles may live at once.
+    #[wasm_bindgen(getter)]
+    #[must_use]
+    pub fn capacity(&self) -> u32 {
+        self.system.capacity() as u32
+    }
+
+    /// Positions \[m\], three numbers a particle: a view into the module's memory, not a copy.
+    ///
+    /// It shows the state after every step, `count` particles of it, until the module's memory grows: loading another
+    /// world may do that, stepping never does.
+    #[must_use]
+    pub fn positions(&self) -> Float32Array {
+        view(self.system.particles().position)
+    }
+
+    /// Velocities \[m/s\], as `positions`.
+    #[must_use]
+    pub fn velocities(&self) -> Float32Array {
+        view(self.system.particles().velocity)
+    }
+
+    /// Colours, four bytes a particle: red, green, blue, opacity. A copy.
+    #[must_use]
+    pub fn colors(&self) -> Uint8Array {
+        Uint8Array::from(self.system.particles().color.as_flattened())
+    }
+
+    /// Which particle is in which row: numbers unique over the run, from 0. A copy.
+    #[must_use]
+    pub fn ids(&self) -> Uint32Array {
+        Uint32Array::from(self.system.particles().serial)
+    }
+
+    /// The state's fingerprint, 16 hexadecimal digits: equal on every machine for equal scenes, seeds and steps.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        format!("{:016x}", self.system.hash())
+    }
+
+    /// What happened since the beginning, as JSON: counters of births, deaths, hits and bounds met.
+    #[must_use]
+    pub fn report(&self) -> String {
+        serde_json::to_string(self.system.totals()).unwrap_or_default()
+    }
+
+    /// What reading the scene gave cause to remark on.
+    #[wasm_bindgen(getter)]
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+}
+
+/// Vectors as a flat list of numbers where they lie.
+#[allow(unsafe_code)]
+fn view(vectors: &[Vec3]) -> Float32Array {
+    let Some(first) = vectors.first() else { return Float32Array::new_with_length(0) };
+    // SAFETY: the pointer and length are those of a slice of `Vec3`, which is three `f32` without padding (repr(C)).
+    // JavaScript may keep the view: it then reads memory that belongs to the module as long as that lives, which
+    // cannot break any invariant of Rust's, since every bit pattern is an `f32`.
+    unsafe { Float32Array::view_mut_raw((&raw const *first).cast_mut().cast(), vectors.len() * 3) }
 }

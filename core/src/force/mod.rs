@@ -2,12 +2,14 @@
 
 mod drag;
 mod gravity;
+mod kind;
 mod mutual;
 mod sink;
 pub(crate) mod spring;
 
 pub use drag::Drag;
 pub use gravity::Gravity;
+pub use kind::ForceKind;
 pub use mutual::MutualGravity;
 pub use sink::Sink;
 pub use spring::{Spring, Springs};
@@ -73,23 +75,25 @@ impl<T: Force> Force for [T] {
     }
 }
 
-impl<T: Force, const N: usize> Force for [T; N] {
-    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        self.as_slice().add_to(state, rows, total);
-    }
-    fn energy(&self, state: &State<'_>) -> f64 {
-        self.as_slice().energy(state)
-    }
+/// Everything that holds a slice is what the slice is.
+macro_rules! lists {
+    ($($(#[$when:meta])* [$($generics:tt)*] $list:ty;)+) => {$(
+        $(#[$when])*
+        impl<$($generics)*> Force for $list {
+            fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+                self.as_slice().add_to(state, rows, total);
+            }
+            fn energy(&self, state: &State<'_>) -> f64 {
+                self.as_slice().energy(state)
+            }
+        }
+    )+};
 }
-
-#[cfg(feature = "alloc")]
-impl<T: Force> Force for alloc::vec::Vec<T> {
-    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        self.as_slice().add_to(state, rows, total);
-    }
-    fn energy(&self, state: &State<'_>) -> f64 {
-        self.as_slice().energy(state)
-    }
+lists! {
+    [T: Force, const N: usize] [T; N];
+    [T: Force, const N: usize] heapless::Vec<T, N>;
+    #[cfg(feature = "alloc")]
+    [T: Force] alloc::vec::Vec<T>;
 }
 
 macro_rules! tuples {

@@ -60,25 +60,36 @@ impl Force for MutualGravity {
 /// Σ m d⃗ / (d² + `square`)^{3/2} at `place`: eight sums side by side, then a tree over them.
 fn field(place: Vec3, position: &[Vec3], mass: &[f32], square: f32) -> Vec3 {
     let mut sums = [[0.0f32; LANES]; 3];
-    let chunks = position.chunks(LANES).zip(mass.chunks(LANES));
-    for (x, m) in chunks {
-        // Lanes beyond the end stay at the place itself, without mass.
-        let mut d = [[0.0f32; LANES]; 3];
-        let mut w = [0.0f32; LANES];
-        for (lane, (x, &m)) in x.iter().zip(m).enumerate() {
-            let offset = *x - place;
-            (d[0][lane], d[1][lane], d[2][lane], w[lane]) = (offset.x, offset.y, offset.z, m);
-        }
+    let ((x, x_rest), (m, m_rest)) = (position.as_chunks(), mass.as_chunks());
+    for (x, m) in x.iter().zip(m) {
+        add_chunk(&mut sums, place, x, m, square);
+    }
+    // Lanes beyond the end lie at the place itself, without mass.
+    let (mut x, mut m) = ([place; LANES], [0.0; LANES]);
+    x[..x_rest.len()].copy_from_slice(x_rest);
+    m[..m_rest.len()].copy_from_slice(m_rest);
+    add_chunk(&mut sums, place, &x, &m, square);
+    Vec3::from_array(sums.map(|s| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))))
+}
+
+/// One attractor a lane. Each loop runs over all lanes, so that a compiler makes vectors of them.
+#[inline(always)]
+fn add_chunk(sums: &mut [[f32; LANES]; 3], place: Vec3, x: &[Vec3; LANES], m: &[f32; LANES], square: f32) {
+    let mut d = [[0.0f32; LANES]; 3];
+    for lane in 0..LANES {
+        d[0][lane] = x[lane].x - place.x;
+        d[1][lane] = x[lane].y - place.y;
+        d[2][lane] = x[lane].z - place.z;
+    }
+    let mut weight = [0.0f32; LANES];
+    for lane in 0..LANES {
+        let r2 = d[0][lane] * d[0][lane] + d[1][lane] * d[1][lane] + d[2][lane] * d[2][lane] + square;
+        let w = m[lane] / (r2 * sqrt(r2));
+        weight[lane] = if r2 > 0.0 { w } else { 0.0 };
+    }
+    for axis in 0..3 {
         for lane in 0..LANES {
-            let r2 = d[0][lane] * d[0][lane] + d[1][lane] * d[1][lane] + d[2][lane] * d[2][lane] + square;
-            let weight = w[lane] / (r2 * sqrt(r2));
-            w[lane] = if r2 > 0.0 { weight } else { 0.0 };
-        }
-        for axis in 0..3 {
-            for lane in 0..LANES {
-                sums[axis][lane] += w[lane] * d[axis][lane];
-            }
+            sums[axis][lane] += weight[lane] * d[axis][lane];
         }
     }
-    Vec3::from_array(sums.map(|s| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))))
 }

@@ -60,6 +60,11 @@ impl<'a> Springs<'a> {
         (self.serial.get(row) == Some(&number)).then_some(row)
     }
 
+    /// The rows of both ends of every spring that still has them.
+    pub fn ends(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.springs.iter().filter_map(|spring| Some([self.row(spring.ends[0])?, self.row(spring.ends[1])?]))
+    }
+
     /// How many springs the particle in `row` holds whose other end lives.
     pub(crate) fn held_by(&self, row: usize) -> u64 {
         self.at(row).filter(|&(_, other)| self.row(other).is_some()).count() as u64

@@ -2,12 +2,13 @@
 
 use super::{Group, Light, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
+use crate::force::ForceKind;
 use crate::math::unit;
 use crate::shape::{Affine, Shape};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 
 type Checked = Result<(), SceneError>;
 
@@ -48,9 +49,9 @@ impl SceneFile {
         for (i, force) in self.forces.iter().enumerate() {
             let at = format!("forces[{i}]");
             match force {
-                super::ForceKind::Gravity(g) => finite(&at, &g.acceleration.to_array())?,
-                super::ForceKind::Drag(_) => {}
-                super::ForceKind::MutualGravity(m) => finite(&at, &[m.constant, m.softening])?,
+                ForceKind::Gravity(g) => finite(&at, &g.acceleration.to_array())?,
+                ForceKind::Drag(_) => {}
+                ForceKind::MutualGravity(m) => finite(&at, &[m.constant, m.softening])?,
             }
         }
         self.check_scenery()?;
@@ -197,14 +198,7 @@ impl Group {
     /// # Errors
     /// If the last row is not 0 0 0 1, or the map cannot be undone.
     pub fn affine(&self) -> Result<Affine, &'static str> {
-        let [a, b, c, last] = self.matrix;
-        if last != [0.0, 0.0, 0.0, 1.0] {
-            return Err("the last row of the matrix has to be 0 0 0 1");
-        }
-        let column = |i: usize| Vec3::new(a[i], b[i], c[i]);
-        let affine = Affine { linear: Mat3::from_cols(column(0), column(1), column(2)), shift: column(3) };
-        let sound = affine.shift.is_finite() && affine.inverse().is_some();
-        if sound { Ok(affine) } else { Err("the matrix flattens space: it has no inverse") }
+        super::inline::affine(self.matrix)
     }
 }
 

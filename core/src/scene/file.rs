@@ -1,14 +1,12 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
 use crate::emit::Emitter;
-use crate::force::{Drag, Force, Gravity, MutualGravity, Sink, Spring, State};
+use crate::force::{ForceKind, Sink, Spring};
 use crate::integrate::Method;
 use crate::particles::Particle;
 use crate::shape::Shape;
 use alloc::string::String;
 use alloc::vec::Vec;
-use core::ops::Range;
-use glam::Vec3;
 
 /// Everything that a scene file says. Meshes are named by file, relative to the scene's.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,19 +72,6 @@ pub struct Run {
     pub seed: u64,
     /// Particles alive at once.
     pub capacity: u32,
-}
-
-/// A force that acts on all particles.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum ForceKind {
-    /// Uniform gravity.
-    Gravity(Gravity),
-    /// Linear drag with each particle's own coefficient.
-    Drag(Drag),
-    /// Every two particles attract each other.
-    MutualGravity(MutualGravity),
 }
 
 /// A piece of scenery. All but lines are solid.
@@ -274,23 +259,5 @@ impl Default for Material {
 impl Default for Camera {
     fn default() -> Self {
         Self { eye: [0.0; 3], towards: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], xfov: 0.25, near: 0.01, far: 1000.0 }
-    }
-}
-
-impl Force for ForceKind {
-    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        match self {
-            Self::Gravity(force) => force.add_to(state, rows, total),
-            Self::Drag(force) => force.add_to(state, rows, total),
-            Self::MutualGravity(force) => force.add_to(state, rows, total),
-        }
-    }
-
-    fn energy(&self, state: &State<'_>) -> f64 {
-        match self {
-            Self::Gravity(force) => force.energy(state),
-            Self::Drag(force) => force.energy(state),
-            Self::MutualGravity(force) => force.energy(state),
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Scenes as files: the declared scene, our JSON and the course's `.scn`.
 //!
-//! `scn` parses without a heap, command by command; everything else here needs the feature `alloc`.
-//!
+//! Without a heap, `scn` parses command by command and [`InlineScene`] holds a small scene. With the feature `alloc`,
 //! text → [`SceneFile`] (what the file says, for writing back) → [`Model`] (meshes loaded, colours and transforms
 //! settled) → [`Scene`](crate::Scene) (what a system steps through).
 
@@ -11,6 +10,7 @@ mod check;
 mod error;
 #[cfg(feature = "alloc")]
 mod file;
+mod inline;
 #[cfg(feature = "json")]
 mod json;
 #[cfg(feature = "alloc")]
@@ -24,10 +24,19 @@ mod write;
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
 #[cfg(feature = "alloc")]
-pub use file::{Camera, ForceKind, Group, Item, Light, Material, Run, SceneFile};
+pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
+pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, beside, read_scn};
 #[cfg(feature = "alloc")]
 pub use write::write_scn;
+
+/// The colour of particles of a material: diffuse, or emitted where that is black.
+fn shown(diffuse: [f32; 3], emission: [f32; 3]) -> crate::Color {
+    let [r, g, b] = if diffuse == [0.0; 3] { emission } else { diffuse };
+    // The casts saturate.
+    let byte = |x: f32| (x * 255.0 + 0.5) as u8;
+    [byte(r), byte(g), byte(b), 255]
+}

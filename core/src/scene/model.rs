@@ -1,8 +1,8 @@
 //! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
 
-use super::{Files, ForceKind, Material, SceneError, SceneFile, beside};
+use super::{Files, Material, SceneError, SceneFile, beside};
 use crate::emit::Emitter;
-use crate::force::{Sink, Spring};
+use crate::force::{ForceKind, Sink, Spring};
 use crate::integrate::Method;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, MeshBuf, Placed, Shape};
@@ -116,10 +116,7 @@ impl Material {
     /// The colour of particles of this material: diffuse, or emitted where that is black.
     #[must_use]
     pub fn color(&self) -> Color {
-        let [r, g, b] = if self.diffuse == [0.0; 3] { self.emission } else { self.diffuse };
-        // The casts saturate.
-        let byte = |x: f32| (x * 255.0 + 0.5) as u8;
-        [byte(r), byte(g), byte(b), 255]
+        super::shown(self.diffuse, self.emission)
     }
 }
 

@@ -1,9 +1,9 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
 use super::scn::{Command, Index, Located, Place, ScnError, Source, commands};
-use super::{Camera, ForceKind, Group, Item, Light, Material, SceneError, SceneFile};
+use super::{Camera, Group, Item, Light, Material, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
-use crate::force::{Drag, Gravity, MutualGravity, Sink, Spring};
+use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
 use crate::shape::{MeshBuf, Shape};
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -233,13 +233,8 @@ impl Reader<'_> {
         self.scene.emitters.push(Emitter {
             speed: Varied::exactly(velocity),
             spread: Spread::Lecture(angle_cutoff),
-            mass: Varied::exactly(newborn.mass),
-            fixed: newborn.fixed,
-            drag: Varied::exactly(newborn.drag),
-            elasticity: Varied::exactly(newborn.elasticity),
-            lifetime: Varied::exactly(newborn.lifetime),
             material,
-            ..Emitter::new(shape, rate)
+            ..Emitter::new(shape, rate).giving_birth_to(&newborn)
         });
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! From the declared scene to a `.scn` text.
 
-use super::{ForceKind, Item, Light, Material, Run, SceneFile};
+use super::{Item, Light, Material, Run, SceneFile};
 use crate::emit::{Emitter, Spread};
-use crate::force::{MutualGravity, Sink};
+use crate::force::{ForceKind, MutualGravity, Sink};
 use crate::particles::Particle;
 use crate::shape::Shape;
 use alloc::format;

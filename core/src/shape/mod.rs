@@ -260,23 +260,25 @@ impl<T: Collider> Collider for [T] {
     }
 }
 
-impl<T: Collider, const N: usize> Collider for [T; N] {
-    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        self.as_slice().first_hit(segment)
-    }
-    fn is_empty(&self) -> bool {
-        self.iter().all(Collider::is_empty)
-    }
+/// Everything that holds a slice is what the slice is.
+macro_rules! lists {
+    ($($(#[$when:meta])* [$($generics:tt)*] $list:ty;)+) => {$(
+        $(#[$when])*
+        impl<$($generics)*> Collider for $list {
+            fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+                self.as_slice().first_hit(segment)
+            }
+            fn is_empty(&self) -> bool {
+                self.iter().all(Collider::is_empty)
+            }
+        }
+    )+};
 }
-
-#[cfg(feature = "alloc")]
-impl<T: Collider> Collider for alloc::vec::Vec<T> {
-    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        self.as_slice().first_hit(segment)
-    }
-    fn is_empty(&self) -> bool {
-        self.iter().all(Collider::is_empty)
-    }
+lists! {
+    [T: Collider, const N: usize] [T; N];
+    [T: Collider, const N: usize] heapless::Vec<T, N>;
+    #[cfg(feature = "alloc")]
+    [T: Collider] alloc::vec::Vec<T>;
 }
 
 macro_rules! tuples {

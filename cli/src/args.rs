@@ -1,0 +1,213 @@
+//! The command line, parsed and nothing more.
+
+use crate::record::Format;
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use pointmass::Method;
+use std::path::PathBuf;
+
+/// Particle systems that are exact, bounded and the same everywhere.
+#[derive(Debug, Parser)]
+#[command(
+    name = "pointmass",
+    version,
+    max_term_width = 100,
+    after_help = "\
+Examples:
+  pointmass render scenes/fountain.json --out fountain.gif
+  pointmass run scenes/rope.scn --duration 10 --dt 0.001 --out rope.csv
+  pointmass run scenes/fountain.json --report json | jq .died
+  pointmass convert lab.scn lab.json"
+)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a scene and report what happened
+    Run(Run),
+    /// Draw a scene as an animation or pictures
+    Render(Render),
+    /// Translate a scene between .scn and .json
+    Convert(Convert),
+}
+
+/// How a scene is run.
+#[derive(Debug, ClapArgs)]
+pub struct World {
+    /// The scene: .json or .scn
+    pub scene: PathBuf,
+    /// How long [s]; by default what the scene says, 10 for .scn
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub duration: Option<f64>,
+    /// The step [s], such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
+    #[arg(long, value_name = "S", value_parser = step)]
+    pub dt: Option<f64>,
+    /// The method: euler, symplectic, midpoint, verlet or rk4; by default what the scene says, rk4 for .scn
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<Method>,
+    /// The seed of all randomness; by default what the scene says, else 1
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// How many particles may live at once, what finds no room is refused and counted; by default what the scene says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=500_000_000))]
+    pub capacity: Option<u32>,
+}
+
+/// Arguments of `run`.
+#[derive(Debug, ClapArgs)]
+pub struct Run {
+    /// How the scene is run.
+    #[command(flatten)]
+    pub world: World,
+    /// How many steps, instead of a duration
+    #[arg(long, value_name = "N", conflicts_with = "duration")]
+    pub steps: Option<u64>,
+    /// Record every K-th step (step 0 and the last always)
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub every: u64,
+    /// Record into FILE: .csv, .jsonl, .xyz, or .ply for one file a record; may be given several times
+    #[arg(long, value_name = "FILE", value_parser = recorded)]
+    pub out: Vec<(PathBuf, Format)>,
+    /// How to say on standard output what happened
+    #[arg(long, value_enum, default_value_t = Report::Text)]
+    pub report: Report,
+}
+
+/// How to say what happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Report {
+    /// For people
+    Text,
+    /// One JSON object
+    Json,
+}
+
+/// Arguments of `render`.
+#[derive(Debug, ClapArgs)]
+pub struct Render {
+    /// How the scene is run.
+    #[command(flatten)]
+    pub world: World,
+    /// FILE.gif, an animation; FILE.png, the last picture; or DIR/%04d.png, all pictures
+    #[arg(long, value_name = "FILE", value_parser = drawn)]
+    pub out: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
+    pub size: (u32, u32),
+    /// Pictures per second of the scene's time
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub fps: u32,
+    /// Draw the surfaces that particles come from and vanish at as well
+    #[arg(long)]
+    pub show_sources: bool,
+}
+
+/// Arguments of `convert`.
+#[derive(Debug, ClapArgs)]
+pub struct Convert {
+    /// The scene to read: .scn or .json
+    pub from: PathBuf,
+    /// The scene to write: .scn or .json
+    #[arg(value_parser = scene_format)]
+    pub to: (PathBuf, SceneFormat),
+}
+
+/// A format of scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneFormat {
+    /// The course's.
+    Scn,
+    /// Ours.
+    Json,
+}
+
+impl SceneFormat {
+    /// By the end of the file's name.
+    #[must_use]
+    pub fn of(path: &std::path::Path) -> Option<Self> {
+        match extension(path).as_str() {
+            "scn" => Some(Self::Scn),
+            "json" => Some(Self::Json),
+            _ => None,
+        }
+    }
+}
+
+/// The lower-case end of a file's name.
+pub(crate) fn extension(path: &std::path::Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let longest = f64::from(1u32 << 31);
+    let value = match text.split_once('/') {
+        Some((over, under)) => number(over)? / number(under)?,
+        None => number(text)?,
+    };
+    if (0.0..longest).contains(&value) { Ok(value) } else { Err("expected seconds, from 0 to 2147483647".into()) }
+}
+
+fn step(text: &str) -> Result<f64, String> {
+    let value = seconds(text)?;
+    if value >= 1e-9 { Ok(value) } else { Err("expected a step of at least 1e-9 s".into()) }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| format!("expected a number, found '{text}'"))
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match sides {
+        Some((w, h)) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok((w, h)),
+        _ => Err("expected WIDTHxHEIGHT, such as 640x480, each from 1 to 8192".into()),
+    }
+}
+
+fn recorded(text: &str) -> Result<(PathBuf, Format), String> {
+    let path = PathBuf::from(text);
+    match Format::of(&path) {
+        Some(format) => Ok((path, format)),
+        None => Err("expected a name that ends in .csv, .jsonl, .ply or .xyz".into()),
+    }
+}
+
+fn drawn(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match extension(&path).as_str() {
+        "gif" | "png" => Ok(path),
+        _ => Err("expected a name that ends in .gif or .png".into()),
+    }
+}
+
+fn scene_format(text: &str) -> Result<(PathBuf, SceneFormat), String> {
+    let path = PathBuf::from(text);
+    match SceneFormat::of(&path) {
+        Some(format) => Ok((path, format)),
+        None => Err("expected a name that ends in .scn or .json".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        use clap::CommandFactory;
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn steps_may_be_fractions() {
+        assert_eq!(step("1/60"), Ok(1.0 / 60.0));
+        assert_eq!(step("0.001"), Ok(0.001));
+        for bad in ["0", "-1", "nan", "inf", "1/0", "x", "1e-10", ""] {
+            assert!(step(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! `pointmass convert`: translates a scene between the formats.
+
+use crate::args::{self, SceneFormat};
+use crate::whole::{WholeFile, existing_folder_of};
+use crate::{Failure, Outcome, load, warn};
+use pointmass::scene::{SceneFile, write_scn};
+use pointmass::shape::Shape;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Converts a scene; warns of what the other format cannot say.
+///
+/// # Errors
+/// If the scene cannot be used or the file cannot be written, which is then left as it was.
+pub fn convert(args: &args::Convert) -> Outcome {
+    let mut scene = load::scene(&args.from)?;
+    scene.check().map_err(|error| error.in_file(&args.from.to_string_lossy()))?;
+    let (path, format) = &args.to;
+    rebase(&mut scene, folder(&args.from)?, folder(path)?);
+    let text = match format {
+        SceneFormat::Json => scene.to_json(),
+        SceneFormat::Scn => {
+            let (text, warnings) = write_scn(&scene);
+            warn(&warnings);
+            text
+        }
+    };
+    let mut file = WholeFile::create(path)?;
+    file.write_all(text.as_bytes()).map_err(|error| Failure::io(path, &error))?;
+    file.complete()
+}
+
+/// The folder a file lies in, wherever the names lead.
+fn folder(path: &Path) -> Outcome<PathBuf> {
+    let folder = existing_folder_of(path)?;
+    folder.canonicalize().map_err(|error| Failure::io(folder, &error))
+}
+
+/// Names every file relative to the folder `to` that was named relative to the folder `from`.
+fn rebase(scene: &mut SceneFile, from: PathBuf, to: PathBuf) {
+    let moved = |name: &mut String| {
+        if Path::new(name).is_relative() {
+            let path = pathdiff::diff_paths(from.join(&*name), &to).unwrap_or_else(|| from.join(&*name));
+            *name = path.to_string_lossy().into_owned();
+        }
+    };
+    let shapes = (scene.emitters.iter_mut().map(|e| &mut e.shape))
+        .chain(scene.sinks.iter_mut().map(|s| &mut s.shape))
+        .chain(scene.scenery.iter_mut().map(|s| &mut s.shape));
+    for shape in shapes {
+        if let Shape::Mesh(name) = shape {
+            moved(name);
+        }
+    }
+    scene.materials.iter_mut().filter_map(|m| m.texture.as_mut()).for_each(moved);
+}

@@ -1,0 +1,85 @@
+//! The picture of everything that stands still.
+
+use super::camera::Lens;
+use super::clip::Frustum;
+use super::model::{Facet, Model};
+use super::raster::{Band, SAMPLES, Sample, Triangle};
+use super::shade::Shader;
+use glam::Vec3;
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::thread;
+
+/// How many rows are drawn at a time; all samples of so many fit into the processor's cache.
+const BAND: usize = 16;
+
+/// How many of a pixel's depths are kept.
+pub(super) const DEPTHS: usize = 4;
+
+/// Linear colours, and depths to draw moving things into, row by row.
+#[derive(Debug)]
+pub(super) struct Backdrop {
+    pub(super) colors: Vec<Vec3>,
+    /// The depths of a few samples of each pixel; infinite where there is nothing.
+    pub(super) depths: Vec<[f32; DEPTHS]>,
+}
+
+impl Backdrop {
+    /// Draws a model, on all processors. Bands know nothing of each other, so the picture does not
+    /// depend on how many there are.
+    pub(super) fn new(lens: &Lens, model: &Model, shader: &Shader) -> Self {
+        let count = lens.width * lens.height;
+        let mut colors = vec![Vec3::ZERO; count];
+        let mut depths = vec![[f32::INFINITY; DEPTHS]; count];
+
+        let visible = in_order(lens, model);
+        let size = (BAND * lens.width).max(1);
+        let bands = Mutex::new(colors.chunks_mut(size).zip(depths.chunks_mut(size)).enumerate());
+        let next = || bands.lock().ok()?.next();
+        let work = || {
+            while let Some((number, (colors, depths))) = next() {
+                let rows = colors.len() / lens.width;
+                let sky = |y| shader.sky.at(y as f32 + 0.5);
+                let mut band = Band::new(BAND * number, rows, lens.width, sky);
+                for (facet, triangle) in &visible {
+                    let skin = &model.skins[facet.skin];
+                    band.fill(triangle, skin.opacity, |part| shader.color(facet, skin, part));
+                }
+                for ((color, depth), samples) in colors.iter_mut().zip(depths).zip(&band.samples) {
+                    *color = mean(samples);
+                    *depth = std::array::from_fn(|at| samples[at].depth);
+                }
+            }
+        };
+        thread::scope(|scope| {
+            for _ in 1..thread::available_parallelism().map_or(1, NonZero::get) {
+                // Where no thread is to be had, the work gets done all the same.
+                let _ = thread::Builder::new().spawn_scoped(scope, work);
+            }
+            work();
+        });
+        Self { colors, depths }
+    }
+}
+
+/// The triangles in the picture in the order to draw them: what is opaque, then what is not, from
+/// the back to the front.
+fn in_order<'a>(lens: &Lens, model: &'a Model) -> Vec<(&'a Facet, Triangle)> {
+    let is_opaque = |facet: &&Facet| model.skins[facet.skin].opacity >= 1.0;
+    let (opaque, mut clear): (Vec<&Facet>, Vec<&Facet>) = model.facets.iter().partition(is_opaque);
+    clear.sort_by(|a, b| b.depth().total_cmp(&a.depth()));
+    let frustum = Frustum::new(lens);
+    let mut visible = Vec::new();
+    for facet in opaque.into_iter().chain(clear) {
+        let polygon = frustum.clip(facet.corners.to_vec());
+        for side in polygon.windows(2).skip(1) {
+            let triangle = Triangle::new([polygon[0], side[0], side[1]], lens);
+            visible.extend(triangle.map(|triangle| (facet, triangle)));
+        }
+    }
+    visible
+}
+
+fn mean(samples: &[Sample; SAMPLES.len()]) -> Vec3 {
+    samples.iter().map(|sample| sample.color).sum::<Vec3>() / samples.len() as f32
+}

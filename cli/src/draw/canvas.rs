@@ -1,0 +1,112 @@
+//! The picture while it is being painted.
+
+use super::backdrop::{Backdrop, DEPTHS};
+use super::bloom::Bloom;
+use super::color::{Codec, grain, luminance};
+use glam::Vec3;
+use image::RgbImage;
+
+/// A copy of the backdrop's colours to paint on, and its depths to hide behind.
+#[derive(Debug)]
+pub(super) struct Canvas<'a> {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    depths: &'a [[f32; DEPTHS]],
+    pixels: Vec<Pixel>,
+}
+
+/// Paint, which covers what is under it, and light, which adds up and is only bent into the range
+/// of a picture at the end.
+#[derive(Clone, Copy, Debug)]
+struct Pixel {
+    color: Vec3,
+    light: Vec3,
+}
+
+impl<'a> Canvas<'a> {
+    pub(super) fn new(backdrop: &'a Backdrop, width: usize, height: usize) -> Self {
+        let blank = |&color: &Vec3| Pixel { color, light: Vec3::ZERO };
+        let pixels = backdrop.colors.iter().map(blank).collect();
+        Self { width, height, depths: &backdrop.depths, pixels }
+    }
+
+    /// How much of a pixel is open to something at a depth: 1 as long as the backdrop is behind
+    /// `depth`, falling to 0 where the backdrop is `softness` in front of it.
+    pub(super) fn open(&self, pixel: usize, depth: f32, softness: f32) -> f32 {
+        let depths = &self.depths[pixel];
+        if depths.iter().all(|&wall| wall >= depth) {
+            return 1.0;
+        }
+        let share = |&wall: &f32| (1.0 + (wall - depth) / softness).clamp(0.0, 1.0);
+        depths.iter().map(share).sum::<f32>() / DEPTHS as f32
+    }
+
+    /// The share of a pixel's samples whose depth is about `depth`.
+    pub(super) fn lies_at(&self, pixel: usize, depth: f32, tolerance: f32) -> f32 {
+        let near = self.depths[pixel].iter().filter(|&&wall| (wall - depth).abs() < tolerance);
+        near.count() as f32 / DEPTHS as f32
+    }
+
+    /// Lays paint over a pixel.
+    pub(super) fn cover(&mut self, pixel: usize, color: Vec3, opacity: f32) {
+        let pixel = &mut self.pixels[pixel];
+        pixel.color = pixel.color.lerp(color, opacity);
+        pixel.light *= 1.0 - opacity;
+    }
+
+    /// Sheds light on a pixel. What is bright already cannot show light; there the same amount of
+    /// paint is laid on instead.
+    pub(super) fn shine(&mut self, pixel: usize, color: Vec3, strength: f32) {
+        let pixel = &mut self.pixels[pixel];
+        let bright = (luminance(pixel.color) * strength).min(1.0);
+        pixel.color = pixel.color.lerp(color, bright);
+        pixel.light += strength * color;
+    }
+
+    /// Lets a surface return some more or less of the light that falls on it.
+    pub(super) fn tint(&mut self, pixel: usize, factor: Vec3) {
+        self.pixels[pixel].color *= factor;
+    }
+
+    /// The finished picture.
+    pub(super) fn develop(&self, bloom: &Bloom, codec: &Codec) -> RgbImage {
+        let mut bytes = Vec::with_capacity(3 * self.pixels.len());
+        for y in 0..self.height {
+            let shine = bloom.row(y);
+            for (x, pixel) in self.pixels[y * self.width..][..self.width].iter().enumerate() {
+                let light = pixel.light + shine.as_ref().map_or(Vec3::ZERO, |shine| shine(x));
+                bytes.extend(codec.encode(expose(pixel.color, light), grain(x, y)));
+            }
+        }
+        // The bytes are exactly as many as the picture has; an empty one is as good as any other.
+        RgbImage::from_raw(self.width as u32, self.height as u32, bytes).unwrap_or_default()
+    }
+}
+
+/// Adds light to a colour without ever going past white: colours no light falls on stay exactly as
+/// they are, and strong light of any colour turns white in the end, as flames do in photographs.
+fn expose(color: Vec3, light: Vec3) -> Vec3 {
+    if light == Vec3::ZERO {
+        return color;
+    }
+    let light = light + 0.12 * (light.max_element() - 1.0).max(0.0);
+    1.0 - (1.0 - color.min(Vec3::ONE)) / (1.0 + light)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_adds_up_gently() {
+        let color = Vec3::new(0.2, 0.4, 0.6);
+        assert_eq!(expose(color, Vec3::ZERO), color);
+        let mut last = color;
+        for step in 1..100 {
+            let lit = expose(color, Vec3::splat(0.2 * step as f32));
+            assert!(lit.cmpgt(last).all() && lit.max_element() < 1.0);
+            last = lit;
+        }
+        assert!(last.min_element() > 0.95);
+    }
+}

@@ -1,0 +1,45 @@
+//! The software renderer: a scene of plain triangles, lights and dots in, pictures out.
+//!
+//! Three steps, in the order a program takes them:
+//!
+//! 1. Describe the unmoving part of the scene as a [`Stage`]: a [`Camera`], some [`Light`]s, and
+//!    [`Piece`]s made of [`Surface`]s ([`shapes`] makes the usual ones).
+//! 2. Hand it to [`Renderer::new`], which draws it once, carefully, with antialiasing and shadows.
+//! 3. For every frame call [`Renderer::frame`] with the moving [`Dot`]s and [`Segment`]s, and give
+//!    the picture to a [`Sink`], which writes a GIF, a PNG or a numbered sequence.
+//!
+//! Colours are written as people write them in scene files and see them on a screen (sRGB, 0 to 1
+//! or 0 to 255). They are decoded on the way in, and all arithmetic happens in linear light.
+//!
+//! Nothing here draws on randomness, time or threads: the same stage and dots give the same bytes.
+//! Anything with a coordinate that is not finite is left out of the picture.
+
+mod backdrop;
+mod bloom;
+mod brush;
+mod camera;
+mod canvas;
+mod clip;
+mod color;
+mod contact;
+mod lamp;
+mod model;
+mod raster;
+mod rays;
+mod render;
+mod segments;
+mod shade;
+pub mod shapes;
+mod sink;
+mod sky;
+mod sprite;
+mod stage;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use camera::Camera;
+pub use render::Renderer;
+pub use sink::Sink;
+pub use stage::{Dot, Light, Line, Material, Piece, Segment, Stage};
+pub use surface::Surface;

@@ -1,0 +1,231 @@
+//! Filling triangles, eight samples to a pixel.
+
+use super::camera::Lens;
+use super::clip::Vertex;
+use glam::{Vec2, Vec3};
+
+/// Where a pixel is looked at: eight places with no row and no column in common. The first four lie
+/// in different quarters.
+pub(super) const SAMPLES: [Vec2; 8] = [
+    Vec2::new(9.0 / 16.0, 5.0 / 16.0),
+    Vec2::new(7.0 / 16.0, 11.0 / 16.0),
+    Vec2::new(13.0 / 16.0, 9.0 / 16.0),
+    Vec2::new(5.0 / 16.0, 3.0 / 16.0),
+    Vec2::new(3.0 / 16.0, 13.0 / 16.0),
+    Vec2::new(1.0 / 16.0, 7.0 / 16.0),
+    Vec2::new(11.0 / 16.0, 15.0 / 16.0),
+    Vec2::new(15.0 / 16.0, 1.0 / 16.0),
+];
+
+/// Surfaces whose depths differ by less than this share lie in the same plane.
+const COPLANAR: f32 = 1e-5;
+
+/// What one of a pixel's samples sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub(super) color: Vec3,
+    pub(super) depth: f32,
+}
+
+/// A strip of the picture, all samples of each pixel next to each other.
+#[derive(Debug)]
+pub(super) struct Band {
+    pub(super) top: usize,
+    pub(super) rows: usize,
+    pub(super) width: usize,
+    pub(super) samples: Vec<[Sample; SAMPLES.len()]>,
+}
+
+/// A triangle placed in the picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle {
+    points: [Vec2; 3],
+    corners: [Vertex; 3],
+    /// One over the depth; unlike the depth, it is linear across the picture.
+    nearness: [f32; 3],
+    /// Twice the area, positive whichever way the triangle turns.
+    area: f32,
+}
+
+/// A pixel's share of a triangle, to be coloured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fragment {
+    pub(super) x: usize,
+    pub(super) y: usize,
+    pub(super) at: Vertex,
+}
+
+impl Triangle {
+    /// Places a triangle that lies in front of the eye; `None` if it is seen from its edge.
+    pub(super) fn new(mut corners: [Vertex; 3], lens: &Lens) -> Option<Self> {
+        let mut points = corners.map(|corner| lens.project(corner.place));
+        let mut area = (points[1] - points[0]).perp_dot(points[2] - points[0]);
+        if area < 0.0 {
+            corners.swap(1, 2);
+            points.swap(1, 2);
+            area = -area;
+        }
+        let nearness = corners.map(|corner| 1.0 / Lens::depth(corner.place));
+        (area > 0.0 && area.is_finite()).then_some(Self { points, corners, nearness, area })
+    }
+
+    /// The rows and columns it may touch, cut to a picture.
+    fn bounds(&self) -> (Vec2, Vec2) {
+        let [a, b, c] = self.points;
+        (a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// The weights of the corners at a point of the picture; `None` outside.
+    fn weights(&self, point: Vec2) -> Option<[f32; 3]> {
+        let [a, b, c] = self.points;
+        let weight = |from: Vec2, to: Vec2| {
+            let (side, out) = (to - from, point - from);
+            let weight = side.perp_dot(out);
+            // A point on an edge belongs to one of the two triangles that share it.
+            let inside = weight > 0.0 || weight == 0.0 && (side.y < 0.0 || side.y == 0.0 && side.x > 0.0);
+            inside.then_some(weight / self.area)
+        };
+        Some([weight(b, c)?, weight(c, a)?, weight(a, b)?])
+    }
+
+    fn depth(&self, weights: [f32; 3]) -> f32 {
+        1.0 / (0..3).map(|corner| weights[corner] * self.nearness[corner]).sum::<f32>()
+    }
+
+    /// The place and normal at some weights, as perspective has it.
+    fn vertex(&self, weights: [f32; 3]) -> Vertex {
+        let depth = self.depth(weights);
+        let mut vertex = Vertex { place: Vec3::ZERO, normal: Vec3::ZERO };
+        for ((corner, weight), nearness) in self.corners.iter().zip(weights).zip(self.nearness) {
+            let share = weight * nearness * depth;
+            vertex.place += share * corner.place;
+            vertex.normal += share * corner.normal;
+        }
+        vertex
+    }
+}
+
+impl Band {
+    /// An empty strip, filled row by row with a colour.
+    pub(super) fn new(top: usize, rows: usize, width: usize, sky: impl Fn(usize) -> Vec3) -> Self {
+        let empty = |y| [Sample { color: sky(y), depth: f32::INFINITY }; SAMPLES.len()];
+        let samples = (top..top + rows).flat_map(|y| std::iter::repeat_n(empty(y), width)).collect();
+        Self { top, rows, width, samples }
+    }
+
+    /// Fills a triangle where it is in front. `shade` is asked once for each pixel.
+    ///
+    /// Only an opaque triangle hides what is drawn behind it later.
+    pub(super) fn fill(&mut self, triangle: &Triangle, opacity: f32, mut shade: impl FnMut(Fragment) -> Vec3) {
+        let (low, high) = triangle.bounds();
+        let rows = within(low.y, high.y, self.top, self.top + self.rows);
+        let columns = within(low.x, high.x, 0, self.width);
+        for y in rows {
+            for x in columns.clone() {
+                self.fill_pixel(x, y, triangle, opacity, &mut shade);
+            }
+        }
+    }
+
+    fn fill_pixel(
+        &mut self,
+        x: usize,
+        y: usize,
+        triangle: &Triangle,
+        opacity: f32,
+        shade: &mut impl FnMut(Fragment) -> Vec3,
+    ) {
+        let corner = Vec2::new(x as f32, y as f32);
+        let samples = &mut self.samples[(y - self.top) * self.width + x];
+        let mut hits = [false; SAMPLES.len()];
+        let mut sum = [0.0; 3];
+        let mut count = 0.0;
+        for ((hit, sample), offset) in hits.iter_mut().zip(samples.iter_mut()).zip(SAMPLES) {
+            let Some(weights) = triangle.weights(corner + offset) else { continue };
+            let depth = triangle.depth(weights);
+            if depth < sample.depth * (1.0 + COPLANAR) {
+                *hit = true;
+                count += 1.0;
+                sum = [0, 1, 2].map(|at| sum[at] + weights[at]);
+                if opacity >= 1.0 {
+                    sample.depth = depth;
+                }
+            }
+        }
+        if count > 0.0 {
+            // The middle of the samples that hit is always inside the triangle.
+            let at = triangle.vertex(sum.map(|weight| weight / count));
+            let color = shade(Fragment { x, y, at });
+            for (sample, _) in samples.iter_mut().zip(hits).filter(|(_, hit)| *hit) {
+                sample.color = sample.color.lerp(color, opacity);
+            }
+        }
+    }
+}
+
+/// The whole numbers from `low` to `high` that are also from `first` to before `end`.
+fn within(low: f32, high: f32, first: usize, end: usize) -> std::ops::Range<usize> {
+    // The casts send what is below zero to zero.
+    (low.floor() as usize).max(first)..(high.ceil() as usize).min(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Camera;
+
+    const SIZE: usize = 16;
+
+    fn band() -> Band {
+        Band::new(0, SIZE, SIZE, |_| Vec3::ZERO)
+    }
+
+    /// Two triangles that fill the picture at a depth.
+    fn wall(depth: f32) -> [Triangle; 2] {
+        let lens = Lens::new(&Camera::default(), SIZE, SIZE);
+        let corner = |x, y| Vertex { place: depth * Vec3::new(x, y, -1.0), normal: Vec3::Z };
+        let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        [[a, b, c], [a, c, d]].map(|corners| Triangle::new(corners, &lens).unwrap())
+    }
+
+    #[test]
+    fn triangles_that_share_an_edge_fill_each_sample_once() {
+        let mut band = band();
+        for triangle in &wall(3.0) {
+            band.fill(triangle, 0.5, |_| Vec3::ONE);
+        }
+        for sample in band.samples.iter().flatten() {
+            assert_eq!(sample.color, Vec3::splat(0.5));
+        }
+    }
+
+    #[test]
+    fn the_nearer_one_shows_in_either_order() {
+        for depths in [[2.0, 3.0], [3.0, 2.0]] {
+            let mut band = band();
+            for depth in depths {
+                for triangle in &wall(depth) {
+                    band.fill(triangle, 1.0, |_| Vec3::splat(depth));
+                }
+            }
+            for sample in band.samples.iter().flatten() {
+                assert_eq!(sample.color, Vec3::splat(2.0));
+                assert!((sample.depth - 2.0).abs() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn places_are_right_in_perspective() {
+        let lens = Lens::new(&Camera::default(), SIZE, SIZE);
+        let corners = [[-9.0, -1.0, -2.0], [9.0, -1.0, -2.0], [0.0, 1.0, -30.0]];
+        let corners = corners.map(|at| Vertex { place: Vec3::from_array(at), normal: Vec3::Y });
+        let triangle = Triangle::new(corners, &lens).unwrap();
+        band().fill(&triangle, 1.0, |fragment| {
+            let error = lens.project(fragment.at.place) - Vec2::new(fragment.x as f32, fragment.y as f32);
+            assert!(error.min_element() >= 0.0 && error.max_element() <= 1.0, "{error}");
+            assert!((fragment.at.place.y + 1.0 - 2.0 * (-2.0 - fragment.at.place.z) / 28.0).abs() < 1e-4);
+            Vec3::ONE
+        });
+    }
+}

@@ -1,0 +1,223 @@
+//! Looking along straight lines through the scene: for shadows, and for the ground under a dot.
+
+use super::camera::Lens;
+use super::model::{Facet, Model, Role};
+use glam::{Mat3, Vec3};
+
+/// The triangles of a model.
+///
+/// Places and directions are given in view coordinates. Inside they are turned upright, because
+/// most walls follow the axes of the world, and then their boxes fit tightly.
+#[derive(Debug, Default)]
+pub(super) struct Rays {
+    upright: Mat3,
+    /// Few and huge; boxes around them would hold everything.
+    endless: Vec<Wall>,
+    /// The others, sorted into a tree of boxes.
+    solid: Vec<Wall>,
+    nodes: Vec<Node>,
+}
+
+/// A triangle.
+#[derive(Clone, Copy, Debug)]
+struct Wall {
+    corner: Vec3,
+    sides: [Vec3; 2],
+    flat: Vec3,
+    opacity: f32,
+}
+
+/// A box around a run of walls. An inner node has no walls of its own; its first child follows it.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: Vec3,
+    high: Vec3,
+    walls: (usize, usize),
+    second_child: usize,
+}
+
+/// A place where a ray meets a wall.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    pub(super) distance: f32,
+    pub(super) normal: Vec3,
+}
+
+impl Rays {
+    pub(super) fn new(model: &Model, lens: &Lens) -> Self {
+        let upright = lens.turn.transpose();
+        let walls = |role| {
+            let facets = model.facets.iter().map(|facet| (facet, &model.skins[facet.skin]));
+            let walls = facets.filter(move |(_, skin)| skin.role == role);
+            walls.map(|(facet, skin)| Wall::new(facet, upright, skin.opacity)).collect()
+        };
+        let (endless, solid) = (walls(Role::Endless), walls(Role::Solid));
+        let mut rays = Self { upright, endless, solid, nodes: Vec::new() };
+        if !rays.solid.is_empty() {
+            rays.sort(0, rays.solid.len());
+        }
+        rays
+    }
+
+    /// The first wall along a ray, if there is one within `reach`.
+    pub(super) fn first(&self, from: Vec3, towards: Vec3, mut reach: f32) -> Option<Hit> {
+        let (from, towards) = (self.upright * from, self.upright * towards);
+        let mut hit = None;
+        let mut found = |wall: &Wall, distance| {
+            hit = Some(Hit { distance, normal: wall.flat });
+            distance
+        };
+        for wall in &self.endless {
+            if let Some(distance) = wall.distance(from, towards, reach) {
+                reach = found(wall, distance);
+            }
+        }
+        self.walk(from, towards, reach, found);
+        let turn = self.upright.transpose();
+        hit.map(|hit: Hit| Hit { normal: turn * hit.normal, ..hit })
+    }
+
+    /// The share of light that gets through along a ray, up to `reach`.
+    ///
+    /// Only walls entered from outside count. For solids that changes nothing, and a room may be
+    /// lit by a lamp outside it, which is how people light the rooms they want to look into.
+    pub(super) fn passing(&self, from: Vec3, towards: Vec3, reach: f32) -> f32 {
+        let (from, towards) = (self.upright * from, self.upright * towards);
+        let mut passing = 1.0;
+        self.walk(from, towards, reach, |wall, _| {
+            if wall.flat.dot(towards) < 0.0 {
+                passing *= 1.0 - wall.opacity;
+            }
+            if passing > 0.0 { reach } else { 0.0 }
+        });
+        passing
+    }
+
+    /// Visits the solid walls along a ray, in no particular order. The visitor answers with how far to
+    /// look from then on.
+    fn walk(&self, from: Vec3, towards: Vec3, mut reach: f32, mut visit: impl FnMut(&Wall, f32) -> f32) {
+        // No division by zero, which would make the boxes' bounds meaningless.
+        let inverse = towards.map(|d| 1.0 / if d.abs() < 1e-12 { 1e-12 } else { d });
+        // Halving leaves a tree too shallow to fill this, however many walls there are.
+        let mut open = [0; 64];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            let at = open[count];
+            let node = &self.nodes[at];
+            if !node.crossed(from, inverse, reach) {
+                continue;
+            }
+            if node.second_child > 0 {
+                open[count] = node.second_child;
+                open[count + 1] = at + 1;
+                count += 2;
+            }
+            for wall in &self.solid[node.walls.0..node.walls.1] {
+                if let Some(distance) = wall.distance(from, towards, reach) {
+                    reach = visit(wall, distance);
+                }
+            }
+        }
+    }
+
+    /// Puts a box around some walls, and boxes around both halves of them.
+    fn sort(&mut self, first: usize, end: usize) {
+        let walls = &mut self.solid[first..end];
+        let mut node = Node { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, walls: (first, end), second_child: 0 };
+        for place in walls.iter().flat_map(Wall::corners) {
+            node.low = node.low.min(place);
+            node.high = node.high.max(place);
+        }
+        let at = self.nodes.len();
+        if walls.len() > 4 {
+            let longest = (node.high - node.low).max_position();
+            let middle = |wall: &Wall| wall.corners().iter().map(|corner| corner[longest]).sum::<f32>();
+            let half = walls.len() / 2;
+            walls.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
+            node.walls = (0, 0);
+            self.nodes.push(node);
+            self.sort(first, first + half);
+            self.nodes[at].second_child = self.nodes.len();
+            self.sort(first + half, end);
+        } else {
+            self.nodes.push(node);
+        }
+    }
+}
+
+impl Node {
+    fn crossed(&self, from: Vec3, inverse: Vec3, reach: f32) -> bool {
+        let (a, b) = ((self.low - from) * inverse, (self.high - from) * inverse);
+        let enter = a.min(b).max_element().max(0.0);
+        let leave = a.max(b).min_element().min(reach);
+        // Rounding must not lose a wall that lies flat in its box.
+        enter <= leave * 1.000_01
+    }
+}
+
+impl Wall {
+    fn new(facet: &Facet, upright: Mat3, opacity: f32) -> Self {
+        let [a, b, c] = facet.corners.map(|corner| upright * corner.place);
+        Self { corner: a, sides: [b - a, c - a], flat: upright * facet.flat, opacity }
+    }
+
+    fn corners(&self) -> [Vec3; 3] {
+        [self.corner, self.corner + self.sides[0], self.corner + self.sides[1]]
+    }
+
+    /// How far along a ray the wall is, if within reach (Möller and Trumbore's method).
+    fn distance(&self, from: Vec3, towards: Vec3, reach: f32) -> Option<f32> {
+        let across = towards.cross(self.sides[1]);
+        let scale = 1.0 / self.sides[0].dot(across);
+        let out = from - self.corner;
+        let u = scale * out.dot(across);
+        let along = out.cross(self.sides[0]);
+        let v = scale * towards.dot(along);
+        let distance = scale * self.sides[1].dot(along);
+        let met = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < reach;
+        met.then_some(distance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::{Camera, Material, Piece, Stage, shapes};
+
+    fn rays(piece: Piece) -> Rays {
+        // The default camera's view coordinates are the world's.
+        let stage = Stage { pieces: vec![piece], ..Stage::default() };
+        let lens = Lens::new(&Camera::default(), 64, 48);
+        Rays::new(&Model::new(&stage, &lens), &lens)
+    }
+
+    fn ball() -> Piece {
+        Piece { surface: shapes::sphere(Vec3::ZERO, 1.0), ..Piece::default() }
+    }
+
+    #[test]
+    fn the_first_wall_is_found() {
+        let rays = rays(ball());
+        for towards in [Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::ONE.normalize()] {
+            let hit = rays.first(-3.0 * towards, towards, 10.0).unwrap();
+            assert!((hit.distance - 2.0).abs() < 5e-3, "{towards}: {}", hit.distance);
+            assert!(hit.normal.dot(towards) < -0.99);
+            assert!(rays.first(-3.0 * towards, towards, 1.9).is_none());
+            assert!(rays.first(-3.0 * towards, -towards, 10.0).is_none());
+        }
+    }
+
+    #[test]
+    fn solids_cast_shadows_and_rooms_do_not() {
+        // Beside the poles, where many triangles meet.
+        let below = Vec3::new(0.1, -3.0, 0.2);
+        let upwards = |piece: Piece, from: Vec3| rays(piece).passing(from, Vec3::Y, 10.0);
+        assert_eq!(upwards(ball(), below), 0.0);
+        assert_eq!(upwards(ball(), below.with_y(0.0)), 1.0);
+        assert_eq!(upwards(Piece { endless: true, ..ball() }, below), 1.0);
+        let material = Material { opacity: 0.25, ..Material::default() };
+        assert_eq!(upwards(Piece { material, ..ball() }, below), 0.75);
+        assert_eq!(Rays::default().passing(below, Vec3::Y, 10.0), 1.0);
+    }
+}

@@ -1,0 +1,103 @@
+//! What colour a place on a surface has.
+
+use super::clip::Vertex;
+use super::color::{grain, soften};
+use super::lamp::{Beam, Lamp};
+use super::model::{Facet, Role, Skin};
+use super::raster::Fragment;
+use super::rays::Rays;
+use super::sky::Sky;
+use glam::Vec3;
+use std::f32::consts::TAU;
+
+/// The share of a lamp's light that finds its way into its shadows.
+const SHADOW_LIGHT: f32 = 0.22;
+
+/// How wide lamps are, as a tangent; it makes the edges of shadows soft.
+const LAMP_WIDTH: f32 = 0.04;
+
+/// The steepest angle, as a sine, at which an endless surface begins to melt into the background.
+const MELTING: f32 = 0.16;
+
+/// Everything that decides about colours.
+#[derive(Debug)]
+pub(super) struct Shader<'a> {
+    pub(super) sky: Sky,
+    pub(super) lamps: &'a [Lamp],
+    pub(super) rays: &'a Rays,
+    /// The direction of the world's +y, in view coordinates.
+    pub(super) up: Vec3,
+}
+
+impl Shader<'_> {
+    /// The colour of a facet in a pixel.
+    pub(super) fn color(&self, facet: &Facet, skin: &Skin, fragment: Fragment) -> Vec3 {
+        let Vertex { place, normal } = fragment.at;
+        let eye = (-place).normalize_or(Vec3::Z);
+        // Which side is seen is up to the flat triangle: near the outline of a round thing, smooth
+        // normals already point away.
+        let side = if facet.flat.dot(eye) >= 0.0 { 1.0 } else { -1.0 };
+        let (normal, flat) = match skin.role {
+            Role::Line => (eye, eye),
+            _ => (side * normal.normalize_or(facet.flat), side * facet.flat),
+        };
+        let mut color = skin.emission + skin.ambient * self.openness(normal, eye);
+        for beam in self.lamps.iter().filter_map(|lamp| lamp.beam(place)) {
+            let cosine = normal.dot(beam.from);
+            if cosine > 0.0 {
+                let half = (beam.from + eye).normalize_or(normal);
+                let highlight = normal.dot(half).max(0.0).powf(skin.shininess);
+                let returned = cosine * skin.diffuse + highlight * skin.specular;
+                let passing = match skin.role {
+                    Role::Line => 1.0,
+                    _ => self.passing(place, flat, &beam, fragment),
+                };
+                color += (SHADOW_LIGHT + (1.0 - SHADOW_LIGHT) * passing) * beam.color * returned;
+            }
+        }
+        let color = soften(color);
+        if skin.role == Role::Endless {
+            let sky = self.sky.at(fragment.y as f32 + 0.5);
+            return sky.lerp(color, smooth(flat.dot(eye) / MELTING));
+        }
+        color
+    }
+
+    /// How much of the surrounding light a surface returns: more when it faces up, or the eye, so
+    /// that shapes can be told apart even where no lamp shines.
+    fn openness(&self, normal: Vec3, eye: Vec3) -> f32 {
+        0.6 + 0.2 * normal.dot(self.up) + 0.2 * normal.dot(eye)
+    }
+
+    /// The share of a beam that reaches a place past everything in its way.
+    fn passing(&self, place: Vec3, flat: Vec3, beam: &Beam, fragment: Fragment) -> f32 {
+        // Start a little outside, or the surface would stand in its own light.
+        let from = place + 3e-4 * place.length() * flat;
+        let turn = TAU * grain(fragment.x, fragment.y);
+        let ray = |step, count| {
+            let towards = (beam.from + LAMP_WIDTH * spread(beam.from, turn, step, count)).normalize();
+            self.rays.passing(from, towards, beam.distance)
+        };
+        // Four rays say whether this is the edge of a shadow; if so, ask more.
+        let few: f32 = (0..4).map(|step| ray(step, 4)).sum();
+        if few == 0.0 || few == 4.0 {
+            return few / 4.0;
+        }
+        (0..24).map(|step| ray(step, 24)).sum::<f32>() / 24.0
+    }
+}
+
+/// One of `count` directions across `axis`, evenly spread over a disc that is turned by `turn`.
+fn spread(axis: Vec3, turn: f32, step: usize, count: usize) -> Vec3 {
+    const GOLDEN: f32 = 2.399_963_2;
+    let radius = ((step as f32 + 0.5) / count as f32).sqrt();
+    let (sin, cos) = (turn + GOLDEN * step as f32).sin_cos();
+    let (x, y) = axis.any_orthonormal_pair();
+    radius * (cos * x + sin * y)
+}
+
+/// From 0 to 1 without a corner.
+pub(super) fn smooth(t: f32) -> f32 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

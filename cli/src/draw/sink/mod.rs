@@ -1,0 +1,149 @@
+//! Where the pictures go: a GIF, a PNG or a numbered sequence of PNGs, by the name of the file.
+//!
+//! What is written appears whole or not at all. It is put together under a passing name in the
+//! same folder and renamed at the end; a rendering that is broken off leaves nothing behind.
+
+mod animation;
+mod common;
+mod palette;
+mod pattern;
+mod screen;
+mod sequence;
+mod still;
+
+use animation::Animation;
+use image::RgbImage;
+use pattern::Pattern;
+use sequence::Sequence;
+use std::path::Path;
+use still::Still;
+
+/// Takes the frames of a rendering, and writes them.
+///
+/// Errors are sentences that name the file and say what to do.
+#[derive(Debug)]
+pub struct Sink(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    Animation(Animation),
+    Still(Still),
+    Sequence(Sequence),
+}
+
+impl Sink {
+    /// Prepares to write `path`, one of
+    ///
+    /// - `FILE.gif`, an animation that repeats for ever,
+    /// - `FILE.png`, a single picture, the last one pushed,
+    /// - `DIR/%04d.png` (or `%d`, or any width), a sequence numbered from 0. The last folder is
+    ///   created if it is missing.
+    ///
+    /// `fps` is how many frames there are to a second.
+    pub fn create(path: &Path, fps: f64) -> Result<Self, String> {
+        let shown = path.display();
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+        let is = |wanted| extension.eq_ignore_ascii_case(wanted);
+        let pattern = Pattern::parse(path)?;
+        match pattern {
+            Some(pattern) if is("png") => {
+                Sequence::create(path, pattern).map(|sequence| Self(Kind::Sequence(sequence)))
+            }
+            Some(_) => Err(format!("cannot write {shown}: numbered pictures must end in .png")),
+            None if is("png") => Still::create(path).map(|still| Self(Kind::Still(still))),
+            None if is("gif") => Animation::create(path, fps).map(|animation| Self(Kind::Animation(animation))),
+            None => {
+                Err(format!("cannot write {shown}: a picture's name must be like FILE.gif, FILE.png or DIR/%04d.png"))
+            }
+        }
+    }
+
+    /// Whether only the last frame counts, so that the others need not be drawn.
+    pub fn keeps_only_last(&self) -> bool {
+        matches!(self.0, Kind::Still(_))
+    }
+
+    /// Takes the next frame. All frames must have the same size.
+    pub fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
+        match &mut self.0 {
+            Kind::Animation(animation) => animation.push(frame),
+            Kind::Still(still) => still.push(frame),
+            Kind::Sequence(sequence) => sequence.push(frame),
+        }
+    }
+
+    /// Completes what is written and gives it its name. It is an error if there was no frame.
+    pub fn finish(self) -> Result<(), String> {
+        match self.0 {
+            Kind::Animation(animation) => animation.finish(),
+            Kind::Still(still) => still.finish(),
+            Kind::Sequence(sequence) => sequence.finish(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn nothing_is_left_of_what_is_not_finished() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.gif", "a.png", "frames/%d.png"] {
+            let path = folder.path().join(name);
+            let mut sink = Sink::create(&path, 25.0).unwrap();
+            sink.push(&RgbImage::new(8, 6)).unwrap();
+            drop(sink);
+            assert_eq!(names(folder.path()), [""; 0], "{name}");
+            let error = Sink::create(&path, 25.0).unwrap().finish().unwrap_err();
+            assert!(error.contains(name), "{error}");
+            assert_eq!(names(folder.path()), [""; 0], "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_finished_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.gif"), "an older file").unwrap();
+        for name in ["a.gif", "a.PNG", "frames/%02d.png"] {
+            let mut sink = Sink::create(&folder.path().join(name), 25.0).unwrap();
+            assert_eq!(sink.keeps_only_last(), name == "a.PNG");
+            for shade in [10, 200] {
+                sink.push(&RgbImage::from_pixel(8, 6, image::Rgb([shade; 3]))).unwrap();
+            }
+            sink.finish().unwrap();
+        }
+        assert_eq!(names(folder.path()), ["a.PNG", "a.gif", "frames"]);
+        assert_eq!(names(&folder.path().join("frames")), ["00.png", "01.png"]);
+        let shade = |name| image::open(folder.path().join(name)).unwrap().to_rgb8()[(7, 5)].0;
+        assert_eq!(shade("a.gif"), [10; 3]);
+        assert_eq!(shade("a.PNG"), [200; 3]);
+        assert_eq!(shade("frames/01.png"), [200; 3]);
+    }
+
+    #[test]
+    fn errors_name_the_path() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["nowhere/a.gif", "nowhere/a.png", "no/where/%d.png", "a.mp4", "a", "%d.gif", "%s.png"] {
+            let error = Sink::create(&folder.path().join(name), 25.0).unwrap_err();
+            assert!(error.contains(name), "{error}");
+        }
+        let path = folder.path().join("a.gif");
+        for fps in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Sink::create(&path, fps).is_err());
+        }
+        for name in ["a.gif", "%d.png"] {
+            let mut sink = Sink::create(&folder.path().join(name), 25.0).unwrap();
+            sink.push(&RgbImage::new(8, 6)).unwrap();
+            assert!(sink.push(&RgbImage::new(6, 8)).unwrap_err().contains(name));
+        }
+    }
+}

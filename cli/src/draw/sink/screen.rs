@@ -1,0 +1,173 @@
+//! Animated GIFs: the pixels of a frame.
+//!
+//! A frame only holds the pixels that changed, with colours chosen for just those; the rest shows
+//! through from the frames before. So what stands still is drawn once, does not flicker and costs
+//! nothing, and what moves has a whole palette to itself.
+
+use super::palette::Palette;
+use gif::{DisposalMethod, Frame};
+use image::{Rgb, RgbImage};
+use std::borrow::Cow;
+
+/// How far a channel may be from what it should be before a pixel counts as changed.
+const TOLERANCE: u8 = 1;
+
+/// What someone who watches the animation sees.
+#[derive(Debug)]
+pub(super) struct Screen {
+    /// What each pixel should have been when it was last drawn; `None` before the first frame.
+    meant: Option<RgbImage>,
+    /// What was drawn, with the palette's colours.
+    drawn: RgbImage,
+}
+
+/// The part of a frame that holds all changes.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    left: u32,
+    top: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Screen {
+    pub(super) fn new(width: u32, height: u32) -> Self {
+        Self { meant: None, drawn: RgbImage::new(width, height) }
+    }
+
+    /// What has to be drawn to show a picture. The frame's duration is left open.
+    pub(super) fn show(&mut self, picture: &RgbImage) -> Frame<'static> {
+        let window = self.changes(picture);
+        let changed = window.pixels().filter(|&(x, y)| self.is_changed(picture, x, y));
+        let mut palette = Palette::new(changed.map(|(x, y)| picture.get_pixel(x, y).0));
+        let unchanged = palette.colors().len() as u8;
+
+        let mut indices = Vec::with_capacity((window.width * window.height) as usize);
+        for (x, y) in window.pixels() {
+            if self.is_changed(picture, x, y) {
+                let color = picture.get_pixel(x, y);
+                let index = palette.nearest(dither(color, x, y, palette.step));
+                self.drawn.put_pixel(x, y, Rgb(palette.colors()[usize::from(index)]));
+                if let Some(meant) = &mut self.meant {
+                    meant.put_pixel(x, y, *color);
+                }
+                indices.push(index);
+            } else {
+                indices.push(unchanged);
+            }
+        }
+        if self.meant.is_none() {
+            self.meant = Some(picture.clone());
+        }
+
+        let mut colors = palette.colors().concat();
+        colors.extend([0; 3]);
+        Frame {
+            dispose: DisposalMethod::Keep,
+            transparent: Some(unchanged),
+            left: window.left as u16,
+            top: window.top as u16,
+            width: window.width as u16,
+            height: window.height as u16,
+            palette: Some(colors),
+            buffer: Cow::Owned(indices),
+            ..Frame::default()
+        }
+    }
+
+    fn is_changed(&self, picture: &RgbImage, x: u32, y: u32) -> bool {
+        let wanted = picture.get_pixel(x, y);
+        self.meant
+            .as_ref()
+            .is_none_or(|meant| differ(wanted, meant.get_pixel(x, y)) && differ(wanted, self.drawn.get_pixel(x, y)))
+    }
+
+    /// The smallest window around all changes. A frame must have a pixel even if nothing changed.
+    fn changes(&self, picture: &RgbImage) -> Window {
+        let (width, height) = picture.dimensions();
+        let whole = Window { left: 0, top: 0, width, height };
+        let (mut low, mut high) = ((width, height), (0, 0));
+        for (x, y) in whole.pixels().filter(|&(x, y)| self.is_changed(picture, x, y)) {
+            low = (low.0.min(x), low.1.min(y));
+            high = (high.0.max(x + 1), high.1.max(y + 1));
+        }
+        if high == (0, 0) {
+            return Window { left: 0, top: 0, width: width.min(1), height: height.min(1) };
+        }
+        Window { left: low.0, top: low.1, width: high.0 - low.0, height: high.1 - low.1 }
+    }
+}
+
+impl Window {
+    fn pixels(self) -> impl Iterator<Item = (u32, u32)> {
+        let columns = self.left..self.left + self.width;
+        (self.top..self.top + self.height).flat_map(move |y| columns.clone().map(move |x| (x, y)))
+    }
+}
+
+fn differ(a: &Rgb<u8>, b: &Rgb<u8>) -> bool {
+    a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > TOLERANCE)
+}
+
+/// Makes a colour a little lighter or darker in a fixed pattern, so that a mixture of the two
+/// nearest colours stands for those between them. Fixed, because a pattern that changed from frame
+/// to frame would flicker.
+fn dither(color: &Rgb<u8>, x: u32, y: u32, step: f32) -> [u8; 3] {
+    let shift = step * (threshold(x, y) - 0.5);
+    color.0.map(|channel| (f32::from(channel) + shift + 0.5) as u8)
+}
+
+/// Bayer's pattern, eight by eight, from 0 to 1: numbers as far apart as can be lie side by side.
+fn threshold(x: u32, y: u32) -> f32 {
+    let bits = (0..3).map(|bit| (x >> bit ^ y >> bit) & 1 | (y >> bit & 1) << 1);
+    let value = bits.enumerate().map(|(bit, value)| value << (4 - 2 * bit)).sum::<u32>();
+    (value as f32 + 0.5) / 64.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A soft gradient, and a bright square somewhere.
+    fn picture(at: u32) -> RgbImage {
+        RgbImage::from_fn(64, 32, |x, y| {
+            if (at..at + 4).contains(&x) && (10..14).contains(&y) {
+                Rgb([255, 240, 200])
+            } else {
+                Rgb([x as u8 / 2, y as u8, 40])
+            }
+        })
+    }
+
+    #[test]
+    fn only_changes_are_drawn() {
+        let mut screen = Screen::new(64, 32);
+        let first = screen.show(&picture(20));
+        assert_eq!((first.left, first.top, first.width, first.height), (0, 0, 64, 32));
+        let next = screen.show(&picture(22));
+        assert_eq!((next.left, next.top, next.width, next.height), (20, 10, 6, 4));
+        let kept = next.buffer.iter().filter(|&&index| Some(index) == next.transparent);
+        assert_eq!(kept.count(), 2 * 4);
+        let same = screen.show(&picture(22));
+        assert_eq!((same.width, same.height, same.buffer.to_vec()), (1, 1, vec![0]));
+    }
+
+    #[test]
+    fn what_is_seen_is_what_was_meant() {
+        let mut screen = Screen::new(64, 32);
+        for at in 0..40 {
+            screen.show(&picture(at));
+            for (seen, meant) in screen.drawn.pixels().zip(picture(at).pixels()) {
+                let error = seen.0.iter().zip(meant.0).map(|(a, b)| a.abs_diff(b)).max();
+                assert!(error < Some(16), "{seen:?} for {meant:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn thresholds_are_all_different() {
+        let mut all: Vec<_> = (0..64).map(|at| (64.0 * threshold(at % 8, at / 8)) as u32).collect();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..64));
+    }
+}

@@ -1,0 +1,77 @@
+//! The library behind the `pointmass` binary.
+//!
+//! `args` parses, one module a command does the work: `run`, `render`, `convert`. They share `load` (scenes and meshes
+//! from disk), `world` (a scene in motion), `clock` (when steps end), `record` (state to files) and `draw` (state to
+//! pictures).
+
+pub mod args;
+pub mod clock;
+pub mod convert;
+pub mod draw;
+pub mod load;
+pub mod meshes;
+mod progress;
+mod record;
+pub mod render;
+pub mod report;
+pub mod run;
+mod stage;
+pub mod whole;
+pub mod world;
+
+/// What went wrong, as one line for a person.
+#[derive(Debug)]
+pub struct Failure(String);
+
+impl Failure {
+    /// A failure with a message that names what it is about.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self(message.into())
+    }
+
+    /// A failure to read or write `path`.
+    pub fn io(path: &std::path::Path, error: &std::io::Error) -> Self {
+        Self(format!("{}: {error}", path.display()))
+    }
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<pointmass::scene::SceneError> for Failure {
+    fn from(error: pointmass::scene::SceneError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// What a command comes to.
+pub type Outcome<T = ()> = Result<T, Failure>;
+
+/// Prints to standard output; a reader that has gone away is no error.
+///
+/// # Errors
+/// If the output cannot be written for another reason.
+pub fn print(text: &str) -> Outcome {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints warnings to standard error.
+pub fn warn(warnings: &[String]) {
+    use std::io::Write;
+    for warning in warnings {
+        // Nobody is left to be told if standard error is closed.
+        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    }
+}

@@ -1,0 +1,22 @@
+//! The `pointmass` command: parses its arguments, does what they say, and turns the outcome into an exit code.
+
+use clap::Parser;
+use pointmass_cli::args::{Args, Command};
+use pointmass_cli::{convert, render, run};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let outcome = match &args.command {
+        Command::Run(args) => run::run(args),
+        Command::Render(args) => render::render(args),
+        Command::Convert(args) => convert::convert(args),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

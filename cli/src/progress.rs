@@ -1,0 +1,41 @@
+//! A progress bar on standard error, for runs long enough to wonder.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// Shown once a run has lasted this long.
+const PATIENCE: Duration = Duration::from_millis(700);
+
+/// Progress through a known number of steps; invisible where standard error is no terminal.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    since: Instant,
+    shown: bool,
+}
+
+impl Progress {
+    pub(crate) fn new(steps: u64) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left  {msg}") {
+            bar.set_style(style);
+        }
+        Self { bar, since: Instant::now(), shown: false }
+    }
+
+    /// One step further.
+    pub(crate) fn step(&mut self, particles: usize) {
+        if !self.shown && self.since.elapsed() > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.shown = true;
+        }
+        self.bar.inc(1);
+        if self.shown {
+            self.bar.set_message(format!("{particles} particles"));
+        }
+    }
+
+    /// Done; the bar goes away.
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}

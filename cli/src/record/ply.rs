@@ -1,0 +1,81 @@
+//! PLY point clouds, binary, one file a record.
+
+use super::{Frame, Row};
+use crate::whole::{PREFIX, existing_folder_of};
+use crate::{Failure, Outcome};
+use ply_rs_bw::ply::{
+    Addable, DefaultElement, ElementDef, Encoding, Ply as Cloud, Property, PropertyDef, PropertyType, ScalarType,
+};
+use ply_rs_bw::writer::Writer;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+pub(super) struct Ply {
+    path: PathBuf,
+    /// Clouds wait in a folder of their own until all are complete.
+    waiting: TempDir,
+    count: u32,
+}
+
+impl Ply {
+    pub(super) fn new(path: &Path) -> Outcome<Self> {
+        let waiting = TempDir::with_prefix_in(PREFIX, existing_folder_of(path)?);
+        let waiting = waiting.map_err(|error| Failure::io(path, &error))?;
+        Ok(Self { path: path.to_path_buf(), waiting, count: 0 })
+    }
+
+    pub(super) fn record(&mut self, frame: &Frame) -> io::Result<()> {
+        let mut out = BufWriter::new(File::create(self.waiting.path().join(self.count.to_string()))?);
+        let mut cloud = cloud(frame);
+        Writer::new().write_ply(&mut out, &mut cloud).map_err(io::Error::other)?;
+        self.count += 1;
+        out.flush()
+    }
+
+    pub(super) fn finish(self) -> Outcome {
+        let stem = self.path.with_extension("").to_string_lossy().into_owned();
+        for i in 0..self.count {
+            let path = PathBuf::from(format!("{stem}_{i:06}.ply"));
+            fs::rename(self.waiting.path().join(i.to_string()), &path).map_err(|error| Failure::io(&path, &error))?;
+        }
+        Ok(())
+    }
+}
+
+fn cloud(frame: &Frame) -> Cloud<DefaultElement> {
+    use ScalarType::{Double, Float, UChar, UInt};
+    let columns = [
+        ("x", Float),
+        ("y", Float),
+        ("z", Float),
+        ("vx", Float),
+        ("vy", Float),
+        ("vz", Float),
+        ("mass", Float),
+        ("age", Double),
+        ("id", UInt),
+        ("red", UChar),
+        ("green", UChar),
+        ("blue", UChar),
+        ("alpha", UChar),
+    ];
+    let mut vertex = ElementDef::new("vertex".to_string());
+    for (name, kind) in &columns {
+        vertex.properties.add(PropertyDef::new(name.to_string(), PropertyType::Scalar(kind.clone())));
+    }
+    let point = |(row, color): (&Row, &[u8; 4])| {
+        let Row { x, y, z, vx, vy, vz, mass, age, id, .. } = *row;
+        let floats = [x, y, z, vx, vy, vz, mass].into_iter().map(Property::Float);
+        let rest = [Property::Double(age), Property::UInt(id)];
+        let values = floats.chain(rest).chain(color.iter().map(|&c| Property::UChar(c)));
+        columns.iter().map(|(name, _)| name.to_string()).zip(values).collect()
+    };
+    let mut cloud = Cloud::new();
+    cloud.header.encoding = Encoding::BinaryLittleEndian;
+    cloud.header.comments.push(format!("time {} step {}", frame.time, frame.step));
+    cloud.header.elements.add(vertex);
+    cloud.payload.insert("vertex".to_string(), frame.rows.iter().zip(&frame.colors).map(point).collect());
+    cloud
+}

@@ -1,0 +1,169 @@
+//! What a run came to, for people and for programs.
+
+use crate::world::World;
+use pointmass::{Caps, Died, Energy, Measures};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What a run came to. Times are in seconds of the scene, except `seconds`, which people had to wait.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    /// The scene's file.
+    pub scene: String,
+    /// The method.
+    pub integrator: String,
+    /// The step \[s\].
+    pub dt: f64,
+    /// The seed.
+    pub seed: u64,
+    /// Steps made.
+    pub steps: u64,
+    /// The instant reached \[s\].
+    pub time: f64,
+    /// Particles put in at the beginning.
+    pub initial: u64,
+    /// Particles born.
+    pub born: u64,
+    /// Particles alive at the end.
+    pub live: u64,
+    /// Particles removed, by cause.
+    pub died: Died,
+    /// Particles that found no room.
+    pub refused: u64,
+    /// Times that a particle met a collider.
+    pub hits: u64,
+    /// Times that a bound cut work short.
+    pub caps: Caps,
+    /// Energy at the end \[J\].
+    pub energy: Energy,
+    /// Momentum at the end \[kg m/s\].
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin at the end \[kg m²/s\].
+    pub angular_momentum: [f64; 3],
+    /// The state's fingerprint.
+    pub hash: String,
+    /// Time it took \[s\].
+    pub seconds: f64,
+    /// Time it took for each particle and step \[ns\].
+    pub ns_per_particle_step: f64,
+}
+
+/// Effort spent on a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Effort {
+    /// Steps made.
+    pub steps: u64,
+    /// Particles alive, summed over all steps.
+    pub particle_steps: u64,
+    /// Time spent stepping \[s\].
+    pub seconds: f64,
+}
+
+impl Summary {
+    /// Sums up the world as it is.
+    #[must_use]
+    pub fn of(scene: &std::path::Path, world: &World, effort: Effort) -> Self {
+        let totals = world.system.totals();
+        let measures = Measures::of(&world.system, &world.model.scene());
+        Self {
+            scene: scene.display().to_string(),
+            integrator: world.integrator().to_string(),
+            dt: world.dt,
+            seed: world.system.seed(),
+            steps: effort.steps,
+            time: nanoseconds(world.system.time().seconds_f64()),
+            initial: totals.initial,
+            born: totals.born,
+            live: world.system.len() as u64,
+            died: totals.died,
+            refused: totals.refused,
+            hits: totals.hits,
+            caps: totals.caps,
+            energy: measures.energy,
+            momentum: measures.momentum,
+            angular_momentum: measures.angular_momentum,
+            hash: format!("{:016x}", world.system.hash()),
+            seconds: effort.seconds,
+            ns_per_particle_step: effort.seconds * 1e9 / effort.particle_steps.max(1) as f64,
+        }
+    }
+
+    /// One line of JSON.
+    #[must_use]
+    pub fn json(&self) -> String {
+        // Numbers that are not finite become null.
+        let mut text = serde_json::to_string(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
+    /// A page for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut rows: Vec<(&str, String)> = vec![
+            ("scene", self.scene.clone()),
+            ("run", format!("{} steps of {:.6} s by {}, seed {}", self.steps, self.dt, self.integrator, self.seed)),
+            ("time", format!("{} s", self.time)),
+            (
+                "particles",
+                format!(
+                    "{} at first + {} born = {} live + {} died",
+                    self.initial,
+                    self.born,
+                    self.live,
+                    self.died.total()
+                ),
+            ),
+        ];
+        let died = [
+            ("of age", self.died.lifetime),
+            ("at sinks", self.died.sink),
+            ("of crowding", self.died.density),
+            ("by chance", self.died.chance),
+            ("no longer finite", self.died.nonfinite),
+        ];
+        push_counts(&mut rows, "died", &died);
+        let Caps { bounces, chords, springs, unfit } = self.caps;
+        push_counts(&mut rows, "refused", &[("found no room; raise --capacity", self.refused)]);
+        push_counts(&mut rows, "hits", &[("", self.hits)]);
+        let caps = [
+            ("paths with too many bounces", bounces),
+            ("paths with too many chords", chords),
+            ("springs without an end", springs),
+            ("steps that did not fit", unfit),
+        ];
+        push_counts(&mut rows, "bounds met", &caps);
+        let Energy { kinetic, potential } = self.energy;
+        rows.push(("energy", format!("{kinetic:.6} J kinetic, {potential:.6} J potential")));
+        rows.push(("momentum", vector(self.momentum, "kg m/s")));
+        rows.push(("angular", vector(self.angular_momentum, "kg m²/s")));
+        rows.push(("hash", self.hash.clone()));
+        let pace = self.ns_per_particle_step;
+        rows.push(("took", format!("{:.3} s, {pace:.1} ns a particle and step", self.seconds)));
+        let mut text = String::new();
+        for (name, value) in rows {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{name:>10}  {value}");
+        }
+        text
+    }
+}
+
+/// Adds a row with those counts that are not zero, if there are any.
+fn push_counts<'a>(rows: &mut Vec<(&'a str, String)>, name: &'a str, counts: &[(&str, u64)]) {
+    let told: Vec<_> =
+        counts.iter().filter(|&&(_, n)| n > 0).map(|(what, n)| format!("{n} {what}").trim_end().to_string()).collect();
+    if !told.is_empty() {
+        rows.push((name, told.join(", ")));
+    }
+}
+
+fn vector([x, y, z]: [f64; 3], unit: &str) -> String {
+    format!("({x:.6}, {y:.6}, {z:.6}) {unit}")
+}
+
+/// Seconds rounded to the nanosecond: a tick of the clock is a quarter of that, and 0.001 shall read 0.001.
+#[must_use]
+pub(crate) fn nanoseconds(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e9
+}

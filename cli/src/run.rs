@@ -1,0 +1,54 @@
+//! `pointmass run`: steps a scene, records it, reports.
+
+use crate::args::{self, Report};
+use crate::clock::Clock;
+use crate::progress::Progress;
+use crate::record::{Frame, Recorder};
+use crate::report::{Effort, Summary};
+use crate::world::World;
+use crate::{Outcome, print};
+use std::time::Instant;
+
+/// Runs a scene as the arguments say. Files are written whole, at the end, or not at all.
+///
+/// # Errors
+/// If the scene cannot be used or a file cannot be written.
+pub fn run(args: &args::Run) -> Outcome {
+    let mut world = World::load(&args.world)?;
+    let clock = match args.steps {
+        Some(steps) => Clock::steps_of(steps, world.dt),
+        None => Clock::new(world.duration, world.dt),
+    };
+    let mut recorders =
+        args.out.iter().map(|(path, format)| Recorder::create(path, *format)).collect::<Outcome<Vec<_>>>()?;
+    let mut record = |step: u64, world: &World| {
+        if recorders.is_empty() {
+            return Ok(());
+        }
+        let frame = Frame::of(step, &world.system);
+        recorders.iter_mut().try_for_each(|recorder| recorder.record(&frame))
+    };
+
+    let mut effort = Effort::default();
+    let mut progress = Progress::new(clock.steps());
+    record(0, &world)?;
+    for step in 1..=clock.steps() {
+        let begun = Instant::now();
+        world.step_to(clock.end(step));
+        effort.seconds += begun.elapsed().as_secs_f64();
+        effort.steps = step;
+        effort.particle_steps += world.system.len() as u64;
+        if step % args.every == 0 || step == clock.steps() {
+            record(step, &world)?;
+        }
+        progress.step(world.system.len());
+    }
+    progress.finish();
+
+    let summary = Summary::of(&args.world.scene, &world, effort);
+    recorders.into_iter().try_for_each(Recorder::finish)?;
+    match args.report {
+        Report::Text => print(&summary.text()),
+        Report::Json => print(&summary.json()),
+    }
+}

@@ -1,0 +1,181 @@
+//! A scene as the renderer sees it: what stands still, and what moves.
+
+use crate::draw::{self, Dot, Line, Piece, Segment, Stage, Surface, shapes};
+use crate::world::World;
+use glam::Vec3;
+use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
+use pointmass::shape::{Aabb, Affine, MeshBuf, Shape, Surface as _};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What stands still: scenery, and sources and sinks if they are to be seen.
+pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool) -> Stage {
+    let bounds = bounds(file, model);
+    let mut stage = Stage {
+        camera: camera(file.camera.as_ref(), bounds),
+        lights: lights(&file.lights),
+        ambient: file.ambient.into(),
+        background: file.background.into(),
+        ..Stage::default()
+    };
+    let default = Material::default();
+    let reach = 40.0 * bounds.radius().clamp(1.0, 1e6);
+    for Solid { shape, to_world, material } in &model.scenery {
+        let material = material.and_then(|i| file.materials.get(usize::from(i))).unwrap_or(&default);
+        place(&mut stage, shape, to_world, look(material), reach);
+    }
+    if show_sources {
+        let sources = model.emitters.iter().map(|e| (&e.shape, e.color.unwrap_or([120, 200, 120, 255])));
+        let sinks = model.forces.1.iter().map(|s| (&s.shape, [200, 90, 90, 255]));
+        for (shape, [r, g, b, _]) in sources.chain(sinks) {
+            let tint = Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0;
+            let glass = draw::Material { ambient: tint, diffuse: tint, opacity: 0.35, ..draw::Material::default() };
+            place(&mut stage, shape, &Affine::IDENTITY, glass, reach);
+        }
+    }
+    stage
+}
+
+/// What moves, remembering where it was in the picture before.
+#[derive(Default)]
+pub(crate) struct Cast {
+    before: HashMap<u32, Vec3>,
+}
+
+impl Cast {
+    /// The particles as they are now.
+    pub(crate) fn dots(&mut self, world: &World) -> Vec<Dot> {
+        let particles = world.system.particles();
+        let mut now = HashMap::with_capacity(particles.serial.len());
+        let mut dots = Vec::with_capacity(particles.serial.len());
+        for (row, (&position, &serial)) in particles.position.iter().zip(particles.serial).enumerate() {
+            // Rows count materials from one; zero is none.
+            let number = usize::from(particles.material[row]).checked_sub(1);
+            let material = number.and_then(|number| world.file.materials.get(number));
+            let (size, glow) = material.map_or((0.0, 0.0), |m| (m.size, m.glow));
+            let previous = self.before.get(&serial).copied().unwrap_or(position);
+            dots.push(Dot { position, previous, color: particles.color[row], size, glow });
+            now.insert(serial, position);
+        }
+        self.before = now;
+        dots
+    }
+
+    /// The springs as they are now.
+    pub(crate) fn segments(world: &World) -> Vec<Segment> {
+        let scene = world.model.scene();
+        let springs = world.system.state(&scene).springs;
+        let position = world.system.particles().position;
+        springs.ends().map(|[a, b]| Segment { a: position[a], b: position[b], color: [170, 170, 180, 255] }).collect()
+    }
+}
+
+/// A box around all that stays put, for a camera that nobody placed.
+fn bounds(file: &SceneFile, model: &Model) -> Aabb {
+    let corners = |shape: &Shape<Arc<MeshBuf>>, to_world: &Affine| {
+        let Aabb { min, max } = shape.bounds();
+        let corner = |i: u8| Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z));
+        Aabb::around((0..8).map(corner).filter(|c| c.is_finite()).map(|c| to_world.point(c)))
+    };
+    let scenery = model.scenery.iter().map(|s| corners(&s.shape, &s.to_world));
+    let sources = model.emitters.iter().map(|e| corners(&e.shape, &Affine::IDENTITY));
+    let sinks = model.forces.1.iter().map(|s| corners(&s.shape, &Affine::IDENTITY));
+    let particles = Aabb::around(file.particles.iter().map(|p| p.position));
+    let all = scenery.chain(sources).chain(sinks).fold(particles, Aabb::join);
+    if all.radius().is_finite() && all.radius() > 0.0 {
+        return all;
+    }
+    let center = if all.center().is_finite() { all.center() } else { Vec3::ZERO };
+    Aabb { min: center - 0.5, max: center + 0.5 }
+}
+
+fn pick(i: u8, bit: u8, low: f32, high: f32) -> f32 {
+    if i & bit == 0 { low } else { high }
+}
+
+/// The scene's camera, or one that looks down −z at everything from three radii away.
+fn camera(camera: Option<&Camera>, bounds: Aabb) -> draw::Camera {
+    let looking = camera.map(|c| draw::Camera {
+        eye: c.eye.into(),
+        towards: c.towards.into(),
+        up: c.up.into(),
+        xfov: c.xfov,
+        near: c.near,
+        far: c.far,
+    });
+    looking.unwrap_or_else(|| {
+        let radius = bounds.radius();
+        draw::Camera {
+            eye: bounds.center() + Vec3::Z * (3.0 * radius),
+            towards: Vec3::NEG_Z,
+            up: Vec3::Y,
+            xfov: 0.25,
+            near: 0.01 * radius,
+            far: 100.0 * radius,
+        }
+    })
+}
+
+/// The scene's lights, or the two that a scene without any has.
+fn lights(lights: &[Light]) -> Vec<draw::Light> {
+    let directional = |color: Vec3, direction: Vec3| draw::Light::Directional { color, direction };
+    if lights.is_empty() {
+        let (main, fill) = (Vec3::new(-3.0, -4.0, -5.0), Vec3::new(3.0, 2.0, 3.0));
+        return vec![directional(Vec3::ONE, main), directional(Vec3::splat(0.5), fill)];
+    }
+    let light = |light: &Light| match *light {
+        Light::Directional { color, direction } => directional(color.into(), direction.into()),
+        // An area light is drawn as the point in its middle.
+        Light::Point { color, position, attenuation } | Light::Area { color, position, attenuation, .. } => {
+            draw::Light::Point { color: color.into(), position: position.into(), attenuation }
+        }
+        Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => draw::Light::Spot {
+            color: color.into(),
+            position: position.into(),
+            direction: direction.into(),
+            attenuation,
+            cutoff,
+            dropoff,
+        },
+    };
+    lights.iter().map(light).collect()
+}
+
+fn look(material: &Material) -> draw::Material {
+    let [r, g, b] = material.transmission;
+    draw::Material {
+        ambient: material.ambient.into(),
+        diffuse: material.diffuse.into(),
+        specular: material.specular.into(),
+        emission: material.emission.into(),
+        shininess: material.shininess,
+        opacity: (1.0 - (r + g + b) / 3.0).clamp(0.0, 1.0),
+    }
+}
+
+fn place(stage: &mut Stage, shape: &Shape<Arc<MeshBuf>>, to_world: &Affine, material: draw::Material, reach: f32) {
+    if let Shape::Line(line) = shape {
+        let (a, b) = (to_world.point(line.from), to_world.point(line.to));
+        stage.lines.push(Line { a, b, material });
+        return;
+    }
+    let surface = tessellate(shape, reach).transformed(to_world.linear, to_world.shift);
+    stage.pieces.push(Piece { surface, material, endless: matches!(shape, Shape::Plane(_)) });
+}
+
+fn tessellate(shape: &Shape<Arc<MeshBuf>>, reach: f32) -> Surface {
+    match shape {
+        Shape::Line(_) => Surface::default(),
+        Shape::Box(s) => {
+            let Aabb { min, max } = s.bounds();
+            shapes::cuboid((min + max) * 0.5, max - min)
+        }
+        Shape::Circle(s) => shapes::disc(s.center, s.normal, s.radius),
+        Shape::Sphere(s) => shapes::sphere(s.center, s.radius),
+        Shape::Cylinder(s) => shapes::cylinder(s.center, s.radius, s.height),
+        Shape::Cone(s) => shapes::cone(s.center, s.radius, s.height),
+        Shape::Mesh(mesh) => shapes::mesh(mesh.view().vertices(), mesh.view().triangles()),
+        Shape::Triangle(s) => shapes::mesh(&s.corners, &[[0, 1, 2]]),
+        Shape::Plane(s) => shapes::plane(s.point, s.normal, reach),
+    }
+}

@@ -1,0 +1,224 @@
+//! A `.scn` scene in inline arrays: what firmware reads at start, without a heap.
+
+use super::scn::{Command, Located, Place, Scenery, ScnError, Source, commands};
+use crate::emit::{Emitter, Spread, Varied};
+use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
+use crate::integrate::Method;
+use crate::particles::{Color, Particle};
+use crate::shape::{Affine, Mesh, Placed, Shape};
+use crate::system::Scene;
+use glam::{Mat3, Vec3};
+use heapless::Vec;
+
+/// A scene in memory of its own: at most `PARTICLES` to begin with, `SPRINGS` between them, and `OTHERS` emitters,
+/// sinks, solids, materials and groups in each other, each.
+///
+/// ```
+/// use pointmass::scene::InlineScene;
+/// use pointmass::{Inline, Method, System, Time};
+///
+/// let text = "particle_gravity 0 -9.8 0   particle 0 2 0  1 0 0  1 0 0 0.8 0 -1   box -1 -9 -1 -9  9 0 9";
+/// let scene = InlineScene::<1, 0, 2>::read(text, Method::Verlet)?;
+/// let mut system = System::with(Inline::<1, 0, 0, 4>::new());
+/// system.start(&scene.scene(), 1)?;
+/// system.step(&scene.scene(), Time::frame(1, 60));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct InlineScene<const PARTICLES: usize, const SPRINGS: usize, const OTHERS: usize> {
+    particles: Vec<Particle, PARTICLES>,
+    springs: Vec<Spring, SPRINGS>,
+    emitters: Vec<Emitter<Mesh<'static>>, OTHERS>,
+    forces: (Vec<ForceKind, 3>, Vec<Sink<Mesh<'static>>, OTHERS>),
+    colliders: Vec<Placed<Shape<Mesh<'static>>>, OTHERS>,
+    integrator: Method,
+}
+
+/// Why a scene cannot be read into inline arrays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InlineError<'a> {
+    /// The text is wrong.
+    Text(ScnError<'a>),
+    /// The command at this place does not go: what is wrong with it.
+    At(Place, &'static str),
+}
+
+impl core::fmt::Display for InlineError<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (place, _) = match self {
+            Self::Text(error) => (error.place, ()),
+            Self::At(place, _) => (*place, ()),
+        };
+        write!(f, "{}:{}: ", place.line, place.column)?;
+        match self {
+            Self::Text(error) => error.fmt(f),
+            Self::At(_, message) => f.write_str(message),
+        }
+    }
+}
+
+impl core::error::Error for InlineError<'_> {}
+
+impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
+    /// Reads a `.scn` text. Cameras, lights and lines, which nothing moves by, are passed over.
+    ///
+    /// # Errors
+    /// If the text is wrong, a list is longer than its array, or it names a mesh or includes a file.
+    pub fn read(text: &str, integrator: Method) -> Result<Self, InlineError<'_>> {
+        let scene = Self {
+            particles: Vec::new(),
+            springs: Vec::new(),
+            emitters: Vec::new(),
+            forces: (Vec::new(), Vec::new()),
+            colliders: Vec::new(),
+            integrator,
+        };
+        let mut reader = Reader { scene, colors: Vec::new(), groups: Vec::new(), gravity: None };
+        for command in commands(text) {
+            let located = command.map_err(InlineError::Text)?;
+            let place = located.place;
+            reader.command(located).map_err(|message| InlineError::At(place, message))?;
+        }
+        let end = Place { line: 1, column: 1 };
+        reader.finish().map_err(|message| InlineError::At(end, message))
+    }
+
+    /// The scene, for a system to step through.
+    #[must_use]
+    pub fn scene(&self) -> Scene<'_> {
+        Scene {
+            start: &self.particles,
+            springs: &self.springs,
+            emitters: &self.emitters,
+            forces: &self.forces,
+            colliders: &self.colliders,
+            sinks: &self.forces.1,
+            integrator: self.integrator.integrator(),
+        }
+    }
+}
+
+struct Reader<const P: usize, const S: usize, const N: usize> {
+    scene: InlineScene<P, S, N>,
+    colors: Vec<Color, N>,
+    /// The open groups: where they put things, and the colour they give.
+    groups: Vec<(Affine, Option<u16>), N>,
+    gravity: Option<Gravity>,
+}
+
+type Done = Result<(), &'static str>;
+
+impl<const P: usize, const S: usize, const N: usize> Reader<P, S, N> {
+    fn command(&mut self, Located { command, .. }: Located<'_>) -> Done {
+        match command {
+            Command::Particle { mut particle, material } => {
+                particle.material = self.material(material.value)?;
+                particle.color = self.color(particle.material);
+                self.scene.particles.push(particle).map_err(|_| "too many particles for this array")
+            }
+            Command::Source(source) => self.source(source),
+            Command::Sink(sink) => {
+                let Sink { intensity, ca, la, qa, .. } = sink;
+                let sink = Sink { shape: plain(&sink.shape)?, intensity, ca, la, qa };
+                self.scene.forces.1.push(sink).map_err(|_| "too many sinks for this array")
+            }
+            Command::Spring { ends, rest_length, ks, kd } => {
+                let [a, b] = ends.map(|end| u32::try_from(end.value).unwrap_or(u32::MAX));
+                let spring = Spring { ends: [a, b], rest_length, ks, kd };
+                self.scene.springs.push(spring).map_err(|_| "too many springs for this array")
+            }
+            Command::Gravity(acceleration) => {
+                self.gravity = Some(Gravity { acceleration });
+                Ok(())
+            }
+            Command::Scenery(Scenery { shape: Shape::Line(_), .. }) => Ok(()),
+            Command::Scenery(Scenery { shape, .. }) => {
+                let placed = Placed::new(plain(&shape)?, self.place()).ok_or("its groups flatten space")?;
+                self.scene.colliders.push(placed).map_err(|_| "too many solids for this array")
+            }
+            Command::Begin { material, matrix } => self.begin(material.value, matrix),
+            Command::End => self.groups.pop().map(drop).ok_or("there is no 'begin' it could end"),
+            Command::Material { colors: [_, diffuse, _, _, emission], .. } => {
+                let color = super::shown(diffuse, emission);
+                self.colors.push(color).map_err(|_| "too many materials for this array")
+            }
+            Command::Include(_) => Err("files cannot be included here"),
+            Command::DirectionalLight(_)
+            | Command::PointLight(_)
+            | Command::SpotLight(..)
+            | Command::AreaLight(..)
+            | Command::Camera(_)
+            | Command::Ambient(_)
+            | Command::Background(_) => Ok(()),
+        }
+    }
+
+    fn source(&mut self, source: Source<'_>) -> Done {
+        let Source { newborn, material, rate, velocity, angle_cutoff, shape } = source;
+        let material = self.material(material.value)?;
+        let emitter = Emitter {
+            speed: Varied::exactly(velocity),
+            spread: Spread::Lecture(angle_cutoff),
+            material,
+            color: self.color(material),
+            ..Emitter::new(plain(&shape)?, rate).giving_birth_to(&newborn)
+        };
+        self.scene.emitters.push(emitter).map_err(|_| "too many sources for this array")
+    }
+
+    fn begin(&mut self, material: i64, rows: [[f32; 4]; 4]) -> Done {
+        let inner = affine(rows)?;
+        let inherited = self.groups.last().and_then(|group| group.1);
+        let group = (self.place().after(&inner), self.material(material)?.or(inherited));
+        self.groups.push(group).map_err(|_| "groups too deep in each other for this array")
+    }
+
+    fn place(&self) -> Affine {
+        self.groups.last().map_or(Affine::IDENTITY, |group| group.0)
+    }
+
+    fn material(&self, number: i64) -> Result<Option<u16>, &'static str> {
+        match u16::try_from(number) {
+            Ok(number) if usize::from(number) < self.colors.len() => Ok(Some(number)),
+            Err(_) if number == -1 => Ok(self.groups.last().and_then(|group| group.1)),
+            _ => Err("there is no such material above it"),
+        }
+    }
+
+    fn color(&self, material: Option<u16>) -> Option<Color> {
+        self.colors.get(usize::from(material?)).copied()
+    }
+
+    fn finish(mut self) -> Result<InlineScene<P, S, N>, &'static str> {
+        if !self.groups.is_empty() {
+            return Err("a 'begin' is without its 'end'");
+        }
+        let count = self.scene.particles.len();
+        if self.scene.springs.iter().any(|spring| spring.ends.iter().any(|&end| end as usize >= count)) {
+            return Err("a spring names a particle that is not there");
+        }
+        let gravity = self.gravity.map(ForceKind::Gravity);
+        let always = [ForceKind::Drag(Drag {}), ForceKind::MutualGravity(MutualGravity::NEWTON)];
+        self.scene.forces.0.extend(gravity.into_iter().chain(always));
+        Ok(self.scene)
+    }
+}
+
+/// A shape that is no mesh.
+fn plain(shape: &Shape<&str>) -> Result<Shape<Mesh<'static>>, &'static str> {
+    shape.with_mesh(|_| Err("meshes cannot be read here"))
+}
+
+/// Four rows of a matrix as a map of space.
+///
+/// # Errors
+/// If the last row is not 0 0 0 1, or the map cannot be undone.
+pub(super) fn affine([a, b, c, last]: [[f32; 4]; 4]) -> Result<Affine, &'static str> {
+    if last != [0.0, 0.0, 0.0, 1.0] {
+        return Err("the last row of the matrix has to be 0 0 0 1");
+    }
+    let column = |i: usize| Vec3::new(a[i], b[i], c[i]);
+    let affine = Affine { linear: Mat3::from_cols(column(0), column(1), column(2)), shift: column(3) };
+    let sound = affine.shift.is_finite() && affine.inverse().is_some();
+    if sound { Ok(affine) } else { Err("the matrix flattens space: it has no inverse") }
+}

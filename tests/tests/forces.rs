@@ -1,0 +1,361 @@
+//! The forces against closed forms, conservation laws, and sums in double precision.
+
+use pointmass::force::State;
+use pointmass::shape::Sphere;
+use pointmass::{
+    Drag, Force, Gravity, Heap, Measures, Method, MutualGravity, Particle, Scene, Sink, Spring, System, Time, Vec3,
+};
+use pointmass_tests::{Form, Random, f64s, gap, often, point, run, started};
+
+const UNIT: MutualGravity = MutualGravity { constant: 1.0, softening: 0.0 };
+
+/// The lecture's sink, about the origin.
+fn sink(shape: Form) -> Sink<pointmass::shape::Mesh<'static>> {
+    Sink { shape, intensity: 10.0, ca: 1.0, la: 0.5, qa: 0.25 }
+}
+
+/// The forces \[N\] on all particles of a system.
+fn forces(system: &System<Heap>, scene: &Scene<'_>, force: &dyn Force) -> Vec<Vec3> {
+    let mut total = vec![Vec3::ZERO; system.len()];
+    force.add_to(&system.state(scene), 0..system.len(), &mut total);
+    total
+}
+
+/// A cloud with some coincident particles and a fixed one.
+fn cloud(n: usize) -> Vec<Particle> {
+    let mut random = Random::new(4);
+    let mut start: Vec<Particle> = (0..n)
+        .map(|_| Particle {
+            position: random.vector(1.0),
+            velocity: random.vector(0.5),
+            mass: random.magnitude(0.1, 10.0),
+            drag: random.unit(),
+            ..Particle::REST
+        })
+        .collect();
+    start[n / 2].position = start[0].position;
+    start[n - 1].fixed = true;
+    start
+}
+
+/// The time at which the distance between the first two particles falls to `distance`.
+fn time_to(scene: &Scene<'_>, h: f64, distance: f64) -> f64 {
+    let mut system = started(scene, scene.start.len(), 0);
+    for i in 1..100_000 {
+        system.step(scene, Time::from_seconds_f64(h * f64::from(i)) - system.time());
+        let p = system.particles();
+        let d = gap(f64s(p.position[0]), f64s(p.position[1]));
+        if d <= distance {
+            // Back to the crossing at the present speed: within a step, so its square is what is left out.
+            return system.time().seconds_f64() - (distance - d) / gap(f64s(p.velocity[0]), f64s(p.velocity[1]));
+        }
+    }
+    f64::INFINITY
+}
+
+#[test]
+fn linear_drag_and_its_landing() {
+    let start = [Particle { velocity: Vec3::new(20.0, 30.0, 0.0), mass: 2.0, drag: 0.5, ..Particle::REST }];
+    let forces = (Gravity::EARTH, Drag {});
+    for (method, steps, tolerance) in
+        [(Method::Rk4, 120, 2e-4), (Method::Verlet, 480, 4e-4), (Method::Midpoint, 480, 4e-4)]
+    {
+        let scene = Scene { start: &start, forces: &forces, integrator: method.integrator(), ..Scene::EMPTY };
+        for (end, place) in
+            [(2.0, [31.477_547_223, 30.500_978_529, 0.0]), (5.073_484_922_5, [57.496_847_645_1, 0.0, 0.0])]
+        {
+            let mut system = started(&scene, 1, 0);
+            run(&mut system, &scene, end / f64::from(steps), steps);
+            // Rounding: hundreds of steps of half an ulp of 32 or 64 m (2e-6) each, as a random walk with room; the
+            // methods of order 2 add h² k²/m² v t / 12 or so.
+            let off = gap(f64s(system.particles().position[0]), place);
+            assert!(off < tolerance, "{method} at {end} s: {off}");
+        }
+    }
+    // A plane stops it there: it lies still in y after the landing and goes on in x with the speed it has.
+    let floor = pointmass::shape::Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let start = start.map(|p| Particle { elasticity: 0.0, ..p });
+    let rk4 = Method::Rk4.integrator();
+    let scene = Scene { start: &start, forces: &forces, colliders: &floor, integrator: rk4, ..Scene::EMPTY };
+    let mut system = started(&scene, 1, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 300);
+    assert_eq!(system.totals().hits, 0);
+    run_on(&mut system, &scene, 60);
+    assert!(system.totals().hits > 0);
+    let p = system.particles();
+    // v decays as e^(−t/4) whether it flies or slides, so x goes on as 80 (1 − e^(−t/4)).
+    let x = 80.0 * (1.0 - (-6.0f64 / 4.0).exp());
+    assert!((f64::from(p.position[0].x) - x).abs() < 1e-3 && p.position[0].y.abs() < 1e-4, "{:?}", p.position[0]);
+}
+
+/// Another `frames` of 60 per second.
+fn run_on(system: &mut System<Heap>, scene: &Scene<'_>, frames: u64) {
+    let first = (system.time().seconds_f64() * 60.0).round() as u64;
+    for i in 1..=frames {
+        system.step(scene, Time::frame(first + i, 60) - system.time());
+    }
+}
+
+#[test]
+fn a_sink_pulls_by_its_law_whatever_the_mass() {
+    let start = [0.5, 50.0].map(|mass| Particle { position: Vec3::new(0.0, 0.0, 2.0), mass, ..Particle::REST });
+    let scene = Scene { start: &start, ..Scene::EMPTY };
+    let system = started(&scene, 2, 0);
+    for force in forces(&system, &scene, &sink(point(Vec3::ZERO))) {
+        assert!((force - Vec3::NEG_Z * (10.0 / 3.0)).length() < 1e-6);
+    }
+    // From the surface of a sphere: 1 m within one of radius 3, and 1.5 m outside one of radius 0.5.
+    for (radius, f) in [(3.0, 10.0 / 1.75), (0.5, -10.0 / (1.0 + 0.75 + 0.5625))] {
+        let sphere = Form::Sphere(Sphere { center: Vec3::ZERO, radius });
+        for force in forces(&system, &scene, &sink(sphere)) {
+            assert!((force - Vec3::Z * f).length() < 1e-6, "{force}");
+        }
+    }
+    // At the surface it has no direction.
+    let sphere = Form::Sphere(Sphere { center: Vec3::ZERO, radius: 2.0 });
+    assert_eq!(forces(&system, &scene, &sink(sphere)), [Vec3::ZERO; 2]);
+}
+
+#[test]
+fn a_sink_s_circular_orbit() {
+    let v = 3.651_483_716_7;
+    let start = [Particle { position: Vec3::X * 2.0, velocity: Vec3::Y * v, mass: 0.5, ..Particle::REST }];
+    let sink = sink(point(Vec3::ZERO));
+    for (method, tolerance) in [(Method::Rk4, 2e-5), (Method::Verlet, 1e-3)] {
+        let scene = Scene { start: &start, forces: &sink, integrator: method.integrator(), ..Scene::EMPTY };
+        let mut system = started(&scene, 1, 0);
+        let energy = Measures::of(&system, &scene).energy.total();
+        for i in 0..often(1200) {
+            system.step(&scene, Time::frame(i as u64 + 1, 120) - system.time());
+            // Verlet errs by about (h ω)² / 8 = 3e-5 of radius and energy; RK4 by rounding only.
+            let r = f64::from(system.particles().position[0].length());
+            assert!((r - 2.0).abs() < tolerance, "{method}: {r}");
+        }
+        let after = Measures::of(&system, &scene).energy.total();
+        assert!((after / energy - 1.0).abs() < tolerance, "{method}: {energy} becomes {after}");
+    }
+}
+
+#[test]
+fn a_fall_into_a_sink() {
+    let at = |x: f32, fixed| Particle { position: Vec3::X * x, mass: 0.5, fixed, ..Particle::REST };
+    let (start, sink) = ([at(5.0, false), at(0.0, true)], sink(point(Vec3::ZERO)));
+    let scene = Scene { start: &start, forces: &sink, integrator: Method::Rk4.integrator(), ..Scene::EMPTY };
+    let t = time_to(&scene, 1e-3, 1.0);
+    // 1753 steps of half an ulp of 4 m at speeds of a few m/s.
+    assert!((t - 1.752_789_579_7).abs() < 2e-5, "{t}");
+}
+
+#[test]
+fn two_kilograms_fall_together() {
+    let start = [-0.5, 0.5].map(|x| Particle { position: Vec3::X * x, ..Particle::REST });
+    let integrator = Method::Rk4.integrator();
+    let scene = Scene { start: &start, forces: &MutualGravity::NEWTON, integrator, ..Scene::EMPTY };
+    // Steps of 400 s: in shorter ones the first ways, ½ a h², would vanish in the rounding of 0.5 m. At the end the
+    // bodies close in at 2.3e-5 m/s, so that 1e-6 m of rounding is 0.05 s; and they come from rest, where it is more.
+    let t = time_to(&scene, 400.0, 0.5);
+    assert!((t / 78_669.333_044 - 1.0).abs() < 1e-5, "{t}");
+    // The same in units in which G is 1: the time scales with √G.
+    let scene = Scene { forces: &UNIT, ..scene };
+    let t = time_to(&scene, 1e-3, 0.5);
+    assert!((t / (78_669.333_044 * 6.674_28e-11f64.sqrt()) - 1.0).abs() < 1e-5, "{t}");
+}
+
+#[test]
+fn two_bodies_on_an_ellipse_return() {
+    // Masses 3 and 1, G = 1, semi-major axis 1, eccentricity 0.5: period π. They start farthest apart, at 1.5.
+    let v = (4.0f32 * (2.0 / 1.5 - 1.0)).sqrt();
+    let body = |mass, x, y| Particle { position: Vec3::X * x, velocity: Vec3::Y * y, mass, ..Particle::REST };
+    let start = [body(3.0, 0.375, 0.25 * v), body(1.0, -1.125, -0.75 * v)];
+    let scene = Scene { start: &start, forces: &UNIT, integrator: Method::Rk4.integrator(), ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    let before = Measures::of(&system, &scene);
+    assert!((before.energy.total() + 3.0 / 2.0).abs() < 1e-6, "−G m M / 2a");
+    let n = 2000;
+    run(&mut system, &scene, core::f64::consts::PI / f64::from(n), n);
+    let after = Measures::of(&system, &scene);
+    for (row, p) in start.iter().enumerate() {
+        assert!((system.particles().position[row] - p.position).length() < 1e-5);
+    }
+    // 2000 steps of rounding in 6e-8 of values about 1, as a random walk 3e-6.
+    assert!((after.energy.total() - before.energy.total()).abs() < 1e-5);
+    assert!(gap(after.angular_momentum, before.angular_momentum) < 1e-5);
+}
+
+#[test]
+fn mutual_gravity_is_the_direct_sum() {
+    for n in [2, 7, 8, 9, 63, 100] {
+        let start = cloud(n);
+        let scene = Scene { start: &start, ..Scene::EMPTY };
+        let system = started(&scene, n, 0);
+        for (constant, softening) in [(1.0, 0.0), (6.674_28e-11, 0.0), (1.0, 0.05)] {
+            let law = MutualGravity { constant, softening };
+            for (i, force) in forces(&system, &scene, &law).into_iter().enumerate() {
+                let (mut sum, mut size) = ([0.0; 3], 0.0);
+                for other in &start {
+                    let d: [f64; 3] = core::array::from_fn(|k| f64s(other.position)[k] - f64s(start[i].position)[k]);
+                    let r2 = d.iter().map(|d| d * d).sum::<f64>() + f64::from(softening).powi(2);
+                    if gap(d, [0.0; 3]) > 0.0 {
+                        let w = f64::from(constant) * f64::from(start[i].mass) * f64::from(other.mass) / r2.powf(1.5);
+                        (0..3).for_each(|k| sum[k] += w * d[k]);
+                        size += w * gap(d, [0.0; 3]);
+                    }
+                }
+                // Some ten roundings of each term, and those of the sum: 20 ulps of the sum of magnitudes.
+                assert!(gap(f64s(force), sum) <= 20.0 * 6e-8 * size, "{n}, row {i}: {force} {sum:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn particles_that_coincide_do_not_act_on_each_other() {
+    for softening in [0.0, 0.1] {
+        let law = MutualGravity { constant: 1.0, softening };
+        let here = Particle { position: Vec3::new(0.1, 0.2, 0.3), ..Particle::REST };
+        let start = [here; 9];
+        let scene = Scene { start: &start, forces: &law, ..Scene::EMPTY };
+        let mut system = started(&scene, 9, 0);
+        assert_eq!(forces(&system, &scene, &law), [Vec3::ZERO; 9]);
+        run(&mut system, &scene, 0.1, 10);
+        assert!(system.particles().position.iter().all(|&x| x == here.position));
+    }
+}
+
+#[test]
+fn forces_of_pairs_conserve_momentum() {
+    let mut start = cloud(50);
+    start[49].fixed = false;
+    let springs: Vec<Spring> =
+        (0..120).map(|i| Spring { ends: [i % 50, (i * 7 + 3) % 50], rest_length: 0.5, ks: 20.0, kd: 0.5 }).collect();
+    let law = MutualGravity { constant: 0.05, softening: 0.1 };
+    for &method in Method::ALL {
+        for (forces, springs) in [(&law as &dyn Force, &[][..]), (&() as &dyn Force, &springs)] {
+            let scene = Scene { start: &start, springs, forces, integrator: method.integrator(), ..Scene::EMPTY };
+            let mut system = started(&scene, 50, 0);
+            let before = Measures::of(&system, &scene);
+            run(&mut system, &scene, 1.0 / 120.0, 240);
+            let after = Measures::of(&system, &scene);
+            let size: f64 = (0..50)
+                .map(|i| {
+                    let p = system.particles();
+                    f64::from(p.mass[i] * p.velocity[i].length())
+                })
+                .sum();
+            // Each step rounds every velocity by up to 6e-8 of it: 240 of them, as a random walk.
+            let off = gap(before.momentum, after.momentum) / size;
+            assert!(off < 1e-6, "{method}: {off} of all momentum");
+            // Forces along the line between two bodies leave it alone, where kicks and drifts take turns.
+            if matches!(method, Method::Symplectic | Method::Verlet) {
+                let off = gap(before.angular_momentum, after.angular_momentum) / size;
+                assert!(off < 1e-6, "{method}: {off} of all angular momentum");
+            }
+        }
+    }
+}
+
+#[test]
+fn two_equal_bodies_mirror_each_other_to_the_bit() {
+    let body = |s: f32| Particle {
+        position: Vec3::new(0.3, 0.7, -0.2) * s,
+        velocity: Vec3::new(0.5, -0.1, 0.3) * s,
+        ..Particle::REST
+    };
+    let start = [body(1.0), body(-1.0)];
+    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 7.3, kd: 0.3 }];
+    for &method in Method::ALL {
+        let scene =
+            Scene { start: &start, springs: &springs, forces: &UNIT, integrator: method.integrator(), ..Scene::EMPTY };
+        let mut system = started(&scene, 2, 0);
+        run(&mut system, &scene, 0.01, 500);
+        let p = system.particles();
+        assert_eq!((p.position[0], p.velocity[0]), (-p.position[1], -p.velocity[1]), "{method}");
+        assert_eq!(Measures::of(&system, &scene).momentum, [0.0; 3]);
+    }
+}
+
+#[test]
+fn forces_are_the_slopes_of_their_energies() {
+    let mut start = cloud(20);
+    start[10].position += Vec3::splat(0.3);
+    let springs: Vec<Spring> =
+        (0..30).map(|i| Spring { ends: [i % 20, (i * 7 + 3) % 20], rest_length: 0.5, ks: 20.0, kd: 0.0 }).collect();
+    let soft = MutualGravity { constant: 1.0, softening: 0.5 };
+    let sink = sink(point(Vec3::splat(2.0)));
+    let forces: [&dyn Force; 4] = [&Gravity::EARTH, &soft, &sink, &(Gravity::EARTH, soft, &sink)];
+    for force in forces {
+        for axis in 0..3 {
+            let energy = |row: usize, shift: f32| {
+                let mut start = start.clone();
+                start[row].position[axis] += shift;
+                let scene = Scene { start: &start, springs: &springs, forces: force, ..Scene::EMPTY };
+                let system = started(&scene, 20, 0);
+                let state = system.state(&scene);
+                let mut total = vec![Vec3::ZERO; 20];
+                force.add_to(&state, 0..20, &mut total);
+                state.springs.add_to(&state, 0..20, &mut total);
+                let energy = Measures::of(&system, &scene).energy.potential;
+                assert!((energy - force.energy(&state) - state.springs.energy(&state)).abs() < 1e-9);
+                (energy, f64::from(total[row][axis]))
+            };
+            for row in 0..20 {
+                let h = 1.0 / 256.0;
+                let slope = (energy(row, h).0 - energy(row, -h).0) / f64::from(2.0 * h);
+                let force = energy(row, 0.0).1;
+                // The third derivative, times h² / 6; springs bend the most, at short distances.
+                assert!((force + slope).abs() < 5e-3 * (10.0 + force.abs()), "row {row}: {force}, −{slope}");
+            }
+        }
+    }
+}
+
+#[test]
+fn any_division_of_the_rows_gives_the_same_bits() {
+    let start = cloud(29);
+    let springs: Vec<Spring> =
+        (0..60).map(|i| Spring { ends: [i % 29, (i * 5 + 2) % 29], rest_length: 0.5, ks: 20.0, kd: 0.5 }).collect();
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let system = started(&scene, 29, 0);
+    let state: State<'_> = system.state(&scene);
+    let sink = sink(point(Vec3::X));
+    for force in [&Gravity::EARTH as &dyn Force, &Drag {}, &UNIT, &sink, &state.springs] {
+        let whole = forces(&system, &scene, force);
+        for cuts in [&[0, 1, 29][..], &[0, 8, 16, 24, 29], &[0, 5, 5, 22, 29]] {
+            let mut parts = vec![Vec3::ZERO; 29];
+            for cut in cuts.windows(2) {
+                force.add_to(&state, cut[0]..cut[1], &mut parts[cut[0]..cut[1]]);
+            }
+            assert_eq!(parts, whole);
+        }
+    }
+}
+
+#[test]
+fn lists_of_forces_are_their_sum_to_the_bit() {
+    let start = cloud(30);
+    let (g, d, m) = (Gravity::EARTH, Drag {}, MutualGravity { constant: 1.0, softening: 0.05 });
+    let sink = sink(point(Vec3::X * 3.0));
+    let dynamic: [&dyn Force; 4] = [&g, &d, &m, &sink];
+    let lists: [&dyn Force; 6] = [
+        &(g, d, m, &sink),
+        &dynamic,
+        &&dynamic[..],
+        &((g, d), (), (m, &sink)),
+        &(&g as &dyn Force, [d], [&m], [&&sink]),
+        &((), (((g, d, m, sink.clone()), ()), ())),
+    ];
+    let end = |force: &dyn Force| {
+        let scene = Scene { start: &start, forces: force, integrator: Method::Rk4.integrator(), ..Scene::EMPTY };
+        let mut system = started(&scene, 30, 0);
+        run(&mut system, &scene, 1.0 / 60.0, 60);
+        (system.hash(), Measures::of(&system, &scene).energy.potential)
+    };
+    let expected = end(lists[0]);
+    for list in lists {
+        let (hash, energy) = end(list);
+        assert_eq!(hash, expected.0);
+        // A report may sum in another order.
+        assert!((energy / expected.1 - 1.0).abs() < 1e-13);
+    }
+    assert_ne!(end(&(g, d, m)).0, expected.0);
+}

@@ -1,0 +1,286 @@
+//! Springs: closed forms, and what becomes of them when their ends die.
+
+use core::f64::consts::PI;
+use pointmass::{Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Spring, System, Time, Vec3};
+use pointmass_tests::{Random, f64s, gap, point, run, started};
+
+fn at(x: f32) -> Particle {
+    Particle { position: Vec3::X * x, ..Particle::REST }
+}
+
+#[test]
+fn two_bodies_on_a_damped_spring() {
+    let start = [at(0.0), Particle { mass: 3.0, ..at(1.2) }];
+    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 50.0, kd: 2.0 }];
+    for (method, n, tolerance) in [(Method::Rk4, 60, 2e-6), (Method::Verlet, 480, 2e-5), (Method::Midpoint, 480, 2e-5)]
+    {
+        let integrator = method.integrator();
+        let scene = Scene { start: &start, springs: &springs, integrator, ..Scene::EMPTY };
+        for (t, distance) in [(0.25, 0.959_995_778_4), (0.5, 0.921_892_876_9), (1.0, 0.998_004_687_1)] {
+            let mut system = started(&scene, 2, 0);
+            run(&mut system, &scene, 1.0 / f64::from(n), (t * f64::from(n)) as u32);
+            let p = system.particles();
+            // RK4: (h ω)⁴ / 120 with h ω = 0.14, and rounding of 6e-8 at a time; order 2: (h ω)² / 12 of 0.2 m.
+            let d = gap(f64s(p.position[0]), f64s(p.position[1]));
+            assert!((d - distance).abs() < tolerance, "{method} at {t} s: {d}");
+            let momentum = Measures::of(&system, &scene).momentum;
+            assert!(gap(momentum, [0.0; 3]) < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn critical_damping_does_not_overshoot() {
+    // 2 √(m k) against an anchor, 2 √(μ k) between two free bodies, μ = m / 2.
+    let k = 40.0f32;
+    for (fixed, critical) in [(true, 2.0 * k.sqrt()), (false, 2.0 * (0.5 * k).sqrt())] {
+        for (share, overshoots) in [(0.8, true), (1.0, false), (1.5, false)] {
+            let start = [Particle { fixed, ..at(0.0) }, at(1.5)];
+            let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: k, kd: share * critical }];
+            let integrator = Method::Rk4.integrator();
+            let scene = Scene { start: &start, springs: &springs, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, 2, 0);
+            let mut shortest = f32::INFINITY;
+            for i in 1..=480 {
+                system.step(&scene, Time::frame(i, 240) - system.time());
+                let p = system.particles();
+                shortest = shortest.min((p.position[1] - p.position[0]).length());
+            }
+            // What rounding may leave; the overshoot itself would be e^(−4π/3) = 1.5 % of 0.5 m.
+            assert_eq!(shortest < 1.0 - 1e-5, overshoots, "{share} of critical, fixed {fixed}: {shortest}");
+        }
+    }
+}
+
+/// Ten masses of 0.1 kg between two fixed ends, 0.1 m apart, on springs of 100 N/m, displaced by 5 mm in mode `j`.
+fn chain(j: u32) -> (Vec<Particle>, Vec<Spring>) {
+    let shape = |i: u32| 0.005 * (PI * f64::from(i * j) / 11.0).sin();
+    let place = |i: u32| (0.1 * f64::from(i) + if i % 11 == 0 { 0.0 } else { shape(i) }) as f32;
+    let start = (0..12).map(|i| Particle { mass: 0.1, fixed: i % 11 == 0, ..at(place(i)) }).collect();
+    let springs = (0..11).map(|i| Spring { ends: [i, i + 1], rest_length: 0.1, ks: 100.0, kd: 0.0 }).collect();
+    (start, springs)
+}
+
+#[test]
+fn a_chain_swings_in_its_normal_modes() {
+    for j in 1..=10 {
+        let omega = 2.0 * 1000f64.sqrt() * (f64::from(j) * PI / 22.0).sin();
+        assert!(j != 1 || (omega - 9.000_780_7).abs() < 1e-6);
+        assert!(j != 10 || (omega - 62.601_804_7).abs() < 1e-6);
+        let (start, springs) = chain(j);
+        let integrator = Method::Rk4.integrator();
+        let scene = Scene { start: &start, springs: &springs, integrator, ..Scene::EMPTY };
+        let system = started(&scene, 12, 0);
+        let amplitude = |system: &System<Heap>| {
+            let offset = |i: usize| f64::from(system.particles().position[i].x) - 0.1 * i as f64;
+            (0..12).map(|i| offset(i) * (PI * i as f64 * f64::from(j) / 11.0).sin()).sum::<f64>() / 5.5
+        };
+        let first = amplitude(&system);
+        // A thousand steps to 5 s: RK4's phase lags by (h ω)⁵ / 120 a step, at the most 3e-4 in all. Rounding of 1 m
+        // by 6e-8 a step, as a random walk, is 1e-6 of 5 mm = 4e-4.
+        for quarter in [1.0, 2.5, 5.0] {
+            let mut system = started(&scene, 12, 0);
+            run(&mut system, &scene, 0.001, (quarter * 1000.0) as u32);
+            let share = amplitude(&system) / first;
+            let exact = (omega * quarter).cos();
+            assert!((share - exact).abs() < 2e-3, "mode {j} at {quarter} s: {share}, not {exact}");
+            assert_eq!(system.particles().position[0], start[0].position);
+        }
+    }
+}
+
+#[test]
+fn a_chain_s_largest_verlet_step() {
+    let (start, springs) = chain(10);
+    for (h, holds) in [(0.99 * 0.031_948_0, true), (1.01 * 0.031_948_0, false)] {
+        let integrator = Method::Verlet.integrator();
+        let scene = Scene { start: &start, springs: &springs, integrator, ..Scene::EMPTY };
+        let mut system = started(&scene, 12, 0);
+        run(&mut system, &scene, h, 60);
+        let worst = (0..system.len()).map(|i| (system.particles().position[i].x - 0.1 * i as f32).abs());
+        // A hundredth beyond the limit grows by e^0.28 a step.
+        assert_eq!(worst.fold(0.0, f32::max) < 0.04, holds, "{h}");
+    }
+}
+
+#[test]
+fn a_rope_hangs_as_low_as_its_statics_say() {
+    let start: Vec<Particle> =
+        (0..=20).map(|i| Particle { mass: 0.05, drag: 0.2, fixed: i % 20 == 0, ..at(0.05 * i as f32) }).collect();
+    let springs: Vec<Spring> =
+        (0..20).map(|i| Spring { ends: [i, i + 1], rest_length: 0.06, ks: 200.0, kd: 0.5 }).collect();
+    for (method, frames) in [(Method::Rk4, 120), (Method::Verlet, 240), (Method::Symplectic, 240)] {
+        let (forces, integrator) = ((Gravity::EARTH, Drag {}), method.integrator());
+        let scene = Scene { start: &start, springs: &springs, forces: &forces, integrator, ..Scene::EMPTY };
+        let mut system = started(&scene, 21, 0);
+        run(&mut system, &scene, 1.0 / f64::from(frames), 30 * frames);
+        let p = system.particles();
+        let lowest = p.position.iter().map(|x| f64::from(-x.y)).fold(0.0, f64::max);
+        // At rest all methods agree. What is left: rounding of forces of 200 N/m × 6e-8 m, and the last of the swing.
+        assert!((lowest - 0.525_740_722_2).abs() < 5e-6, "{method}: {lowest}");
+        let fastest = p.velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
+        assert!(fastest < 1e-4, "{method}: {fastest}");
+        assert_eq!((p.position[0], p.position[20]), (start[0].position, start[20].position));
+    }
+}
+
+#[test]
+fn a_fixed_particle_never_moves() {
+    let start = [
+        Particle { fixed: true, velocity: Vec3::ONE, mass: 0.0, position: Vec3::new(0.1, 0.2, 0.3), ..Particle::REST },
+        at(5.0),
+    ];
+    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 30.0, kd: 1.0 }];
+    for &method in Method::ALL {
+        let (forces, integrator) = ((Gravity::EARTH, Drag {}), method.integrator());
+        let scene = Scene { start: &start, springs: &springs, forces: &forces, integrator, ..Scene::EMPTY };
+        let mut system = started(&scene, 2, 0);
+        run(&mut system, &scene, 1.0 / 60.0, 300);
+        let p = system.particles();
+        assert_eq!((p.position[0], p.velocity[0]), (start[0].position, Vec3::ZERO), "{method}");
+        assert!((p.position[1] - start[1].position).length() > 0.1);
+    }
+}
+
+#[test]
+fn a_fixed_particle_outlives_whatever_pulls_at_it() {
+    // The other end is so far away that the force overflows.
+    let start = [Particle { fixed: true, ..at(0.0) }, at(1e30)];
+    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 1e20, kd: 0.0 }];
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    run(&mut system, &scene, 0.01, 3);
+    let fixed = system.particles().position.iter().filter(|&&x| x == Vec3::ZERO).count();
+    assert_eq!(fixed, 1, "it never moves, and so it cannot leave the numbers");
+}
+
+#[test]
+fn a_spring_that_loses_an_end_is_gone_and_counted_once() {
+    // 0 dies after 0.1 s, 1 and 2 together after 0.2 s, 3 and 4 live.
+    let lives = [0.1, 0.2, 0.2, 0.0, 0.0];
+    let start: Vec<Particle> = (0..5).map(|i| Particle { lifetime: lives[i], ..at(2.0 * i as f32) }).collect();
+    let spring = |a, b| Spring { ends: [a, b], rest_length: 1.0, ks: 1.0, kd: 0.0 };
+    let springs = [spring(0, 1), spring(1, 2), spring(3, 0), spring(2, 3), spring(3, 4)];
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let mut system = started(&scene, 5, 0);
+    let mut lost = vec![];
+    for i in 1..=30 {
+        let report = system.step(&scene, Time::frame(i, 60) - system.time());
+        if report.caps.springs > 0 {
+            lost.push((i, report.caps.springs));
+        }
+    }
+    // With 0 go the first and third; with 1 and 2 the second, once, and the fourth.
+    assert_eq!(lost, [(6, 2), (12, 2)]);
+    assert_eq!(system.totals().caps.springs, 4);
+    // 3 and 4 alone are left on their spring, and keep the momentum they had.
+    let state = system.state(&scene);
+    let mut total = [Vec3::ZERO; 2];
+    state.springs.add_to(&state, 0..2, &mut total);
+    let stretch = gap(f64s(state.position[0]), f64s(state.position[1])) - 1.0;
+    assert!((f64::from(total[0].x.abs()) - stretch).abs() < 1e-6 && total[0] == -total[1]);
+    assert!((state.springs.energy(&state) - 0.5 * stretch * stretch).abs() < 1e-6);
+}
+
+#[test]
+fn a_spring_whose_end_is_removed_by_hand_is_counted_too() {
+    let start = [at(0.0), at(2.0)];
+    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 1.0, kd: 0.0 }];
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    let id = system.id(0).expect("it is there");
+    assert!(system.remove(id));
+    system.step(&scene, Time::SECOND);
+    assert_eq!(system.particles().position, [start[1].position]);
+    assert_eq!(system.totals().caps.springs, 1);
+}
+
+#[test]
+fn a_spring_from_a_particle_to_itself_does_nothing() {
+    let start = [Particle { lifetime: 0.5, ..at(1.0) }];
+    let springs = [Spring { ends: [0, 0], rest_length: 1.0, ks: 1.0, kd: 1.0 }];
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let mut system = started(&scene, 1, 0);
+    system.step(&scene, Time::from_seconds(0.25));
+    assert_eq!(system.particles().position, [start[0].position]);
+    system.step(&scene, Time::SECOND);
+    assert!(system.totals().caps.springs <= 1, "there is but one spring");
+}
+
+#[test]
+fn a_spring_to_a_particle_that_found_no_room_is_counted() {
+    let start = [at(0.0), at(2.0), at(4.0)];
+    let spring = |a, b| Spring { ends: [a, b], rest_length: 1.0, ks: 1.0, kd: 0.0 };
+    let springs = [spring(0, 1), spring(1, 2), spring(7, 0)];
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    assert_eq!((system.totals().refused, system.totals().caps.springs), (1, 2));
+    run(&mut system, &scene, 0.01, 10);
+    // Only the first is there: both are pulled alike.
+    let p = system.particles();
+    assert_eq!(p.velocity[0], -p.velocity[1]);
+}
+
+#[test]
+fn a_newborn_in_a_dead_one_s_place_is_not_attached() {
+    let start = [Particle { lifetime: 0.1, ..at(0.0) }, Particle { mass: 2.0, ..at(2.0) }];
+    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 5.0, kd: 0.0 }];
+    let emitter = Emitter { start: 0.5, ..Emitter::new(point(Vec3::Y * 9.0), 10.0) };
+    let scene = Scene { start: &start, springs: &springs, emitters: &emitter, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 6);
+    assert_eq!((system.len(), system.totals().caps.springs), (1, 1));
+    let velocity = system.particles().velocity[0];
+    run(&mut system, &scene, 1.0 / 60.0, 120);
+    assert_eq!(system.len(), 2);
+    let newborn = system.id(1).expect("it is there");
+    assert_eq!((newborn.slot(), newborn.serial()), (0, 2), "it has the place of the dead one");
+    let p = system.particles();
+    assert_eq!((p.velocity[0], p.position[1], p.velocity[1]), (velocity, Vec3::Y * 9.0, Vec3::ZERO));
+}
+
+#[test]
+fn a_newborn_is_not_taken_for_a_particle_that_the_start_lacks() {
+    // The spring names particle 2, but the start has only 0 and 1; the first newborn comes third into the system.
+    let start = [at(0.0), at(2.0)];
+    let springs = [Spring { ends: [1, 2], rest_length: 1.0, ks: 5.0, kd: 0.0 }];
+    let emitter = Emitter::new(point(Vec3::Y * 9.0), 10.0);
+    let scene = Scene { start: &start, springs: &springs, emitters: &emitter, ..Scene::EMPTY };
+    let mut system = started(&scene, 10, 0);
+    assert_eq!(system.totals().caps.springs, 1, "the spring is lost from the beginning");
+    run(&mut system, &scene, 1.0 / 60.0, 60);
+    assert_eq!(system.particles().velocity[1], Vec3::ZERO, "a lost spring pulls nobody");
+}
+
+#[test]
+fn the_order_of_the_springs_is_a_matter_of_rounding() {
+    let mut random = Random::new(8);
+    let start: Vec<Particle> = (0..30).map(|_| Particle { position: random.vector(1.0), ..Particle::REST }).collect();
+    let springs: Vec<Spring> =
+        (0..60).map(|i| Spring { ends: [i % 30, (i * 11 + 1) % 30], rest_length: 0.4, ks: 9.0, kd: 0.2 }).collect();
+    let end = |springs: &[Spring]| {
+        let scene = Scene { start: &start, springs, integrator: Method::Verlet.integrator(), ..Scene::EMPTY };
+        let mut system = started(&scene, 30, 0);
+        run(&mut system, &scene, 1.0 / 60.0, 60);
+        system.particles().position.to_vec()
+    };
+    let (one, mut backwards) = (end(&springs), springs.clone());
+    backwards.reverse();
+    let other = end(&backwards);
+    // 60 steps of about 20 terms' rounding in a system that is not chaotic within a second.
+    assert!(one.iter().zip(&other).all(|(a, b)| (*a - *b).length() < 1e-4));
+    assert_ne!(one, other, "sums in another order round otherwise");
+    // The ends may be named either way, and springs that share no end may change places, to the bit.
+    let mut turned = springs.clone();
+    turned.iter_mut().for_each(|s| s.ends.reverse());
+    assert_eq!(end(&turned), one);
+    let mut swapped = springs.clone();
+    for i in 1..swapped.len() {
+        let [a, b] = [swapped[i - 1], swapped[i]];
+        if a.ends.iter().all(|end| !b.ends.contains(end)) {
+            swapped.swap(i - 1, i);
+        }
+    }
+    assert_ne!(swapped, springs);
+    assert_eq!(end(&swapped), one);
+}
