@@ -38,8 +38,8 @@
 //!
 //! # Features
 //! `alloc`: storage on the heap, declared scenes. `serde`: the domain types as data. `json`: scenes as JSON. `schema`: their
-//! JSON Schema. `std`: the host's
-//! faster square root, with the same bits. Without features: no allocation at all.
+//! JSON Schema. `std`: for hosts, their faster square root, with the same bits, and
+//! `Measures` in double precision. Without features: no allocation at all.
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -55,6 +55,7 @@ pub mod force;
 mod hash;
 pub mod integrate;
 pub mod math;
+#[cfg(feature = "std")]
 mod measure;
 mod particles;
 mod report;
@@ -71,6 +72,7 @@ pub use force::{Drag, Force, Gravity, MutualGravity, Sink, Spring};
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;
 pub use integrate::{Integrator, Method};
+#[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use report::{Caps, Died, Report};

@@ -4,7 +4,7 @@ export function run(pointmass, scenes) {
   const { World, Files, version } = pointmass;
   const hashes = {};
   for (const [name, text] of Object.entries(scenes)) {
-    const world = new World(text, undefined, 64);
+    const world = new World(text, undefined, 48);
     for (let frame = 1; frame <= 600; frame++) world.stepTo(frame / 60);
     hashes[name] = world.hash();
     world.free();

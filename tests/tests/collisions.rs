@@ -350,7 +350,6 @@ fn a_point_in_a_box_unfolds_to_a_triangle_wave() {
                 assert_eq!(hits, crossings);
             }
         }
-        println!("{} bounces at {v}", system.totals().hits);
     }
 }
 
@@ -373,12 +372,13 @@ fn a_bouncing_ball() {
                 let up = (v * v + 2.0 * G * y).sqrt();
                 let at = system.time().seconds_f64() - (up - v) / G;
                 bounces += 1;
-                // The path is followed along chords that stray by 1e-4 m at the most: so much sooner or later it
-                // hits, at √(2 g apex) or more.
+                // The path is followed along chords below it that stray by 1e-4 m at the most, so that every impact may
+                // come so much too high: with 0.64 of what was before, 2.8e-4 m in all, and 2.8e-4 m / √(2 g apex) of
+                // the time of flight.
                 apex *= 0.64;
-                println!("{method} {bounces} {:e} {:e}", at - impact, up * up / (2.0 * G) - apex);
+                let height = up * up / (2.0 * G);
                 assert!((at - impact).abs() < 2e-3, "{method}: impact {bounces} at {at}, not {impact}");
-                assert!((up * up / (2.0 * G) - apex).abs() < 1e-3 * apex.max(0.1), "{method}: apex {bounces}");
+                assert!((height - apex).abs() < 2.8e-4, "{method}: apex {bounces} at {height}, not {apex}");
                 impact += 2.0 * (2.0 * apex / G).sqrt();
             }
             // Zeno's sum: it comes to rest at 4.06 s.
@@ -462,10 +462,11 @@ fn what_a_sink_takes_has_touched_it_and_nothing_passes() {
         for _ in 0..often(5000) {
             let way = random.direction();
             let position = solid.middle + way * extent(&solid) * random.between(1.5, 3.0);
-            if (solid.depth)(f64s(position)) > -1e-3 * size {
+            if (solid.depth)(f64s(position)) > -0.1 * f64::from(extent(&solid)) {
                 continue;
             }
-            let target = solid.middle + random.vector(1.2 * extent(&solid));
+            let aside = solid.middle + random.vector(1.2 * extent(&solid));
+            let target = if random.unit() < 0.7 { inside(&solid, &mut random) } else { aside };
             let velocity = (target - position) * random.magnitude(0.2, 20.0);
             let start = [Particle { position, velocity, ..Particle::REST }];
             let scene = Scene { start: &start, ..scene };
@@ -500,7 +501,7 @@ fn what_a_sink_takes_has_touched_it_and_nothing_passes() {
             let deepest = (0..=400).map(|i| (solid.depth)(path(time * f64::from(i) / 400.0))).fold(-1e9, f64::max);
             assert!(caps > 0 || deepest < tolerance, "{}: it was {deepest} m inside", solid.name);
         }
-        assert!(taken > often(500), "{}: {taken}", solid.name);
+        assert!(taken > often(1500), "{}: {taken}", solid.name);
     }
 }
 
@@ -618,9 +619,11 @@ fn a_hit_turns_the_normal_speed_alone() {
             let expected = velocity - hit.normal * (1.0 + elasticity) * incoming;
             let p = system.particles();
             assert!((p.velocity[0] - expected).length() < 1e-5 * velocity.length(), "{}", solid.name);
-            // And on it goes for the time that is left; a normal's rounding counts as far as it goes.
+            // And on it goes for the time that is left. It is set off by a few slacks of at most 2e-6 of the size; a
+            // normal's rounding counts as far as it goes.
             let place = position + velocity * hit.time + expected * (1.0 - hit.time);
-            assert!((p.position[0] - place).length() < 4e-6 * solid.size.max(velocity.length()), "{}", solid.name);
+            let off = (p.position[0] - place).length();
+            assert!(off < 2e-5 * (solid.size + velocity.length()), "{}: {off}", solid.name);
         }
     }
 }

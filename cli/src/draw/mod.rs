@@ -11,7 +11,7 @@
 //! Colours are written as people write them in scene files and see them on a screen (sRGB, 0 to 1
 //! or 0 to 255). They are decoded on the way in, and all arithmetic happens in linear light.
 //!
-//! Nothing here draws on randomness, time or threads: the same stage and dots give the same bytes.
+//! The same stage and dots give the same bytes, whenever and on however many threads they are drawn.
 //! Anything with a coordinate that is not finite is left out of the picture.
 
 mod backdrop;

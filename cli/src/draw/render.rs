@@ -76,7 +76,7 @@ impl Renderer {
         let Self { lens, frustum, codec, .. } = self;
         let sprites = dots.iter().filter_map(|dot| Sprite::new(dot, lens, frustum, codec));
         let threads = segments.iter().filter_map(|line| Thread::new(line, lens, frustum, codec));
-        let mut movers: Vec<_> = sprites.map(Mover::Sprite).chain(threads.map(Mover::Thread)).collect();
+        let mut movers: Vec<_> = threads.map(Mover::Thread).chain(sprites.map(Mover::Sprite)).collect();
         // Stable, so that things at one depth keep their order and pictures do not flicker.
         movers.sort_by(|a, b| b.depth().total_cmp(&a.depth()));
         movers

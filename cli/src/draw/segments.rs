@@ -18,7 +18,7 @@ const LIFT: f32 = 0.004;
 /// A segment as the lens sees it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Thread {
-    /// How far away its middle is.
+    /// How far away its farther end is, so that a dot on either end lies on top.
     pub(super) depth: f32,
     ends: [Vec2; 2],
     nearness: [f32; 2],
@@ -35,7 +35,7 @@ impl Thread {
         let (a, b) = frustum.clip_line(lens.view(segment.a), lens.view(segment.b))?;
         let (color, opacity) = codec.decode(segment.color);
         Some(Self {
-            depth: 0.5 * (Lens::depth(a) + Lens::depth(b)),
+            depth: Lens::depth(a).max(Lens::depth(b)),
             ends: [a, b].map(|end| lens.project(end)),
             nearness: [a, b].map(|end| 1.0 / Lens::depth(end)),
             color,

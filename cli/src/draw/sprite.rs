@@ -12,7 +12,7 @@ use super::shade::smooth;
 use glam::{Vec2, Vec3};
 
 /// The radius in pixels of a dot without a size.
-const POINT: f32 = 0.95;
+const POINT: f32 = 1.2;
 
 /// The smallest radius that is drawn. What is smaller is drawn fainter instead, but not fainter
 /// than [`FAINTEST`]: far dots should still be seen.

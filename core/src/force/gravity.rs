@@ -26,6 +26,7 @@ impl Force for Gravity {
         }
     }
 
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         let g = self.acceleration.to_array().map(f64::from);
         let height = |x: &Vec3| x.to_array().iter().zip(g).map(|(&x, g)| f64::from(x) * g).sum::<f64>();

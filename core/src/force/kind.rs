@@ -26,6 +26,7 @@ impl Force for ForceKind {
         }
     }
 
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         match self {
             Self::Gravity(force) => force.energy(state),

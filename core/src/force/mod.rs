@@ -27,7 +27,9 @@ pub trait Force: Sync {
     /// Rows are independent of each other, so that any division of the work gives the same bits.
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]);
 
-    /// Potential energy \[J\]; zero for forces that have none. For reports: in double precision.
+    /// Potential energy \[J\]; zero for forces that have none. For reports: in double precision, and so with the
+    /// feature `std` only, since a chip without such hardware would carry its emulation about for nothing.
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         let _ = state;
         0.0
@@ -59,6 +61,7 @@ impl<T: Force + ?Sized> Force for &T {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         (**self).add_to(state, rows, total);
     }
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         (**self).energy(state)
     }
@@ -70,6 +73,7 @@ impl<T: Force> Force for [T] {
             force.add_to(state, rows.clone(), total);
         }
     }
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         self.iter().map(|force| force.energy(state)).sum()
     }
@@ -83,6 +87,7 @@ macro_rules! lists {
             fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
                 self.as_slice().add_to(state, rows, total);
             }
+            #[cfg(feature = "std")]
             fn energy(&self, state: &State<'_>) -> f64 {
                 self.as_slice().energy(state)
             }
@@ -104,6 +109,7 @@ macro_rules! tuples {
                 let ($($name,)+) = self;
                 $($name.add_to(state, rows.clone(), total);)+
             }
+            #[cfg(feature = "std")]
             fn energy(&self, state: &State<'_>) -> f64 {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;

@@ -40,6 +40,7 @@ impl Force for MutualGravity {
         }
     }
 
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         let square = f64::from(self.softening * self.softening);
         let bodies = || state.position.iter().zip(state.mass);

@@ -38,6 +38,7 @@ impl<M: Surface + Sync> Force for Sink<M> {
     }
 
     /// Zero at the surface.
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         let distance = |x: &Vec3| f64::from(length(self.shape.nearest(*x) - *x));
         state.position.iter().map(|x| self.work_from_surface(distance(x))).sum()
@@ -50,6 +51,7 @@ impl<M: Collider> Collider for Sink<M> {
     }
 }
 
+#[cfg(feature = "std")]
 impl<M> Sink<M> {
     /// ∫₀ᵈ intensity / (ca + la s + qa s²) ds \[J\], in closed form.
     fn work_from_surface(&self, d: f64) -> f64 {
@@ -75,7 +77,7 @@ impl<M> Sink<M> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "std"))]
 mod tests {
     use super::*;
     use crate::shape::{Mesh, Sphere};

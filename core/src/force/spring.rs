@@ -47,9 +47,9 @@ impl<'a> Springs<'a> {
             Some(first as usize..*last_spring.get(n as usize)? as usize)
         });
         let list = range.and_then(|range| incident.get(range)).unwrap_or_default();
-        list.iter().filter_map(move |&i| springs.get(i as usize)).filter_map(move |spring| {
+        list.iter().filter_map(move |&i| springs.get(i as usize)).map(move |spring| {
             let [a, b] = spring.ends;
-            Some((spring, if Some(a) == number { b } else { a }))
+            (spring, if Some(a) == number { b } else { a })
         })
     }
 
@@ -91,6 +91,7 @@ impl Force for Springs<'_> {
         }
     }
 
+    #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         let ends = |s: &Spring| Some((self.row(s.ends[0])?, self.row(s.ends[1])?));
         let stored = |s: &Spring| {
@@ -119,11 +120,10 @@ pub(crate) fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut 
     }
     // Each entry is now where its list begins, and moves to where it ends as the list fills.
     for (spring, end) in ends() {
-        if let Some(place) = last.get_mut(end) {
-            if let Some(slot) = incident.get_mut(*place as usize) {
-                *slot = spring;
-                *place += 1;
-            }
+        let Some(place) = last.get_mut(end) else { continue };
+        if let Some(slot) = incident.get_mut(*place as usize) {
+            *slot = spring;
+            *place += 1;
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::scn::{Command, Located, Place, Scenery, ScnError, Source, commands};
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
-use crate::integrate::Method;
+use crate::integrate::Rk4;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, Mesh, Placed, Shape};
 use crate::system::Scene;
@@ -15,11 +15,12 @@ use heapless::Vec;
 ///
 /// ```
 /// use pointmass::scene::InlineScene;
-/// use pointmass::{Inline, Method, System, Time};
+/// use pointmass::{Inline, System, Time};
 ///
 /// let text = "particle_gravity 0 -9.8 0   particle 0 2 0  1 0 0  1 0 0 0.8 0 -1   box -1 -9 -1 -9  9 0 9";
-/// let scene = InlineScene::<1, 0, 2>::read(text, Method::Verlet)?;
-/// let mut system = System::with(Inline::<1, 0, 0, 4>::new());
+/// let mut scene = InlineScene::<1, 0, 2>::new();
+/// scene.read(text)?;
+/// let mut system = System::with(Inline::<1, 0, 0, 5>::new());
 /// system.start(&scene.scene(), 1)?;
 /// system.step(&scene.scene(), Time::frame(1, 60));
 /// # Ok::<(), Box<dyn core::error::Error>>(())
@@ -31,7 +32,6 @@ pub struct InlineScene<const PARTICLES: usize, const SPRINGS: usize, const OTHER
     emitters: Vec<Emitter<Mesh<'static>>, OTHERS>,
     forces: (Vec<ForceKind, 3>, Vec<Sink<Mesh<'static>>, OTHERS>),
     colliders: Vec<Placed<Shape<Mesh<'static>>>, OTHERS>,
-    integrator: Method,
 }
 
 /// Why a scene cannot be read into inline arrays.
@@ -45,10 +45,7 @@ pub enum InlineError<'a> {
 
 impl core::fmt::Display for InlineError<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let (place, _) = match self {
-            Self::Text(error) => (error.place, ()),
-            Self::At(place, _) => (*place, ()),
-        };
+        let (Self::Text(ScnError { place, .. }) | Self::At(place, _)) = self;
         write!(f, "{}:{}: ", place.line, place.column)?;
         match self {
             Self::Text(error) => error.fmt(f),
@@ -60,30 +57,41 @@ impl core::fmt::Display for InlineError<'_> {
 impl core::error::Error for InlineError<'_> {}
 
 impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
-    /// Reads a `.scn` text. Cameras, lights and lines, which nothing moves by, are passed over.
-    ///
-    /// # Errors
-    /// If the text is wrong, a list is longer than its array, or it names a mesh or includes a file.
-    pub fn read(text: &str, integrator: Method) -> Result<Self, InlineError<'_>> {
-        let scene = Self {
+    /// A scene that says nothing: all zeros.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
             particles: Vec::new(),
             springs: Vec::new(),
             emitters: Vec::new(),
             forces: (Vec::new(), Vec::new()),
             colliders: Vec::new(),
-            integrator,
-        };
-        let mut reader = Reader { scene, colors: Vec::new(), groups: Vec::new(), gravity: None };
-        for command in commands(text) {
-            let located = command.map_err(InlineError::Text)?;
-            let place = located.place;
-            reader.command(located).map_err(|message| InlineError::At(place, message))?;
         }
-        let end = Place { line: 1, column: 1 };
-        reader.finish().map_err(|message| InlineError::At(end, message))
     }
 
-    /// The scene, for a system to step through.
+    /// Becomes what a `.scn` text says. Cameras, lights and lines, which nothing moves by, are passed over.
+    ///
+    /// # Errors
+    /// If the text is wrong, a list is longer than its array, or it names a mesh or includes a file; the scene is then
+    /// what was read so far.
+    pub fn read<'a>(&mut self, text: &'a str) -> Result<(), InlineError<'a>> {
+        self.particles.clear();
+        self.springs.clear();
+        self.emitters.clear();
+        self.forces.0.clear();
+        self.forces.1.clear();
+        self.colliders.clear();
+        let mut reader = Reader { scene: self, colors: Vec::new(), groups: Vec::new(), gravity: None };
+        let mut place = Place { line: 1, column: 1 };
+        for command in commands(text) {
+            let located = command.map_err(InlineError::Text)?;
+            place = located.place;
+            reader.command(located).map_err(|message| InlineError::At(place, message))?;
+        }
+        reader.finish().map_err(|message| InlineError::At(place, message))
+    }
+
+    /// The scene, for a system to step through by rk4.
     #[must_use]
     pub fn scene(&self) -> Scene<'_> {
         Scene {
@@ -93,13 +101,19 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             forces: &self.forces,
             colliders: &self.colliders,
             sinks: &self.forces.1,
-            integrator: self.integrator.integrator(),
+            integrator: &Rk4,
         }
     }
 }
 
-struct Reader<const P: usize, const S: usize, const N: usize> {
-    scene: InlineScene<P, S, N>,
+impl<const P: usize, const S: usize, const N: usize> Default for InlineScene<P, S, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+struct Reader<'s, const P: usize, const S: usize, const N: usize> {
+    scene: &'s mut InlineScene<P, S, N>,
     colors: Vec<Color, N>,
     /// The open groups: where they put things, and the colour they give.
     groups: Vec<(Affine, Option<u16>), N>,
@@ -108,7 +122,7 @@ struct Reader<const P: usize, const S: usize, const N: usize> {
 
 type Done = Result<(), &'static str>;
 
-impl<const P: usize, const S: usize, const N: usize> Reader<P, S, N> {
+impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
     fn command(&mut self, Located { command, .. }: Located<'_>) -> Done {
         match command {
             Command::Particle { mut particle, material } => {
@@ -189,7 +203,7 @@ impl<const P: usize, const S: usize, const N: usize> Reader<P, S, N> {
         self.colors.get(usize::from(material?)).copied()
     }
 
-    fn finish(mut self) -> Result<InlineScene<P, S, N>, &'static str> {
+    fn finish(self) -> Done {
         if !self.groups.is_empty() {
             return Err("a 'begin' is without its 'end'");
         }
@@ -200,7 +214,7 @@ impl<const P: usize, const S: usize, const N: usize> Reader<P, S, N> {
         let gravity = self.gravity.map(ForceKind::Gravity);
         let always = [ForceKind::Drag(Drag {}), ForceKind::MutualGravity(MutualGravity::NEWTON)];
         self.scene.forces.0.extend(gravity.into_iter().chain(always));
-        Ok(self.scene)
+        Ok(())
     }
 }
 

@@ -227,7 +227,7 @@ impl Writer {
     /// Name and arguments of a shape; `None`, with a warning, if `.scn` does not have it there.
     fn shape(&mut self, at: &str, shape: &Shape<String>, is_scenery: bool) -> Option<String> {
         let with = |name: &str, rows: &[Vec3], rest: &[f32]| {
-            let numbers: Vec<f32> = rows.iter().flat_map(|row| row.to_array()).chain(rest.iter().copied()).collect();
+            let numbers: Vec<f32> = rows.iter().flat_map(Vec3::to_array).chain(rest.iter().copied()).collect();
             Some(format!("{name} {}", Numbers(&numbers)))
         };
         let kind = match shape {

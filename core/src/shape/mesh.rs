@@ -115,7 +115,7 @@ impl Surface for Mesh<'_> {
 
     fn sample(&self, u: [f32; 3]) -> Spot {
         let total = self.areas.last().copied().unwrap_or(0);
-        let target = (u128::from((u[0] * 16_777_216.0) as u32) * u128::from(total) >> 24) as u64;
+        let target = ((u128::from((u[0] * 16_777_216.0) as u32) * u128::from(total)) >> 24) as u64;
         let chosen = self.areas.partition_point(|&sum| sum <= target);
         let Some(triangle) = self.triangles.get(chosen) else {
             return Spot { point: Vec3::ZERO, normal: Vec3::Y };

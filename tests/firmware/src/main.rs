@@ -6,6 +6,10 @@
 #![no_std]
 #![no_main]
 
+// Linked for its critical section.
+#[cfg(target_arch = "arm")]
+use cortex_m as _;
+
 mod expected;
 mod scenes;
 

@@ -4,10 +4,20 @@
 //! line and the npm package run.
 
 use pointmass::scene::InlineScene;
-use pointmass::{Inline, Method, Slices, Storage, System, Time};
+use pointmass::{Inline, Slices, Storage, System, Time};
 
-/// Room for the largest of the scenes, and for no more than 64 particles, so that `overflow` overflows.
-pub(crate) type Memory = Inline<64, 4, 20, 5>;
+/// Everything that the scenes need, none of it on the stack: a microbit has 16 KiB in all.
+pub(crate) struct Memory {
+    scene: InlineScene<21, 20, 5>,
+    /// Room for no more than 48 particles, so that `overflow` overflows.
+    system: Inline<48, 4, 20, 5>,
+}
+
+impl Memory {
+    pub(crate) const fn new() -> Self {
+        Self { scene: InlineScene::new(), system: Inline::new() }
+    }
+}
 
 const SCENES: [(&str, &str); 3] = [
     ("overflow", include_str!("../../../scenes/overflow.scn")),
@@ -18,13 +28,10 @@ const SCENES: [(&str, &str); 3] = [
 /// Calls `out` with the name and the hash of each scene.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     for (name, text) in SCENES {
-        let Ok(scene) = InlineScene::<21, 20, 5>::read(text, Method::Rk4) else {
-            out(name, 0);
-            continue;
-        };
-        let scene = scene.scene();
-        let mut system: System<Slices<'_>> = System::with(memory.slices());
-        if system.start(&scene, 1).is_ok() {
+        let read = memory.scene.read(text);
+        let scene = memory.scene.scene();
+        let mut system: System<Slices<'_>> = System::with(memory.system.slices());
+        if read.is_ok() && system.start(&scene, 1).is_ok() {
             for frame in 1..=600 {
                 system.step(&scene, Time::frame(frame, 60) - system.time());
             }

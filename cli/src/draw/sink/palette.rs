@@ -15,8 +15,8 @@ type Color = [u8; 3];
 #[derive(Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
-    /// How far apart neighbours are, in the mean: the strength of dithering that hides the steps.
-    pub(super) step: f32,
+    /// How far apart neighbours are, in the mean.
+    step: f32,
     /// Colours asked for before, and the answers.
     remembered: Vec<(Color, u8)>,
 }
@@ -51,6 +51,14 @@ impl Palette {
         &self.colors
     }
 
+    /// How strongly a colour has to be dithered: not at all if it is in the palette, and by as
+    /// much as colours in the palette are apart if it is between them.
+    pub(super) fn roughness(&mut self, color: Color) -> f32 {
+        let nearest = usize::from(self.nearest(color));
+        let off = self.colors.get(nearest).map_or(0, |&other| distance(color, other));
+        (4.0 * per_channel(off)).min(self.step)
+    }
+
     /// The index of the colour nearest to some colour.
     pub(super) fn nearest(&mut self, color: Color) -> u8 {
         let number = u32::from_le_bytes([color[0], color[1], color[2], 0]);
@@ -74,12 +82,17 @@ fn distance(a: Color, b: Color) -> i32 {
     3 * red * red + 5 * green * green + 2 * blue * blue
 }
 
+/// A distance as the difference it makes in each channel.
+fn per_channel(distance: i32) -> f32 {
+    (distance as f32 / 10.0).sqrt()
+}
+
 /// The mean distance from a colour to the nearest other one, in one channel.
 fn step(colors: &[Color]) -> f32 {
     let nearest = colors
         .iter()
         .filter_map(|color| colors.iter().map(|other| distance(*color, *other)).filter(|&distance| distance > 0).min());
-    let sum: f32 = nearest.map(|distance| (distance as f32 / 10.0).sqrt()).sum();
+    let sum: f32 = nearest.map(per_channel).sum();
     sum / colors.len().max(1) as f32
 }
 

@@ -46,7 +46,8 @@ impl Screen {
         for (x, y) in window.pixels() {
             if self.is_changed(picture, x, y) {
                 let color = picture.get_pixel(x, y);
-                let index = palette.nearest(dither(color, x, y, palette.step));
+                let roughness = palette.roughness(color.0);
+                let index = palette.nearest(dither(color, x, y, roughness));
                 self.drawn.put_pixel(x, y, Rgb(palette.colors()[usize::from(index)]));
                 if let Some(meant) = &mut self.meant {
                     meant.put_pixel(x, y, *color);
@@ -112,8 +113,8 @@ fn differ(a: &Rgb<u8>, b: &Rgb<u8>) -> bool {
 /// Makes a colour a little lighter or darker in a fixed pattern, so that a mixture of the two
 /// nearest colours stands for those between them. Fixed, because a pattern that changed from frame
 /// to frame would flicker.
-fn dither(color: &Rgb<u8>, x: u32, y: u32, step: f32) -> [u8; 3] {
-    let shift = step * (threshold(x, y) - 0.5);
+fn dither(color: &Rgb<u8>, x: u32, y: u32, roughness: f32) -> [u8; 3] {
+    let shift = roughness * (threshold(x, y) - 0.5);
     color.0.map(|channel| (f32::from(channel) + shift + 0.5) as u8)
 }
 

@@ -1,0 +1,329 @@
+//! Everything that a user can bring along: forces, integrators, emitters, colliders, memory.
+
+use core::ops::Range;
+use pointmass::emit::{Births, Tally};
+use pointmass::force::State;
+use pointmass::integrate::{Dynamics, Motion};
+use pointmass::shape::{Collider, Hit, Plane, Segment};
+use pointmass::{
+    Columns, Drag, Emit, Emitter, Fate, Force, Gravity, Heap, Integrator, Measures, Method, Particle, Scene, Size,
+    Slices, Storage, System, Time, Vec3,
+};
+use pointmass_tests::{f64s, gap, point, run, started};
+
+/// A magnetic field along z: it turns velocities, here by one radian a second.
+struct Magnet;
+
+impl Force for Magnet {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        for (total, row) in total.iter_mut().zip(rows) {
+            *total += state.velocity[row].cross(Vec3::Z) * state.mass[row];
+        }
+    }
+}
+
+/// A harmonic well about the origin, k = 4 N/m, that is switched on at half a second.
+struct LateWell;
+
+impl Force for LateWell {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        if state.time >= Time::from_seconds(0.5) {
+            total.iter_mut().zip(&state.position[rows]).for_each(|(total, &x)| *total -= x * 4.0);
+        }
+    }
+    fn energy(&self, state: &State<'_>) -> f64 {
+        state.position.iter().map(|&x| 2.0 * gap(f64s(x), [0.0; 3]).powi(2)).sum()
+    }
+}
+
+#[test]
+fn a_force() {
+    let start = [Particle { velocity: Vec3::X, mass: 3.0, ..Particle::REST }];
+    let integrator = Method::Rk4.integrator();
+    let scene = Scene { start: &start, forces: &Magnet, integrator, ..Scene::EMPTY };
+    let mut system = started(&scene, 1, 0);
+    run(&mut system, &scene, 0.01, 200);
+    // Clockwise on a circle of radius 1: (sin t, cos t − 1).
+    let place = [2f64.sin(), 2f64.cos() - 1.0, 0.0];
+    assert!(gap(f64s(system.particles().position[0]), place) < 1e-5);
+    // In a list with the engine's own, and reported.
+    let start = [Particle { position: Vec3::X, drag: 0.0, ..Particle::REST }];
+    let forces: [&dyn Force; 3] = [&Drag {}, &LateWell, &Magnet];
+    let scene = Scene { start: &start, forces: &forces, integrator, ..Scene::EMPTY };
+    let mut system = started(&scene, 1, 0);
+    assert_eq!(Measures::of(&system, &scene).energy.potential, 2.0);
+    run(&mut system, &scene, 0.01, 49);
+    assert_eq!(system.particles().position[0], Vec3::X);
+    run_from(&mut system, &scene, 49, 0.01, 100);
+    assert!((Measures::of(&system, &scene).energy.total() - 2.0).abs() < 1e-4);
+    assert!(system.particles().position[0].length() < 0.99);
+}
+
+/// Steps `from` + 1 to `from` + `n` of `h` each.
+fn run_from(system: &mut System<Heap>, scene: &Scene<'_>, from: u32, h: f64, n: u32) {
+    for i in from + 1..=from + n {
+        system.step(scene, Time::from_seconds_f64(h * f64::from(i)) - system.time());
+    }
+}
+
+/// Drift, kick, drift: what leapfrog is when places come first.
+struct Leapfrog;
+
+impl Integrator for Leapfrog {
+    fn columns(&self) -> usize {
+        4
+    }
+    fn needs_start(&self) -> bool {
+        true
+    }
+    fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
+        let Motion { position: x, velocity: v, start: [x0, v0], work } = motion;
+        assert!(x0 == x && v0 == v, "the state at the beginning");
+        let [_, _, _, a] = work.take();
+        assert!(a.len() == x.len(), "it asked for four columns");
+        let h = step.seconds();
+        x.iter_mut().zip(v.iter()).for_each(|(x, &v)| *x += v * (0.5 * h));
+        world.accelerations(time + step.half(), x, v, a);
+        v.iter_mut().zip(a.iter()).for_each(|(v, &a)| *v += a * h);
+        x.iter_mut().zip(v.iter()).for_each(|(x, &v)| *x += v * (0.5 * h));
+    }
+}
+
+#[test]
+fn an_integrator() {
+    let at = |x: f32, y: f32| Particle { position: Vec3::new(x, y, 0.0), ..Particle::REST };
+    let (start, well) = ([at(1.0, 0.0), at(0.0, 2.0), at(0.5, 0.5)], pointmass_tests::Law(|_, x: f32, _| -x));
+    let floor = Plane { point: Vec3::Y * -100.0, normal: Vec3::Y };
+    for scene in [
+        Scene { start: &start, forces: &well, integrator: &Leapfrog, ..Scene::EMPTY },
+        Scene { start: &start, forces: &well, integrator: &&Leapfrog, colliders: &floor, ..Scene::EMPTY },
+    ] {
+        assert_eq!(scene.columns(), 6);
+        let mut system = started(&scene, 3, 0);
+        run(&mut system, &scene, 0.01, 100);
+        // Order 2: (h ω)² / 24 of the phase of 1 rad.
+        for (x, p) in system.particles().position.iter().zip(start) {
+            let expected = f64::from(p.position.x) * 1f64.cos();
+            assert!((f64::from(x.x) - expected).abs() < 2e-5 && x.y == p.position.y);
+        }
+    }
+}
+
+/// Births on a helix, one step on with each; half of its numbers belong to a second, slower one.
+struct Helix;
+
+impl Emit for Helix {
+    fn count(&self) -> usize {
+        2
+    }
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        for rate in [30.0, 7.0] {
+            let number = births.claim();
+            let mut due = births.due(number, rate, from, to);
+            while !births.is_full() {
+                let Some(at) = due.next() else { break };
+                let given = births.give(number, at, |random| {
+                    let angle = at.seconds();
+                    let [mass, _] = random.units(0);
+                    let position = Vec3::new(angle.cos(), angle, angle.sin());
+                    Particle { position, mass: 1.0 + mass, lifetime: 1.0, ..Particle::REST }
+                });
+                assert!(given.is_ok(), "there is room");
+            }
+            births.refuse(number, due.left());
+        }
+    }
+}
+
+#[test]
+fn an_emitter() {
+    let jet = Emitter::new(point(Vec3::ZERO), 11.0);
+    let emitters = (&jet, Helix, &Helix as &dyn Emit);
+    assert_eq!(emitters.count(), 5);
+    let scene = Scene { emitters: &emitters, ..Scene::EMPTY };
+    for fps in [10, 60, 77] {
+        let mut system = started(&scene, 500, 3);
+        run(&mut system, &scene, 1.0 / f64::from(fps), 3 * fps);
+        assert_eq!(system.totals().born, 3 * (11 + 2 * 37));
+        assert_eq!(system.totals().died.lifetime, 2 * 2 * 37);
+        let p = system.particles();
+        for (x, born) in p.position.iter().zip(p.born) {
+            let angle = born.seconds();
+            assert!(*x == Vec3::ZERO || *x == Vec3::new(angle.cos(), angle, angle.sin()));
+        }
+        // The two helices have numbers of their own, and so other masses.
+        let mut masses: Vec<u32> = p.mass.iter().filter(|&&m| m != 1.0).map(|m| m.to_bits()).collect();
+        masses.sort_unstable();
+        masses.dedup();
+        assert_eq!(masses.len(), 74);
+    }
+    let mut small = started(&scene, 4, 3);
+    small.step(&scene, Time::SECOND);
+    assert_eq!((small.totals().born, small.totals().refused), (4, 11 + 74 - 4));
+}
+
+/// The inside of a paraboloid y = x² + z² of revolution, in double precision: a bowl.
+struct Bowl;
+
+impl Bowl {
+    fn height(p: Vec3) -> f64 {
+        let [x, y, z] = f64s(p);
+        y - x * x - z * z
+    }
+}
+
+impl Collider for Bowl {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        if !(Self::height(segment.from) > 0.0 && Self::height(segment.to) <= 0.0) {
+            return None;
+        }
+        let (mut low, mut high) = (0.0f32, 1.0f32);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if Self::height(segment.at(middle)) > 0.0 { low = middle } else { high = middle }
+        }
+        let p = segment.at(low);
+        let normal = Vec3::new(-2.0 * p.x, 1.0, -2.0 * p.z).normalize();
+        Some(Hit { time: low, normal, slack: 1e-6 })
+    }
+}
+
+#[test]
+fn a_collider() {
+    let drop = |x: f32| Particle { position: Vec3::new(x, 2.0, 0.3), elasticity: 1.0, ..Particle::REST };
+    let start = [-0.8, -0.1, 0.0, 0.5, 1.1].map(drop);
+    let lid = Plane { point: Vec3::Y * 1.9, normal: Vec3::Y };
+    for colliders in [&Bowl as &dyn Collider, &(&Bowl, Plane { point: Vec3::Y * 9.0, ..lid }), &[Bowl]] {
+        assert!(!colliders.is_empty());
+        let integrator = Method::Verlet.integrator();
+        let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders, integrator, ..Scene::EMPTY };
+        let mut system = started(&scene, 5, 0);
+        let energy = Measures::of(&system, &scene).energy.total();
+        run(&mut system, &scene, 1.0 / 120.0, 1200);
+        assert!(system.totals().hits > 20);
+        assert!(system.particles().position.iter().all(|&x| Bowl::height(x) > 0.0));
+        // Each hit errs by the chord's 1e-4 m of 2 m at the most.
+        let share = Measures::of(&system, &scene).energy.total() / energy;
+        assert!((share - 1.0).abs() < 0.01, "{share}");
+    }
+    // As a sink it takes them all.
+    let scene = Scene { start: &start, forces: &Gravity::EARTH, sinks: &Bowl, ..Scene::EMPTY };
+    let mut system = started(&scene, 5, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 60);
+    assert_eq!((system.len(), system.totals().died.sink), (0, 5));
+}
+
+/// Memory of a user's own: plain vectors, each longer than need be by another number.
+#[derive(Clone)]
+struct Arena {
+    vectors: [Vec<Vec3>; 3],
+    numbers: [Vec<f32>; 4],
+    times: [Vec<Time>; 2],
+    words: [Vec<u32>; 5],
+    colors: Vec<[u8; 4]>,
+    materials: Vec<u16>,
+    fates: Vec<Fate>,
+    tallies: Vec<Tally>,
+}
+
+impl Arena {
+    fn new(size: Size) -> Self {
+        let n = size.particles;
+        let work = n * size.columns;
+        Self {
+            vectors: [vec![Vec3::ZERO; n], vec![Vec3::ZERO; n + 1], vec![Vec3::ZERO; work]],
+            numbers: core::array::from_fn(|i| vec![0.0; n + i]),
+            times: core::array::from_fn(|i| vec![Time::ZERO; n + 2 * i]),
+            words: core::array::from_fn(|i| vec![0; if i == 4 { 2 * size.springs } else { n + 3 * i }]),
+            colors: vec![[0; 4]; n + 5],
+            materials: vec![0; n],
+            fates: vec![Fate::Lives; n + 7],
+            tallies: vec![Tally::default(); size.emitters],
+        }
+    }
+}
+
+impl Storage for Arena {
+    fn slices(&mut self) -> Slices<'_> {
+        let [position, velocity, work] = &mut self.vectors;
+        let [mass, inverse_mass, drag, elasticity] = &mut self.numbers;
+        let [born, dies] = &mut self.times;
+        let [serial, slot, row_of, last_spring, incident] = &mut self.words;
+        Slices {
+            position,
+            velocity,
+            mass,
+            inverse_mass,
+            drag,
+            elasticity,
+            born,
+            dies,
+            color: &mut self.colors,
+            material: &mut self.materials,
+            fate: &mut self.fates,
+            serial,
+            slot,
+            row_of,
+            last_spring,
+            tallies: &mut self.tallies,
+            incident,
+            work,
+        }
+    }
+    fn columns(&self) -> Columns<'_> {
+        let [position, velocity, work] = &self.vectors;
+        let [mass, inverse_mass, drag, elasticity] = &self.numbers;
+        let [born, dies] = &self.times;
+        let [serial, slot, row_of, last_spring, incident] = &self.words;
+        Columns {
+            position,
+            velocity,
+            mass,
+            inverse_mass,
+            drag,
+            elasticity,
+            born,
+            dies,
+            color: &self.colors,
+            material: &self.materials,
+            fate: &self.fates,
+            serial,
+            slot,
+            row_of,
+            last_spring,
+            tallies: &self.tallies,
+            incident,
+            work,
+        }
+    }
+}
+
+#[test]
+fn memory() {
+    let start: Vec<Particle> =
+        (0..6).map(|i| Particle { position: Vec3::X * i as f32, lifetime: 0.1 * i as f32, ..Particle::REST }).collect();
+    let springs: Vec<_> =
+        (0..5).map(|i| pointmass::Spring { ends: [i, i + 1], rest_length: 0.8, ks: 20.0, kd: 0.1 }).collect();
+    let emitters = (Helix, Emitter::new(point(Vec3::Y), 20.0));
+    let (forces, floor) = ((Gravity::EARTH, Magnet), Plane { point: Vec3::NEG_Y, normal: Vec3::Y });
+    let scene = Scene {
+        start: &start,
+        springs: &springs,
+        emitters: &emitters,
+        forces: &forces,
+        colliders: &floor,
+        sinks: &(),
+        integrator: &Leapfrog,
+    };
+    let size = Size { particles: 40, ..scene.size() };
+    let mut arena = System::with(Arena::new(size));
+    let mut heap = started(&scene, 40, 6);
+    assert_eq!(arena.capacity(), 40);
+    arena.start(&scene, 6).expect("it fits");
+    for i in 1..=90 {
+        let dt = Time::frame(i, 60) - heap.time();
+        assert_eq!(arena.step(&scene, dt), heap.step(&scene, dt));
+        assert_eq!(arena.hash(), heap.hash());
+    }
+    assert!(heap.totals().refused > 0 && heap.totals().hits > 0 && heap.totals().died.lifetime > 0);
+}
