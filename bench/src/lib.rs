@@ -1,1 +1,75 @@
-//! pointmass: bench.
+//! What the benches measure with: systems of a given size, and a hand-written loop to hold them against.
+
+use pointmass::rng::Stream;
+use pointmass::shape::{Disc, Mesh, Shape};
+use pointmass::{Emitter, Heap, Particle, Scene, Spread, System, Time, Varied, Vec3};
+
+/// `n` particles of 1 kg with drag 0.1 kg/s, spread over a cube of 2 m with speeds up to 1 m/s.
+#[must_use]
+pub fn cloud(n: u32) -> Vec<Particle> {
+    let at = |i: u32, place: u32| {
+        let [x, y] = Stream::new(1, 0, i).units(place);
+        let [z, _] = Stream::new(1, 0, i).units(place + 1);
+        Vec3::new(x, y, z) * 2.0 - 1.0
+    };
+    let particle = |i| Particle { position: at(i, 0), velocity: at(i, 2), drag: 0.1, ..Particle::REST };
+    (0..n).map(particle).collect()
+}
+
+/// A system started with a scene, with room for `capacity` particles.
+///
+/// # Panics
+/// If the scene does not fit, which the memory is made for.
+#[must_use]
+pub fn started(scene: &Scene<'_>, capacity: usize) -> System<Heap> {
+    let size = pointmass::Size { particles: capacity, ..scene.size() };
+    let mut system = System::with(Heap::new(size));
+    system.start(scene, 1).expect("the memory was made for the scene");
+    system
+}
+
+/// A jet that holds about `n` drops in the air, each for 2 s.
+#[must_use]
+pub fn jet(n: f32) -> Emitter<Mesh<'static>> {
+    let nozzle = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
+    Emitter {
+        speed: Varied { mean: 6.0, variance: 1.0 },
+        spread: Spread::Uniform(0.3),
+        drag: Varied::exactly(0.1),
+        lifetime: Varied::exactly(2.0),
+        ..Emitter::new(nozzle, n / 2.0)
+    }
+}
+
+/// A sixtieth of a second.
+pub const FRAME: Time = Time::frame(1, 60);
+
+/// The least a particle system can do: gravity, drag and symplectic Euler in one loop over separate columns.
+#[derive(Clone, Debug)]
+pub struct Bare {
+    /// x, y and z, then vx, vy and vz.
+    pub columns: [Vec<f32>; 6],
+}
+
+impl Bare {
+    /// The same particles.
+    #[must_use]
+    pub fn new(particles: &[Particle]) -> Self {
+        let column = |i: usize| {
+            let of = |p: &Particle| if i < 3 { p.position[i] } else { p.velocity[i - 3] };
+            particles.iter().map(of).collect()
+        };
+        Self { columns: core::array::from_fn(column) }
+    }
+
+    /// One step.
+    pub fn step(&mut self, dt: f32) {
+        let (position, velocity) = self.columns.split_at_mut(3);
+        for ((x, v), g) in position.iter_mut().zip(velocity).zip([0.0, -9.80665, 0.0]) {
+            for (x, v) in x.iter_mut().zip(v) {
+                *v += (g - 0.1 * *v) * dt;
+                *x += *v * dt;
+            }
+        }
+    }
+}

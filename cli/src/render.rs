@@ -20,7 +20,7 @@ pub fn render(args: &args::Render) -> Outcome {
     let substeps = ((frame_time / world.dt - 1e-6).ceil() as u64).max(1);
 
     let renderer = Renderer::new(&stage(&world.file, &world.model, args.show_sources), args.size.0, args.size.1);
-    let mut cast = Cast::default();
+    let mut cast = Cast::new(&world.file, &world.model);
     let mut progress = Progress::new(frames * substeps);
     for frame in 0..=frames {
         if frame > 0 {

@@ -36,13 +36,25 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool) -> Stag
     stage
 }
 
+/// The part of the picture's width that a particle without a size of its own takes up in the middle of the scene.
+const DOT: f32 = 0.009;
+
 /// What moves, remembering where it was in the picture before.
-#[derive(Default)]
 pub(crate) struct Cast {
     before: HashMap<u32, Vec3>,
+    /// The diameter of particles whose material has none \[m\].
+    size: f32,
 }
 
 impl Cast {
+    /// Nobody has been seen yet.
+    pub(crate) fn new(file: &SceneFile, model: &Model) -> Self {
+        let bounds = bounds(file, model);
+        let camera = camera(file.camera.as_ref(), bounds);
+        let width = 2.0 * (bounds.center() - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
+        Self { before: HashMap::new(), size: DOT * width }
+    }
+
     /// The particles as they are now.
     pub(crate) fn dots(&mut self, world: &World) -> Vec<Dot> {
         let particles = world.system.particles();
@@ -53,6 +65,7 @@ impl Cast {
             let number = usize::from(particles.material[row]).checked_sub(1);
             let material = number.and_then(|number| world.file.materials.get(number));
             let (size, glow) = material.map_or((0.0, 0.0), |m| (m.size, m.glow));
+            let size = if size > 0.0 { size } else { self.size };
             let previous = self.before.get(&serial).copied().unwrap_or(position);
             dots.push(Dot { position, previous, color: particles.color[row], size, glow });
             now.insert(serial, position);

@@ -68,10 +68,10 @@ mod system;
 mod time;
 
 pub use emit::{Emit, Emitter, Spread, Varied};
-pub use force::{Drag, Force, Gravity, MutualGravity, Sink, Spring};
+pub use force::{Drag, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;
-pub use integrate::{Integrator, Method};
+pub use integrate::{Euler, Integrator, Method, Midpoint, Rk4, Symplectic, Verlet};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
 pub use particles::{Color, Full, Id, Particle, WHITE};

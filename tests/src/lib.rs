@@ -1,5 +1,9 @@
 //! What the suites share: random numbers that owe nothing to the engine's, statistics, and runs.
 
+pub mod busy;
+pub mod emitting;
+pub mod solids;
+
 use core::ops::Range;
 use pointmass::force::State;
 use pointmass::shape::{Line, Mesh, Shape};

@@ -1,0 +1,235 @@
+//! Names of particles, those that are no longer numbers, and the hash of the state.
+
+use core::cell::Cell;
+use pointmass::emit::Tally;
+use pointmass::shape::Plane;
+use pointmass::{
+    Columns, Drag, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices, Spring, Storage,
+    System, Time, Vec3,
+};
+use pointmass_tests::busy::{SIZE, busy};
+use pointmass_tests::{Random, often, started};
+use std::collections::HashMap;
+use std::rc::Rc;
+
+#[test]
+fn what_is_not_a_number_is_removed_and_harms_nobody() {
+    let (nan, inf) = (f32::NAN, f32::INFINITY);
+    let sound = |x: f32| Particle { position: Vec3::new(x, 1.0, 0.0), velocity: Vec3::Z, ..Particle::REST };
+    let bad = [
+        Particle { position: Vec3::new(0.0, nan, 0.0), ..Particle::REST },
+        Particle { position: Vec3::new(inf, 0.0, 0.0), ..Particle::REST },
+        Particle { velocity: Vec3::new(0.0, 0.0, -inf), ..Particle::REST },
+        Particle { velocity: Vec3::splat(nan), ..Particle::REST },
+        Particle { mass: nan, ..Particle::REST },
+        Particle { mass: 0.0, ..Particle::REST },
+        Particle { drag: nan, velocity: Vec3::X, ..Particle::REST },
+        Particle { mass: -0.0, fixed: true, position: Vec3::NAN, ..Particle::REST },
+        Particle { position: Vec3::splat(3e38), velocity: Vec3::splat(3e38), ..Particle::REST },
+    ];
+    let forces = (Gravity::EARTH, Drag {});
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for &method in Method::ALL {
+        let integrator = method.integrator();
+        let scene = Scene { forces: &forces, colliders: &ground, sinks: &ground, integrator, ..Scene::EMPTY };
+        let run = |start: &[Particle]| {
+            let mut system = started(&Scene { start, ..scene }, 30, 0);
+            for i in 1..=20 {
+                system.step(&scene, Time::frame(i, 60) - system.time());
+            }
+            let p = system.particles();
+            let mut places: Vec<_> = p.position.iter().map(|x| x.to_array().map(f32::to_bits)).collect();
+            places.sort_unstable();
+            (places, *system.totals())
+        };
+        let alone: Vec<Particle> = (0..8).map(|i| sound(i as f32)).collect();
+        let (expected, _) = run(&alone);
+        assert_eq!(expected.len(), 8);
+        for bad in bad {
+            for at in [0, 4, 8] {
+                let mut start = alone.clone();
+                start.insert(at, bad);
+                let (places, totals) = run(&start);
+                assert_eq!(places, expected, "{method}: beside {bad:?}");
+                assert_eq!(totals.died.nonfinite, 1, "{method}: {bad:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_not_a_number_is_not_passed_on_by_mutual_gravity() {
+    not_passed_on(&[], &MutualGravity { constant: 1.0, softening: 0.1 });
+}
+
+#[test]
+fn what_is_not_a_number_is_not_passed_on_by_springs() {
+    not_passed_on(&[Spring { ends: [0, 1], rest_length: 1.0, ks: 1.0, kd: 1.0 }], &());
+}
+
+/// Of two sound particles and one that is not, the sound survive a step.
+fn not_passed_on(springs: &[Spring], forces: &dyn Force) {
+    for x in [f32::NAN, f32::INFINITY] {
+        let at = |x: f32| Particle { position: Vec3::X * x, ..Particle::REST };
+        let start = [at(x), at(1.0), at(2.0)];
+        for &method in Method::ALL {
+            let integrator = method.integrator();
+            let scene = Scene { start: &start, springs, forces, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, 3, 0);
+            let report = system.step(&scene, Time::from_seconds(0.01));
+            assert_eq!((report.died.nonfinite, system.len()), (1, 2), "{method}, beside {x}");
+        }
+    }
+}
+
+#[test]
+fn ids_stay_with_their_particles() {
+    // Against a plain map from serial numbers to masses, over random births, deaths and removals.
+    let mut random = Random::new(31);
+    let mut system = System::with(Heap::new(Size { particles: 20, columns: 1, ..Size::default() }));
+    let mut known: HashMap<u32, (Id, f32)> = HashMap::new();
+    let mut dead: Vec<Id> = vec![];
+    for round in 0..often(20_000) {
+        match random.word() % 4 {
+            0 | 1 => {
+                let mass = 1.0 + round as f32;
+                let lifetime = random.between(-0.5, 0.5);
+                match system.spawn(&Particle { mass, lifetime, ..Particle::REST }) {
+                    Ok(id) => assert!(known.insert(id.serial(), (id, mass)).is_none(), "a name is given once"),
+                    Err(full) => {
+                        assert_eq!(system.len(), 20);
+                        assert!(full.to_string().contains("full"));
+                    }
+                }
+            }
+            2 => {
+                let some =
+                    known.values().map(|k| k.0).min_by_key(|id| (id.serial().wrapping_mul(0x9e37_79b9), id.slot()));
+                if let Some(id) = some {
+                    assert!(system.remove(id) && !system.remove(id));
+                    known.remove(&id.serial());
+                    dead.push(id);
+                }
+            }
+            _ => {
+                system.step(&Scene::EMPTY, Time::from_seconds(0.02));
+                let gone: Vec<u32> =
+                    known.iter().filter(|(_, (id, _))| system.row(*id).is_none()).map(|(&serial, _)| serial).collect();
+                dead.extend(gone.iter().filter_map(|serial| known.remove(serial)).map(|(id, _)| id));
+            }
+        }
+        assert_eq!(system.len(), known.len());
+        for (id, mass) in known.values() {
+            let row = system.row(*id).expect("it lives");
+            assert_eq!((system.particles().mass[row], system.id(row)), (*mass, Some(*id)));
+            assert!((id.slot() as usize) < 20);
+        }
+        assert!(dead.iter().rev().take(50).all(|&id| system.row(id).is_none()));
+        let totals = system.totals();
+        assert_eq!(totals.born, system.len() as u64 + totals.died.total());
+        assert_eq!(totals.died.total(), dead.len() as u64);
+    }
+    assert!(system.totals().died.lifetime > 0 && system.totals().died.chance > 0);
+    assert_eq!(system.id(system.len()), None);
+}
+
+/// A change of memory.
+type Tamper = fn(&mut Slices<'_>);
+
+/// Memory that lets someone outside meddle with it, once, before it is next lent for changing.
+struct Tampered {
+    memory: Heap,
+    with: Rc<Cell<Option<Tamper>>>,
+}
+
+impl Storage for Tampered {
+    fn slices(&mut self) -> Slices<'_> {
+        let mut slices = self.memory.slices();
+        if let Some(tamper) = self.with.take() {
+            tamper(&mut slices);
+        }
+        slices
+    }
+    fn columns(&self) -> Columns<'_> {
+        self.memory.columns()
+    }
+}
+
+#[test]
+fn the_hash_sees_every_column() {
+    let hash = |tamper: Option<Tamper>| {
+        busy(|scene| {
+            let with = Rc::new(Cell::new(None));
+            let mut system = System::with(Tampered { memory: Heap::new(SIZE), with: Rc::clone(&with) });
+            system.start(scene, 42).expect("it fits");
+            for i in 1..=30 {
+                system.step(scene, Time::frame(i, 60) - system.time());
+            }
+            assert!(system.len() > 10);
+            with.set(tamper);
+            // A step of nothing, which lends the memory and changes nothing.
+            system.step(&Scene::EMPTY, Time::ZERO);
+            (system.hash(), with.take().is_none())
+        })
+    };
+    let (plain, _) = hash(None);
+    let tampers: [(&str, Tamper); 14] = [
+        ("x", |m| m.position[7].x = -m.position[7].x),
+        ("y", |m| m.position[7].y += 1e-3),
+        ("z", |m| m.position[0].z = f32::from_bits(m.position[0].z.to_bits() ^ 1)),
+        ("velocity", |m| m.velocity[9].z += 1e-3),
+        ("mass", |m| m.mass[3] *= 1.5),
+        ("inverse mass", |m| m.inverse_mass[3] *= 1.5),
+        ("drag", |m| m.drag[3] += 1.5),
+        ("elasticity", |m| m.elasticity[3] += 0.1),
+        ("born", |m| m.born[9] = m.born[9] + Time::from_ticks(1)),
+        ("dies", |m| m.dies[9] = m.dies[9] + Time::SECOND - Time::from_ticks(1)),
+        ("color", |m| m.color[9][3] ^= 1),
+        ("material", |m| m.material[9] ^= 1),
+        ("serial", |m| m.serial[9] += 1000),
+        ("tallies", |m| m.tallies[1] = Tally::default()),
+    ];
+    for (column, tamper) in tampers {
+        let (hash, done) = hash(Some(tamper));
+        assert!(done && hash != plain, "{column}");
+    }
+    // What is no part of the state is not seen.
+    assert_eq!(hash(Some(|m| m.work.fill(Vec3::NAN))).0, plain);
+    assert_eq!(hash(Some(|m| m.position[29] = if m.position.len() == 30 { m.position[29] } else { Vec3::X })).0, plain);
+}
+
+#[test]
+fn the_hash_sees_time_seed_and_counters() {
+    let mut system = started(&Scene::EMPTY, 1, 0);
+    let mut seen = vec![system.hash()];
+    let mut news = |system: &System<Heap>| {
+        assert!(!seen.contains(&system.hash()));
+        seen.push(system.hash());
+    };
+    system.step(&Scene::EMPTY, Time::from_ticks(1));
+    news(&system);
+    let id = system.spawn(&Particle::REST).expect("there is room");
+    news(&system);
+    assert!(system.spawn(&Particle::REST).is_err());
+    news(&system);
+    system.remove(id);
+    news(&system);
+    system.start(&Scene::EMPTY, 1).expect("it fits");
+    news(&system);
+}
+
+#[test]
+fn the_hash_goes_by_names_not_by_rows() {
+    // The same particles by another history of deaths lie in other rows.
+    let particle = |i: u32| Particle { position: Vec3::X * i as f32, ..Particle::REST };
+    let make = |first: u32, second: u32| {
+        let mut system = System::with(Heap::new(Size { particles: 6, columns: 1, ..Size::default() }));
+        let ids: Vec<Id> = (0..6).map(|i| system.spawn(&particle(i)).expect("there is room")).collect();
+        system.remove(ids[first as usize]);
+        system.remove(ids[second as usize]);
+        system
+    };
+    let (a, b) = (make(0, 1), make(1, 0));
+    assert_ne!(a.particles().position, b.particles().position);
+    assert_eq!(a.hash(), b.hash());
+}
