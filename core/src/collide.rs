@@ -1,9 +1,9 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
-use crate::math::{clamp, length, max, sqrt};
+use crate::math::{clamp, high, length, low, max, sqrt};
 use crate::report::Report;
 use crate::retire::Fate;
-use crate::shape::{Hit, Segment};
+use crate::shape::{Aabb, Hit, Segment};
 use crate::system::{Scene, View};
 use crate::time::Time;
 use glam::Vec3;
@@ -32,7 +32,8 @@ pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, dt: Time, end: Tim
         // A newborn has come only part of the way.
         let duration = (end - m.born[row]).min(dt).seconds();
         let path = Path { x0: start_x, v0: start_v, x1: m.position[row], v1: m.velocity[row], duration };
-        if !path.is_finite() {
+        let hull = path.hull();
+        if !(scene.colliders.may_touch(&hull) || scene.sinks.may_touch(&hull)) || !path.is_finite() {
             continue;
         }
         let mut flight = Flight { scene, elasticity: m.elasticity[row], dt: dt.seconds(), report: &mut *report };
@@ -162,6 +163,13 @@ impl Flight<'_> {
 impl Path {
     fn is_finite(&self) -> bool {
         [self.x0, self.v0, self.x1, self.v1].iter().all(|v| v.is_finite())
+    }
+
+    /// A box that holds it: that of its Bézier control points.
+    fn hull(&self) -> Aabb {
+        let third = self.duration * (1.0 / 3.0);
+        let (a, b) = (self.x0 + self.v0 * third, self.x1 - self.v1 * third);
+        Aabb { min: low(low(self.x0, self.x1), low(a, b)), max: high(high(self.x0, self.x1), high(a, b)) }
     }
 
     /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.

@@ -61,6 +61,7 @@ mod particles;
 mod report;
 mod retire;
 pub mod rng;
+mod rows;
 pub mod scene;
 pub mod shape;
 mod storage;

@@ -56,6 +56,20 @@ pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     min(max(x, low), high)
 }
 
+/// The lesser of each coordinate, as `min`.
+#[inline(always)]
+#[must_use]
+pub fn low(a: Vec3, b: Vec3) -> Vec3 {
+    Vec3::new(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z))
+}
+
+/// The greater of each coordinate, as `max`.
+#[inline(always)]
+#[must_use]
+pub fn high(a: Vec3, b: Vec3) -> Vec3 {
+    Vec3::new(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z))
+}
+
 /// The largest coordinate's magnitude.
 #[inline]
 #[must_use]

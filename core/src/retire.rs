@@ -2,6 +2,7 @@
 
 use crate::force::Spring;
 use crate::report::Report;
+use crate::storage::Slices;
 use crate::system::View;
 use crate::time::Time;
 
@@ -18,18 +19,29 @@ pub enum Fate {
 /// Removes what the step has ended: rows that are not finite, that touched a sink, or whose time has come by `now`.
 pub(crate) fn retire(view: &mut View<'_>, springs: &[Spring], now: Time, report: &mut Report) {
     // From the back, so that the row that fills a gap has been looked at already.
-    for row in (0..view.len()).rev() {
+    let mut end = view.len();
+    while let Some(row) = last_doomed(&view.memory, end, now) {
         let m = &view.memory;
         let cause = if !(m.position[row].is_finite() && m.velocity[row].is_finite()) {
             &mut report.died.nonfinite
         } else if m.fate[row] == Fate::Sink {
             &mut report.died.sink
-        } else if m.dies[row] <= now {
-            &mut report.died.lifetime
         } else {
-            continue;
+            &mut report.died.lifetime
         };
         *cause += 1;
         view.remove(row, springs, report);
+        end = row;
     }
+}
+
+/// The last row before `end` that has to go.
+fn last_doomed(m: &Slices<'_>, end: usize, now: Time) -> Option<usize> {
+    let moving = m.position[..end].iter().zip(&m.velocity[..end]);
+    let ending = m.dies[..end].iter().zip(&m.fate[..end]);
+    moving.zip(ending).rposition(|((x, v), (&dies, &fate))| {
+        // Zero times anything finite is zero, and NaN otherwise.
+        let probe = *x * 0.0 + *v * 0.0;
+        dies <= now || fate != Fate::Lives || !(probe.x + probe.y + probe.z == 0.0)
+    })
 }

@@ -8,6 +8,7 @@ use crate::integrate::{Dynamics, Integrator, Motion, Symplectic, Work};
 use crate::particles::{Full, Id, Particle, WHITE};
 use crate::report::Report;
 use crate::retire::{Fate, retire};
+use crate::rows::each_row_with;
 use crate::shape::Collider;
 use crate::storage::{Columns, Size, Slices, Storage};
 use crate::time::Time;
@@ -535,8 +536,6 @@ impl Dynamics for Field<'_> {
         acceleration.fill(Vec3::ZERO);
         self.scene.forces.add_to(&state, rows.clone(), acceleration);
         springs.add_to(&state, rows.clone(), acceleration);
-        for (a, &inverse) in acceleration.iter_mut().zip(&self.inverse_mass[rows]) {
-            *a *= inverse;
-        }
+        each_row_with(acceleration, Vec3::ZERO, &self.inverse_mass[rows], |force, _, inverse| force * inverse);
     }
 }

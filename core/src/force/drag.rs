@@ -1,6 +1,7 @@
 //! Linear drag.
 
 use super::{Force, State};
+use crate::rows::each_row;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -12,8 +13,6 @@ pub struct Drag {}
 
 impl Force for Drag {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        for ((total, &velocity), &k) in total.iter_mut().zip(&state.velocity[rows.clone()]).zip(&state.drag[rows]) {
-            *total -= velocity * k;
-        }
+        each_row(total, &state.velocity[rows.clone()], &state.drag[rows], |total, v, k| total - v * k);
     }
 }

@@ -1,6 +1,7 @@
 //! Uniform gravity.
 
 use super::{Force, State};
+use crate::rows::each_row_with;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -21,9 +22,7 @@ impl Gravity {
 
 impl Force for Gravity {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        for (total, &mass) in total.iter_mut().zip(&state.mass[rows]) {
-            *total += self.acceleration * mass;
-        }
+        each_row_with(total, self.acceleration, &state.mass[rows], |total, g, m| total + g * m);
     }
 
     #[cfg(feature = "std")]

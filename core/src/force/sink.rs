@@ -2,7 +2,7 @@
 
 use super::{Force, State};
 use crate::math::length;
-use crate::shape::{Collider, Hit, Segment, Shape, Surface};
+use crate::shape::{Aabb, Collider, Hit, Segment, Shape, Surface};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -48,6 +48,10 @@ impl<M: Surface + Sync> Force for Sink<M> {
 impl<M: Collider> Collider for Sink<M> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         self.shape.first_hit(segment)
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.shape.may_touch(bounds)
     }
 }
 

@@ -10,6 +10,7 @@ pub use midpoint::Midpoint;
 pub use rk4::Rk4;
 pub use verlet::Verlet;
 
+pub(crate) use crate::rows::{add_scaled, advance_by};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -66,22 +67,6 @@ impl<'a> Work<'a> {
             memory = rest;
             column.get_mut(..len).unwrap_or_default()
         })
-    }
-}
-
-/// `out` = `base` + `h` × `rate`, row by row.
-#[inline]
-pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3]) {
-    for ((out, &base), &rate) in out.iter_mut().zip(base).zip(rate) {
-        *out = base + rate * h;
-    }
-}
-
-/// `sum` += `h` × `rate`, row by row.
-#[inline]
-pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
-    for (sum, &rate) in sum.iter_mut().zip(rate) {
-        *sum += rate * h;
     }
 }
 

@@ -90,6 +90,9 @@ macro_rules! convex_collider {
             fn first_hit(&self, segment: &crate::shape::Segment) -> Option<crate::shape::Hit> {
                 crate::shape::convex::first_hit(self, segment)
             }
+            fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
+                crate::shape::Surface::bounds(self).overlaps(bounds)
+            }
         }
     )+};
 }

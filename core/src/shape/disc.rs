@@ -52,6 +52,10 @@ impl Surface for Disc {
 }
 
 impl Collider for Disc {
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.bounds().overlaps(bounds)
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let normal = unit(self.normal);
         let (time, normal) =

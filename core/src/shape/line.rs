@@ -45,6 +45,11 @@ impl Surface for Line {
 }
 
 impl Collider for Line {
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        let Aabb { min, max } = self.bounds();
+        Aabb { min: min - TOUCH, max: max + TOUCH }.overlaps(bounds)
+    }
+
     /// The nearest approach, if the path comes within 10 µm (or a few units in the last place, where those are more).
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let touch = max(TOUCH, segment.slack(crate::math::largest(self.from)));

@@ -7,6 +7,7 @@ use glam::Vec3;
 /// A borrowed triangle mesh, hit from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mesh<'a> {
+    bounds: Aabb,
     vertices: &'a [Vec3],
     triangles: &'a [[u32; 3]],
     /// Running sums of the triangles' areas in units of 2⁻²⁴ of the largest: whole numbers, so that a million
@@ -16,8 +17,9 @@ pub struct Mesh<'a> {
 
 /// A triangle mesh on the heap.
 #[cfg(feature = "alloc")]
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MeshBuf {
+    bounds: Aabb,
     vertices: alloc::vec::Vec<Vec3>,
     triangles: alloc::vec::Vec<[u32; 3]>,
     areas: alloc::vec::Vec<u64>,
@@ -67,7 +69,7 @@ impl<'a> Mesh<'a> {
             }
             sum_areas(vertices, triangles, areas);
         }
-        Ok(Self { vertices, triangles, areas })
+        Ok(Self { bounds: Aabb::around(vertices.iter().copied()), vertices, triangles, areas })
     }
 
     /// The vertices \[m\].
@@ -96,15 +98,16 @@ impl MeshBuf {
     /// If an index is out of range or a coordinate is not finite.
     pub fn new(vertices: alloc::vec::Vec<Vec3>, triangles: alloc::vec::Vec<[u32; 3]>) -> Result<Self, BadMesh> {
         check(&vertices, &triangles)?;
+        let bounds = Aabb::around(vertices.iter().copied());
         let mut areas = alloc::vec![0; triangles.len()];
         sum_areas(&vertices, &triangles, &mut areas);
-        Ok(Self { vertices, triangles, areas })
+        Ok(Self { bounds, vertices, triangles, areas })
     }
 
     /// The same, borrowed.
     #[must_use]
     pub fn view(&self) -> Mesh<'_> {
-        Mesh { vertices: &self.vertices, triangles: &self.triangles, areas: &self.areas }
+        Mesh { bounds: self.bounds, vertices: &self.vertices, triangles: &self.triangles, areas: &self.areas }
     }
 }
 
@@ -137,7 +140,7 @@ impl Surface for Mesh<'_> {
     }
 
     fn bounds(&self) -> Aabb {
-        Aabb::around(self.faces().flat_map(|face| face.corners))
+        self.bounds
     }
 }
 
@@ -145,6 +148,10 @@ impl Collider for Mesh<'_> {
     /// Looks at every triangle. Watertight: an edge shared by two triangles is judged by the same arithmetic for both.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         self.faces().fold(None, |best, face| earlier(best, face.first_hit(segment)))
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.bounds.overlaps(bounds)
     }
 
     fn is_empty(&self) -> bool {
@@ -173,6 +180,9 @@ macro_rules! through_view {
         impl Collider for $owner {
             fn first_hit(&self, segment: &Segment) -> Option<Hit> {
                 self.view().first_hit(segment)
+            }
+            fn may_touch(&self, bounds: &Aabb) -> bool {
+                self.view().may_touch(bounds)
             }
             fn is_empty(&self) -> bool {
                 self.view().is_empty()
@@ -275,7 +285,7 @@ mod tests {
 
     #[test]
     fn an_empty_mesh_harms_nobody() {
-        let mesh = MeshBuf::default();
+        let mesh = MeshBuf::new(vec![], vec![]).expect("nothing is wrong with nothing");
         assert!(mesh.is_empty());
         assert_eq!(mesh.nearest(Vec3::X), Vec3::X);
         let _ = mesh.sample([0.5; 3]);

@@ -26,7 +26,7 @@ pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
-use crate::math::{largest, max};
+use crate::math::{high, largest, low, max};
 use glam::Vec3;
 
 /// A surface (or a line) in space.
@@ -53,6 +53,12 @@ pub trait Collider: Sync {
     /// A point that starts on the surface and leaves it does not hit it; a closed solid's surface belongs to the
     /// outside. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
     fn first_hit(&self, segment: &Segment) -> Option<Hit>;
+
+    /// Whether a path inside `bounds` might meet it. May say yes too often, never no wrongly: it spares the search.
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        let _ = bounds;
+        true
+    }
 
     /// Whether it is known that nothing can ever hit it.
     fn is_empty(&self) -> bool {
@@ -162,6 +168,17 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// Whether the two share a point, rounding errors of a few units in the last place allowed for.
+    #[inline]
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let room = 8.0 * f32::EPSILON;
+        let (low, high) = (high(self.min, other.min), low(self.max, other.max));
+        low.x - room * low.x.abs() <= high.x + room * high.x.abs()
+            && low.y - room * low.y.abs() <= high.y + room * high.y.abs()
+            && low.z - room * low.z.abs() <= high.z + room * high.z.abs()
+    }
+
     /// The middle \[m\].
     #[must_use]
     pub fn center(&self) -> Vec3 {
@@ -211,6 +228,9 @@ impl<M: Collider> Collider for Shape<M> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         each!(self, s => s.first_hit(segment))
     }
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        each!(self, s => s.may_touch(bounds))
+    }
 }
 
 impl<M> Shape<M> {
@@ -237,6 +257,9 @@ impl Collider for () {
     fn first_hit(&self, _: &Segment) -> Option<Hit> {
         None
     }
+    fn may_touch(&self, _: &Aabb) -> bool {
+        false
+    }
     fn is_empty(&self) -> bool {
         true
     }
@@ -246,6 +269,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         (**self).first_hit(segment)
     }
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        (**self).may_touch(bounds)
+    }
     fn is_empty(&self) -> bool {
         (**self).is_empty()
     }
@@ -254,6 +280,9 @@ impl<T: Collider + ?Sized> Collider for &T {
 impl<T: Collider> Collider for [T] {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         self.iter().fold(None, |best, c| earlier(best, c.first_hit(segment)))
+    }
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.iter().any(|c| c.may_touch(bounds))
     }
     fn is_empty(&self) -> bool {
         self.iter().all(Collider::is_empty)
@@ -267,6 +296,9 @@ macro_rules! lists {
         impl<$($generics)*> Collider for $list {
             fn first_hit(&self, segment: &Segment) -> Option<Hit> {
                 self.as_slice().first_hit(segment)
+            }
+            fn may_touch(&self, bounds: &Aabb) -> bool {
+                self.as_slice().may_touch(bounds)
             }
             fn is_empty(&self) -> bool {
                 self.iter().all(Collider::is_empty)
@@ -290,6 +322,11 @@ macro_rules! tuples {
                 let mut best = None;
                 $(best = earlier(best, $name.first_hit(segment));)+
                 best
+            }
+            fn may_touch(&self, bounds: &Aabb) -> bool {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.may_touch(bounds))||+
             }
             fn is_empty(&self) -> bool {
                 #[allow(non_snake_case)]

@@ -1,6 +1,6 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
-use super::{Collider, Hit, Segment};
+use super::{Aabb, Collider, Hit, Segment, Surface};
 use crate::math::{length, unit};
 use glam::{Mat3, Vec3};
 
@@ -17,6 +17,8 @@ pub struct Affine {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<C> {
     collider: C,
+    /// Of the collider as it stands in the world.
+    bounds: Aabb,
     to_world: Affine,
     to_local: Affine,
 }
@@ -29,6 +31,19 @@ impl Affine {
     #[must_use]
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.linear * p + self.shift
+    }
+
+    /// A box around the image of a box; everything, if the box has no finite image.
+    #[must_use]
+    pub fn bounds(&self, bounds: &Aabb) -> Aabb {
+        let Aabb { min, max } = *bounds;
+        let corner = |i: u8| {
+            let pick = |bit: u8, low: f32, high: f32| if i & bit == 0 { low } else { high };
+            self.point(Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z)))
+        };
+        let image = Aabb::around((0..8).map(corner));
+        let everything = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+        if min.is_finite() && max.is_finite() { image } else { everything }
     }
 
     /// First `inner`, then this.
@@ -46,11 +61,12 @@ impl Affine {
     }
 }
 
-impl<C> Placed<C> {
+impl<C: Surface> Placed<C> {
     /// Puts `collider` where `to_world` says; `None` if that flattens space, so that there is no way back.
     #[must_use]
     pub fn new(collider: C, to_world: Affine) -> Option<Self> {
-        Some(Self { collider, to_world, to_local: to_world.inverse()? })
+        let bounds = to_world.bounds(&collider.bounds());
+        Some(Self { collider, bounds, to_world, to_local: to_world.inverse()? })
     }
 }
 
@@ -69,6 +85,11 @@ impl<C: Collider> Collider for Placed<C> {
             normal: unit(self.to_local.linear.transpose() * hit.normal),
             slack: hit.slack * stretch + segment.slack(crate::math::largest(self.to_world.shift)),
         })
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        // Its own answer is the sharper one: of a plane, say.
+        if self.to_world == Affine::IDENTITY { self.collider.may_touch(bounds) } else { self.bounds.overlaps(bounds) }
     }
 
     fn is_empty(&self) -> bool {
@@ -100,7 +121,7 @@ mod tests {
     #[test]
     fn a_flattening_map_is_refused() {
         let flat = Affine { linear: Mat3::from_diagonal(Vec3::new(1.0, 0.0, 1.0)), shift: Vec3::ZERO };
-        assert_eq!(Placed::new((), flat), None);
+        assert_eq!(Placed::new(Sphere { center: Vec3::ZERO, radius: 1.0 }, flat), None);
     }
 
     #[test]

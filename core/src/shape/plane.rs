@@ -38,10 +38,17 @@ impl Surface for Plane {
 
 impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let normal = unit(self.normal);
-        let (time, normal) =
-            crossing(normal, normal.dot(segment.from - self.point), normal.dot(segment.to - self.point))?;
-        Some(Hit { time, normal, slack: segment.slack(largest(self.point)) })
+        // Which side, and when, does not depend on the normal's length.
+        let side = |point: Vec3| self.normal.dot(point - self.point);
+        let (time, normal) = crossing(self.normal, side(segment.from), side(segment.to))?;
+        Some(Hit { time, normal: unit(normal), slack: segment.slack(largest(self.point)) })
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
+        let distance = self.normal.dot(middle - self.point).abs();
+        // Twice as far leaves room for rounding.
+        distance <= 2.0 * self.normal.abs().dot(half)
     }
 }
 

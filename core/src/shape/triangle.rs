@@ -67,6 +67,10 @@ impl Surface for Triangle {
 }
 
 impl Collider for Triangle {
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.bounds().overlaps(bounds)
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let [a, b, c] = self.corners;
         let normal = (b - a).cross(c - a);

@@ -1,0 +1,88 @@
+//! Loops over whole columns, written so that compilers make vectors of them.
+//!
+//! A column of `Vec3` is a flat list of numbers with period three. Where every number is treated alike the flat list
+//! does; where each row has a factor of its own, four rows and their four factors make blocks of twelve.
+
+use glam::Vec3;
+
+/// `out` = `base` + `h` × `rate`, row by row.
+#[inline]
+pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3]) {
+    let (out, base, rate) = (flat_mut(out), flat(base), flat(rate));
+    for ((out, &base), &rate) in out.iter_mut().zip(base).zip(rate) {
+        *out = base + rate * h;
+    }
+}
+
+/// `sum` += `h` × `rate`, row by row.
+#[inline]
+pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
+    for (sum, &rate) in flat_mut(sum).iter_mut().zip(flat(rate)) {
+        *sum += rate * h;
+    }
+}
+
+/// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
+#[inline(always)]
+pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
+    let ((t, t_rest), (v, v_rest), (k, k_rest)) = (total.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
+    for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
+        block(total, vector, factor, &f);
+    }
+    for ((total, vector), &factor) in t_rest.iter_mut().zip(v_rest).zip(k_rest) {
+        one(total, *vector, factor, &f);
+    }
+}
+
+/// The same with one vector for all rows.
+#[inline(always)]
+pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
+    let ((t, t_rest), (k, k_rest)) = (total.as_chunks_mut(), factor.as_chunks());
+    for (total, factor) in t.iter_mut().zip(k) {
+        block(total, &[vector; 4], factor, &f);
+    }
+    for (total, &factor) in t_rest.iter_mut().zip(k_rest) {
+        one(total, vector, factor, &f);
+    }
+}
+
+#[inline(always)]
+fn block(total: &mut [Vec3; 4], vector: &[Vec3; 4], k: &[f32; 4], f: &impl Fn(f32, f32, f32) -> f32) {
+    let factor = [k[0], k[0], k[0], k[1], k[1], k[1], k[2], k[2], k[2], k[3], k[3], k[3]];
+    for ((total, &vector), &factor) in flat_mut(total).iter_mut().zip(flat(vector)).zip(&factor) {
+        *total = f(*total, vector, factor);
+    }
+}
+
+#[inline(always)]
+fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -> f32) {
+    *total = Vec3::new(f(total.x, vector.x, factor), f(total.y, vector.y, factor), f(total.z, vector.z, factor));
+}
+
+#[inline(always)]
+fn flat(column: &[Vec3]) -> &[f32] {
+    bytemuck::cast_slice(column)
+}
+
+#[inline(always)]
+fn flat_mut(column: &mut [Vec3]) -> &mut [f32] {
+    bytemuck::cast_slice_mut(column)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_and_rest_are_treated_alike() {
+        for n in 0..11 {
+            let vector: std::vec::Vec<Vec3> = (0..n).map(|i| Vec3::new(i as f32, 0.5, -(i as f32))).collect();
+            let factor: std::vec::Vec<f32> = (0..n).map(|i| 1.0 + i as f32).collect();
+            let mut total = std::vec![Vec3::ONE; n];
+            each_row(&mut total, &vector, &factor, |t, v, k| t + v * k);
+            for i in 0..n {
+                assert_eq!(total[i], Vec3::ONE + vector[i] * factor[i]);
+            }
+        }
+    }
+}
