@@ -33,6 +33,8 @@ pub enum Command {
     Render(Render),
     /// Translate a scene between .scn and .json
     Convert(Convert),
+    /// Print the JSON Schema of .json scenes
+    Schema,
 }
 
 /// How a scene is run.

@@ -11,6 +11,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(args),
         Command::Render(args) => render::render(args),
         Command::Convert(args) => convert::convert(args),
+        Command::Schema => pointmass_cli::print(&pointmass::scene::schema()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -26,6 +26,8 @@ pub use error::SceneError;
 #[cfg(feature = "alloc")]
 pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
+#[cfg(feature = "schema")]
+pub use json::schema;
 #[cfg(feature = "alloc")]
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]

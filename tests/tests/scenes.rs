@@ -1,0 +1,68 @@
+//! The project's own scenes: every one is sound, runs, and counts nothing that it should not.
+
+use pointmass::scene::{Files, Model, SceneFile, read_scn, schema};
+use pointmass::{Heap, System, Time};
+use pointmass_cli::load::Disk;
+use std::path::{Path, PathBuf};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
+}
+
+fn scenes() -> Vec<PathBuf> {
+    let entries = folder().read_dir().expect("there is a folder of scenes").map(|entry| entry.expect("readable").path());
+    let is_scene = |path: &PathBuf| {
+        let name = path.to_string_lossy();
+        (name.ends_with(".json") && !name.ends_with("schema.json")) || name.ends_with(".scn")
+    };
+    let mut scenes: Vec<_> = entries.filter(is_scene).collect();
+    scenes.sort();
+    assert!(scenes.len() >= 9, "{scenes:?}");
+    scenes
+}
+
+fn read(path: &Path) -> SceneFile {
+    let name = path.to_string_lossy();
+    let text = Disk.text(&name).expect("a text");
+    if name.ends_with(".json") {
+        SceneFile::from_json(&name, &text).unwrap_or_else(|error| panic!("{error}"))
+    } else {
+        let (scene, warnings) = read_scn(&name, &text, &mut Disk).unwrap_or_else(|error| panic!("{error}"));
+        assert!(warnings.is_empty(), "{warnings:?}");
+        scene
+    }
+}
+
+#[test]
+fn the_schema_is_that_of_the_types() {
+    let kept = std::fs::read_to_string(folder().join("scene.schema.json")).expect("a schema");
+    assert!(kept == schema(), "run: cargo run --release -- schema > scenes/scene.schema.json");
+}
+
+#[test]
+fn every_scene_runs_for_two_seconds_and_loses_nothing() {
+    for path in scenes() {
+        let file = read(&path);
+        let model = Model::load(&file, &path.to_string_lossy(), &mut Disk).unwrap_or_else(|error| panic!("{error}"));
+        let mut system = System::with(Heap::new(model.size(file.run.capacity as usize)));
+        system.start(&model.scene(), file.run.seed).expect("it fits");
+        let seconds = if cfg!(debug_assertions) { 0.5 } else { 2.0 };
+        let steps = (seconds / file.run.dt) as u64;
+        for step in 1..=steps {
+            let end = Time::from_seconds_f64(step as f64 * file.run.dt);
+            system.step(&model.scene(), end - system.time());
+        }
+        let totals = system.totals();
+        assert_eq!(totals.initial + totals.born, system.len() as u64 + totals.died.total(), "{path:?}");
+        assert!(totals.initial + totals.born > 0, "{path:?}: nothing lives");
+        assert_eq!((totals.refused, totals.died.nonfinite, totals.caps.unfit), (0, 0, 0), "{path:?}");
+    }
+}
+
+#[test]
+fn every_scene_survives_a_round_trip_through_json() {
+    for path in scenes() {
+        let file = read(&path);
+        assert_eq!(SceneFile::from_json("again", &file.to_json()), Ok(file), "{path:?}");
+    }
+}
