@@ -1,6 +1,6 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
-use crate::math::{clamp, high, length, low, max, sqrt};
+use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use crate::report::Report;
 use crate::retire::Fate;
 use crate::shape::{Aabb, Hit, Segment};
@@ -30,6 +30,7 @@ pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, dt: Time, end: Tim
         }
         let (start_x, start_v) = (m.work[row], m.work[capacity + row]);
         // A newborn has come only part of the way.
+        let is_newborn = m.born[row] + dt >= end;
         let duration = (end - m.born[row]).min(dt).seconds();
         let path = Path { x0: start_x, v0: start_v, x1: m.position[row], v1: m.velocity[row], duration };
         let hull = path.hull();
@@ -37,7 +38,7 @@ pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, dt: Time, end: Tim
             continue;
         }
         let mut flight = Flight { scene, elasticity: m.elasticity[row], dt: dt.seconds(), report: &mut *report };
-        let end = flight.follow(path);
+        let end = flight.follow(if is_newborn { flight.let_go(path) } else { path });
         (m.position[row], m.velocity[row], m.fate[row]) = (end.position, end.velocity, end.fate);
     }
 }
@@ -81,6 +82,17 @@ struct Flight<'a> {
 }
 
 impl Flight<'_> {
+    /// The path without what it meets within rounding of its beginning: a newborn lies on its source's surface, on
+    /// whichever side rounding put it, and leaves it the way its velocity points.
+    fn let_go(&self, path: Path) -> Path {
+        let chord = Segment { from: path.x0, to: path.x1 };
+        let hits = [self.scene.colliders.first_hit(&chord), self.scene.sinks.first_hit(&chord)];
+        let near = |hit: &Hit| -chord.step().dot(hit.normal) * hit.time <= 2.0 * hit.slack;
+        let beyond = |hit: Hit| chord.at(hit.time) + unit(chord.step()) * (4.0 * hit.slack);
+        let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
+        Path { x0, ..path }
+    }
+
     fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..MAX_BOUNCES {
             let Some(meeting) = self.first_meeting(&path) else {
@@ -196,7 +208,6 @@ impl Path {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::unit;
 
     #[test]
     fn chords_stay_near_the_path() {

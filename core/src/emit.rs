@@ -233,7 +233,7 @@ impl Births<'_> {
     pub fn refuse(&mut self, number: usize, count: u64) {
         if let Some(tally) = self.view.memory.tallies.get_mut(number) {
             tally.serial = tally.serial.wrapping_add(count as u32);
-            self.report.refused += count;
+            self.report.refused = self.report.refused.saturating_add(count);
         }
     }
 }
@@ -273,15 +273,18 @@ impl Iterator for Due {
     }
 }
 
+/// One emitter, or two if it has bursts: those of the rate and those of the bursts are numbered separately, so that
+/// their random numbers do not depend on which come first in a step.
 impl<M: Surface + Sync> Emit for Emitter<M> {
     fn count(&self) -> usize {
-        1
+        1 + usize::from(self.burst.is_some())
     }
 
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
         let (start, stop) = (Time::from_seconds(self.start), self.stop.map_or(Time::NEVER, Time::from_seconds));
         if let Some(burst) = &self.burst {
+            let number = births.claim();
             self.emit_bursts(burst, [from, to], births, number);
         }
         let (first, last) = (from.max(start), to.min(stop));

@@ -83,3 +83,8 @@ pub use storage::Heap;
 pub use storage::{Columns, Inline, Size, Slices, Storage};
 pub use system::{Scene, System, Unfit};
 pub use time::Time;
+
+/// The README's example has to compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -48,20 +48,34 @@ pub struct Caps {
     pub unfit: u64,
 }
 
-/// Adds up every field of two counters.
+/// Adds up every field of two counters; the sum of plain numbers saturates.
 macro_rules! add_fields {
     ($($counter:ident { $($field:ident)+ })+) => {$(
         impl core::ops::AddAssign for $counter {
             fn add_assign(&mut self, other: Self) {
-                $(self.$field += other.$field;)+
+                $(self.$field = self.$field.saturating_add(other.$field);)+
             }
         }
     )+};
 }
 add_fields! {
-    Report { initial born died refused hits caps }
     Died { lifetime sink density chance nonfinite }
     Caps { bounces chords springs unfit }
+}
+
+impl core::ops::AddAssign for Report {
+    fn add_assign(&mut self, other: Self) {
+        for (sum, more) in [
+            (&mut self.initial, other.initial),
+            (&mut self.born, other.born),
+            (&mut self.refused, other.refused),
+            (&mut self.hits, other.hits),
+        ] {
+            *sum = sum.saturating_add(more);
+        }
+        self.died += other.died;
+        self.caps += other.caps;
+    }
 }
 
 impl Died {

@@ -264,3 +264,14 @@ impl Columns<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_takes_the_bytes_that_the_readme_says() {
+        let one = size_of::<Inline<1001, 0, 0, 4>>() - size_of::<Inline<1, 0, 0, 4>>();
+        assert_eq!(one, 1000 * (79 + 4 * 12));
+    }
+}

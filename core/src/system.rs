@@ -506,12 +506,12 @@ impl View<'_> {
     }
 }
 
-/// When a particle born at `born` dies of age. A lifetime counts as over within the rounding of its `f32`, so that one
-/// of 0.1 s ends with the sixth of sixty frames a second.
+/// When a particle born at `born` dies of age. A lifetime counts as over within the rounding of its `f32` and of a
+/// tick, so that one of 0.1 s ends with the sixth of sixty frames a second.
 fn death(born: Time, lifetime: f32) -> Time {
     if lifetime > 0.0 {
         let ticks = Time::from_seconds(lifetime).ticks();
-        born + Time::from_ticks(ticks - (ticks >> 24))
+        born + Time::from_ticks(ticks.saturating_sub((ticks >> 24) + 1))
     } else {
         Time::NEVER
     }

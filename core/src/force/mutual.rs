@@ -86,11 +86,14 @@ fn add_chunk(sums: &mut [[f32; LANES]; 3], place: Vec3, x: &[Vec3; LANES], m: &[
     for lane in 0..LANES {
         let r2 = d[0][lane] * d[0][lane] + d[1][lane] * d[1][lane] + d[2][lane] * d[2][lane] + square;
         let w = m[lane] / (r2 * sqrt(r2));
-        weight[lane] = if r2 > 0.0 { w } else { 0.0 };
+        // Neither itself, nor what is not finite or too near for an `f32`: it would spoil all others in one step.
+        let counts = r2 > 0.0 && r2 < f32::INFINITY && w.abs() < f32::INFINITY;
+        weight[lane] = if counts { w } else { f32::NAN };
     }
     for axis in 0..3 {
         for lane in 0..LANES {
-            sums[axis][lane] += weight[lane] * d[axis][lane];
+            let pull = weight[lane] * d[axis][lane];
+            sums[axis][lane] += if weight[lane].is_nan() { 0.0 } else { pull };
         }
     }
 }

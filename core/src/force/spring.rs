@@ -85,7 +85,9 @@ impl Force for Springs<'_> {
                 if d > 0.0 {
                     let along = toward / d;
                     let closing = (state.velocity[other] - state.velocity[row]).dot(along);
-                    *total += along * (spring.ks * (d - spring.rest_length) + spring.kd * closing);
+                    let pull = spring.ks * (d - spring.rest_length) + spring.kd * closing;
+                    // An end that is not finite goes at the end of the step, and goes alone.
+                    *total += if pull.abs() < f32::INFINITY { along * pull } else { Vec3::ZERO };
                 }
             }
         }

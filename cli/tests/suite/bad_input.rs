@@ -1,0 +1,373 @@
+//! Scenes and meshes that cannot be used: one line that names file and place, exit code 1, nothing written.
+
+use crate::scenes::{ONE, TRIANGLE};
+use crate::tool::Folder;
+use std::fs::{self, File};
+
+/// A scene that nobody can use, and how the error about it begins.
+struct Bad<'a> {
+    text: &'a [u8],
+    error: &'a str,
+}
+
+const fn bad<'a>(text: &'a str, error: &'a str) -> Bad<'a> {
+    Bad { text: text.as_bytes(), error }
+}
+
+/// Every command refuses the scene `name`, says `error` first, and leaves the folder as it was.
+#[track_caller]
+fn refused(folder: &Folder, name: &str, error: &str) {
+    refused_by(folder, name, error, &["run", "render", "convert"]);
+}
+
+#[track_caller]
+fn refused_by(folder: &Folder, name: &str, error: &str, commands: &[&str]) {
+    folder.write("old.csv", "old");
+    let before = folder.names();
+    for command in commands {
+        let rest = match *command {
+            "run" => "--steps 1 --out old.csv --out o.jsonl --out o.ply --out o.xyz",
+            "render" => "--duration 0 --size 8x8 --out o.gif",
+            _ if name.ends_with("json") => "o.scn",
+            _ => "o.json",
+        };
+        let answer = folder.run(&format!("{command} {name} {rest}"));
+        let said = answer.error();
+        assert!(said.starts_with(error), "{command}: said\n{said}\nnot\n{error}");
+        assert_eq!(folder.names(), before, "{command}: {said}");
+        assert_eq!(folder.read("old.csv"), "old", "{command}");
+    }
+}
+
+#[test]
+fn scn_that_is_wrong() {
+    let identity = "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1";
+    let begin = format!("begin -1 {identity}\n");
+    let (unclosed, twice) = (format!("\n  {begin}{begin}end"), format!("{begin}end end"));
+    let flat = "begin -1  1 0 0 0  0 0 0 0  0 0 1 0  0 0 0 1  end";
+    let projective = "begin -1  1 0 0 0  0 1 0 0  0 0 1 0  0 0 1 1  end";
+    let no_material = format!("begin 0 {identity} end");
+    let particles = format!("{ONE}{ONE}");
+    let spring = |ends: &str| format!("{particles}particle_spring {ends} 1 1 1");
+    let (too_far, negative, half) = (spring("0 2"), spring("-1 0"), spring("0.5 0"));
+    let early = format!("particle_spring 0 1 1 1 1 {ONE}");
+    let late = format!("box 0 0 0 0 1 1 1\nmaterial {} 1 1 0", "0 ".repeat(15));
+    let cases = [
+        bad("frobnicate", "a.scn:1:1: unknown command 'frobnicate'"),
+        bad("ambient 0 0 0\n\n  wind 1 2 3", "a.scn:3:3: unknown command 'wind'"),
+        bad("Particle 0 0 0", "a.scn:1:1: unknown command 'Particle'"),
+        bad("{}", "a.scn:1:1: unknown command '{}'"),
+        bad("particle 0 0 0 0 0", "a.scn:1:19: particle: "),
+        bad("particle", "a.scn:1:9: particle: "),
+        bad("\r\nparticle 0 nan 0  0 0 0  1 0 0 0 0 -1", "a.scn:2:12: particle: "),
+        bad("particle 0 0 -inf  0 0 0  1 0 0 0 0 -1", "a.scn:1:14: particle: "),
+        bad("particle 0 0 0  0 0 infinity  1 0 0 0 0 -1", "a.scn:1:21: particle: "),
+        bad("particle 0 0 0  0 1e39 0  1 0 0 0 0 -1", "a.scn:1:19: particle: "),
+        bad("particle 0 0 0  0 0 0  -1e400 0 0 0 0 -1", "a.scn:1:24: particle: "),
+        bad("particle 0 0 0  0 0 0  1,5 0 0 0 0 -1", "a.scn:1:24: particle: "),
+        bad("particle 0 0 0  0 0 0  0x1p3 0 0 0 0 -1", "a.scn:1:24: particle: "),
+        bad("particle 0 0 0  0 0 0  0 0 0 0 0 -1", "a.scn:1:24: particle: "),
+        bad("particle 0 0 0  0 0 0  -2 0 0 0 0 -1", "a.scn:1:24: particle: "),
+        bad("particle 0 0 0  0 0 0  -2 1 0 0 0 -1", "a.scn:1:24: particle: "),
+        bad("particle 0 0 0  0 0 0  1 yes 0 0 0 -1", "a.scn:1:26: particle: "),
+        bad("particle 0 0 0  0 0 0  1 0 0 0 0 0", "a.scn:1:34: particle: "),
+        bad("particle 0 0 0  0 0 0  1 0 0 0 0 -2", "a.scn:1:34: particle: "),
+        bad("particle 0 0 0  0 0 0  1 0 0 0 0 99999999999999999999", "a.scn:1:34: particle: "),
+        bad("particle_gravity 0 1e39 0", "a.scn:1:20: particle_gravity: "),
+        bad("particle_source -1 0 0 0 0 -1  1 1 1  sphere 0 0 0 1", "a.scn:1:17: particle_source: "),
+        bad("particle_source 1 0 0 0 0 -1  -1 1 1  sphere 0 0 0 1", "a.scn:1:31: particle_source: "),
+        bad("particle_source 1 0 0 0 0 3  1 1 1  sphere 0 0 0 1", "a.scn:1:27: particle_source: "),
+        bad("particle_source 1 0 0 0 0 -1  1 1 1  torus 0 0 0 1", "a.scn:1:38: particle_source: "),
+        bad("particle_source 1 0 0 0 0 -1  1 1 1  sphere 0 0 0 -1", "a.scn:1:51: particle_source: "),
+        bad("particle_source 1 0 0 0 0 -1  1 1 1  circle 0 0 0  0 0 0 1", "a.scn:1:52: particle_source: "),
+        bad("particle_source 1 0 0 0 0 -1  1 1 1  mesh no.off", "a.scn:1:1: particle_source: "),
+        bad("particle_source 1 0 0 0 0 -1  1 1 1", "a.scn:1:36: particle_source: "),
+        bad("particle_sink 1 1 0 nan  sphere 0 0 0 1", "a.scn:1:21: particle_sink: "),
+        bad("particle_sink 1 1 0 0  cone 0 0 0 1 -1", "a.scn:1:37: particle_sink: "),
+        bad(&too_far, "a.scn:3:19: particle_spring: "),
+        bad(&negative, "a.scn:3:17: particle_spring: "),
+        bad(&half, "a.scn:3:17: particle_spring: "),
+        bad(&early, "a.scn:1:19: particle_spring: "),
+        bad("box 0 0 0 0 1 1 1", "a.scn:1:5: box: "),
+        bad(&late, "a.scn:1:5: box: "),
+        bad("sphere -1 0 0 0 -1", "a.scn:1:17: sphere: "),
+        bad("mesh -1 no.off", "a.scn:1:1: mesh: "),
+        bad("mesh -1 ", "a.scn:1:9: mesh: "),
+        bad("circle -1 0 0 0 0 1 0 1", "a.scn:1:1: unknown command 'circle'"),
+        bad("end", "a.scn:1:1: end: "),
+        bad(&twice, "a.scn:2:5: end: "),
+        bad(&unclosed, "a.scn:2:3: begin: "),
+        bad(flat, "a.scn:1:1: begin: "),
+        bad(projective, "a.scn:1:1: begin: "),
+        bad(&no_material, "a.scn:1:7: begin: "),
+        bad("include no.scn", "a.scn:1:1: include: "),
+        bad("include", "a.scn:1:8: include: "),
+        bad("camera 0 0 0", "a.scn:1:13: camera: "),
+        bad("particle_gravity 0 \0 0", "a.scn:1:20: particle_gravity: "),
+        Bad { text: b"ambient 0 0 0\nbackground \xff 0 0", error: "a.scn:2: " },
+        Bad { text: b"\xff\xfea\0m\0", error: "a.scn:1: " },
+    ];
+    let folder = Folder::new();
+    for Bad { text, error } in cases {
+        folder.write("a.scn", text);
+        refused(&folder, "a.scn", error);
+    }
+}
+
+#[test]
+fn json_that_is_wrong() {
+    let sphere = r#""shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}"#;
+    let emitter = |rest: &str| format!(r#"{{"emitters": [{{{sphere}, {rest}}}]}}"#);
+    let emitters = [
+        ("\"rate\": -1", "a.json:emitters[0].rate: "),
+        ("\"rate\": \"fast\"", "a.json:1:"),
+        ("\"wind\": 1", "a.json:1:"),
+        ("\"speed\": null", "a.json:1:"),
+        ("\"speed\": {\"mean\": 1, \"variance\": 1e39}", "a.json:"),
+        ("\"mass\": 0", "a.json:emitters[0].mass: "),
+        ("\"mass\": {\"mean\": 1, \"variance\": 1}", "a.json:emitters[0].mass: "),
+        ("\"material\": 0", "a.json:emitters[0].material: "),
+        ("\"material\": -1", "a.json:1:"),
+        ("\"direction\": [0, 0, 0]", "a.json:emitters[0].direction: "),
+        ("\"spread\": {\"normal\": 1}", "a.json:1:"),
+        ("\"color\": [256, 0, 0, 0]", "a.json:1:"),
+    ]
+    .map(|(rest, error)| (emitter(rest), error));
+    let matrix = |last: &str| format!(r#"{{"groups": [{{"matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0],{last}]}}]}}"#);
+    let deep = "[".repeat(100_000);
+    let (deep, deep_number) = (format!("{{\"about\": {deep}"), emitter(&format!("\"speed\": {deep}")));
+    let others = [
+        (String::new(), "a.json:1:0: "),
+        ("   \n".into(), "a.json:"),
+        ("{".into(), "a.json:1:1: "),
+        ("{}}".into(), "a.json:1:3: "),
+        ("null".into(), "a.json:1:"),
+        ("7".into(), "a.json:1:"),
+        ("\"a scene\"".into(), "a.json:1:"),
+        ("particle_gravity 0 0 0".into(), "a.json:1:1: "),
+        (r#"{"wind": 1}"#.into(), "a.json:1:7: unknown field `wind`"),
+        ("{\n \"particles\": [{\"mas\": 1}]}".into(), "a.json:2:22: unknown field `mas`"),
+        (r#"{"particles": {}}"#.into(), "a.json:1:"),
+        (r#"{"particles": [], "particles": []}"#.into(), "a.json:1:"),
+        (r#"{"particles": [{"mass": NaN}]}"#.into(), "a.json:1:"),
+        (r#"{"particles": [{"mass": 1e39}]}"#.into(), "a.json:"),
+        (r#"{"particles": [{"mass": 1e400}]}"#.into(), "a.json:"),
+        (r#"{"particles": [{"mass": "1"}]}"#.into(), "a.json:1:"),
+        (r#"{"particles": [{}, {"mass": -1}]}"#.into(), "a.json:particles[1]: "),
+        (r#"{"particles": [{"mass": 0}]}"#.into(), "a.json:particles[0]: "),
+        (r#"{"particles": [{"mass": -1, "fixed": true}]}"#.into(), "a.json:particles[0]: "),
+        (r#"{"particles": [{"position": [1, 2]}]}"#.into(), "a.json:1:"),
+        (r#"{"particles": [{"position": [1, 2, 3, 4]}]}"#.into(), "a.json:1:"),
+        (r#"{"particles": [{"fixed": 1}]}"#.into(), "a.json:1:"),
+        (r#"{"particles": [{"material": 0}]}"#.into(), "a.json:particles[0].material: "),
+        (r#"{"particles": [{}], "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 1, "kd": 1}]}"#.into(), "a.json:springs[0]: "),
+        (r#"{"scenery": [{"shape": {"torus": {}}}]}"#.into(), "a.json:1:"),
+        (r#"{"scenery": [{"shape": {"plane": {"point": [0,0,0], "normal": [0,0,0]}}}]}"#.into(), "a.json:scenery[0].shape: "),
+        (r#"{"scenery": [{"shape": {"sphere": {"center": [0,0,0], "radius": -1}}}]}"#.into(), "a.json:scenery[0].shape: "),
+        (r#"{"scenery": [{"shape": {"sphere": {"center": [0,0,0], "radius": 1}}, "group": 0}]}"#.into(), "a.json:scenery[0].group: "),
+        (matrix("[0,0,0,0]"), "a.json:groups[0].matrix: "),
+        (matrix("[0,0,1,1]"), "a.json:groups[0].matrix: "),
+        (matrix("[0,0,0,1]").replace("1]]", "1]], \"parent\": 0"), "a.json:groups[0].parent: "),
+        (r#"{"run": {"dt": 0}}"#.into(), "a.json:run.dt: "),
+        (r#"{"run": {"dt": -1}}"#.into(), "a.json:run.dt: "),
+        (r#"{"run": {"duration": -1}}"#.into(), "a.json:run.duration: "),
+        (r#"{"run": {"duration": 1e300}}"#.into(), "a.json:run.duration: "),
+        (r#"{"run": {"integrator": "leapfrog"}}"#.into(), "a.json:1:"),
+        (r#"{"run": {"seed": -1}}"#.into(), "a.json:1:"),
+        (r#"{"run": {"capacity": 4294967296}}"#.into(), "a.json:1:"),
+        (r#"{"camera": {"eye": [0, 0, 1e39]}}"#.into(), "a.json:"),
+        (r#"{"lights": [{"laser": {}}]}"#.into(), "a.json:1:"),
+        ("{\"about\": \"two\nlines\"}".into(), "a.json:"),
+        ("{\"about\": \"\\ud800\"}".into(), "a.json:1:"),
+        ("{}\0".into(), "a.json:1:3: "),
+        (deep, "a.json:1:"),
+        (deep_number, "a.json:1:"),
+    ];
+    let folder = Folder::new();
+    for (text, error) in emitters.iter().chain(&others) {
+        folder.write("a.json", text);
+        refused(&folder, "a.json", error);
+    }
+    folder.write("a.json", b"{\"about\":\n \"\xff\"}");
+    refused(&folder, "a.json", "a.json:2: ");
+}
+
+#[test]
+fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
+    // A list, where there should be an object with names.
+    for text in ["[]", "[null]", r#"{"run": [10.0, 0.1]}"#, r#"{"particles": [[]]}"#, r#"{"camera": []}"#] {
+        let folder = Folder::with("a.json", text);
+        refused(&folder, "a.json", "a.json:1:");
+    }
+}
+
+#[test]
+fn unknown_fields_are_errors_at_every_depth() {
+    let sphere = r#""shape": {"sphere": {"center": [0, 0, 0], "radius": 1, "x": 0}}"#;
+    let speed = r#""shape": {"mesh": "m.off"}, "speed": {"mean": 1, "variance": 0, "x": 0}"#;
+    let cases = [
+        r#"{"run": {"x": 0}}"#.to_string(),
+        r#"{"particles": [{"x": 0}]}"#.into(),
+        r#"{"springs": [{"ends": [0, 0], "rest_length": 1, "ks": 1, "kd": 1, "x": 0}]}"#.into(),
+        format!(r#"{{"emitters": [{{{sphere}}}]}}"#),
+        format!(r#"{{"emitters": [{{{speed}}}]}}"#),
+        r#"{"emitters": [{"shape": {"mesh": "m.off"}, "burst": {"count": 1, "x": 0}}]}"#.into(),
+        r#"{"forces": [{"drag": {"x": 0}}]}"#.into(),
+        r#"{"forces": [{"gravity": {"acceleration": [0, 0, 0], "x": 0}}]}"#.into(),
+        r#"{"forces": [{"mutual_gravity": {"x": 0}}]}"#.into(),
+        r#"{"sinks": [{"shape": {"mesh": "m.off"}, "intensity": 1, "ca": 1, "la": 0, "qa": 0, "x": 0}]}"#.into(),
+        r#"{"scenery": [{"shape": {"mesh": "m.off"}, "x": 0}]}"#.into(),
+        r#"{"groups": [{"matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]], "x": 0}]}"#.into(),
+        r#"{"materials": [{"x": 0}]}"#.into(),
+        r#"{"lights": [{"directional": {"color": [1,1,1], "direction": [0,0,1], "x": 0}}]}"#.into(),
+        r#"{"camera": {"x": 0}}"#.into(),
+    ];
+    for text in cases {
+        let folder = Folder::with("a.json", &text);
+        folder.write("m.off", TRIANGLE);
+        let answer = folder.run("run a.json --steps 0");
+        assert!(answer.code == 1 && answer.error().contains("`x`"), "{text}: {answer:?}");
+    }
+}
+
+#[test]
+fn meshes_that_are_wrong() {
+    let folder = Folder::with("scenery.scn", "sphere -1 0 0 0 1\nmesh -1 m.off");
+    folder.write("source.scn", "particle_source 1 0 0 0 0 -1  1 1 1  mesh m.off");
+    folder.write("sink.scn", "particle_sink 1 1 0 0  mesh m.off");
+    folder.write("scenery.json", r#"{"scenery": [{"shape": {"mesh": "m.off"}}]}"#);
+    for (mesh, error) in [
+        (TRIANGLE.replace("3 0 1 2", "3 0 1 3"), "m.off:6: "),
+        (TRIANGLE.replace("3 0 1 2", "3 0 1 -1"), "m.off:6: "),
+        (TRIANGLE.replace("3 0 1 2", "3 0 1 4294967296"), "m.off:6: "),
+        (TRIANGLE.replace("1 0 0", "1 nan 0"), "m.off:4: "),
+        (TRIANGLE.replace("1 0 0", "1 1e39 0"), "m.off:4: "),
+        (TRIANGLE.replace("3 0 1 2\n", ""), "m.off:2: "),
+        (TRIANGLE.replace("3 1 0", "3 1000000000000 0"), "m.off:2: "),
+        (TRIANGLE.replace("OFF", "PLY"), "m.off:1: "),
+        (String::new(), "m.off: "),
+    ] {
+        folder.write("m.off", &mesh);
+        for (scene, place) in [
+            ("scenery.scn", "scenery.scn:scenery[1].shape: "),
+            ("source.scn", "source.scn:emitters[0].shape: "),
+            ("sink.scn", "sink.scn:sinks[0].shape: "),
+            ("scenery.json", "scenery.json:scenery[0].shape: "),
+        ] {
+            refused_by(&folder, scene, &format!("{place}{error}"), &["run", "render"]);
+        }
+    }
+    fs::remove_file(folder.path("m.off")).expect("the mesh is there");
+    refused(&folder, "scenery.scn", "scenery.scn:2:1: mesh: ");
+    refused_by(&folder, "scenery.json", "scenery.json:scenery[0].shape: m.off: ", &["run", "render"]);
+    fs::create_dir(folder.path("m.off")).expect("a folder of that name");
+    refused(&folder, "scenery.scn", "scenery.scn:2:1: mesh: ");
+    refused_by(&folder, "scenery.json", "scenery.json:scenery[0].shape: m.off: ", &["run", "render"]);
+    folder.write("other.scn", "mesh -1 other.scn");
+    refused_by(&folder, "other.scn", "other.scn:scenery[0].shape: other.scn: ", &["run", "render"]);
+}
+
+#[test]
+fn includes_that_are_wrong() {
+    let folder = Folder::new();
+    for name in ["a.scn", "./a.scn", "sub/../a.scn", "sub/.././a.scn", "./././a.scn"] {
+        folder.write("sub/keep", "");
+        folder.write("a.scn", format!("ambient 0 0 0\n include {name}"));
+        refused(&folder, "a.scn", "a.scn:2:2: include: ");
+    }
+    for (inner, error) in [
+        ("include ../a.scn", "sub/b.scn:1:1: include: "),
+        ("include .././sub/../a.scn", "sub/b.scn:1:1: include: "),
+        ("include b.scn", "sub/b.scn:1:1: include: "),
+        ("include ../sub/b.scn", "sub/b.scn:1:1: include: "),
+        ("include c.scn", "sub/c.scn:2:1: include: "),
+        ("include no.scn", "sub/b.scn:1:1: include: "),
+        ("include ../sub", "sub/b.scn:1:1: include: "),
+        ("\n frob", "sub/b.scn:2:2: unknown command 'frob'"),
+        ("end", "sub/b.scn:1:1: end: "),
+        ("begin -1 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "sub/b.scn:1:1: begin: "),
+        ("sphere 1 0 0 0 1", "sub/b.scn:1:8: sphere: "),
+        ("mesh -1 m.off", "sub/b.scn:1:1: mesh: "),
+        ("particle_spring 0 0 1 1 1", "sub/b.scn:1:17: particle_spring: "),
+    ] {
+        folder.write("a.scn", format!("{ONE}material {} 1 1 0 include sub/b.scn", "0 ".repeat(15)));
+        folder.write("sub/b.scn", inner);
+        folder.write("sub/c.scn", "\ninclude .././a.scn");
+        folder.write("m.off", TRIANGLE);
+        refused(&folder, "a.scn", error);
+    }
+    // The same by the other way to the first file.
+    folder.write("sub/b.scn", "include ../a.scn");
+    refused(&folder, "./a.scn", "sub/b.scn:1:1: include: ");
+    refused(&folder, "sub/../a.scn", "sub/b.scn:1:1: include: ");
+    let absolute = folder.path("a.scn");
+    refused(&folder, absolute.to_str().expect("a plain name"), folder.path("sub/b.scn").to_str().expect("a plain name"));
+    // Two that each include the next twice.
+    for i in 0..40 {
+        folder.write(&format!("{i}.scn"), format!("include {0}.scn include {0}.scn", i + 1));
+    }
+    folder.write("40.scn", "");
+    refused(&folder, "0.scn", "");
+}
+
+#[test]
+fn files_that_are_no_scenes() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("a.scn")).expect("a folder");
+    fs::create_dir(folder.path("a.json")).expect("a folder");
+    refused(&folder, "a.scn", "a.scn: ");
+    refused(&folder, "a.json", "a.json: ");
+    refused(&folder, "no.scn", "no.scn: ");
+    refused(&folder, "no/no.json", "no/no.json: ");
+    for name in ["big.scn", "big.json", "big.off"] {
+        // Only its length is real.
+        let file = File::create(folder.path(name)).expect("a file");
+        file.set_len((256 << 20) + 1).expect("a sparse file");
+    }
+    refused(&folder, "big.scn", "big.scn: ");
+    refused(&folder, "big.json", "big.json: ");
+    folder.write("mesh.scn", "mesh -1 big.off");
+    refused_by(&folder, "mesh.scn", "mesh.scn:scenery[0].shape: big.off: ", &["run", "render"]);
+    folder.write("include.scn", "\ninclude big.scn");
+    refused(&folder, "include.scn", "include.scn:2:1: include: big.scn: ");
+    if cfg!(unix) {
+        refused(&folder, "/dev/zero", "/dev/zero: ");
+    }
+}
+
+#[test]
+fn what_is_unusual_but_right() {
+    let folder = Folder::new();
+    // An empty text has no commands, but an empty file is no JSON.
+    for text in ["", "\u{feff}", "# nothing", " \r\n\t "] {
+        folder.write("a.scn", text);
+        assert_eq!(folder.report("a.scn --steps 1")["live"], 0, "{text:?}");
+    }
+    folder.write("a.scn", "\u{feff}# one\r\nparticle 0 0 0\r\n 0 0 0 # two\r\n 1E-6 +1 .5 5. -0 -1\r\n#three");
+    folder.write("a.json", "\u{feff}{\r\n\"particles\": [\r\n{}]\r\n}");
+    for name in ["a.scn", "a.json"] {
+        assert_eq!(folder.report(&format!("{name} --steps 1"))["live"], 1, "{name}");
+    }
+}
+
+#[test]
+fn groups_may_be_1024_deep() {
+    let begin = "begin -1  1 0 0 0.001  0 1 0 0  0 0 1 0  0 0 0 1\n";
+    let text = |depth: usize| format!("{}sphere -1 0 0 0 1\n{}{ONE}", begin.repeat(depth), "end\n".repeat(depth));
+    let folder = Folder::with("a.scn", text(1024));
+    folder.write("o/keep", "");
+    let hash = folder.hash("a.scn --steps 5");
+    folder.run("convert a.scn o/a.json").fine();
+    folder.run("convert o/a.json o/a.scn").fine();
+    folder.run("convert o/a.scn o/b.json").fine();
+    assert_eq!(folder.read("o/a.json"), folder.read("o/b.json"));
+    assert_eq!([folder.hash("o/a.json --steps 5"), folder.hash("o/a.scn --steps 5")], [hash.clone(), hash]);
+    folder.write("b.scn", text(1025));
+    refused(&folder, "b.scn", "b.scn:1025:1: begin: ");
+    // Half of them around an include, half in it.
+    folder.write("inner.scn", text(512));
+    folder.write("outer.scn", format!("{}include inner.scn {}", begin.repeat(512), "end ".repeat(512)));
+    assert_eq!(folder.run("run outer.scn --steps 1").warnings().len(), 1);
+    folder.write("inner.scn", text(513));
+    refused(&folder, "outer.scn", "inner.scn:513:1: begin: ");
+}

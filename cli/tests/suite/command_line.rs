@@ -1,0 +1,227 @@
+//! Arguments, exit codes, the report, the hash.
+
+use crate::scenes::{BUSY, ONE, SOURCE};
+use crate::tool::{Folder, number};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+const WORLD: [&str; 5] = ["--duration", "--dt", "--integrator", "--seed", "--capacity"];
+
+#[test]
+fn help_names_every_flag() {
+    let folder = Folder::new();
+    let run = ["--steps", "--every", "--out", "--report", "text", "json", ".csv", ".jsonl", ".ply", ".xyz", "rk4"];
+    let render = ["--out", "--size", "--fps", ".gif", ".png"];
+    let cases: [(&str, Vec<&str>); 4] = [
+        ("", vec!["run", "render", "convert", "--help", "--version"]),
+        ("run", [&WORLD[..], &run].concat()),
+        ("render", [&WORLD[..], &render].concat()),
+        ("convert", vec![".scn", ".json"]),
+    ];
+    for (command, words) in cases {
+        for args in [format!("{command} --help"), format!("{command} -h"), format!("help {command}")] {
+            let help = folder.run(&args).fine().stdout;
+            for word in &words {
+                assert!(help.contains(word), "{args} does not say {word}:\n{help}");
+            }
+        }
+    }
+    assert!(folder.run("--version").fine().stdout.contains(env!("CARGO_PKG_VERSION")));
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn usage_errors_exit_with_2() {
+    let folder = Folder::with("a.scn", ONE);
+    let wrong = [
+        "",
+        "frobnicate",
+        "run",
+        "run a.scn b.scn",
+        "run a.scn --frobnicate",
+        "run a.scn --steps 3 --duration 1",
+        "run a.scn --steps -1",
+        "run a.scn --steps 1.5",
+        "run a.scn --steps",
+        "run a.scn --every 0",
+        "run a.scn --every x",
+        "run a.scn --dt 0",
+        "run a.scn --dt -0.1",
+        "run a.scn --dt=-0.1",
+        "run a.scn --dt nan",
+        "run a.scn --dt inf",
+        "run a.scn --dt 1/0",
+        "run a.scn --duration=-1",
+        "run a.scn --duration nan",
+        "run a.scn --duration 1e400",
+        "run a.scn --integrator leapfrog",
+        "run a.scn --seed -1",
+        "run a.scn --seed 18446744073709551616",
+        "run a.scn --capacity -1",
+        "run a.scn --capacity 1e6",
+        "run a.scn --report xml",
+        "run a.scn --out o.txt",
+        "run a.scn --out o",
+        "run a.scn --out .csv",
+        "run a.scn --out",
+        "render a.scn",
+        "render a.scn --out o.jpg",
+        "render a.scn --out o.gif --size 0x5",
+        "render a.scn --out o.gif --size big",
+        "render a.scn --out o.gif --fps 0",
+        "render a.scn --out o.gif --steps 5",
+        "convert",
+        "convert a.scn",
+        "convert a.scn b.txt",
+        "convert a.scn b.scn c.scn",
+    ];
+    for args in wrong {
+        let answer = folder.run(args);
+        assert_eq!(answer.code, 2, "{args}: {answer:?}");
+        assert!(answer.stdout.is_empty() && !answer.stderr.is_empty(), "{args}: {answer:?}");
+        assert!(!answer.stderr.contains("panicked"), "{args}: {answer:?}");
+    }
+    assert_eq!(folder.names(), ["a.scn"]);
+}
+
+#[test]
+fn the_json_report_has_exactly_its_fields() {
+    let folder = Folder::with("busy.scn", BUSY);
+    let report = folder.report("busy.scn --steps 60 --seed 9 --dt 0.01 --integrator verlet");
+    let fields = |value: &Value| value.as_object().expect("an object").keys().cloned().collect::<BTreeSet<_>>();
+    let expected = |names: &str| names.split(' ').map(str::to_string).collect::<BTreeSet<_>>();
+    let all = "scene integrator dt seed steps time initial born live died refused hits caps energy momentum \
+               angular_momentum hash seconds ns_per_particle_step";
+    assert_eq!(fields(&report), expected(all));
+    assert_eq!(fields(&report["died"]), expected("lifetime sink density chance nonfinite"));
+    assert_eq!(fields(&report["energy"]), expected("kinetic potential"));
+    assert!(report["caps"].as_object().is_some_and(|caps| caps.values().all(Value::is_u64)), "{report}");
+    for vector in ["momentum", "angular_momentum"] {
+        let numbers = report[vector].as_array().expect("a vector");
+        assert!(numbers.len() == 3 && numbers.iter().all(Value::is_f64), "{report}");
+    }
+    for count in ["seed", "steps", "initial", "born", "live", "refused", "hits"] {
+        assert!(report[count].is_u64(), "{count}: {report}");
+    }
+    assert_eq!(report["scene"], "busy.scn");
+    assert_eq!(report["integrator"], "verlet");
+    assert_eq!((number(&report, "dt"), number(&report, "seed")), (0.01, 9.0));
+    assert_eq!((number(&report, "steps"), number(&report, "time")), (60.0, 0.6));
+    let hash = report["hash"].as_str().expect("a hash");
+    assert!(hash.len() == 16 && hash.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f')), "{hash}");
+    assert!(number(&report, "seconds") >= 0.0 && number(&report, "ns_per_particle_step") >= 0.0);
+}
+
+#[test]
+fn the_text_report_says_the_same() {
+    let folder = Folder::with("busy.scn", BUSY);
+    let text = folder.run("run busy.scn --steps 60").fine().stdout;
+    let report = folder.report("busy.scn --steps 60");
+    for field in ["initial", "born", "live", "hits"] {
+        assert!(text.contains(&format!("{} ", report[field])), "{field} {report} {text}");
+    }
+    assert!(text.contains(report["hash"].as_str().expect("a hash")), "{text}");
+}
+
+#[test]
+fn every_particle_is_accounted_for() {
+    let folder = Folder::with("busy.scn", BUSY);
+    folder.write("source.scn", SOURCE);
+    let mut seen = [0.0; 3];
+    for scene in ["busy.scn", "source.scn"] {
+        for capacity in [0, 1, 2, 3, 40, 1000] {
+            for steps in [0, 1, 17, 150] {
+                let report = folder.report(&format!("{scene} --steps {steps} --capacity {capacity}"));
+                let died = report["died"].as_object().expect("causes").values().filter_map(Value::as_f64).sum::<f64>();
+                let (initial, born, live) =
+                    (number(&report, "initial"), number(&report, "born"), number(&report, "live"));
+                assert_eq!(initial + born, live + died, "{report}");
+                assert!(live <= f64::from(capacity), "{report}");
+                let causes = ["died/lifetime", "died/sink", "refused"].map(|cause| number(&report, cause));
+                seen = [0, 1, 2].map(|i| seen[i] + causes[i]);
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 0.0), "the scenes are too quiet to show anything: {seen:?}");
+}
+
+#[test]
+fn capacity_bounds_what_is_born_and_the_rest_is_counted() {
+    let folder = Folder::with("source.scn", SOURCE);
+    for (capacity, born, refused) in [(0, 0.0, 600.0), (100, 100.0, 500.0), (1_000_000, 600.0, 0.0)] {
+        let report = folder.report(&format!("source.scn --duration 2 --capacity {capacity}"));
+        let counts = ["born", "live", "refused"].map(|field| number(&report, field));
+        assert_eq!(counts, [born, born, refused], "{report}");
+    }
+    let many: String = (0..100).map(|i| format!("particle {i} 0 0 0 0 0 1 0 0 0 0 -1\n")).collect();
+    folder.write("many.scn", many + "particle_spring 3 97 1 1 1\n");
+    let report = folder.report("many.scn --steps 2 --capacity 60");
+    assert_eq!(["initial", "live", "refused"].map(|field| number(&report, field)), [60.0, 60.0, 40.0]);
+    assert_eq!(number(&report, "caps/springs"), 1.0, "{report}");
+    assert_eq!(number(&folder.report("many.scn --steps 2"), "initial"), 100.0);
+}
+
+#[test]
+fn the_hash_depends_on_the_run_alone() {
+    let folder = Folder::with("busy.scn", BUSY);
+    let run = "busy.scn --steps 90 --seed 5";
+    let hash = folder.hash(run);
+    let outs = ["o.csv", "o.jsonl", "o.ply", "o.xyz"].map(|out| format!("--out {out}")).join(" ");
+    for more in ["", "--every 7", "--every 1000", &outs, &format!("{outs} --every 4"), "--capacity 5000"] {
+        assert_eq!(folder.hash(&format!("{run} {more}")), hash, "{more}");
+    }
+    assert_eq!(folder.hash("busy.scn --duration 1.5 --seed 5"), hash);
+    assert_eq!(folder.hash("busy.scn --duration 1.5 --seed 5 --dt 1/60 --integrator rk4"), hash);
+    let mut others = BTreeSet::from([hash]);
+    let differently = ["--steps 91", "--steps 90 --seed 6", "--steps 90 --dt 0.01", "--steps 90 --capacity 30"];
+    let methods = ["euler", "symplectic", "midpoint", "verlet"].map(|name| format!("--steps 90 --integrator {name}"));
+    let differently = differently.map(str::to_string);
+    for more in differently.iter().chain(&methods) {
+        let seed = if more.contains("--seed") { "" } else { "--seed 5" };
+        assert!(others.insert(folder.hash(&format!("busy.scn {seed} {more}"))), "{more}");
+    }
+}
+
+#[test]
+fn a_run_has_as_many_steps_as_fit_and_one_shorter() {
+    let folder = Folder::with("a.scn", ONE);
+    for (duration, dt, steps) in [
+        ("10", "1/60", 600),
+        ("1", "0.3", 4),
+        ("0.9", "0.3", 3),
+        ("2.93425", "0.001", 2935),
+        ("0.05", "0.1", 1),
+        ("0.05", "100", 1),
+        ("0", "0.1", 0),
+        ("0.6", "0.1", 6),
+        ("0.600001", "0.1", 7),
+        ("0.60000000001", "0.1", 6),
+        ("2147483647", "2147483647", 1),
+    ] {
+        let report = folder.report(&format!("a.scn --duration {duration} --dt {dt}"));
+        assert_eq!(number(&report, "steps"), f64::from(steps), "{duration} in steps of {dt}: {report}");
+        let duration: f64 = duration.parse().expect("a number");
+        assert!((number(&report, "time") - duration).abs() <= 1e-9, "{duration} in steps of {dt}: {report}");
+    }
+    // 0.5 m/s: the particle feels the time that the report tells.
+    let csv = folder.run("run a.scn --duration 1 --dt 0.3 --out a.csv").fine();
+    assert!(csv.stdout.contains("4 steps"), "{csv:?}");
+    let ends: Vec<String> =
+        folder.read("a.csv").lines().skip(1).map(|line| line.split(',').take(4).collect::<Vec<_>>().join(" ")).collect();
+    assert_eq!(ends, ["0 0.0 0 1.0", "1 0.3 0 1.15", "2 0.6 0 1.3", "3 0.9 0 1.45", "4 1.0 0 1.5"]);
+}
+
+#[test]
+fn settings_come_from_the_file_unless_the_command_line_says_otherwise() {
+    let text = r#"{"run":{"duration":0.5,"dt":0.05,"integrator":"midpoint","seed":7,"capacity":2},"particles":[{},{}]}"#;
+    let folder = Folder::with("a.json", text);
+    let report = folder.report("a.json");
+    assert_eq!(["dt", "seed", "steps", "live"].map(|field| number(&report, field)), [0.05, 7.0, 10.0, 2.0]);
+    assert_eq!(report["integrator"], "midpoint");
+    let report = folder.report("a.json --dt 0.1 --duration 2 --seed 8 --integrator euler --capacity 1");
+    assert_eq!(["dt", "seed", "steps", "live"].map(|field| number(&report, field)), [0.1, 8.0, 20.0, 1.0]);
+    assert_eq!(report["integrator"], "euler");
+    // A scene that begins with more particles than its capacity has room for them all.
+    folder.write("b.json", r#"{"run":{"capacity":0},"particles":[{},{},{}]}"#);
+    assert_eq!(number(&folder.report("b.json --steps 1"), "live"), 3.0);
+}

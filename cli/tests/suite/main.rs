@@ -1,0 +1,15 @@
+//! The program from outside: its command line, its files, the course's scenes; and the formats it reads and writes.
+
+mod bad_input;
+mod command_line;
+mod conversion;
+mod course;
+mod fuzz;
+mod random;
+mod recordings;
+mod robustness;
+mod round_trip;
+mod scenes;
+mod scn;
+mod sinks;
+mod tool;

@@ -1,0 +1,199 @@
+//! `--out`: CSV, JSON lines, PLY and XYZ.
+
+use crate::scenes::{BUSY, ONE};
+use crate::tool::{Folder, number};
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{DefaultElement, Property};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufReader;
+
+const HEAD: &str = "step,time,id,x,y,z,vx,vy,vz,mass,age";
+
+/// A table's rows, as they stand there.
+fn table(folder: &Folder, name: &str) -> Vec<[f64; 11]> {
+    let text = folder.read(name);
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some(HEAD));
+    assert!(text.ends_with('\n') && !text.contains('\r') && !text.contains("NaN"));
+    lines
+        .map(|line| {
+            let numbers: Vec<f64> = line.split(',').map(|x| x.parse().unwrap_or_else(|_| panic!("{line}"))).collect();
+            assert!(line.split(',').nth(2).is_some_and(|id| id.bytes().all(|b| b.is_ascii_digit())), "{line}");
+            numbers.try_into().unwrap_or_else(|_| panic!("{line}"))
+        })
+        .collect()
+}
+
+/// The steps at which there are records, each once.
+fn steps(rows: &[[f64; 11]]) -> Vec<f64> {
+    let mut steps: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    steps.dedup();
+    steps
+}
+
+#[test]
+fn records_are_made_at_the_beginning_every_k_steps_and_at_the_end() {
+    let folder = Folder::with("a.scn", ONE);
+    for (count, every, expected) in [
+        (10, 4, &[0.0, 4.0, 8.0, 10.0][..]),
+        (10, 5, &[0.0, 5.0, 10.0]),
+        (10, 10, &[0.0, 10.0]),
+        (10, 100, &[0.0, 10.0]),
+        (10, u64::MAX, &[0.0, 10.0]),
+        (3, 1, &[0.0, 1.0, 2.0, 3.0]),
+        (1, 2, &[0.0, 1.0]),
+        (0, 1, &[0.0]),
+        (0, 9, &[0.0]),
+    ] {
+        folder.run(&format!("run a.scn --steps {count} --every {every} --out a.csv")).fine();
+        assert_eq!(steps(&table(&folder, "a.csv")), expected, "{count} steps, every {every}");
+    }
+    folder.run("run a.scn --steps 3 --out b.csv").fine();
+    assert_eq!(steps(&table(&folder, "b.csv")), [0.0, 1.0, 2.0, 3.0], "K is 1 unless told");
+}
+
+#[test]
+fn a_table_tells_the_state() {
+    let folder = Folder::with("a.scn", "particle 1 2 3  0.5 -0.25 4  2 0 0 0 0 -1\nparticle 9 9 9 1 1 1 3 1 0 0 0 -1");
+    folder.run("run a.scn --dt 0.5 --steps 2 --out a.csv").fine();
+    let rows = table(&folder, "a.csv");
+    assert_eq!(rows.len(), 6);
+    assert_eq!(rows[0], [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 0.5, -0.25, 4.0, 2.0, 0.0]);
+    assert_eq!(rows[1], [0.0, 0.0, 1.0, 9.0, 9.0, 9.0, 0.0, 0.0, 0.0, 3.0, 0.0], "what is fixed does not move");
+    // The masses attract each other, by less than a millionth of what is told here.
+    let expected = [2.0, 1.0, 0.0, 1.5, 1.75, 7.0, 0.5, -0.25, 4.0, 2.0, 1.0];
+    assert!(rows[4].iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{:?}", rows[4]);
+}
+
+#[test]
+fn ids_count_the_first_particles_and_are_never_given_twice() {
+    let folder = Folder::with("busy.scn", BUSY);
+    let report = folder.report("busy.scn --dt 1/60 --steps 120 --capacity 20 --out a.csv");
+    let rows = table(&folder, "a.csv");
+    let first: Vec<f64> = rows.iter().take_while(|row| row[0] == 0.0).map(|row| row[2]).collect();
+    assert_eq!(first, [0.0, 1.0, 2.0]);
+    let mut lives: BTreeMap<u64, Vec<&[f64; 11]>> = BTreeMap::new();
+    for row in &rows {
+        lives.entry(row[2] as u64).or_default().push(row);
+    }
+    assert!(number(&report, "died/lifetime") > 5.0 && number(&report, "died/sink") > 0.0, "{report}");
+    for (id, life) in &lives {
+        for pair in life.windows(2) {
+            assert_eq!(pair[1][0], pair[0][0] + 1.0, "{id} comes back from the dead");
+            let aged = pair[1][10] - pair[0][10];
+            assert!((aged - 1.0 / 60.0).abs() < 2e-9, "{id} ages by {aged} in a step");
+            assert_eq!(pair[0][9], pair[1][9], "{id} changes its mass");
+        }
+        let born = life[0][1] - life[0][10];
+        assert!(*id < 3 || life[0][10] <= 1.0 / 60.0, "{id} was born at {born}, not in the step it appears in");
+    }
+    // What was born and died within one step leaves no trace; nothing does so here.
+    assert_eq!(lives.len() as f64, number(&report, "initial") + number(&report, "born"));
+    let alive = rows.iter().filter(|row| row[0] == 120.0).count();
+    assert_eq!(alive as f64, number(&report, "live"));
+    for step in 0..=120 {
+        let ids: Vec<f64> = rows.iter().filter(|row| row[0] == f64::from(step)).map(|row| row[2]).collect();
+        assert_eq!(ids.iter().map(|&id| id as u64).collect::<BTreeSet<_>>().len(), ids.len(), "step {step}");
+    }
+}
+
+#[test]
+fn every_format_says_the_same() {
+    let folder = Folder::with("busy.scn", BUSY);
+    folder.run("run busy.scn --steps 40 --every 15 --out a.csv --out a.jsonl --out a.ply --out a.xyz").fine();
+    let rows = table(&folder, "a.csv");
+    assert_eq!(steps(&rows), [0.0, 15.0, 30.0, 40.0]);
+
+    let names: Vec<&str> = HEAD.split(',').collect();
+    let text = folder.read("a.jsonl");
+    assert_eq!(text.lines().count(), rows.len());
+    for (line, row) in text.lines().zip(&rows) {
+        let object: serde_json::Map<String, serde_json::Value> = serde_json::from_str(line).expect("an object");
+        assert_eq!(object.len(), names.len(), "{line}");
+        for (name, x) in names.iter().zip(row) {
+            assert_eq!(object.get(*name).and_then(serde_json::Value::as_f64), Some(*x), "{name} of {line}");
+        }
+        assert!(object["id"].is_u64() && object["step"].is_u64(), "{line}");
+    }
+
+    let text = folder.read("a.xyz");
+    let mut lines = text.lines();
+    for step in steps(&rows) {
+        let frame: Vec<_> = rows.iter().filter(|row| row[0] == step).collect();
+        assert_eq!(lines.next(), Some(frame.len().to_string().as_str()));
+        assert!(lines.next().is_some_and(|comment| comment.contains(&format!("Step={step}"))));
+        for row in frame {
+            let line = lines.next().expect("an atom");
+            let mut words = line.split(' ');
+            assert!(words.next().is_some_and(|species| species.bytes().all(|b| b.is_ascii_alphabetic())), "{line}");
+            let place: Vec<f64> = words.take(3).map(|x| x.parse().expect("a number")).collect();
+            assert_eq!(place, row[3..6], "{line}");
+        }
+    }
+    assert_eq!(lines.next(), None);
+
+    let clouds: Vec<String> = folder.names().into_iter().filter(|name| name.ends_with(".ply")).collect();
+    assert_eq!(clouds, ["a_000000.ply", "a_000001.ply", "a_000002.ply", "a_000003.ply"]);
+    for (name, step) in clouds.iter().zip(steps(&rows)) {
+        let cloud = cloud(&folder, name);
+        let frame: Vec<_> = rows.iter().filter(|row| row[0] == step).collect();
+        assert_eq!(cloud.len(), frame.len(), "{name}");
+        for (point, row) in cloud.iter().zip(frame) {
+            for (i, field) in names.iter().enumerate().skip(3) {
+                let told = match point.get(*field) {
+                    Some(Property::Float(x)) => f64::from(*x),
+                    Some(Property::Double(x)) => *x,
+                    other => panic!("{field} of {name} is {other:?}"),
+                };
+                // The table has the shortest digits that spell the same single.
+                let same = told == row[i] || (told as f32).to_bits() == (row[i] as f32).to_bits();
+                assert!(same, "{field} of {name}: {told}, {}", row[i]);
+            }
+            assert!(matches!(point.get("id"), Some(Property::UInt(id)) if f64::from(*id) == row[2]), "{name}");
+        }
+    }
+}
+
+fn cloud(folder: &Folder, name: &str) -> Vec<DefaultElement> {
+    let mut file = BufReader::new(File::open(folder.path(name)).expect("the cloud is there"));
+    let mut cloud = Parser::<DefaultElement>::new().read_ply(&mut file).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+    cloud.payload.swap_remove("vertex").unwrap_or_default()
+}
+
+#[test]
+fn recordings_of_nothing_are_whole_files_too() {
+    let folder = Folder::with("a.json", "{}");
+    folder.run("run a.json --steps 1 --out a.csv --out a.jsonl --out a.ply --out a.xyz").fine();
+    assert_eq!(folder.read("a.csv"), format!("{HEAD}\n"));
+    assert_eq!(folder.read("a.jsonl"), "");
+    assert_eq!(folder.read("a.xyz").lines().filter(|line| *line == "0").count(), 2);
+    assert!(cloud(&folder, "a_000001.ply").is_empty());
+}
+
+#[test]
+fn names_may_have_dots_folders_and_capitals() {
+    let folder = Folder::with("A.SCN", ONE);
+    folder.write("o/keep", "");
+    folder.run("run A.SCN --steps 1 --out o/a.b.ply --out o/A.CSV --out ./o/../c.xyz").fine();
+    let names = folder.names();
+    for name in ["o/a.b_000000.ply", "o/a.b_000001.ply", "o/A.CSV", "c.xyz"] {
+        assert!(names.iter().any(|n| n == name), "{name} of {names:?}");
+    }
+    assert_eq!(names.len(), 7, "{names:?}");
+}
+
+#[test]
+fn files_can_be_read_by_whoever_may() {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = Folder::with("a.scn", ONE);
+        folder.shell("umask 027; $POINTMASS run a.scn --steps 1 --out a.csv --out a.ply").fine();
+        folder.shell("umask 027; $POINTMASS convert a.scn a.json").fine();
+        for name in ["a.csv", "a_000000.ply", "a.json"] {
+            let mode = folder.path(name).metadata().expect("the file is there").permissions().mode();
+            assert_eq!(mode & 0o777, 0o640, "{name}");
+        }
+    }
+}
