@@ -1,6 +1,6 @@
 //! The command line, parsed and nothing more.
 
-use crate::record::Format;
+use crate::formats::{RecordFormat, SceneFormat, extension};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::Method;
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ pub struct Run {
     pub every: u64,
     /// Record into FILE: .csv, .jsonl, .xyz, or .ply for one file a record; may be given several times
     #[arg(long, value_name = "FILE", value_parser = recorded)]
-    pub out: Vec<(PathBuf, Format)>,
+    pub out: Vec<(PathBuf, RecordFormat)>,
     /// How to say on standard output what happened
     #[arg(long, value_enum, default_value_t = Report::Text)]
     pub report: Report,
@@ -118,32 +118,6 @@ pub struct Convert {
     pub to: (PathBuf, SceneFormat),
 }
 
-/// A format of scenes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SceneFormat {
-    /// The course's.
-    Scn,
-    /// Ours.
-    Json,
-}
-
-impl SceneFormat {
-    /// By the end of the file's name.
-    #[must_use]
-    pub fn of(path: &std::path::Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "scn" => Some(Self::Scn),
-            "json" => Some(Self::Json),
-            _ => None,
-        }
-    }
-}
-
-/// The lower-case end of a file's name.
-pub(crate) fn extension(path: &std::path::Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
-}
-
 fn seconds(text: &str) -> Result<f64, String> {
     let longest = f64::from(1u32 << 31);
     let value = match text.split_once('/') {
@@ -170,9 +144,9 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
-fn recorded(text: &str) -> Result<(PathBuf, Format), String> {
+fn recorded(text: &str) -> Result<(PathBuf, RecordFormat), String> {
     let path = PathBuf::from(text);
-    match Format::of(&path) {
+    match RecordFormat::of(&path) {
         Some(format) => Ok((path, format)),
         None => Err("expected a name that ends in .csv, .jsonl, .ply or .xyz".into()),
     }

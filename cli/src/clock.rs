@@ -45,6 +45,12 @@ impl Clock {
     }
 }
 
+/// Seconds rounded to the nanosecond: a tick of the clock is a quarter of that, and 0.001 shall read 0.001.
+#[must_use]
+pub(crate) fn nanoseconds(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e9
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,7 @@
 //! `pointmass convert`: translates a scene between the formats.
 
-use crate::args::{self, SceneFormat};
+use crate::args;
+use crate::formats::SceneFormat;
 use crate::whole::{WholeFile, existing_folder_of};
 use crate::{Failure, Outcome, load, warn};
 use pointmass::scene::{SceneFile, write_scn};

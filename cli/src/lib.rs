@@ -8,6 +8,7 @@ pub mod args;
 pub mod clock;
 pub mod convert;
 pub mod draw;
+pub mod formats;
 pub mod load;
 pub mod meshes;
 mod progress;

@@ -1,6 +1,6 @@
 //! Scenes and meshes from disk.
 
-use crate::args::SceneFormat;
+use crate::formats::SceneFormat;
 use crate::meshes::{self, MAX_BYTES};
 use crate::{Failure, Outcome, warn};
 use pointmass::Vec3;

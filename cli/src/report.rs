@@ -1,5 +1,6 @@
 //! What a run came to, for people and for programs.
 
+use crate::clock::nanoseconds;
 use crate::world::World;
 use pointmass::{Caps, Died, Energy, Measures};
 use serde::Serialize;
@@ -160,10 +161,4 @@ fn push_counts<'a>(rows: &mut Vec<(&'a str, String)>, name: &'a str, counts: &[(
 
 fn vector([x, y, z]: [f64; 3], unit: &str) -> String {
     format!("({x:.6}, {y:.6}, {z:.6}) {unit}")
-}
-
-/// Seconds rounded to the nanosecond: a tick of the clock is a quarter of that, and 0.001 shall read 0.001.
-#[must_use]
-pub(crate) fn nanoseconds(seconds: f64) -> f64 {
-    (seconds * 1e9).round() / 1e9
 }

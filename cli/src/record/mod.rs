@@ -4,39 +4,13 @@ mod ply;
 mod table;
 mod xyz;
 
-use crate::args::extension;
-use crate::report::nanoseconds;
+use crate::clock::nanoseconds;
+use crate::formats::RecordFormat;
 use crate::whole::WholeFile;
 use crate::{Failure, Outcome};
 use pointmass::{Columns, Heap, System};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-
-/// A format of recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// A table with a head line.
-    Csv,
-    /// The same, each line a JSON object.
-    Jsonl,
-    /// Point clouds, one file a record.
-    Ply,
-    /// Atoms, all records in one file.
-    Xyz,
-}
-
-impl Format {
-    /// By the end of the file's name.
-    pub(crate) fn of(path: &Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "csv" => Some(Self::Csv),
-            "jsonl" => Some(Self::Jsonl),
-            "ply" => Some(Self::Ply),
-            "xyz" => Some(Self::Xyz),
-            _ => None,
-        }
-    }
-}
 
 /// A particle in a recording.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -78,47 +52,37 @@ impl Frame {
     }
 }
 
-/// A recording in the making.
+/// A recording in the making. Dropped, it is gone.
 pub(crate) struct Recorder {
     path: PathBuf,
-    writer: Writer,
+    writer: Box<dyn Writer>,
 }
 
-enum Writer {
-    Csv(table::Csv),
-    Jsonl(table::Jsonl),
-    Ply(ply::Ply),
-    Xyz(xyz::Xyz),
+/// What writes one format.
+trait Writer {
+    fn record(&mut self, frame: &Frame) -> std::io::Result<()>;
+
+    /// Puts what was recorded where it belongs.
+    fn finish(self: Box<Self>) -> Outcome;
 }
 
 impl Recorder {
-    pub(crate) fn create(path: &Path, format: Format) -> Outcome<Self> {
-        let writer = match format {
-            Format::Csv => Writer::Csv(table::Csv::new(WholeFile::create(path)?)),
-            Format::Jsonl => Writer::Jsonl(table::Jsonl::new(WholeFile::create(path)?)),
-            Format::Ply => Writer::Ply(ply::Ply::new(path)?),
-            Format::Xyz => Writer::Xyz(xyz::Xyz::new(WholeFile::create(path)?)),
+    pub(crate) fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
+        let writer: Box<dyn Writer> = match format {
+            RecordFormat::Csv => Box::new(table::Csv::new(WholeFile::create(path)?)),
+            RecordFormat::Jsonl => Box::new(table::Jsonl::new(WholeFile::create(path)?)),
+            RecordFormat::Ply => Box::new(ply::Ply::new(path)?),
+            RecordFormat::Xyz => Box::new(xyz::Xyz::new(WholeFile::create(path)?)),
         };
         Ok(Self { path: path.to_path_buf(), writer })
     }
 
     pub(crate) fn record(&mut self, frame: &Frame) -> Outcome {
-        let outcome = match &mut self.writer {
-            Writer::Csv(writer) => writer.record(frame),
-            Writer::Jsonl(writer) => writer.record(frame),
-            Writer::Ply(writer) => writer.record(frame),
-            Writer::Xyz(writer) => writer.record(frame),
-        };
-        outcome.map_err(|error| Failure::io(&self.path, &error))
+        self.writer.record(frame).map_err(|error| Failure::io(&self.path, &error))
     }
 
     /// Puts what was recorded where it belongs.
     pub(crate) fn finish(self) -> Outcome {
-        match self.writer {
-            Writer::Csv(writer) => writer.finish(),
-            Writer::Jsonl(writer) => writer.finish(),
-            Writer::Xyz(writer) => writer.finish(),
-            Writer::Ply(writer) => writer.finish(),
-        }
+        self.writer.finish()
     }
 }

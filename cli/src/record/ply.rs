@@ -1,12 +1,12 @@
 //! PLY point clouds, binary, one file a record.
 
-use super::{Frame, Row};
+use super::{Frame, Row, Writer};
 use crate::whole::{PREFIX, existing_folder_of};
 use crate::{Failure, Outcome};
 use ply_rs_bw::ply::{
     Addable, DefaultElement, ElementDef, Encoding, Ply as Cloud, Property, PropertyDef, PropertyType, ScalarType,
 };
-use ply_rs_bw::writer::Writer;
+use ply_rs_bw::writer::Writer as CloudWriter;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -25,16 +25,18 @@ impl Ply {
         let waiting = waiting.map_err(|error| Failure::io(path, &error))?;
         Ok(Self { path: path.to_path_buf(), waiting, count: 0 })
     }
+}
 
-    pub(super) fn record(&mut self, frame: &Frame) -> io::Result<()> {
+impl Writer for Ply {
+    fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let mut out = BufWriter::new(File::create(self.waiting.path().join(self.count.to_string()))?);
         let mut cloud = cloud(frame);
-        Writer::new().write_ply(&mut out, &mut cloud).map_err(io::Error::other)?;
+        CloudWriter::new().write_ply(&mut out, &mut cloud).map_err(io::Error::other)?;
         self.count += 1;
         out.flush()
     }
 
-    pub(super) fn finish(self) -> Outcome {
+    fn finish(self: Box<Self>) -> Outcome {
         let stem = self.path.with_extension("").to_string_lossy().into_owned();
         for i in 0..self.count {
             let path = PathBuf::from(format!("{stem}_{i:06}.ply"));

@@ -1,6 +1,6 @@
 //! Tables: CSV and lines of JSON, with the same columns.
 
-use super::Frame;
+use super::{Frame, Writer};
 use crate::whole::WholeFile;
 use crate::{Failure, Outcome};
 use std::io::{self, Write};
@@ -14,15 +14,17 @@ impl Csv {
         // The head is written by hand, so that a recording of nothing has one.
         Self { writer: csv::WriterBuilder::new().has_headers(false).from_writer(file) }
     }
+}
 
-    pub(super) fn record(&mut self, frame: &Frame) -> io::Result<()> {
+impl Writer for Csv {
+    fn record(&mut self, frame: &Frame) -> io::Result<()> {
         if frame.step == 0 {
             self.writer.write_record(["step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age"])?;
         }
         frame.rows.iter().try_for_each(|row| self.writer.serialize(row)).map_err(io::Error::from)
     }
 
-    pub(super) fn finish(self) -> Outcome {
+    fn finish(self: Box<Self>) -> Outcome {
         let file = self.writer.into_inner();
         file.map_err(|error| Failure::new(format!("the table cannot be written: {}", error.error())))?.complete()
     }
@@ -36,8 +38,10 @@ impl Jsonl {
     pub(super) fn new(file: WholeFile) -> Self {
         Self { file }
     }
+}
 
-    pub(super) fn record(&mut self, frame: &Frame) -> io::Result<()> {
+impl Writer for Jsonl {
+    fn record(&mut self, frame: &Frame) -> io::Result<()> {
         for row in &frame.rows {
             serde_json::to_writer(&mut self.file, row)?;
             self.file.write_all(b"\n")?;
@@ -45,7 +49,7 @@ impl Jsonl {
         Ok(())
     }
 
-    pub(super) fn finish(self) -> Outcome {
+    fn finish(self: Box<Self>) -> Outcome {
         self.file.complete()
     }
 }

@@ -1,6 +1,6 @@
 //! XYZ, as molecule viewers read it: all records one behind the other, in the extended form that names its columns.
 
-use super::{Frame, Row};
+use super::{Frame, Row, Writer};
 use crate::Outcome;
 use crate::whole::WholeFile;
 use std::io::{self, Write};
@@ -13,8 +13,10 @@ impl Xyz {
     pub(super) fn new(file: WholeFile) -> Self {
         Self { file }
     }
+}
 
-    pub(super) fn record(&mut self, frame: &Frame) -> io::Result<()> {
+impl Writer for Xyz {
+    fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let out = &mut self.file;
         writeln!(out, "{}", frame.rows.len())?;
         let columns = "species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1";
@@ -25,7 +27,7 @@ impl Xyz {
         Ok(())
     }
 
-    pub(super) fn finish(self) -> Outcome {
+    fn finish(self: Box<Self>) -> Outcome {
         self.file.complete()
     }
 }
