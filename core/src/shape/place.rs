@@ -19,8 +19,8 @@ pub struct Placed<C> {
     collider: C,
     /// Of the collider as it stands in the world.
     bounds: Aabb,
-    to_world: Affine,
-    to_local: Affine,
+    /// To the world and back; none, if it stands where it is.
+    maps: Option<(Affine, Affine)>,
 }
 
 impl Affine {
@@ -66,30 +66,30 @@ impl<C: Surface> Placed<C> {
     #[must_use]
     pub fn new(collider: C, to_world: Affine) -> Option<Self> {
         let bounds = to_world.bounds(&collider.bounds());
-        Some(Self { collider, bounds, to_world, to_local: to_world.inverse()? })
+        let to_local = to_world.inverse()?;
+        let maps = (to_world != Affine::IDENTITY).then_some((to_world, to_local));
+        Some(Self { collider, bounds, maps })
     }
 }
 
 impl<C: Collider> Collider for Placed<C> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        if self.to_world == Affine::IDENTITY {
-            return self.collider.first_hit(segment);
-        }
+        let Some((to_world, to_local)) = &self.maps else { return self.collider.first_hit(segment) };
         // Lines stay lines and fractions stay fractions; normals go by the inverse transpose.
-        let local = Segment { from: self.to_local.point(segment.from), to: self.to_local.point(segment.to) };
+        let local = Segment { from: to_local.point(segment.from), to: to_local.point(segment.to) };
         let hit = self.collider.first_hit(&local)?;
-        let columns = self.to_world.linear;
+        let columns = to_world.linear;
         let stretch = length(Vec3::new(length(columns.x_axis), length(columns.y_axis), length(columns.z_axis)));
         Some(Hit {
             time: hit.time,
-            normal: unit(self.to_local.linear.transpose() * hit.normal),
-            slack: hit.slack * stretch + segment.slack(crate::math::largest(self.to_world.shift)),
+            normal: unit(to_local.linear.transpose() * hit.normal),
+            slack: hit.slack * stretch + segment.slack(crate::math::largest(to_world.shift)),
         })
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         // Its own answer is the sharper one: of a plane, say.
-        if self.to_world == Affine::IDENTITY { self.collider.may_touch(bounds) } else { self.bounds.overlaps(bounds) }
+        if self.maps.is_none() { self.collider.may_touch(bounds) } else { self.bounds.overlaps(bounds) }
     }
 
     fn is_empty(&self) -> bool {
