@@ -3,9 +3,10 @@
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use crate::report::Report;
 use crate::retire::Fate;
+use crate::scene::Scene;
 use crate::shape::{Aabb, Hit, Segment};
-use crate::system::{Scene, View};
 use crate::time::Time;
+use crate::view::View;
 use glam::Vec3;
 
 /// How many times a particle may bounce in one step before it waits at the surface.
@@ -141,11 +142,11 @@ impl Flight<'_> {
         let mut acceleration = if path.duration > 0.0 { (path.v1 - path.v0) / path.duration } else { Vec3::ZERO };
         let velocity = path.v0 + (path.v1 - path.v0) * meeting.time;
         let incoming = velocity.dot(normal);
-        // The chord went in; should the velocity already point out, it is left alone.
+        // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * self.elasticity } else { incoming };
         let mut velocity = velocity + normal * (outgoing - incoming);
         let pressing = -acceleration.dot(normal);
-        if pressing > 0.0 && 2.0 * outgoing < RESTING * self.dt * pressing {
+        if pressing > 0.0 && (incoming >= 0.0 || 2.0 * outgoing < RESTING * self.dt * pressing) {
             velocity -= normal * outgoing;
             acceleration += normal * pressing;
         }

@@ -32,7 +32,7 @@
 //! ```
 //!
 //! # Map
-//! `system` holds the step; `emit` creates, `force` and `integrate` move, `collide` and `shape` collide, `retire`
+//! `system` holds the state and `view` the step; `emit` creates, `force` and `integrate` move, `collide` and `shape` collide, `retire`
 //! deletes, `measure` and `report` tell what happened; `storage` owns the memory; `scene` (feature `alloc`) reads and
 //! writes scene files.
 //!
@@ -67,6 +67,7 @@ pub mod shape;
 mod storage;
 mod system;
 mod time;
+mod view;
 
 pub use emit::{Emit, Emitter, Spread, Varied};
 pub use force::{Drag, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
@@ -78,10 +79,11 @@ pub use measure::{Energy, Measures};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use report::{Caps, Died, Report};
 pub use retire::Fate;
+pub use scene::{Scene, Unfit};
 #[cfg(feature = "alloc")]
 pub use storage::Heap;
 pub use storage::{Columns, Inline, Size, Slices, Storage};
-pub use system::{Scene, System, Unfit};
+pub use system::System;
 pub use time::Time;
 
 /// The README's example has to compile and run.

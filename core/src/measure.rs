@@ -1,8 +1,9 @@
 //! Energy, momentum and angular momentum, in double precision: for reports, not for the step.
 
 use crate::force::Force;
+use crate::scene::Scene;
 use crate::storage::Storage;
-use crate::system::{Scene, System};
+use crate::system::System;
 
 /// What a system amounts to, all its particles taken together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,8 +3,8 @@
 use crate::force::Spring;
 use crate::report::Report;
 use crate::storage::Slices;
-use crate::system::View;
 use crate::time::Time;
+use crate::view::View;
 
 /// Why a particle will be removed at the end of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

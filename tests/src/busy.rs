@@ -43,7 +43,7 @@ fn ring() -> (Vec<Particle>, Vec<Spring>) {
     ((0..8).map(particle).collect(), (0..8).map(spring).collect())
 }
 
-/// Calls `act` with a scene in which everything happens: it needs 2 emitters, 8 springs and 5 columns.
+/// Calls `act` with a scene in which everything happens: it needs 3 emitters, 8 springs and 5 columns.
 pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
     let (start, springs) = ring();
     let emitters = emitters();
@@ -63,4 +63,4 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
 }
 
 /// Memory for it that is too small for all its births.
-pub const SIZE: Size = Size { particles: 30, emitters: 2, springs: 8, columns: 5 };
+pub const SIZE: Size = Size { particles: 30, emitters: 3, springs: 8, columns: 5 };

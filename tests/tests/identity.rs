@@ -106,7 +106,7 @@ fn ids_stay_with_their_particles() {
                 let some =
                     known.values().map(|k| k.0).min_by_key(|id| (id.serial().wrapping_mul(0x9e37_79b9), id.slot()));
                 if let Some(id) = some {
-                    assert!(system.remove(id) && !system.remove(id));
+                    assert!(system.remove(&Scene::EMPTY, id) && !system.remove(&Scene::EMPTY, id));
                     known.remove(&id.serial());
                     dead.push(id);
                 }
@@ -212,7 +212,7 @@ fn the_hash_sees_time_seed_and_counters() {
     news(&system);
     assert!(system.spawn(&Particle::REST).is_err());
     news(&system);
-    system.remove(id);
+    system.remove(&Scene::EMPTY, id);
     news(&system);
     system.start(&Scene::EMPTY, 1).expect("it fits");
     news(&system);
@@ -225,8 +225,8 @@ fn the_hash_goes_by_names_not_by_rows() {
     let make = |first: u32, second: u32| {
         let mut system = System::with(Heap::new(Size { particles: 6, columns: 1, ..Size::default() }));
         let ids: Vec<Id> = (0..6).map(|i| system.spawn(&particle(i)).expect("there is room")).collect();
-        system.remove(ids[first as usize]);
-        system.remove(ids[second as usize]);
+        system.remove(&Scene::EMPTY, ids[first as usize]);
+        system.remove(&Scene::EMPTY, ids[second as usize]);
         system
     };
     let (a, b) = (make(0, 1), make(1, 0));

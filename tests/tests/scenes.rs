@@ -10,7 +10,8 @@ fn folder() -> PathBuf {
 }
 
 fn scenes() -> Vec<PathBuf> {
-    let entries = folder().read_dir().expect("there is a folder of scenes").map(|entry| entry.expect("readable").path());
+    let entries =
+        folder().read_dir().expect("there is a folder of scenes").map(|entry| entry.expect("readable").path());
     let is_scene = |path: &PathBuf| {
         let name = path.to_string_lossy();
         (name.ends_with(".json") && !name.ends_with("schema.json")) || name.ends_with(".scn")

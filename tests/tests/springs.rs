@@ -55,8 +55,8 @@ fn critical_damping_does_not_overshoot() {
 /// Ten masses of 0.1 kg between two fixed ends, 0.1 m apart, on springs of 100 N/m, displaced by 5 mm in mode `j`.
 fn chain(j: u32) -> (Vec<Particle>, Vec<Spring>) {
     let shape = |i: u32| 0.005 * (PI * f64::from(i * j) / 11.0).sin();
-    let place = |i: u32| (0.1 * f64::from(i) + if i % 11 == 0 { 0.0 } else { shape(i) }) as f32;
-    let start = (0..12).map(|i| Particle { mass: 0.1, fixed: i % 11 == 0, ..at(place(i)) }).collect();
+    let place = |i: u32| (0.1 * f64::from(i) + if i.is_multiple_of(11) { 0.0 } else { shape(i) }) as f32;
+    let start = (0..12).map(|i: u32| Particle { mass: 0.1, fixed: i.is_multiple_of(11), ..at(place(i)) }).collect();
     let springs = (0..11).map(|i| Spring { ends: [i, i + 1], rest_length: 0.1, ks: 100.0, kd: 0.0 }).collect();
     (start, springs)
 }
@@ -189,7 +189,7 @@ fn a_spring_whose_end_is_removed_by_hand_is_counted_too() {
     let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 0);
     let id = system.id(0).expect("it is there");
-    assert!(system.remove(id));
+    assert!(system.remove(&scene, id));
     system.step(&scene, Time::SECOND);
     assert_eq!(system.particles().position, [start[1].position]);
     assert_eq!(system.totals().caps.springs, 1);

@@ -30,7 +30,7 @@ fn hashes<B: Storage>(system: &mut System<B>, scene: &Scene<'_>) -> Vec<u64> {
 fn it_does_not_matter_who_owns_the_memory() {
     busy(|scene| {
         assert_eq!(Size { particles: 30, ..scene.size() }, SIZE);
-        let mut inline = Inline::<30, 2, 8, 5>::new();
+        let mut inline = Inline::<30, 3, 8, 5>::new();
         let mut heap = Heap::new(SIZE);
         let expected = hashes(&mut System::with(Heap::new(SIZE)), scene);
         assert_eq!(hashes(&mut System::with(inline.clone()), scene), expected, "inline");
@@ -102,8 +102,8 @@ fn room_for_nobody() {
         let _ = system.hash();
     }
     none(Heap::new(Size { particles: 0, ..SIZE }), &scene);
-    none(Inline::<0, 2, 0, 0>::new(), &scene);
-    none(&mut Inline::<0, 2, 8, 5>::new(), &scene);
+    none(Inline::<0, 3, 0, 0>::new(), &scene);
+    none(&mut Inline::<0, 3, 8, 5>::new(), &scene);
     let mut empty = System::with(Inline::<0, 0, 0, 0>::new());
     empty.start(&Scene::EMPTY, 0).expect("it fits");
     assert_eq!(empty.step(&Scene::EMPTY, Time::SECOND), Report::NOTHING);
@@ -112,12 +112,12 @@ fn room_for_nobody() {
 #[test]
 fn a_step_that_does_not_fit_is_counted_and_changes_nothing() {
     busy(|scene| {
-        for size in [Size { emitters: 1, ..SIZE }, Size { springs: 7, ..SIZE }, Size { columns: 4, ..SIZE }] {
+        for size in [Size { emitters: 2, ..SIZE }, Size { springs: 7, ..SIZE }, Size { columns: 4, ..SIZE }] {
             let small = Scene { start: &[Particle { velocity: Vec3::X, ..Particle::REST }], ..Scene::EMPTY };
             let mut system = System::with(Heap::new(size));
             let error = system.start(scene, 1).expect_err("it does not fit");
             assert_eq!((error.need, error.have), (scene.size(), size));
-            assert!(error.to_string().contains("needs 2 emitters, 8 springs and 5 columns"));
+            assert!(error.to_string().contains("needs 3 emitters, 8 springs and 5 columns"));
             assert!(system.is_empty());
             system.start(&small, 1).expect("it fits");
             system.step(&small, Time::SECOND);
@@ -199,7 +199,7 @@ proptest! {
                 prop_assert_eq!(before + report.born, system.len() as u64 + report.died.total());
                 prop_assert!(report.hits <= 8 * capacity as u64);
                 if let Some(id) = system.id(2 * i) {
-                    prop_assert!(system.remove(id));
+                    prop_assert!(system.remove(&scene, id));
                     sum.died.chance += 1;
                 }
                 prop_assert_eq!(system.totals(), &sum);

@@ -146,7 +146,7 @@ fn json_that_is_wrong() {
         ("\"a scene\"".into(), "a.json:1:"),
         ("particle_gravity 0 0 0".into(), "a.json:1:1: "),
         (r#"{"wind": 1}"#.into(), "a.json:1:7: unknown field `wind`"),
-        ("{\n \"particles\": [{\"mas\": 1}]}".into(), "a.json:2:22: unknown field `mas`"),
+        ("{\n \"particles\": [{\"mas\": 1}]}".into(), "a.json:2:21: unknown field `mas`"),
         (r#"{"particles": {}}"#.into(), "a.json:1:"),
         (r#"{"particles": [], "particles": []}"#.into(), "a.json:1:"),
         (r#"{"particles": [{"mass": NaN}]}"#.into(), "a.json:1:"),
@@ -198,6 +198,32 @@ fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
     for text in ["[]", "[null]", r#"{"run": [10.0, 0.1]}"#, r#"{"particles": [[]]}"#, r#"{"camera": []}"#] {
         let folder = Folder::with("a.json", text);
         refused(&folder, "a.json", "a.json:1:");
+    }
+}
+
+#[test]
+fn an_error_is_one_short_line_whatever_a_name_holds() {
+    let long = "a".repeat(100_000);
+    for name in ["a\\nb", "a\\r\\nb", "\\u001b[31mred", &long] {
+        for text in [
+            format!(r#"{{"{name}": 1}}"#),
+            format!(r#"{{"run": {{"integrator": "{name}"}}}}"#),
+            format!(r#"{{"scenery": [{{"shape": {{"mesh": "{name}.off"}}}}]}}"#),
+            format!(r#"{{"scenery": [{{"shape": {{"{name}": 1}}}}]}}"#),
+        ] {
+            let folder = Folder::with("a.json", &text);
+            let answer = folder.run("run a.json --steps 1");
+            let said = answer.error();
+            assert!(said.len() < 1000 && !said.contains(char::is_control), "{text}: {said:?}");
+        }
+    }
+    for name in ["\u{1b}[31m", &long] {
+        for command in ["mesh -1", "include", ""] {
+            let folder = Folder::with("a.scn", format!("{command} {name}"));
+            let answer = folder.run("run a.scn --steps 1");
+            let said = answer.error();
+            assert!(said.len() < 1000 && !said.contains(char::is_control), "{command} {name}: {said:?}");
+        }
     }
 }
 

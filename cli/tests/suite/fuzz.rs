@@ -3,7 +3,7 @@
 use crate::random::{Memory, any_scene, scene};
 use crate::scenes::BUSY;
 use crate::scn::EVERYTHING;
-use crate::tool::often;
+use crate::tool::tries;
 use pointmass::scene::{Model, SceneFile, read_scn, write_scn};
 use pointmass::{Heap, Measures, System, Time};
 use proptest::prelude::*;
@@ -70,7 +70,7 @@ fn every_beginning_of_a_text_is_read_or_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: often(1500) as u32, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(tries(1500))]
 
     #[test]
     fn no_scene_makes_a_step_panic(scene in any_scene(), capacity in 0usize..40) {

@@ -325,7 +325,7 @@ fn run() -> impl Strategy<Value = Run> {
 pub(crate) fn any_scene() -> impl Strategy<Value = SceneFile> {
     let shapes = prop_oneof![6 => common_shape(), 1 => circle(), 1 => triangle(), 1 => plane()];
     let more = (vec(any_emitter(), 0..3), vec(force(), 0..4), vec((shapes, any::<u32>()), 0..3));
-    let words = (option::of(".*"), ".*", run(), any::<[u8; 4]>(), uniform3(positive()));
+    let words = (option::of("(?s).{0,20}"), "(?s).{0,40}", run(), any::<[u8; 4]>(), uniform3(positive()));
     (scene(), more, words).prop_map(|(mut scene, (emitters, forces, items), words)| {
         let (schema, about, run, color, [size, glow, softness]) = words;
         (scene.schema, scene.about, scene.run) = (schema, about, run);

@@ -1,5 +1,6 @@
 //! The program under test, folders to run it in, and what it answers.
 
+use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::{Read, Seek};
@@ -162,6 +163,16 @@ fn list(root: &Path, folder: &Path, names: &mut Vec<String>) {
         }
         names.push(path.strip_prefix(root).expect("inside").to_string_lossy().into_owned());
     }
+}
+
+/// How random scenes are tried: `cases` of them, fewer in debug builds, always the same ones; but `PROPTEST_CASES=N` asks
+/// for N others.
+pub(crate) fn tries(cases: usize) -> ProptestConfig {
+    let defaults = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    if std::env::var_os("PROPTEST_CASES").is_some() {
+        return defaults;
+    }
+    ProptestConfig { cases: often(cases) as u32, rng_seed: RngSeed::Fixed(1), ..defaults }
 }
 
 /// A loop's length: `n`, or a tenth of that in debug builds.

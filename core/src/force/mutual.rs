@@ -34,8 +34,9 @@ impl Default for MutualGravity {
 impl Force for MutualGravity {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         let square = self.softening * self.softening;
+        let sound = state.position.iter().all(|x| x.is_finite()) && state.mass.iter().all(|m| m.is_finite());
         for (total, row) in total.iter_mut().zip(rows) {
-            let field = field(state.position[row], state.position, state.mass, square);
+            let field = field(state.position[row], state.position, state.mass, square, sound);
             *total += field * (self.constant * state.mass[row]);
         }
     }
@@ -59,18 +60,31 @@ impl Force for MutualGravity {
 }
 
 /// Σ m d⃗ / (d² + `square`)^{3/2} at `place`: eight sums side by side, then a tree over them.
-fn field(place: Vec3, position: &[Vec3], mass: &[f32], square: f32) -> Vec3 {
+///
+/// Unless all are `sound`, what is not finite is left out: it would spoil all others in one step.
+fn field(place: Vec3, position: &[Vec3], mass: &[f32], square: f32, sound: bool) -> Vec3 {
     let mut sums = [[0.0f32; LANES]; 3];
     let ((x, x_rest), (m, m_rest)) = (position.as_chunks(), mass.as_chunks());
     for (x, m) in x.iter().zip(m) {
-        add_chunk(&mut sums, place, x, m, square);
+        if sound {
+            add_chunk(&mut sums, place, x, m, square);
+        } else {
+            add_part(&mut sums, place, x, m, square);
+        }
     }
-    // Lanes beyond the end lie at the place itself, without mass.
-    let (mut x, mut m) = ([place; LANES], [0.0; LANES]);
-    x[..x_rest.len()].copy_from_slice(x_rest);
-    m[..m_rest.len()].copy_from_slice(m_rest);
-    add_chunk(&mut sums, place, &x, &m, square);
+    add_part(&mut sums, place, x_rest, m_rest, square);
     Vec3::from_array(sums.map(|s| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))))
+}
+
+/// Lanes that are beyond the end or not finite lie at the place itself, without mass.
+fn add_part(sums: &mut [[f32; LANES]; 3], place: Vec3, position: &[Vec3], mass: &[f32], square: f32) {
+    let (mut x, mut m) = ([place; LANES], [0.0; LANES]);
+    for (lane, (&position, &mass)) in position.iter().zip(mass).enumerate() {
+        if position.is_finite() && mass.is_finite() {
+            (x[lane], m[lane]) = (position, mass);
+        }
+    }
+    add_chunk(sums, place, &x, &m, square);
 }
 
 /// One attractor a lane. Each loop runs over all lanes, so that a compiler makes vectors of them.
@@ -86,14 +100,11 @@ fn add_chunk(sums: &mut [[f32; LANES]; 3], place: Vec3, x: &[Vec3; LANES], m: &[
     for lane in 0..LANES {
         let r2 = d[0][lane] * d[0][lane] + d[1][lane] * d[1][lane] + d[2][lane] * d[2][lane] + square;
         let w = m[lane] / (r2 * sqrt(r2));
-        // Neither itself, nor what is not finite or too near for an `f32`: it would spoil all others in one step.
-        let counts = r2 > 0.0 && r2 < f32::INFINITY && w.abs() < f32::INFINITY;
-        weight[lane] = if counts { w } else { f32::NAN };
+        weight[lane] = if r2 > 0.0 { w } else { 0.0 };
     }
     for axis in 0..3 {
         for lane in 0..LANES {
-            let pull = weight[lane] * d[axis][lane];
-            sums[axis][lane] += if weight[lane].is_nan() { 0.0 } else { pull };
+            sums[axis][lane] += weight[lane] * d[axis][lane];
         }
     }
 }

@@ -55,9 +55,10 @@ impl<'a> Springs<'a> {
 
     /// The row of the particle that was number `number` at the start, if it lives.
     fn row(&self, number: u32) -> Option<usize> {
-        // The start was put in first, so its slots are its numbers; a slot given again has another serial.
+        // The start was put in first, so its slots are its numbers; a slot given again has another serial, and beyond
+        // those that found room there are none.
         let row = *self.row_of.get(number as usize)? as usize;
-        (self.serial.get(row) == Some(&number)).then_some(row)
+        (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
     }
 
     /// The rows of both ends of every spring that still has them.
@@ -67,7 +68,8 @@ impl<'a> Springs<'a> {
 
     /// How many springs the particle in `row` holds whose other end lives.
     pub(crate) fn held_by(&self, row: usize) -> u64 {
-        self.at(row).filter(|&(_, other)| self.row(other).is_some()).count() as u64
+        let other_row = |(_, other)| self.row(other).filter(|&other| other != row);
+        self.at(row).filter_map(other_row).count() as u64
     }
 }
 

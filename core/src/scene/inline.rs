@@ -1,12 +1,12 @@
 //! A `.scn` scene in inline arrays: what firmware reads at start, without a heap.
 
+use super::Scene;
 use super::scn::{Command, Located, Place, Scenery, ScnError, Source, commands};
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
 use crate::integrate::Rk4;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, Mesh, Placed, Shape};
-use crate::system::Scene;
 use glam::{Mat3, Vec3};
 use heapless::Vec;
 

@@ -1,4 +1,4 @@
-//! Scenes as files: the declared scene, our JSON and the course's `.scn`.
+//! Scenes: what a system steps through, and the files that say it, our JSON and the course's `.scn`.
 //!
 //! Without a heap, `scn` parses command by command and [`InlineScene`] holds a small scene. With the feature `alloc`,
 //! text → [`SceneFile`] (what the file says, for writing back) → [`Model`] (meshes loaded, colours and transforms
@@ -17,6 +17,7 @@ mod json;
 mod model;
 #[cfg(feature = "alloc")]
 mod read;
+mod rules;
 pub mod scn;
 #[cfg(feature = "alloc")]
 mod write;
@@ -32,6 +33,7 @@ pub use json::schema;
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, beside, read_scn};
+pub use rules::{Scene, Unfit};
 #[cfg(feature = "alloc")]
 pub use write::write_scn;
 

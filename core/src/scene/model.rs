@@ -1,5 +1,6 @@
 //! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
 
+use super::Scene;
 use super::{Files, Material, SceneError, SceneFile, beside};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
@@ -7,7 +8,6 @@ use crate::integrate::Method;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, MeshBuf, Placed, Shape};
 use crate::storage::Size;
-use crate::system::Scene;
 use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};

@@ -10,7 +10,7 @@ pub struct Mesh<'a> {
     bounds: Aabb,
     vertices: &'a [Vec3],
     triangles: &'a [[u32; 3]],
-    /// Running sums of the triangles' areas in units of 2⁻²⁴ of the largest: whole numbers, so that a million
+    /// Running sums of the triangles' areas in units of 2⁻³⁶ of the largest: whole numbers, so that a million
     /// triangles lose nothing; empty if births were not asked for.
     areas: &'a [u64],
 }
@@ -203,6 +203,9 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BadMesh> {
     }
 }
 
+/// Of a triangle's area in that of the largest; 2³⁶, so that 2²⁸ triangles cannot overflow the sum.
+const UNIT: f32 = 68_719_476_736.0;
+
 /// Fills in running sums of areas; where all are zero (or overflow) every triangle counts alike.
 fn sum_areas(vertices: &[Vec3], triangles: &[[u32; 3]], areas: &mut [u64]) {
     let size = |t| face(vertices, t).area();
@@ -210,7 +213,7 @@ fn sum_areas(vertices: &[Vec3], triangles: &[[u32; 3]], areas: &mut [u64]) {
     let usable = greatest > 0.0 && greatest < f32::INFINITY;
     let mut sum = 0;
     for (triangle, slot) in triangles.iter().zip(areas) {
-        sum += if usable { (size(triangle) / greatest * 16_777_216.0) as u64 } else { 1 };
+        sum += if usable { (size(triangle) / greatest * UNIT) as u64 } else { 1 };
         *slot = sum;
     }
 }

@@ -1,0 +1,239 @@
+//! A surface that gives birth to particles.
+
+use super::{Births, Emit, Spread, Varied};
+use crate::math::unit;
+use crate::particles::{Color, Particle, WHITE};
+use crate::rng::Stream;
+use crate::shape::{Shape, Surface};
+use crate::time::Time;
+use glam::Vec3;
+
+/// Many births at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Burst {
+    /// How many.
+    pub count: u32,
+    /// When first \[s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub at: f32,
+    /// How long from one to the next \[s\]; zero: there is but one.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub every: f32,
+}
+
+/// A surface that gives birth to particles.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Emitter<M> {
+    /// Where births lie, uniformly by area.
+    pub shape: Shape<M>,
+    /// Births per second.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub rate: f32,
+    /// Births all at once, beside those of the rate.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub burst: Option<Burst>,
+    /// When it begins \[s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub start: f32,
+    /// When it ends \[s\], if it does.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub stop: Option<f32>,
+    /// Speed along the direction of birth \[m/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub speed: Varied,
+    /// The middle of the directions; without one, the surface's normal at the place of birth.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<[f32; 3]>"))]
+    pub direction: Option<Vec3>,
+    /// How far directions stray from the middle.
+    #[cfg_attr(feature = "serde", serde(default = "straight"))]
+    pub spread: Spread,
+    /// The emitter itself moves steadily with this velocity \[m/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub velocity: Vec3,
+    /// The share of the emitter's velocity that births take along, usually 0 to 1.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub inherit: f32,
+    /// Mass \[kg\].
+    #[cfg_attr(feature = "serde", serde(default = "one"))]
+    pub mass: Varied,
+    /// Births never move.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub fixed: bool,
+    /// Coefficient of linear drag \[kg/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub drag: Varied,
+    /// Share of the normal speed kept in a hit.
+    #[cfg_attr(feature = "serde", serde(default = "half"))]
+    pub elasticity: Varied,
+    /// Lifetime \[s\]; zero or less: for ever.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub lifetime: Varied,
+    /// Number of the births' material in the scene.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub material: Option<u16>,
+    /// Their colour; without one, that of the material.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub color: Option<Color>,
+    /// How far each of red, green, blue and opacity may be from the colour, evenly on both sides.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub color_variance: Color,
+}
+
+/// One emitter, or two if it has bursts: those of the rate and those of the bursts are numbered separately, so that
+/// their random numbers do not depend on which come first in a step.
+impl<M: Surface + Sync> Emit for Emitter<M> {
+    fn count(&self) -> usize {
+        1 + usize::from(self.burst.is_some())
+    }
+
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        let number = births.claim();
+        let (start, stop) = (Time::from_seconds(self.start), self.stop.map_or(Time::NEVER, Time::from_seconds));
+        if let Some(burst) = &self.burst {
+            let number = births.claim();
+            self.emit_bursts(burst, [from, to], births, number);
+        }
+        let (first, last) = (from.max(start), to.min(stop));
+        if first < last {
+            let mut due = births.due(number, self.rate, first, last);
+            while !births.is_full() {
+                let Some(at) = due.next() else { return };
+                let _counted = births.give(number, at, |stream| self.newborn(stream, at));
+            }
+            births.refuse(number, due.left());
+        }
+    }
+}
+
+impl<M> Emitter<M> {
+    /// An emitter of `rate` births per second that are at rest, of 1 kg, immortal.
+    #[must_use]
+    pub const fn new(shape: Shape<M>, rate: f32) -> Self {
+        Self {
+            shape,
+            rate,
+            burst: None,
+            start: 0.0,
+            stop: None,
+            speed: Varied::exactly(0.0),
+            direction: None,
+            spread: Spread::Uniform(0.0),
+            velocity: Vec3::ZERO,
+            inherit: 0.0,
+            mass: Varied::exactly(1.0),
+            fixed: false,
+            drag: Varied::exactly(0.0),
+            elasticity: Varied::exactly(0.5),
+            lifetime: Varied::exactly(0.0),
+            material: None,
+            color: None,
+            color_variance: [0; 4],
+        }
+    }
+
+    /// The same emitter with births of exactly this mass, drag, elasticity and lifetime, fixed if this is.
+    #[must_use]
+    pub fn giving_birth_to(self, newborn: &Particle) -> Self {
+        Self {
+            mass: Varied::exactly(newborn.mass),
+            fixed: newborn.fixed,
+            drag: Varied::exactly(newborn.drag),
+            elasticity: Varied::exactly(newborn.elasticity),
+            lifetime: Varied::exactly(newborn.lifetime),
+            ..self
+        }
+    }
+}
+
+impl<M: Surface> Emitter<M> {
+    /// The bursts whose instants lie in [from, to): one at zero belongs to the first step.
+    fn emit_bursts(&self, burst: &Burst, [from, to]: [Time; 2], births: &mut Births<'_>, number: usize) {
+        let (first, every) = (Time::from_seconds(burst.at).ticks(), Time::from_seconds(burst.every).ticks());
+        if burst.count == 0 {
+            return;
+        }
+        // The number of the first burst that is not before `from`.
+        let mut index = from.ticks().saturating_sub(first).checked_div(every).unwrap_or(0);
+        if first.saturating_add(index.saturating_mul(every)) < from.ticks() {
+            index += 1;
+        }
+        loop {
+            let ticks = first.saturating_add(index.saturating_mul(every));
+            let at = Time::from_ticks(ticks);
+            if at < from || at >= to || (every == 0 && index > 0) {
+                return;
+            }
+            for given in 0..burst.count {
+                if births.is_full() {
+                    births.refuse(number, u64::from(burst.count - given));
+                    break;
+                }
+                let _counted = births.give(number, at, |stream| self.newborn(stream, at));
+            }
+            // Once nothing fits, what is left of this step's bursts is only counted.
+            if births.is_full() && every > 0 {
+                let rest = (to.ticks() - 1 - ticks) / every;
+                births.refuse(number, rest.saturating_mul(u64::from(burst.count)));
+                return;
+            }
+            index += 1;
+        }
+    }
+
+    /// A newborn. Each property draws from a place of its own, so that a change of one leaves the others alone.
+    fn newborn(&self, random: Stream, at: Time) -> Particle {
+        let [u, v] = random.units(0);
+        let [w, p] = random.units(1);
+        let [q, speed] = random.units(2);
+        let spot = self.shape.sample([u, v, w]);
+        let axis = self.direction.map_or(spot.normal, unit);
+        let direction = self.spread.direction(axis, [p, q]);
+        Particle {
+            position: spot.point + self.velocity * at.seconds(),
+            velocity: self.velocity * self.inherit + direction * self.speed.pick(|| speed),
+            mass: self.mass.pick(|| random.units(3)[0]),
+            fixed: self.fixed,
+            drag: self.drag.pick(|| random.units(3)[1]),
+            elasticity: self.elasticity.pick(|| random.units(4)[0]),
+            lifetime: self.lifetime.pick(|| random.units(4)[1]),
+            material: self.material,
+            color: Some(self.tint(random)),
+        }
+    }
+
+    fn tint(&self, random: Stream) -> Color {
+        let mean = self.color.unwrap_or(WHITE);
+        if self.color_variance == [0; 4] {
+            return mean;
+        }
+        let ([a, b], [c, d]) = (random.units(5), random.units(6));
+        let mut tint = mean;
+        for ((channel, variance), u) in tint.iter_mut().zip(self.color_variance).zip([a, b, c, d]) {
+            // The cast saturates at 0 and 255.
+            *channel = (f32::from(*channel) + f32::from(variance) * (2.0 * u - 1.0) + 0.5) as u8;
+        }
+        tint
+    }
+}
+
+#[cfg(feature = "serde")]
+fn straight() -> Spread {
+    Spread::Uniform(0.0)
+}
+
+#[cfg(feature = "serde")]
+fn one() -> Varied {
+    Varied::exactly(1.0)
+}
+
+#[cfg(feature = "serde")]
+fn half() -> Varied {
+    Varied::exactly(0.5)
+}

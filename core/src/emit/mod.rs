@@ -1,0 +1,206 @@
+//! Creation: emitters and the births they bring about.
+//!
+//! Births are counted in whole numbers, so that a rate means the same at every frame rate: those in (t, t + dt] are
+//! floor(R(t + dt)) − floor(R(t)), R being the rate times the time, and each has an instant of its own.
+
+mod emitter;
+mod vary;
+
+pub use emitter::{Burst, Emitter};
+pub use vary::{Spread, Varied};
+
+use crate::particles::{Full, Particle};
+use crate::report::Report;
+use crate::rng::Stream;
+use crate::time::{Time, fixed_32};
+use crate::view::View;
+
+/// Something that brings particles into the world.
+///
+/// A tuple, slice or reference of emitters is an emitter. Each has a number, its place in the flattened list, and
+/// keeps a `Tally` under it.
+pub trait Emit: Sync {
+    /// How many emitters it is.
+    fn count(&self) -> usize;
+
+    /// Brings about the births between `from` (excluded) and `to` (included).
+    ///
+    /// Claims as many numbers of `births` as `count` says.
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>);
+}
+
+/// What an emitter has done so far; numbers and instants of births go on from here, even when its rate changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Births so far, those that found no room included.
+    pub(crate) serial: u32,
+    /// How much of the next birth is done, in units of 2⁻⁶⁴.
+    pub(crate) phase: u64,
+}
+
+/// What emitters give birth into.
+#[derive(Debug)]
+pub struct Births<'a> {
+    pub(crate) view: View<'a>,
+    pub(crate) report: &'a mut Report,
+    pub(crate) next: usize,
+}
+
+impl Tally {
+    pub(crate) const NEW: Self = Self { serial: 0, phase: 0 };
+}
+
+impl Births<'_> {
+    /// The number of the next emitter.
+    pub fn claim(&mut self) -> usize {
+        self.next += 1;
+        self.next - 1
+    }
+
+    /// The births that emitter `number` owes at `rate` per second after `from` until `to`, and goes on from them.
+    pub fn due(&mut self, number: usize, rate: f32, from: Time, to: Time) -> Due {
+        let Some(tally) = self.view.memory.tallies.get_mut(number) else { return Due::NONE };
+        // Rates are whole numbers of 2⁻³² births per second, which is 2⁻⁶⁴ births per tick.
+        let rate = fixed_32(rate);
+        let phase = tally.phase;
+        let reached = u128::from(phase) + u128::from(rate) * u128::from((to - from).ticks());
+        tally.phase = reached as u64;
+        Due { phase, rate, from, next: 1, last: (reached >> 64) as u64 }
+    }
+
+    /// Whether no further birth finds room.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.view.is_full()
+    }
+
+    /// A birth of emitter `number` at the instant `at`, made from the random numbers that belong to it.
+    ///
+    /// # Errors
+    /// If there is no room, which is counted. It has used up its random numbers all the same.
+    pub fn give(&mut self, number: usize, at: Time, make: impl FnOnce(Stream) -> Particle) -> Result<(), Full> {
+        let Some(tally) = self.view.memory.tallies.get_mut(number) else { return Err(Full) };
+        let serial = tally.serial;
+        tally.serial = serial.wrapping_add(1);
+        if self.view.is_full() {
+            self.report.refused += 1;
+            return Err(Full);
+        }
+        let particle = make(Stream::new(self.view.seed(), number as u32, serial));
+        self.view.spawn(&particle, at)?;
+        self.report.born += 1;
+        Ok(())
+    }
+
+    /// `count` births of emitter `number` that find no room, at once.
+    pub fn refuse(&mut self, number: usize, count: u64) {
+        if let Some(tally) = self.view.memory.tallies.get_mut(number) {
+            tally.serial = tally.serial.wrapping_add(count as u32);
+            self.report.refused = self.report.refused.saturating_add(count);
+        }
+    }
+}
+
+/// The instants of births that a rate brings about.
+#[derive(Clone, Copy, Debug)]
+pub struct Due {
+    phase: u64,
+    rate: u64,
+    from: Time,
+    next: u64,
+    last: u64,
+}
+
+impl Due {
+    const NONE: Self = Self { phase: 0, rate: 0, from: Time::ZERO, next: 1, last: 0 };
+
+    /// How many are left.
+    #[must_use]
+    pub const fn left(&self) -> u64 {
+        (self.last + 1).saturating_sub(self.next)
+    }
+}
+
+impl Iterator for Due {
+    type Item = Time;
+
+    /// The first tick at which the births so far reach a whole number: the same however time was cut into steps.
+    fn next(&mut self) -> Option<Time> {
+        if self.left() == 0 {
+            return None;
+        }
+        let missing = (u128::from(self.next) << 64) - u128::from(self.phase);
+        self.next += 1;
+        let ticks = missing.div_ceil(u128::from(self.rate.max(1)));
+        Some(self.from + Time::from_ticks(ticks as u64))
+    }
+}
+
+impl Emit for () {
+    fn count(&self) -> usize {
+        0
+    }
+    fn emit(&self, _: Time, _: Time, _: &mut Births<'_>) {}
+}
+
+impl<T: Emit + ?Sized> Emit for &T {
+    fn count(&self) -> usize {
+        (**self).count()
+    }
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        (**self).emit(from, to, births);
+    }
+}
+
+impl<T: Emit> Emit for [T] {
+    fn count(&self) -> usize {
+        self.iter().map(Emit::count).sum()
+    }
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        for emitter in self {
+            emitter.emit(from, to, births);
+        }
+    }
+}
+
+/// Everything that holds a slice is what the slice is.
+macro_rules! lists {
+    ($($(#[$when:meta])* [$($generics:tt)*] $list:ty;)+) => {$(
+        $(#[$when])*
+        impl<$($generics)*> Emit for $list {
+            fn count(&self) -> usize {
+                self.as_slice().count()
+            }
+            fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+                self.as_slice().emit(from, to, births);
+            }
+        }
+    )+};
+}
+lists! {
+    [T: Emit, const N: usize] [T; N];
+    [T: Emit, const N: usize] heapless::Vec<T, N>;
+    #[cfg(feature = "alloc")]
+    [T: Emit] alloc::vec::Vec<T>;
+}
+
+macro_rules! tuples {
+    ($($name:ident)+) => {
+        impl<$($name: Emit),+> Emit for ($($name,)+) {
+            fn count(&self) -> usize {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                0 $(+ $name.count())+
+            }
+            fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.emit(from, to, births);)+
+            }
+        }
+    };
+}
+tuples!(A);
+tuples!(A B);
+tuples!(A B C);
+tuples!(A B C D);

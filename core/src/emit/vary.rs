@@ -1,0 +1,93 @@
+//! Numbers and directions that vary from birth to birth.
+
+use crate::math::{frame, max, sin_cos, sin_cos_turns, sqrt};
+use glam::Vec3;
+
+/// A number that varies: its mean, and how far it may be from that, evenly on both sides (Reeves, "Particle Systems",
+/// SIGGRAPH 1983).
+///
+/// In a file a plain number, or `{"mean": 2, "variance": 0.5}` for 1.5 to 2.5.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Number", into = "Number"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "Number"))]
+pub struct Varied {
+    /// The middle.
+    pub mean: f32,
+    /// The largest difference from it.
+    pub variance: f32,
+}
+
+/// The directions in which births may leave, about the surface's normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Spread {
+    /// Uniform in solid angle within this angle \[rad\], 0 to π: cos α = 1 − u (1 − cos c).
+    Uniform(f32),
+    /// The lecture's recipe with this cutoff \[rad\]: sin α uniform in [0, sin c). It favours the middle, and beyond a
+    /// right angle it folds back.
+    Lecture(f32),
+}
+
+impl Varied {
+    /// Always `mean`.
+    #[must_use]
+    pub const fn exactly(mean: f32) -> Self {
+        Self { mean, variance: 0.0 }
+    }
+
+    /// Uniform from mean − variance to mean + variance; `u` is asked for only if there is a variance.
+    pub(super) fn pick(self, u: impl FnOnce() -> f32) -> f32 {
+        if self.variance == 0.0 { self.mean } else { self.mean + self.variance * (2.0 * u() - 1.0) }
+    }
+}
+
+impl Spread {
+    /// The direction about the unit vector `axis` that two numbers uniform in [0, 1) pick.
+    #[must_use]
+    pub fn direction(self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
+        let (sin, cos) = match self {
+            Self::Uniform(0.0) | Self::Lecture(0.0) => return axis,
+            Self::Uniform(cutoff) => {
+                // 1 − cos c = 2 sin²(c/2) keeps the digits of small angles.
+                let (half, _) = sin_cos(0.5 * cutoff);
+                let drop = u * 2.0 * half * half;
+                (sqrt(max(drop * (2.0 - drop), 0.0)), 1.0 - drop)
+            }
+            Self::Lecture(cutoff) => {
+                let sin = u * sin_cos(cutoff).0;
+                (sin, sqrt(max(1.0 - sin * sin, 0.0)))
+            }
+        };
+        let (a, b) = frame(axis);
+        let (along_b, along_a) = sin_cos_turns(v);
+        axis * cos + (a * along_a + b * along_b) * sin
+    }
+}
+
+/// How a varied number is written.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+enum Number {
+    Plain(f32),
+    Varied { mean: f32, variance: f32 },
+}
+
+#[cfg(feature = "serde")]
+impl From<Number> for Varied {
+    fn from(number: Number) -> Self {
+        match number {
+            Number::Plain(mean) => Self::exactly(mean),
+            Number::Varied { mean, variance } => Self { mean, variance },
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Varied> for Number {
+    fn from(Varied { mean, variance }: Varied) -> Self {
+        if variance == 0.0 { Self::Plain(mean) } else { Self::Varied { mean, variance } }
+    }
+}

@@ -1,0 +1,107 @@
+//! The scene as a system steps through it.
+
+use crate::emit::Emit;
+use crate::force::{Force, Spring};
+use crate::integrate::{Integrator, Symplectic};
+use crate::particles::Particle;
+use crate::shape::Collider;
+use crate::storage::Size;
+
+/// What the world does: immutable while it runs. Lists are closed under composition, so each field is one thing.
+///
+/// ```
+/// use pointmass::{Drag, Gravity, Scene};
+/// let scene = Scene { forces: &(Gravity::EARTH, Drag {}), ..Scene::EMPTY };
+/// ```
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// The particles it begins with.
+    pub start: &'a [Particle],
+    /// Springs between them.
+    pub springs: &'a [Spring],
+    /// What brings further particles into the world.
+    pub emitters: &'a dyn Emit,
+    /// What acts on particles, springs aside.
+    pub forces: &'a dyn Force,
+    /// What they bounce off.
+    pub colliders: &'a dyn Collider,
+    /// What they vanish at.
+    pub sinks: &'a dyn Collider,
+    /// How they are moved.
+    pub integrator: &'a dyn Integrator,
+}
+
+impl core::fmt::Debug for Scene<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Scene").field("size", &self.size()).finish_non_exhaustive()
+    }
+}
+
+impl Scene<'_> {
+    /// Nothing at all, moved by symplectic Euler.
+    pub const EMPTY: Scene<'static> = Scene {
+        start: &[],
+        springs: &[],
+        emitters: &(),
+        forces: &(),
+        colliders: &(),
+        sinks: &(),
+        integrator: &Symplectic,
+    };
+
+    /// Vectors that a step needs to work with for each particle.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        let start = if self.needs_start() { 2 } else { 0 };
+        // Newborns need one column for their acceleration, whatever the method.
+        start + self.integrator.columns().max(1)
+    }
+
+    /// The least memory it runs in; `particles` is what it begins with.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        Size {
+            particles: self.start.len(),
+            emitters: self.emitters.count(),
+            springs: self.springs.len(),
+            columns: self.columns(),
+        }
+    }
+
+    /// Whether paths are to be followed through space.
+    pub(crate) fn is_swept(&self) -> bool {
+        !(self.colliders.is_empty() && self.sinks.is_empty())
+    }
+
+    pub(crate) fn needs_start(&self) -> bool {
+        self.integrator.needs_start() || self.is_swept()
+    }
+
+    /// Whether a step can be made in memory of size `have`: all but the particles must fit.
+    pub(crate) fn fits(&self, have: Size) -> bool {
+        let need = self.size();
+        need.emitters <= have.emitters && need.springs <= have.springs && need.columns <= have.columns
+    }
+}
+
+/// A scene needs more memory than the system has, particles aside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unfit {
+    /// What the scene needs.
+    pub need: Size,
+    /// What there is.
+    pub have: Size,
+}
+
+impl core::fmt::Display for Unfit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { need, have } = self;
+        write!(
+            f,
+            "the scene needs {} emitters, {} springs and {} columns, the system has {}, {} and {}",
+            need.emitters, need.springs, need.columns, have.emitters, have.springs, have.columns
+        )
+    }
+}
+
+impl core::error::Error for Unfit {}

@@ -1,0 +1,168 @@
+//! What a moving point can run into, one by one or in lists.
+
+use super::Aabb;
+use crate::math::{largest, max};
+use glam::Vec3;
+
+/// Something that a moving point can run into.
+///
+/// A tuple, slice or reference of colliders is a collider: the earliest hit is its hit.
+pub trait Collider: Sync {
+    /// Where `segment` first meets it, if it does.
+    ///
+    /// A point that starts on the surface and leaves it does not hit it; a closed solid's surface belongs to the
+    /// outside. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
+    fn first_hit(&self, segment: &Segment) -> Option<Hit>;
+
+    /// Whether a path inside `bounds` might meet it. May say yes too often, never no wrongly: it spares the search.
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        let _ = bounds;
+        true
+    }
+
+    /// Whether it is known that nothing can ever hit it.
+    fn is_empty(&self) -> bool {
+        false
+    }
+}
+
+/// A straight piece of a particle's path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Its beginning \[m\].
+    pub from: Vec3,
+    /// Its end \[m\].
+    pub to: Vec3,
+}
+
+/// Where a segment meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The fraction of the segment that is free, in [0, 1].
+    pub time: f32,
+    /// Unit normal of the surface, on the side that the segment comes from.
+    pub normal: Vec3,
+    /// How far from the computed point the surface may really be \[m\]: a few units in the last place of the
+    /// coordinates involved, never an absolute epsilon.
+    pub slack: f32,
+}
+
+impl Segment {
+    /// From one end to the other \[m\].
+    #[inline]
+    #[must_use]
+    pub fn step(&self) -> Vec3 {
+        self.to - self.from
+    }
+
+    /// The point at a fraction of it.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, time: f32) -> Vec3 {
+        self.from + self.step() * time
+    }
+
+    /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
+    #[inline]
+    pub(crate) fn slack(&self, size: f32) -> f32 {
+        4.0 * f32::EPSILON * (max(largest(self.from), largest(self.to)) + size)
+    }
+}
+
+impl Collider for () {
+    fn first_hit(&self, _: &Segment) -> Option<Hit> {
+        None
+    }
+    fn may_touch(&self, _: &Aabb) -> bool {
+        false
+    }
+    fn is_empty(&self) -> bool {
+        true
+    }
+}
+
+impl<T: Collider + ?Sized> Collider for &T {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        (**self).first_hit(segment)
+    }
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        (**self).may_touch(bounds)
+    }
+    fn is_empty(&self) -> bool {
+        (**self).is_empty()
+    }
+}
+
+impl<T: Collider> Collider for [T] {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        self.iter().fold(None, |best, c| earlier(best, c.first_hit(segment)))
+    }
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.iter().any(|c| c.may_touch(bounds))
+    }
+    fn is_empty(&self) -> bool {
+        self.iter().all(Collider::is_empty)
+    }
+}
+
+/// Everything that holds a slice is what the slice is.
+macro_rules! lists {
+    ($($(#[$when:meta])* [$($generics:tt)*] $list:ty;)+) => {$(
+        $(#[$when])*
+        impl<$($generics)*> Collider for $list {
+            fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+                self.as_slice().first_hit(segment)
+            }
+            fn may_touch(&self, bounds: &Aabb) -> bool {
+                self.as_slice().may_touch(bounds)
+            }
+            fn is_empty(&self) -> bool {
+                self.iter().all(Collider::is_empty)
+            }
+        }
+    )+};
+}
+lists! {
+    [T: Collider, const N: usize] [T; N];
+    [T: Collider, const N: usize] heapless::Vec<T, N>;
+    #[cfg(feature = "alloc")]
+    [T: Collider] alloc::vec::Vec<T>;
+}
+
+macro_rules! tuples {
+    ($($name:ident)+) => {
+        impl<$($name: Collider),+> Collider for ($($name,)+) {
+            fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                let mut best = None;
+                $(best = earlier(best, $name.first_hit(segment));)+
+                best
+            }
+            fn may_touch(&self, bounds: &Aabb) -> bool {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.may_touch(bounds))||+
+            }
+            fn is_empty(&self) -> bool {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.is_empty())&&+
+            }
+        }
+    };
+}
+tuples!(A);
+tuples!(A B);
+tuples!(A B C);
+tuples!(A B C D);
+tuples!(A B C D E);
+tuples!(A B C D E F);
+
+/// The earlier of two hits, the first where they tie.
+pub(crate) fn earlier(a: Option<Hit>, b: Option<Hit>) -> Option<Hit> {
+    match (a, b) {
+        (Some(x), Some(y)) => Some(if y.time < x.time { y } else { x }),
+        (a, b) => a.or(b),
+    }
+}

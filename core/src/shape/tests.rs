@@ -1,0 +1,126 @@
+//! What every shape has to do, whichever it is.
+
+use super::*;
+use crate::rng::Stream;
+use proptest::prelude::*;
+
+fn all() -> [Shape<Mesh<'static>>; 5] {
+    let center = Vec3::new(0.3, -0.2, 0.5);
+    [
+        Shape::Box(Cuboid { min: Vec3::new(-0.5, -0.4, -0.3), max: Vec3::new(0.6, 0.7, 0.2) }),
+        Shape::Sphere(Sphere { center, radius: 0.7 }),
+        Shape::Cylinder(Cylinder { center, radius: 0.5, height: 1.2 }),
+        Shape::Cone(Cone { center, radius: 0.6, height: 1.1 }),
+        Shape::Circle(Disc { center, normal: Vec3::new(1.0, 2.0, -3.0), radius: 0.8 }),
+    ]
+}
+
+fn numbers(i: u32) -> [f32; 3] {
+    let stream = Stream::new(1, 2, i);
+    [stream.units(0)[0], stream.units(0)[1], stream.units(1)[0]]
+}
+
+#[test]
+fn samples_lie_on_the_surface_and_normals_point_away() {
+    for shape in all() {
+        for i in 0..2000 {
+            let spot = shape.sample(numbers(i));
+            assert!((shape.nearest(spot.point) - spot.point).length() < 1e-6, "{shape:?} {spot:?}");
+            assert!((spot.normal.length() - 1.0).abs() < 1e-6);
+            let off = spot.point + spot.normal * 1e-3;
+            assert!(((shape.nearest(off) - off).length() - 1e-3).abs() < 1e-5, "{shape:?} {spot:?}");
+        }
+    }
+}
+
+#[test]
+fn nearest_is_no_farther_than_any_sample() {
+    for shape in all() {
+        for i in 0..200 {
+            let [x, y, z] = numbers(i + 5000);
+            let point = Vec3::new(x, y, z) * 3.0 - 1.5;
+            let distance = (shape.nearest(point) - point).length();
+            let best = (0..3000).map(|k| (shape.sample(numbers(k)).point - point).length()).fold(9.0, f32::min);
+            assert!(distance <= best + 1e-6, "{shape:?} {point}: {distance} > {best}");
+            assert!(best - distance < 0.15, "{shape:?} {point}: {distance} far below {best}");
+        }
+    }
+}
+
+#[test]
+fn bounds_hold_every_sample_tightly() {
+    for shape in all() {
+        let b = shape.bounds();
+        let seen = Aabb::around((0..20_000).map(|i| shape.sample(numbers(i)).point));
+        assert!(seen.min.cmpge(b.min - 1e-6).all() && seen.max.cmple(b.max + 1e-6).all(), "{shape:?}");
+        assert!((seen.max - b.max).length() < 0.1 && (seen.min - b.min).length() < 0.1, "{shape:?} {seen:?} {b:?}");
+    }
+}
+
+proptest! {
+    /// A path's hit lies on the surface, faces the start, and the way to it is free.
+    #[test]
+    fn a_hit_is_on_the_surface_and_the_way_to_it_is_free(
+        from in prop::array::uniform3(-2.0f32..2.0), to in prop::array::uniform3(-2.0f32..2.0)
+    ) {
+        let segment = Segment { from: from.into(), to: to.into() };
+        for shape in all() {
+            let Some(hit) = shape.first_hit(&segment) else { continue };
+            prop_assert!((0.0..=1.0).contains(&hit.time));
+            let point = segment.at(hit.time);
+            prop_assert!((shape.nearest(point) - point).length() < 1e-5, "{shape:?} {segment:?} {hit:?}");
+            prop_assert!(segment.step().dot(hit.normal) < 1e-6);
+            let before = Segment { from: segment.from, to: segment.at(hit.time) + hit.normal * 1e-5 };
+            if hit.time > 1e-3 {
+                let again = shape.first_hit(&before);
+                prop_assert!(again.is_none_or(|h| h.time > 0.999), "{shape:?} {segment:?} {hit:?} {again:?}");
+            }
+        }
+    }
+
+    /// However a path is cut, its pieces together hit what the whole hits.
+    #[test]
+    fn a_path_cut_in_two_hits_all_the_same(
+        from in prop::array::uniform3(-2.0f32..2.0), to in prop::array::uniform3(-2.0f32..2.0), cut in 0.0f32..1.0
+    ) {
+        let whole = Segment { from: from.into(), to: to.into() };
+        let middle = whole.at(cut);
+        for shape in all() {
+            let Some(hit) = shape.first_hit(&whole) else { continue };
+            // A graze within rounding may be judged either way.
+            if hit.normal.dot(crate::math::unit(whole.step())) > -0.02 { continue }
+            let first = shape.first_hit(&Segment { from: whole.from, to: middle });
+            let second = shape.first_hit(&Segment { from: middle, to: whole.to });
+            prop_assert!(first.is_some() || second.is_some(), "{shape:?} {whole:?} {middle}");
+        }
+    }
+}
+
+#[test]
+fn a_particle_on_the_surface_that_leaves_does_not_hit_it() {
+    for shape in all() {
+        for i in 0..2000 {
+            let spot = shape.sample(numbers(i));
+            // Set off by the rounding error, as the response does it.
+            let from = spot.point + spot.normal * 2e-6;
+            let away = Segment { from, to: from + spot.normal };
+            assert_eq!(shape.first_hit(&away), None, "{shape:?} {spot:?}");
+            let inward = Segment { from, to: from - spot.normal * 0.1 };
+            let hit = shape.first_hit(&inward).expect("a path into the surface hits it");
+            assert!(hit.time < 1e-4, "{shape:?} {hit:?}");
+        }
+    }
+}
+
+#[test]
+fn lists_of_colliders_are_colliders() {
+    let near = Plane { point: Vec3::Y, normal: Vec3::Y };
+    let far = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let down = Segment { from: Vec3::Y * 2.0, to: -Vec3::Y };
+    let hit = |c: &dyn Collider| c.first_hit(&down).map(|h| h.time);
+    assert_eq!(hit(&()), None);
+    assert_eq!(hit(&(far, near)), hit(&near));
+    assert_eq!(hit(&[far, near]), hit(&near));
+    assert_eq!(hit(&(far, (), &near as &dyn Collider)), hit(&near));
+    assert!(().is_empty() && ((), ()).is_empty() && !(far, ()).is_empty());
+}

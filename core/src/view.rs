@@ -1,0 +1,252 @@
+//! The step itself: every algorithm works on a `View`, a system with its memory at hand.
+
+use crate::collide::collide;
+use crate::emit::Births;
+use crate::force::{Force, Spring, Springs, State, spring};
+use crate::integrate::{Dynamics, Motion, Work};
+use crate::particles::{Full, Id, Particle, WHITE};
+use crate::report::Report;
+use crate::retire::{Fate, retire};
+use crate::rows::each_row_with;
+use crate::scene::Scene;
+use crate::storage::{Slices, Storage};
+use crate::time::Time;
+use glam::Vec3;
+
+/// A system with its memory at hand: every algorithm works on it, and it is generic over nothing.
+#[derive(Debug)]
+pub(crate) struct View<'a> {
+    pub(crate) memory: Slices<'a>,
+    pub(crate) status: &'a mut Status,
+}
+
+/// All of a system's state that is not a column.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Status {
+    /// Rows in use.
+    pub(crate) len: usize,
+    /// Slots ever used.
+    pub(crate) slots: usize,
+    /// The first free slot plus one; zero: none.
+    pub(crate) free: u32,
+    /// Particles taken in so far.
+    pub(crate) taken: u32,
+    /// Particles of the scene's start that found room.
+    pub(crate) start: u32,
+    /// Emitters that the scene had then.
+    pub(crate) emitters: usize,
+    pub(crate) time: Time,
+    pub(crate) seed: u64,
+    pub(crate) totals: Report,
+}
+
+impl Status {
+    pub(crate) const NEW: Self = Self {
+        len: 0,
+        slots: 0,
+        free: 0,
+        taken: 0,
+        start: 0,
+        emitters: 0,
+        time: Time::ZERO,
+        seed: 0,
+        totals: Report::NOTHING,
+    };
+}
+
+impl View<'_> {
+    pub(crate) fn len(&self) -> usize {
+        self.status.len
+    }
+
+    pub(crate) fn seed(&self) -> u64 {
+        self.status.seed
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.status.len >= self.capacity()
+    }
+
+    pub(crate) fn capacity(&self) -> usize {
+        self.memory.columns().capacity()
+    }
+
+    pub(crate) fn start(&mut self, scene: &Scene<'_>) {
+        self.memory.tallies.fill(Default::default());
+        self.status.emitters = scene.emitters.count();
+        let mut report = Report::default();
+        for particle in scene.start {
+            match self.spawn(particle, Time::ZERO) {
+                Ok(_) => report.initial += 1,
+                Err(Full) => report.refused += 1,
+            }
+        }
+        self.status.start = self.status.taken;
+        spring::sort_by_ends(scene.springs, self.memory.last_spring, self.memory.incident);
+        let lost = |s: &&Spring| s.ends.iter().any(|&end| end >= self.status.start);
+        report.caps.springs = scene.springs.iter().filter(lost).count() as u64;
+        self.status.totals = report;
+    }
+
+    /// The whole of a step: create, update, collide, delete.
+    pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report) {
+        let end = self.status.time + dt;
+        let old = self.create(scene, end, report);
+        self.update(scene, old, dt);
+        if scene.is_swept() {
+            collide(self, scene, dt, end, report);
+        }
+        retire(self, scene.springs, end, report);
+        self.status.time = end;
+    }
+
+    /// Lets the emitters emit, and returns how many particles there were before.
+    fn create(&mut self, scene: &Scene<'_>, end: Time, report: &mut Report) -> usize {
+        let (old, now) = (self.status.len, self.status.time);
+        let view = View { memory: self.memory.slices(), status: self.status };
+        scene.emitters.emit(now, end, &mut Births { view, report, next: 0 });
+        old
+    }
+
+    /// Moves the `old` particles by the integrator. The newborn fly on from their birth with the acceleration they
+    /// have there, and act on others from the next step on.
+    fn update(&mut self, scene: &Scene<'_>, old: usize, dt: Time) {
+        let (len, now) = (self.status.len, self.status.time);
+        let capacity = self.capacity();
+        let Slices {
+            position,
+            velocity,
+            mass,
+            inverse_mass,
+            drag,
+            born,
+            serial,
+            row_of,
+            last_spring,
+            incident,
+            work,
+            ..
+        } = self.memory.slices();
+        let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
+        let (start_x, start_v) = start.split_at_mut(start.len() / 2);
+        if scene.needs_start() {
+            start_x[..len].copy_from_slice(&position[..len]);
+            start_v[..len].copy_from_slice(&velocity[..len]);
+        }
+        let springs = Springs {
+            springs: scene.springs,
+            start: self.status.start,
+            serial: &serial[..len],
+            row_of,
+            last_spring,
+            incident,
+        };
+        let mut field = Field { scene, mass, inverse_mass, drag, springs, first: old };
+
+        let newborn = old..len;
+        if !newborn.is_empty() {
+            let a = &mut rest[..newborn.len()];
+            field.accelerations(now, &position[..len], &velocity[..len], a);
+            for (row, &a) in newborn.zip(a.iter()) {
+                let flight = (now + dt - born[row]).seconds();
+                position[row] += (velocity[row] + a * (0.5 * flight)) * flight;
+                velocity[row] += a * flight;
+            }
+        }
+
+        field.first = 0;
+        field.springs.serial = &serial[..old];
+        let start = if scene.needs_start() { [&start_x[..old], &start_v[..old]] } else { [&[][..]; 2] };
+        let work = Work { memory: rest, stride: capacity, len: old };
+        let motion = Motion { position: &mut position[..old], velocity: &mut velocity[..old], start, work };
+        scene.integrator.advance(motion, now, dt, &mut field);
+    }
+
+    /// Puts a particle into the next row.
+    pub(crate) fn spawn(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
+        if self.is_full() {
+            return Err(Full);
+        }
+        let (m, status) = (&mut self.memory, &mut *self.status);
+        let row = status.len;
+        let slot = if status.free > 0 {
+            let slot = status.free - 1;
+            status.free = m.row_of[slot as usize];
+            slot
+        } else {
+            status.slots += 1;
+            (status.slots - 1) as u32
+        };
+        let serial = status.taken;
+        m.row_of[slot as usize] = row as u32;
+        m.slot[row] = slot;
+        m.serial[row] = serial;
+        m.position[row] = particle.position;
+        m.velocity[row] = if particle.fixed { Vec3::ZERO } else { particle.velocity };
+        m.mass[row] = particle.mass;
+        m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };
+        m.drag[row] = particle.drag;
+        m.elasticity[row] = particle.elasticity;
+        m.born[row] = born;
+        m.dies[row] = death(born, particle.lifetime);
+        m.color[row] = particle.color.unwrap_or(WHITE);
+        m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
+        m.fate[row] = Fate::Lives;
+        status.len += 1;
+        status.taken = serial.wrapping_add(1);
+        Ok(Id { slot, serial })
+    }
+
+    /// Takes the particle in `row` out; the last row fills the gap.
+    pub(crate) fn remove(&mut self, row: usize, springs: &[Spring], report: &mut Report) {
+        let len = self.status.len;
+        let last = len - 1;
+        let Slices { serial, row_of, last_spring, incident, .. } = self.memory.slices();
+        let table =
+            Springs { springs, start: self.status.start, serial: &serial[..len], row_of, last_spring, incident };
+        report.caps.springs += table.held_by(row);
+
+        let slot = self.memory.slot[row];
+        if row != last {
+            self.memory.move_row(last, row);
+            self.memory.row_of[self.memory.slot[row] as usize] = row as u32;
+        }
+        self.memory.row_of[slot as usize] = self.status.free;
+        self.status.free = slot + 1;
+        self.status.len = last;
+    }
+}
+
+/// When a particle born at `born` dies of age. A lifetime counts as over within the rounding of its `f32` and of a
+/// tick, so that one of 0.1 s ends with the sixth of sixty frames a second.
+fn death(born: Time, lifetime: f32) -> Time {
+    if lifetime > 0.0 {
+        let ticks = Time::from_seconds(lifetime).ticks();
+        born + Time::from_ticks(ticks.saturating_sub((ticks >> 24) + 1))
+    } else {
+        Time::NEVER
+    }
+}
+
+/// The scene's forces over the masses, from row `first` on.
+struct Field<'a> {
+    scene: &'a Scene<'a>,
+    mass: &'a [f32],
+    inverse_mass: &'a [f32],
+    drag: &'a [f32],
+    springs: Springs<'a>,
+    first: usize,
+}
+
+impl Dynamics for Field<'_> {
+    fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
+        let len = position.len();
+        let rows = self.first..len;
+        let (mass, drag, springs) = (&self.mass[..len], &self.drag[..len], self.springs);
+        let state = State { time, position, velocity, mass, drag, springs };
+        acceleration.fill(Vec3::ZERO);
+        self.scene.forces.add_to(&state, rows.clone(), acceleration);
+        springs.add_to(&state, rows.clone(), acceleration);
+        each_row_with(acceleration, Vec3::ZERO, &self.inverse_mass[rows], |force, _, inverse| force * inverse);
+    }
+}
