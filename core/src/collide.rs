@@ -18,11 +18,14 @@ const CHORD_ERROR: f32 = 1e-4;
 /// How many chords a path is followed along at the most.
 const MAX_CHORDS: u32 = 8;
 
+/// How many times a point beside a hit is sought farther back.
+const MAX_RETREATS: u32 = 12;
+
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
 const RESTING: f32 = 0.25;
 
-/// Sends every free particle along its path through the step that ends at `end`.
-pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, dt: Time, end: Time, report: &mut Report) {
+/// Sends every free particle along its path through the step that ends at `end`; those from row `old` on are newborn.
+pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, old: usize, [dt, end]: [Time; 2], report: &mut Report) {
     let capacity = view.capacity();
     for row in 0..view.len() {
         let m = &mut view.memory;
@@ -31,7 +34,6 @@ pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, dt: Time, end: Tim
         }
         let (start_x, start_v) = (m.work[row], m.work[capacity + row]);
         // A newborn has come only part of the way.
-        let is_newborn = m.born[row] + dt >= end;
         let duration = (end - m.born[row]).min(dt).seconds();
         let path = Path { x0: start_x, v0: start_v, x1: m.position[row], v1: m.velocity[row], duration };
         let hull = path.hull();
@@ -39,7 +41,7 @@ pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, dt: Time, end: Tim
             continue;
         }
         let mut flight = Flight { scene, elasticity: m.elasticity[row], dt: dt.seconds(), report: &mut *report };
-        let end = flight.follow(if is_newborn { flight.let_go(path) } else { path });
+        let end = flight.follow(if row >= old { flight.let_go(path) } else { path });
         (m.position[row], m.velocity[row], m.fate[row]) = (end.position, end.velocity, end.fate);
     }
 }
@@ -83,15 +85,20 @@ struct Flight<'a> {
 }
 
 impl Flight<'_> {
-    /// The path without what it meets within rounding of its beginning: a newborn lies on its source's surface, on
-    /// whichever side rounding put it, and leaves it the way its velocity points.
+    /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
+    /// on whichever side rounding put it, and leaves it the way its velocity points.
     fn let_go(&self, path: Path) -> Path {
-        let chord = Segment { from: path.x0, to: path.x1 };
-        let hits = [self.scene.colliders.first_hit(&chord), self.scene.sinks.first_hit(&chord)];
-        let near = |hit: &Hit| -chord.step().dot(hit.normal) * hit.time <= 2.0 * hit.slack;
-        let beyond = |hit: Hit| chord.at(hit.time) + unit(chord.step()) * (4.0 * hit.slack);
+        let ahead = Segment { from: path.x0, to: path.x0 + path.v0 * self.dt };
+        let hits = [self.scene.colliders.first_hit(&ahead), self.scene.sinks.first_hit(&ahead)];
+        let (step, far) = (ahead.step(), length(ahead.step()));
+        let near = |hit: &Hit| {
+            let off_surface = -step.dot(hit.normal) * hit.time <= 2.0 * hit.slack;
+            // A graze farther away is no birth on the surface.
+            off_surface && far * hit.time <= 40.0 * hit.slack
+        };
+        let beyond = |hit: Hit| ahead.at(hit.time) + unit(step) * (4.0 * hit.slack);
         let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
-        Path { x0, ..path }
+        Path { x0, x1: if path.duration > 0.0 { path.x1 } else { x0 }, ..path }
     }
 
     fn follow(&mut self, mut path: Path) -> Arrival {
@@ -160,16 +167,23 @@ impl Flight<'_> {
         }
     }
 
-    /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack if
-    /// the way there is free, else as much before it on the path itself, which is known to be.
+    /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
+    /// way there is free; else as far back on the path as is free, at last its beginning.
     fn set_off(&self, meeting: &Meeting) -> Vec3 {
         let Meeting { chord, hit, .. } = meeting;
-        let step = chord.step();
-        let closing = max(-step.dot(hit.normal), f32::MIN_POSITIVE);
-        let before = chord.at(clamp(hit.time - 2.0 * hit.slack / closing, 0.0, 1.0));
+        let free = |from, to| self.scene.colliders.first_hit(&Segment { from, to }).is_none();
+        let closing = max(-chord.step().dot(hit.normal), f32::MIN_POSITIVE);
         let beside = chord.at(hit.time) + hit.normal * (2.0 * hit.slack);
-        let way = Segment { from: before, to: beside };
-        if self.scene.colliders.first_hit(&way).is_none() { beside } else { before }
+        let mut back = 2.0 * hit.slack / closing;
+        // At a rim or in a corner another surface may be nearer than the slack of this one.
+        for _ in 0..MAX_RETREATS {
+            let before = chord.at(clamp(hit.time - back, 0.0, 1.0));
+            if free(chord.from, before) {
+                return if free(before, beside) { beside } else { before };
+            }
+            back *= 4.0;
+        }
+        chord.from
     }
 }
 

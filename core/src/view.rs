@@ -94,7 +94,7 @@ impl View<'_> {
         let old = self.create(scene, end, report);
         self.update(scene, old, dt);
         if scene.is_swept() {
-            collide(self, scene, dt, end, report);
+            collide(self, scene, old, [dt, end], report);
         }
         retire(self, scene.springs, end, report);
         self.status.time = end;

@@ -2,7 +2,7 @@
 
 use super::camera::Lens;
 use super::model::{Facet, Model, Role};
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 /// The triangles of a model.
 ///
@@ -63,41 +63,54 @@ impl Rays {
     pub(super) fn first(&self, from: Vec3, towards: Vec3, mut reach: f32) -> Option<Hit> {
         let (from, towards) = (self.upright * from, self.upright * towards);
         let mut hit = None;
-        let mut found = |wall: &Wall, distance| {
-            hit = Some(Hit { distance, normal: wall.flat });
-            distance
-        };
-        for wall in &self.endless {
+        let mut look = |wall: &Wall| {
             if let Some(distance) = wall.distance(from, towards, reach) {
-                reach = found(wall, distance);
+                reach = distance;
+                hit = Some(Hit { distance, normal: self.upright.transpose() * wall.flat });
             }
-        }
-        self.walk(from, towards, reach, found);
-        let turn = self.upright.transpose();
-        hit.map(|hit: Hit| Hit { normal: turn * hit.normal, ..hit })
+            true
+        };
+        self.endless.iter().for_each(|wall| _ = look(wall));
+        self.walk(&Beam::new(from, towards, 0.0, reach), look);
+        hit
     }
 
-    /// The share of light that gets through along a ray, up to `reach`.
+    /// The share of a lamp that can be seen from a place. The lamp is a round disc `reach` away whose
+    /// radius is `width` times as much, looked at in a pattern that is turned by `turn`.
     ///
     /// Only walls entered from outside count. For solids that changes nothing, and a room may be
     /// lit by a lamp outside it, which is how people light the rooms they want to look into.
-    pub(super) fn passing(&self, from: Vec3, towards: Vec3, reach: f32) -> f32 {
+    pub(super) fn seen(&self, from: Vec3, towards: Vec3, width: f32, reach: f32, turn: f32) -> f32 {
         let (from, towards) = (self.upright * from, self.upright * towards);
-        let mut passing = 1.0;
-        self.walk(from, towards, reach, |wall, _| {
-            if wall.flat.dot(towards) < 0.0 {
-                passing *= 1.0 - wall.opacity;
-            }
-            if passing > 0.0 { reach } else { 0.0 }
-        });
-        passing
+        let beam = Beam::new(from, towards, width, reach);
+        let (x, y) = towards.any_orthonormal_pair();
+        // Four rays say whether this is the edge of a shadow; if so, ask more.
+        let few = self.passing(&beam, spread::<4>(turn).map(|at| towards + width * (at.x * x + at.y * y)));
+        if few == 0.0 || few == 1.0 {
+            return few;
+        }
+        self.passing(&beam, spread::<24>(turn).map(|at| towards + width * (at.x * x + at.y * y)))
     }
 
-    /// Visits the solid walls along a ray, in no particular order. The visitor answers with how far to
-    /// look from then on.
-    fn walk(&self, from: Vec3, towards: Vec3, mut reach: f32, mut visit: impl FnMut(&Wall, f32) -> f32) {
-        // No division by zero, which would make the boxes' bounds meaningless.
-        let inverse = towards.map(|d| 1.0 / if d.abs() < 1e-12 { 1e-12 } else { d });
+    /// The share of light that gets through along a beam's rays.
+    fn passing<const N: usize>(&self, beam: &Beam, rays: [Vec3; N]) -> f32 {
+        let mut passing = [1.0; N];
+        self.walk(beam, |wall| {
+            if wall.flat.dot(beam.from - wall.corner) > 0.0 {
+                for (passing, ray) in passing.iter_mut().zip(rays) {
+                    if *passing > 0.0 && wall.distance(beam.from, ray, beam.reach).is_some() {
+                        *passing *= 1.0 - wall.opacity;
+                    }
+                }
+            }
+            passing != [0.0; N]
+        });
+        passing.iter().sum::<f32>() / N as f32
+    }
+
+    /// Visits the solid walls that a beam may meet, in no particular order, as long as the visitor
+    /// wants more.
+    fn walk(&self, beam: &Beam, mut visit: impl FnMut(&Wall) -> bool) {
         // Halving leaves a tree too shallow to fill this, however many walls there are.
         let mut open = [0; 64];
         let mut count = usize::from(!self.nodes.is_empty());
@@ -105,7 +118,7 @@ impl Rays {
             count -= 1;
             let at = open[count];
             let node = &self.nodes[at];
-            if !node.crossed(from, inverse, reach) {
+            if !beam.crosses(node) {
                 continue;
             }
             if node.second_child > 0 {
@@ -113,10 +126,8 @@ impl Rays {
                 open[count + 1] = at + 1;
                 count += 2;
             }
-            for wall in &self.solid[node.walls.0..node.walls.1] {
-                if let Some(distance) = wall.distance(from, towards, reach) {
-                    reach = visit(wall, distance);
-                }
+            if !self.solid[node.walls.0..node.walls.1].iter().all(&mut visit) {
+                return;
             }
         }
     }
@@ -146,14 +157,44 @@ impl Rays {
     }
 }
 
-impl Node {
-    fn crossed(&self, from: Vec3, inverse: Vec3, reach: f32) -> bool {
-        let (a, b) = ((self.low - from) * inverse, (self.high - from) * inverse);
-        let enter = a.min(b).max_element().max(0.0);
-        let leave = a.max(b).min_element().min(reach);
+/// All rays from one place whose directions differ by no more than a width in each coordinate.
+struct Beam {
+    from: Vec3,
+    /// One over the least direction, and one over the greatest.
+    inverse: [Vec3; 2],
+    reach: f32,
+}
+
+impl Beam {
+    fn new(from: Vec3, towards: Vec3, width: f32, reach: f32) -> Self {
+        // No division by zero, which would make the boxes' bounds meaningless.
+        let inverse = |d: f32| 1.0 / if d.abs() < 1e-12 { 1e-12 } else { d };
+        Self { from, inverse: [-width, width].map(|width| (towards + width).map(inverse)), reach }
+    }
+
+    /// Whether any of the rays may cross a box.
+    fn crosses(&self, node: &Node) -> bool {
+        let (mut enter, mut leave) = (0.0, self.reach);
+        for axis in 0..3 {
+            // The greatest direction gets above the box's low side first, or stays above it longest;
+            // the least direction does the same for the high side.
+            let low = (node.low[axis] - self.from[axis]) * self.inverse[1][axis];
+            let high = (node.high[axis] - self.from[axis]) * self.inverse[0][axis];
+            if self.inverse[1][axis] > 0.0 { enter = low.max(enter) } else { leave = low.min(leave) }
+            if self.inverse[0][axis] < 0.0 { enter = high.max(enter) } else { leave = high.min(leave) }
+        }
         // Rounding must not lose a wall that lies flat in its box.
         enter <= leave * 1.000_01
     }
+}
+
+/// Places evenly spread over a disc that is turned by `turn`.
+fn spread<const N: usize>(turn: f32) -> [Vec2; N] {
+    const GOLDEN: f32 = 2.399_963_2;
+    std::array::from_fn(|step| {
+        let radius = ((step as f32 + 0.5) / N as f32).sqrt();
+        radius * Vec2::from_angle(turn + GOLDEN * step as f32)
+    })
 }
 
 impl Wall {
@@ -212,12 +253,12 @@ mod tests {
     fn solids_cast_shadows_and_rooms_do_not() {
         // Beside the poles, where many triangles meet.
         let below = Vec3::new(0.1, -3.0, 0.2);
-        let upwards = |piece: Piece, from: Vec3| rays(piece).passing(from, Vec3::Y, 10.0);
+        let upwards = |piece: Piece, from: Vec3| rays(piece).seen(from, Vec3::Y, 0.0, 10.0, 0.0);
         assert_eq!(upwards(ball(), below), 0.0);
         assert_eq!(upwards(ball(), below.with_y(0.0)), 1.0);
         assert_eq!(upwards(Piece { endless: true, ..ball() }, below), 1.0);
         let material = Material { opacity: 0.25, ..Material::default() };
         assert_eq!(upwards(Piece { material, ..ball() }, below), 0.75);
-        assert_eq!(Rays::default().passing(below, Vec3::Y, 10.0), 1.0);
+        assert_eq!(Rays::default().seen(below, Vec3::Y, 0.0, 10.0, 0.0), 1.0);
     }
 }

@@ -74,26 +74,8 @@ impl Shader<'_> {
         // Start a little outside, or the surface would stand in its own light.
         let from = place + 3e-4 * place.length() * flat;
         let turn = TAU * grain(fragment.x, fragment.y);
-        let ray = |step, count| {
-            let towards = (beam.from + LAMP_WIDTH * spread(beam.from, turn, step, count)).normalize();
-            self.rays.passing(from, towards, beam.distance)
-        };
-        // Four rays say whether this is the edge of a shadow; if so, ask more.
-        let few: f32 = (0..4).map(|step| ray(step, 4)).sum();
-        if few == 0.0 || few == 4.0 {
-            return few / 4.0;
-        }
-        (0..24).map(|step| ray(step, 24)).sum::<f32>() / 24.0
+        self.rays.seen(from, beam.from, LAMP_WIDTH, beam.distance, turn)
     }
-}
-
-/// One of `count` directions across `axis`, evenly spread over a disc that is turned by `turn`.
-fn spread(axis: Vec3, turn: f32, step: usize, count: usize) -> Vec3 {
-    const GOLDEN: f32 = 2.399_963_2;
-    let radius = ((step as f32 + 0.5) / count as f32).sqrt();
-    let (sin, cos) = (turn + GOLDEN * step as f32).sin_cos();
-    let (x, y) = axis.any_orthonormal_pair();
-    radius * (cos * x + sin * y)
 }
 
 /// From 0 to 1 without a corner.

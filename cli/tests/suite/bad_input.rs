@@ -160,11 +160,23 @@ fn json_that_is_wrong() {
         (r#"{"particles": [{"position": [1, 2, 3, 4]}]}"#.into(), "a.json:1:"),
         (r#"{"particles": [{"fixed": 1}]}"#.into(), "a.json:1:"),
         (r#"{"particles": [{"material": 0}]}"#.into(), "a.json:particles[0].material: "),
-        (r#"{"particles": [{}], "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 1, "kd": 1}]}"#.into(), "a.json:springs[0]: "),
+        (
+            r#"{"particles": [{}], "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 1, "kd": 1}]}"#.into(),
+            "a.json:springs[0]: ",
+        ),
         (r#"{"scenery": [{"shape": {"torus": {}}}]}"#.into(), "a.json:1:"),
-        (r#"{"scenery": [{"shape": {"plane": {"point": [0,0,0], "normal": [0,0,0]}}}]}"#.into(), "a.json:scenery[0].shape: "),
-        (r#"{"scenery": [{"shape": {"sphere": {"center": [0,0,0], "radius": -1}}}]}"#.into(), "a.json:scenery[0].shape: "),
-        (r#"{"scenery": [{"shape": {"sphere": {"center": [0,0,0], "radius": 1}}, "group": 0}]}"#.into(), "a.json:scenery[0].group: "),
+        (
+            r#"{"scenery": [{"shape": {"plane": {"point": [0,0,0], "normal": [0,0,0]}}}]}"#.into(),
+            "a.json:scenery[0].shape: ",
+        ),
+        (
+            r#"{"scenery": [{"shape": {"sphere": {"center": [0,0,0], "radius": -1}}}]}"#.into(),
+            "a.json:scenery[0].shape: ",
+        ),
+        (
+            r#"{"scenery": [{"shape": {"sphere": {"center": [0,0,0], "radius": 1}}, "group": 0}]}"#.into(),
+            "a.json:scenery[0].group: ",
+        ),
         (matrix("[0,0,0,0]"), "a.json:groups[0].matrix: "),
         (matrix("[0,0,1,1]"), "a.json:groups[0].matrix: "),
         (matrix("[0,0,0,1]").replace("1]]", "1]], \"parent\": 0"), "a.json:groups[0].parent: "),
@@ -327,7 +339,11 @@ fn includes_that_are_wrong() {
     refused(&folder, "./a.scn", "sub/b.scn:1:1: include: ");
     refused(&folder, "sub/../a.scn", "sub/b.scn:1:1: include: ");
     let absolute = folder.path("a.scn");
-    refused(&folder, absolute.to_str().expect("a plain name"), folder.path("sub/b.scn").to_str().expect("a plain name"));
+    refused(
+        &folder,
+        absolute.to_str().expect("a plain name"),
+        folder.path("sub/b.scn").to_str().expect("a plain name"),
+    );
     // Two that each include the next twice.
     for i in 0..40 {
         folder.write(&format!("{i}.scn"), format!("include {0}.scn include {0}.scn", i + 1));

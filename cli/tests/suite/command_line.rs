@@ -219,7 +219,8 @@ fn a_run_has_as_many_steps_as_fit_and_one_shorter() {
 
 #[test]
 fn settings_come_from_the_file_unless_the_command_line_says_otherwise() {
-    let text = r#"{"run":{"duration":0.5,"dt":0.05,"integrator":"midpoint","seed":7,"capacity":2},"particles":[{},{}]}"#;
+    let text =
+        r#"{"run":{"duration":0.5,"dt":0.05,"integrator":"midpoint","seed":7,"capacity":2},"particles":[{},{}]}"#;
     let folder = Folder::with("a.json", text);
     let report = folder.report("a.json");
     assert_eq!(["dt", "seed", "steps", "live"].map(|field| number(&report, field)), [0.05, 7.0, 10.0, 2.0]);

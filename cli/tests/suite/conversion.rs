@@ -9,7 +9,8 @@ use pointmass::scene::SceneFile;
 /// A scene of several files and folders.
 fn spread() -> Folder {
     let folder = Folder::with("in/root.scn", format!("{BUSY} include sub/part.scn mesh 0 meshes/a.off"));
-    folder.write("in/sub/part.scn", "begin -1 1 0 0 3 0 1 0 0 0 0 1 0 0 0 0 1 mesh -1 own.off mesh -1 ../../far.off end");
+    folder
+        .write("in/sub/part.scn", "begin -1 1 0 0 3 0 1 0 0 0 0 1 0 0 0 0 1 mesh -1 own.off mesh -1 ../../far.off end");
     for mesh in ["in/meshes/a.off", "in/sub/own.off", "far.off"] {
         folder.write(mesh, TRIANGLE);
     }
@@ -128,7 +129,8 @@ fn what_scn_cannot_say_is_warned_of() {
     ];
     let always = r#""forces": [{"drag": {}}, {"mutual_gravity": {}}]"#;
     let folder = Folder::new();
-    let complete = |text: &str| if text.contains("forces") { format!("{{{text}}}") } else { format!("{{{always}, {text}}}") };
+    let complete =
+        |text: &str| if text.contains("forces") { format!("{{{text}}}") } else { format!("{{{always}, {text}}}") };
     for (text, about) in cases {
         folder.write("a.json", complete(&text));
         let answer = folder.run("convert a.json a.scn");
@@ -139,7 +141,11 @@ fn what_scn_cannot_say_is_warned_of() {
         let back = SceneFile::from_json("b.json", &folder.read("b.json")).expect("a scene");
         assert!(back.particles.len() <= 1 && back.emitters.len() <= 1, "{text}");
     }
-    for text in [r#""particles": [{}]"#.to_string(), format!(r#""scenery": [{{{triangle}}}, {{{sphere}}}]"#), emitter(r#""speed": 3"#)] {
+    for text in [
+        r#""particles": [{}]"#.to_string(),
+        format!(r#""scenery": [{{{triangle}}}, {{{sphere}}}]"#),
+        emitter(r#""speed": 3"#),
+    ] {
         folder.write("a.json", complete(&text));
         folder.run("convert a.json a.scn").fine();
     }

@@ -82,10 +82,16 @@ fn common_shape() -> BoxedStrategy<Shape<String>> {
         (point(), point()).prop_map(|(from, to)| Shape::Line(Line { from, to })),
         (point(), point()).prop_map(|(min, max)| Shape::Box(Cuboid { min, max })),
         (point(), positive()).prop_map(|(center, radius)| Shape::Sphere(Sphere { center, radius })),
-        (point(), positive(), positive())
-            .prop_map(|(center, radius, height)| Shape::Cylinder(Cylinder { center, radius, height })),
-        (point(), positive(), positive())
-            .prop_map(|(center, radius, height)| Shape::Cone(Cone { center, radius, height })),
+        (point(), positive(), positive()).prop_map(|(center, radius, height)| Shape::Cylinder(Cylinder {
+            center,
+            radius,
+            height
+        })),
+        (point(), positive(), positive()).prop_map(|(center, radius, height)| Shape::Cone(Cone {
+            center,
+            radius,
+            height
+        })),
         name("off").prop_map(Shape::Mesh),
     ]
     .boxed()
@@ -109,7 +115,16 @@ fn particle() -> impl Strategy<Value = Particle> {
     let mass = prop_oneof![4 => 1e-3f32..1e3, 1 => kinds::POSITIVE | kinds::NORMAL, 1 => Just(0.0)];
     (point(), point(), mass, any::<bool>(), uniform3(number())).prop_map(|(position, velocity, mass, fixed, rest)| {
         let [drag, elasticity, lifetime] = rest;
-        Particle { position, velocity, mass, fixed: fixed || mass < 1e-37, drag, elasticity, lifetime, ..Particle::REST }
+        Particle {
+            position,
+            velocity,
+            mass,
+            fixed: fixed || mass < 1e-37,
+            drag,
+            elasticity,
+            lifetime,
+            ..Particle::REST
+        }
     })
 }
 
@@ -145,15 +160,13 @@ fn light() -> impl Strategy<Value = Light> {
     prop_oneof![
         (color(), v()).prop_map(|(color, direction)| Light::Directional { color, direction }),
         (color(), v(), v()).prop_map(|(color, position, attenuation)| Light::Point { color, position, attenuation }),
-        (color(), v(), v(), v(), number(), number()).prop_map(|(color, position, direction, attenuation, cutoff, dropoff)| {
-            Light::Spot { color, position, direction, attenuation, cutoff, dropoff }
-        }),
-        (color(), v(), v(), positive(), v()).prop_map(|(color, position, direction, radius, attenuation)| Light::Area {
-            color,
-            position,
-            direction,
-            radius,
-            attenuation
+        (color(), v(), v(), v(), number(), number()).prop_map(
+            |(color, position, direction, attenuation, cutoff, dropoff)| {
+                Light::Spot { color, position, direction, attenuation, cutoff, dropoff }
+            }
+        ),
+        (color(), v(), v(), positive(), v()).prop_map(|(color, position, direction, radius, attenuation)| {
+            Light::Area { color, position, direction, radius, attenuation }
         }),
     ]
 }
@@ -195,7 +208,8 @@ fn node() -> impl Strategy<Value = Node> {
     let shape = prop_oneof![6 => common_shape(), 1 => triangle()];
     let item = (shape, reference()).prop_map(|(shape, material)| Node::Item(shape, material));
     item.prop_recursive(5, 20, 4, |inner| {
-        (matrix(), reference(), vec(inner, 1..4)).prop_map(|(matrix, material, nodes)| Node::Group(matrix, material, nodes))
+        (matrix(), reference(), vec(inner, 1..4))
+            .prop_map(|(matrix, material, nodes)| Node::Group(matrix, material, nodes))
     })
 }
 
@@ -252,7 +266,7 @@ pub(crate) fn scene() -> impl Strategy<Value = SceneFile> {
         place(nodes, None, &mut scene);
         let particle = |(p, material)| Particle { material: within(material, count), ..p };
         scene.particles = particles.into_iter().map(particle).collect();
-        let number = |end: u16| Some(u32::from(end).checked_rem(scene.particles.len() as u32)?);
+        let number = |end: u16| u32::from(end).checked_rem(scene.particles.len() as u32);
         let spring = |(ends, [rest_length, ks, kd]): ([u16; 2], [f32; 3])| {
             let ends = [number(ends[0])?, number(ends[1])?];
             Some(Spring { ends, rest_length, ks, kd })
@@ -276,9 +290,8 @@ fn force() -> impl Strategy<Value = ForceKind> {
         uniform3(everyday()).prop_map(|a| ForceKind::Gravity(Gravity { acceleration: a.into() })),
         Just(ForceKind::Drag(Drag {})),
         Just(ForceKind::MutualGravity(MutualGravity::NEWTON)),
-        (number(), number()).prop_map(|(constant, softening)| {
-            ForceKind::MutualGravity(MutualGravity { constant, softening })
-        }),
+        (number(), number())
+            .prop_map(|(constant, softening)| { ForceKind::MutualGravity(MutualGravity { constant, softening }) }),
     ]
 }
 

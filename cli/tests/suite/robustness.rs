@@ -4,6 +4,7 @@ use crate::scenes::{BUSY, ONE};
 #[cfg(unix)]
 use crate::tool::often;
 use crate::tool::{Folder, PROGRAM, number};
+use serde_json::Value;
 use std::process::{Command, Stdio};
 
 /// A cloud of particles born at once, and nothing that would make them interact.
@@ -118,7 +119,8 @@ fn a_disk_that_fills_up_leaves_nothing_behind() {
 #[cfg(unix)]
 fn a_million_particles_leave_the_stack_alone() {
     let folder = Folder::with("cloud.json", CLOUD);
-    let script = "ulimit -s 256; $POINTMASS run cloud.json --steps 2 --capacity 1000000 --report json --every 9 --out o.csv";
+    let script =
+        "ulimit -s 256; $POINTMASS run cloud.json --steps 2 --capacity 1000000 --report json --every 9 --out o.csv";
     let report = folder.shell(script).fine().report();
     assert_eq!(["born", "live", "refused"].map(|field| number(&report, field)), [1e6, 1e6, 0.0], "{report}");
     assert_eq!(folder.read("o.csv").lines().count(), 1_000_001);
@@ -178,7 +180,7 @@ fn steps_longer_than_everything_are_survived() {
     let folder = Folder::with("busy.scn", BUSY);
     for dt in ["5", "1000", "1e6", "2147483647"] {
         let report = folder.report(&format!("busy.scn --steps 3 --dt {dt} --capacity 100"));
-        let died: f64 = report["died"].as_object().expect("causes").values().filter_map(|n| n.as_f64()).sum();
+        let died: f64 = report["died"].as_object().expect("causes").values().filter_map(Value::as_f64).sum();
         let [initial, born, live] = ["initial", "born", "live"].map(|field| number(&report, field));
         assert_eq!(initial + born, live + died, "{report}");
     }

@@ -220,7 +220,10 @@ fn a_group_moves_scenery_alone_and_hands_its_material_down() {
     assert_eq!(origins, [Vec3::ZERO, Vec3::ZERO, group, group, group, group, Vec3::ZERO]);
     assert_eq!(model.scenery[3].to_world.linear.x_axis, Vec3::X * 2.0);
     assert_eq!(model.particles[0].position, v(1.0, 2.0, 3.0), "a particle stays where it is");
-    assert_eq!(model.emitters[0].shape.with_mesh(|_| Err(())), Ok(Shape::Box::<()>(Cuboid { min: Vec3::ZERO, max: Vec3::ONE })));
+    assert_eq!(
+        model.emitters[0].shape.with_mesh(|_| Err(())),
+        Ok(Shape::Box::<()>(Cuboid { min: Vec3::ZERO, max: Vec3::ONE }))
+    );
     assert_eq!(model.colliders.len(), 6, "a line is drawn and never hit");
     // Red by its diffuse colour, green by what it emits, white without a material.
     let colors: Vec<_> = model.particles.iter().map(|particle| particle.color).collect();
@@ -264,7 +267,8 @@ fn includes_are_flattened_where_they_stand() {
         &particle(12),
         "particle_spring 1 0 7 7 7 include deep/two.scn",
     ];
-    let two = ["mesh 0 m.off mesh -1 ../../up.off", "\nparticle_source 1 0 0 0 0 0  1 1 1  mesh m.off\n", "ambient 1 1 1"];
+    let two =
+        ["mesh 0 m.off mesh -1 ../../up.off", "\nparticle_source 1 0 0 0 0 0  1 1 1  mesh m.off\n", "ambient 1 1 1"];
     let texts = [root.concat(), one.concat(), two.concat()];
     let names = ["in/root.scn", "in/sub/one.scn", "in/sub/deep/two.scn"];
     let mut all: Vec<(&str, &str)> = names.into_iter().zip(texts.iter().map(String::as_str)).collect();
@@ -279,7 +283,8 @@ fn includes_are_flattened_where_they_stand() {
     assert_eq!(reds, [1.0, 2.0, 3.0]);
     let scenery: Vec<_> = scene.scenery.iter().map(|item| (item.material, item.group)).collect();
     let (inside, outside) = (Some(0), None);
-    let expected = [(Some(1), inside), (None, inside), (Some(2), inside), (None, inside), (None, inside), (None, inside)];
+    let expected =
+        [(Some(1), inside), (None, inside), (Some(2), inside), (None, inside), (None, inside), (None, inside)];
     assert_eq!(scenery[..6], expected);
     assert_eq!(scenery[6..], [(Some(2), inside), (None, inside), (Some(1), outside)]);
     let meshes: Vec<&str> = scene

@@ -129,7 +129,9 @@ impl Path {
         let eighth = PLACES / 8;
         let stray = (0..8).map(|i| {
             let [a, b] = [i * eighth, (i + 1) * eighth].map(|i| places[i]);
-            (1..eighth).map(|j| length(sub(places[i * eighth + j], mix(a, b, j as f64 / eighth as f64)))).fold(0.0, f64::max)
+            (1..eighth)
+                .map(|j| length(sub(places[i * eighth + j], mix(a, b, j as f64 / eighth as f64))))
+                .fold(0.0, f64::max)
         });
         (nearest, 1e-4 + 0.5 * spacing + stray.fold(0.0, f64::max))
     }
@@ -154,7 +156,11 @@ fn step(system: &mut System<Heap>, model: &Model, dt: Time) -> [Vec<Path>; 2] {
     for (id, &(x1, v1)) in &unhindered {
         // The newborn have not moved: their source gives them no speed.
         let (x0, v0) = before.get(id).copied().unwrap_or((x1, v1));
-        paths[usize::from(!after.contains_key(id))].push(Path { x: [x0, x1], v: [v0, v1], dt: f64::from(dt.seconds()) });
+        paths[usize::from(!after.contains_key(id))].push(Path {
+            x: [x0, x1],
+            v: [v0, v1],
+            dt: f64::from(dt.seconds()),
+        });
     }
     assert!(after.keys().all(|id| unhindered.contains_key(id)));
     paths
@@ -177,14 +183,19 @@ fn what_is_removed_touched_a_sink_in_that_step_and_nothing_else_did() {
             removed += 1;
             let near: Vec<_> = sinks.iter().map(|sink| path.nearest(&sink.shape)).collect();
             let touched = near.iter().position(|(distance, room)| distance <= room);
-            let Some(which) = touched else { panic!("removed in frame {frame} without touching a sink: {path:?} {near:?}") };
+            let Some(which) = touched else {
+                panic!("removed in frame {frame} without touching a sink: {path:?} {near:?}")
+            };
             taken[which] += 1;
             precise += usize::from(near[which].1 < 0.02);
         }
         for path in &survivors {
             for sink in sinks.iter().filter(|sink| is_closed(&sink.shape)) {
                 let [from, to] = path.x.map(|x| signed_distance(x, &sink.shape));
-                assert!(from >= -1e-5 && to >= -1e-5, "inside of a sink, alive, after frame {frame}: {path:?} {from} {to}");
+                assert!(
+                    from >= -1e-5 && to >= -1e-5,
+                    "inside of a sink, alive, after frame {frame}: {path:?} {from} {to}"
+                );
             }
         }
     }

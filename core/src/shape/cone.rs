@@ -2,7 +2,7 @@
 
 use super::convex::{Convex, Span, convex_collider};
 use super::{Aabb, Spot, Surface, revolve};
-use crate::math::{largest, sin_cos_turns, sqrt, unit};
+use crate::math::{largest, max, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
@@ -62,6 +62,8 @@ impl Cone {
         let product = |a: Vec3, b: Vec3| a.x * b.x + a.z * b.z - k * k * a.y * b.y;
         let (a, b, c) = (product(step, step), product(offset, step), product(offset, offset));
         let square = b * b - a * c;
+        // A line steeper than the mantle cannot miss it, though rounding may say so near the apex.
+        let square = if a < 0.0 { max(square, f32::MIN_POSITIVE) } else { square };
         let below = |t: f32| offset.y + step.y * t < 0.0;
         let (near, far) = if !(square > 0.0) {
             return None;

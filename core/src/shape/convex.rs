@@ -68,7 +68,9 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
         // The ends differ but the line just misses: it runs within rounding of the surface.
         return (starts_inside != ends_inside).then(|| Hit { time: 0.0, normal: -unit(step), slack });
     };
-    let hit = |time, normal| Some(Hit { time: clamp(time, 0.0, 1.0), normal, slack });
+    // At an apex or a rim the normal may be none, or point along the path: then the way back has to do.
+    let facing = |normal: Vec3| if step.dot(normal) < 0.0 { normal } else { -unit(step) };
+    let hit = |time, normal| Some(Hit { time: clamp(time, 0.0, 1.0), normal: facing(normal), slack });
     match (starts_inside, ends_inside) {
         (true, _) => hit(span.leave, -span.leave_normal),
         (false, true) => hit(span.enter, span.enter_normal),
@@ -76,9 +78,7 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
         // entrance is the nearer end, and else it leaves.
         (false, false) => {
             let ahead = span.enter >= 0.0 || -span.enter < span.leave;
-            (ahead && span.enter <= 1.0 && step.dot(span.enter_normal) < 0.0)
-                .then(|| hit(span.enter, span.enter_normal))
-                .flatten()
+            if ahead && span.enter <= 1.0 { hit(span.enter, span.enter_normal) } else { None }
         }
     }
 }

@@ -74,14 +74,39 @@ impl Collider for Triangle {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let [a, b, c] = self.corners;
         let normal = (b - a).cross(c - a);
-        let (time, normal) = crossing(normal, normal.dot(segment.from - a), normal.dot(segment.to - a))?;
-        // The line passes inside if it goes round all three edges the same way. A cross product changes only its sign
-        // when its factors change places, so the two triangles at an edge never both say no.
+        let (before, after) = (normal.dot(segment.from - a), normal.dot(segment.to - a));
+        let slack = segment.slack(max(largest(a), max(largest(b), largest(c))));
+        // A path toward the plane that ends within rounding of it has met it. Else one that ends beside an edge could
+        // be judged to pass one triangle there and, by its continuation, the other.
+        let met = after * after <= slack * slack * normal.dot(normal) && before.abs() > after.abs();
+        let (time, normal) = crossing(normal, before, if met { 0.0 } else { after })?;
+        self.is_passed(segment).then(|| Hit { time, normal: unit(normal), slack })
+    }
+}
+
+impl Triangle {
+    /// Whether the line through a segment passes inside, edges included (Woop, Benthin, Wald, "Watertight Ray/Triangle
+    /// Intersection", JCGT 2013).
+    ///
+    /// The corners are shorn along the line into a plane, where an edge function is a difference of two products: its
+    /// sign is never wrong, and for the other triangle at the edge it is just the opposite.
+    fn is_passed(&self, segment: &Segment) -> bool {
         let step = segment.step();
-        let (p, q, r) = (a - segment.from, b - segment.from, c - segment.from);
-        let (u, v, w) = (step.dot(q.cross(r)), step.dot(r.cross(p)), step.dot(p.cross(q)));
-        let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-        let size = max(largest(a), max(largest(b), largest(c)));
-        inside.then(|| Hit { time, normal: unit(normal), slack: segment.slack(size) })
+        let size = step.abs();
+        let (z, x, y) = if size.x > size.y && size.x > size.z {
+            (0, 1, 2)
+        } else if size.y > size.z {
+            (1, 2, 0)
+        } else {
+            (2, 0, 1)
+        };
+        let (shear_x, shear_y) = (step[x] / step[z], step[y] / step[z]);
+        let shorn = |corner: Vec3| {
+            let offset = corner - segment.from;
+            (offset[x] - shear_x * offset[z], offset[y] - shear_y * offset[z])
+        };
+        let [(ax, ay), (bx, by), (cx, cy)] = self.corners.map(shorn);
+        let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+        (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0)
     }
 }
