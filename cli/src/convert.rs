@@ -41,7 +41,10 @@ fn folder(path: &Path) -> Outcome<PathBuf> {
 fn rebase(scene: &mut SceneFile, from: PathBuf, to: PathBuf) {
     let moved = |name: &mut String| {
         if Path::new(name).is_relative() {
-            let path = pathdiff::diff_paths(from.join(&*name), &to).unwrap_or_else(|| from.join(&*name));
+            // What is there goes by its real name, without detours.
+            let file = from.join(&*name);
+            let file = file.canonicalize().unwrap_or(file);
+            let path = pathdiff::diff_paths(&file, &to).unwrap_or(file);
             *name = path.to_string_lossy().into_owned();
         }
     };

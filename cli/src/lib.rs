@@ -38,8 +38,24 @@ impl Failure {
 
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(&one_line(&self.0))
     }
+}
+
+/// A message as one line of bounded length: names in it come from files, and may hold anything.
+fn one_line(message: &str) -> String {
+    const LONGEST: usize = 600;
+    let mut line: String = message
+        .chars()
+        .flat_map(|c| {
+            c.is_control().then(|| c.escape_debug()).into_iter().flatten().chain((!c.is_control()).then_some(c))
+        })
+        .take(LONGEST)
+        .collect();
+    if message.chars().nth(LONGEST).is_some() {
+        line.push_str(" ...");
+    }
+    line
 }
 
 impl std::error::Error for Failure {}
@@ -68,11 +84,20 @@ pub fn print(text: &str) -> Outcome {
     }
 }
 
-/// Prints warnings to standard error.
+/// Prints warnings to standard error, the first hundred of them.
 pub fn warn(warnings: &[String]) {
-    use std::io::Write;
-    for warning in warnings {
-        // Nobody is left to be told if standard error is closed.
-        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    const MOST: usize = 100;
+    for warning in warnings.iter().take(MOST) {
+        tell("warning", warning);
     }
+    if warnings.len() > MOST {
+        tell("warning", &format!("{} more of the kind", warnings.len() - MOST));
+    }
+}
+
+/// Prints a line to standard error.
+pub fn tell(what: &str, message: &str) {
+    use std::io::Write;
+    // If standard error is closed or full, nobody is left to be told.
+    let _ = writeln!(std::io::stderr(), "{what}: {}", one_line(message));
 }

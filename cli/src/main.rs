@@ -16,7 +16,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            pointmass_cli::tell("error", &error.to_string());
             ExitCode::FAILURE
         }
     }

@@ -85,7 +85,10 @@ impl Summary {
             angular_momentum: measures.angular_momentum,
             hash: format!("{:016x}", world.system.hash()),
             seconds: effort.seconds,
-            ns_per_particle_step: effort.seconds * 1e9 / effort.particle_steps.max(1) as f64,
+            ns_per_particle_step: match effort.particle_steps {
+                0 => 0.0,
+                steps => effort.seconds * 1e9 / steps as f64,
+            },
         }
     }
 

@@ -46,7 +46,7 @@ pub fn run(args: &args::Run) -> Outcome {
     progress.finish();
 
     let summary = Summary::of(&args.world.scene, &world, effort);
-    recorders.into_iter().try_for_each(Recorder::finish)?;
+    Recorder::finish(recorders)?;
     match args.report {
         Report::Text => print(&summary.text()),
         Report::Json => print(&summary.json()),

@@ -35,7 +35,10 @@ impl World {
         let particles = file.particles.len();
         let capacity = args.capacity.map_or(particles.max(file.run.capacity as usize), |capacity| capacity as usize);
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
-        let mut system = System::with(Heap::new(model.size(capacity)));
+        let memory = Heap::try_new(model.size(capacity)).map_err(|_| {
+            Failure::new(format!("there is no memory for {capacity} particles; lower --capacity (or the scene's)"))
+        })?;
+        let mut system = System::with(memory);
         system.start(&model.scene(), seed).map_err(|unfit| Failure::new(unfit.to_string()))?;
         Ok(Self { file, model, system, duration, dt })
     }

@@ -135,7 +135,7 @@ macro_rules! storage {
 
         #[cfg(feature = "alloc")]
         impl Heap {
-            /// Fresh memory of the given size.
+            /// Fresh memory of the given size; ends the program if there is not so much.
             #[must_use]
             pub fn new(size: Size) -> Self {
                 Self {
@@ -144,6 +144,19 @@ macro_rules! storage {
                     $($s: alloc::vec![$s_zero; 2 * size.springs],)+
                     $($w: alloc::vec![$w_zero; size.particles * size.columns],)+
                 }
+            }
+
+            /// Fresh memory of the given size.
+            ///
+            /// # Errors
+            /// If there is not so much.
+            pub fn try_new(size: Size) -> Result<Self, alloc::collections::TryReserveError> {
+                Ok(Self {
+                    $($p: zeros($p_zero, size.particles)?,)+
+                    $($e: zeros($e_zero, size.emitters)?,)+
+                    $($s: zeros($s_zero, size.springs.saturating_mul(2))?,)+
+                    $($w: zeros($w_zero, size.particles.saturating_mul(size.columns))?,)+
+                })
             }
         }
 
@@ -217,6 +230,14 @@ storage! {
         /// Columns to work with, one behind the other.
         work: Vec3 = Vec3::ZERO,
     }
+}
+
+#[cfg(feature = "alloc")]
+fn zeros<T: Clone>(zero: T, len: usize) -> Result<alloc::vec::Vec<T>, alloc::collections::TryReserveError> {
+    let mut column = alloc::vec::Vec::new();
+    column.try_reserve_exact(len)?;
+    column.resize(len, zero);
+    Ok(column)
 }
 
 /// How much memory a system has, or a scene needs.

@@ -62,6 +62,11 @@ pub(crate) struct Recorder {
 trait Writer {
     fn record(&mut self, frame: &Frame) -> std::io::Result<()>;
 
+    /// Whether nothing stands in the way of `finish`.
+    fn check(&self) -> Outcome {
+        Ok(())
+    }
+
     /// Puts what was recorded where it belongs.
     fn finish(self: Box<Self>) -> Outcome;
 }
@@ -81,8 +86,9 @@ impl Recorder {
         self.writer.record(frame).map_err(|error| Failure::io(&self.path, &error))
     }
 
-    /// Puts what was recorded where it belongs.
-    pub(crate) fn finish(self) -> Outcome {
-        self.writer.finish()
+    /// Puts all that was recorded where it belongs, or none of it.
+    pub(crate) fn finish(recorders: Vec<Self>) -> Outcome {
+        recorders.iter().try_for_each(|recorder| recorder.writer.check())?;
+        recorders.into_iter().try_for_each(|recorder| recorder.writer.finish())
     }
 }

@@ -27,6 +27,13 @@ impl Ply {
     }
 }
 
+impl Ply {
+    /// What record number `i` will be called.
+    fn numbered(&self, i: u32) -> PathBuf {
+        PathBuf::from(format!("{}_{i:06}.ply", self.path.with_extension("").to_string_lossy()))
+    }
+}
+
 impl Writer for Ply {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let mut out = BufWriter::new(File::create(self.waiting.path().join(self.count.to_string()))?);
@@ -36,10 +43,16 @@ impl Writer for Ply {
         out.flush()
     }
 
+    fn check(&self) -> Outcome {
+        match (0..self.count).map(|i| self.numbered(i)).find(|path| path.is_dir()) {
+            Some(path) => Err(Failure::new(format!("{}: is a directory, and in the way of a record", path.display()))),
+            None => Ok(()),
+        }
+    }
+
     fn finish(self: Box<Self>) -> Outcome {
-        let stem = self.path.with_extension("").to_string_lossy().into_owned();
         for i in 0..self.count {
-            let path = PathBuf::from(format!("{stem}_{i:06}.ply"));
+            let path = self.numbered(i);
             fs::rename(self.waiting.path().join(i.to_string()), &path).map_err(|error| Failure::io(&path, &error))?;
         }
         Ok(())

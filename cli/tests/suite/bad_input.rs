@@ -207,7 +207,7 @@ fn json_that_is_wrong() {
 #[test]
 fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
     // A list, where there should be an object with names.
-    for text in ["[]", "[null]", r#"{"run": [10.0, 0.1]}"#, r#"{"particles": [[]]}"#, r#"{"camera": []}"#] {
+    for text in ["[]", "[null]", r#"{"run": 1}"#, r#"{"particles": {}}"#, r#"{"camera": 1}"#] {
         let folder = Folder::with("a.json", text);
         refused(&folder, "a.json", "a.json:1:");
     }

@@ -188,14 +188,3 @@ fn the_course_is_converted_without_loss() {
         }
     }
 }
-
-#[test]
-#[cfg(unix)]
-fn files_are_found_through_linked_folders() {
-    let folder = Folder::with("real/deep/a.scn", "mesh -1 ../m.off include ../../b.scn");
-    folder.write("real/m.off", TRIANGLE);
-    folder.write("b.scn", "");
-    std::os::unix::fs::symlink("real/deep", folder.path("link")).expect("a link");
-    // `link/..` is `real`, as for every other program.
-    assert_eq!(folder.run("run link/a.scn --steps 1").code, 0, "{:?}", folder.run("run link/a.scn --steps 1"));
-}

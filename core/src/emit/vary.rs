@@ -8,7 +8,7 @@ use glam::Vec3;
 ///
 /// In a file a plain number, or `{"mean": 2, "variance": 0.5}` for 1.5 to 2.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Number", into = "Number"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "Number"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "Number"))]
 pub struct Varied {
     /// The middle.
@@ -67,27 +67,64 @@ impl Spread {
 
 /// How a varied number is written.
 #[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
+#[derive(serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
 enum Number {
     Plain(f32),
-    Varied { mean: f32, variance: f32 },
+    Varied(Range),
 }
 
 #[cfg(feature = "serde")]
-impl From<Number> for Varied {
-    fn from(number: Number) -> Self {
-        match number {
-            Number::Plain(mean) => Self::exactly(mean),
-            Number::Varied { mean, variance } => Self { mean, variance },
-        }
-    }
+#[derive(serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+struct Range {
+    mean: f32,
+    variance: f32,
 }
 
 #[cfg(feature = "serde")]
 impl From<Varied> for Number {
     fn from(Varied { mean, variance }: Varied) -> Self {
-        if variance == 0.0 { Self::Plain(mean) } else { Self::Varied { mean, variance } }
+        if variance == 0.0 { Self::Plain(mean) } else { Self::Varied(Range { mean, variance }) }
+    }
+}
+
+/// By hand, so that errors say what is wrong with the range instead of that it is none.
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Varied {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NumberOrRange)
+    }
+}
+
+#[cfg(feature = "serde")]
+struct NumberOrRange;
+
+#[cfg(feature = "serde")]
+impl<'de> serde::de::Visitor<'de> for NumberOrRange {
+    type Value = Varied;
+
+    fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("a number, or {\"mean\": ..., \"variance\": ...}")
+    }
+
+    fn visit_f64<E>(self, mean: f64) -> Result<Varied, E> {
+        Ok(Varied::exactly(mean as f32))
+    }
+
+    fn visit_i64<E>(self, mean: i64) -> Result<Varied, E> {
+        Ok(Varied::exactly(mean as f32))
+    }
+
+    fn visit_u64<E>(self, mean: u64) -> Result<Varied, E> {
+        Ok(Varied::exactly(mean as f32))
+    }
+
+    fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Varied, A::Error> {
+        let range = serde::de::value::MapAccessDeserializer::new(map);
+        let Range { mean, variance } = serde::Deserialize::deserialize(range)?;
+        Ok(Varied { mean, variance })
     }
 }

@@ -12,6 +12,12 @@ use glam::Vec3;
 
 type Checked = Result<(), SceneError>;
 
+/// How many materials there may be: particles keep their number plus one in 16 bits.
+pub(super) const MAX_MATERIALS: usize = u16::MAX as usize;
+
+/// How deep groups may stand in each other.
+pub(super) const MAX_GROUPS: usize = 1024;
+
 impl SceneFile {
     /// Checks every value.
     ///
@@ -79,8 +85,9 @@ impl SceneFile {
     fn check_run(&self) -> Checked {
         let run = &self.run;
         let longest = f64::from(1u32 << 31);
-        if !(run.dt > 0.0 && run.dt < longest) {
-            return Err(SceneError::value("run.dt", format!("has to be above zero seconds, not {}", run.dt)));
+        // Time itself has steps of 0.23 ns.
+        if !(run.dt >= 1e-9 && run.dt < longest) {
+            return Err(SceneError::value("run.dt", format!("has to be a nanosecond at least, not {} s", run.dt)));
         }
         if !(run.duration >= 0.0 && run.duration < longest) {
             return Err(SceneError::value(
@@ -136,6 +143,7 @@ impl SceneFile {
     }
 
     fn check_scenery(&self) -> Checked {
+        let mut depths: Vec<usize> = Vec::with_capacity(self.groups.len());
         for (i, group) in self.groups.iter().enumerate() {
             let at = format!("groups[{i}]");
             if let Err(message) = group.affine() {
@@ -143,6 +151,11 @@ impl SceneFile {
             }
             if group.parent.is_some_and(|parent| parent as usize >= i) {
                 return Err(SceneError::value(format!("{at}.parent"), "has to be an earlier group"));
+            }
+            depths.push(1 + group.parent.map_or(0, |parent| depths[parent as usize]));
+            if depths[i] > MAX_GROUPS {
+                let message = format!("groups stand more than {MAX_GROUPS} deep in each other");
+                return Err(SceneError::value(format!("{at}.parent"), message));
             }
             self.check_material(&at, group.material)?;
         }
@@ -162,6 +175,9 @@ impl SceneFile {
     }
 
     fn check_look(&self) -> Checked {
+        if self.materials.len() > MAX_MATERIALS {
+            return Err(SceneError::value("materials", format!("a scene has at most {MAX_MATERIALS}")));
+        }
         for (i, m) in self.materials.iter().enumerate() {
             let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
             finite(&format!("materials[{i}]"), colors.as_flattened())?;
@@ -181,6 +197,9 @@ impl SceneFile {
                 Light::Area { color, position, direction, radius, attenuation } => {
                     finite(&at, [*color, *position, *direction, *attenuation].as_flattened())?;
                     finite(&at, &[*radius])?;
+                    if *radius < 0.0 {
+                        return Err(SceneError::value(at, format!("the radius has to be zero or more, not {radius}")));
+                    }
                 }
             }
         }

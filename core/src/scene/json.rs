@@ -10,6 +10,10 @@ impl SceneFile {
     /// If the text is no JSON, or says something that a scene does not know, with line and column.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        // Serde would take a list for the fields in order.
+        if text.trim_start().starts_with('[') {
+            return Err(SceneError::at(name, 1, 1, "a scene is an object, not a list"));
+        }
         serde_json::from_str(text).map_err(|error| {
             let message = error.to_string();
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);

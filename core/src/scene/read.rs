@@ -1,5 +1,6 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
+use super::check::{MAX_GROUPS, MAX_MATERIALS};
 use super::scn::{Command, Index, Located, Place, ScnError, Source, commands};
 use super::{Camera, Group, Item, Light, Material, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
@@ -9,8 +10,6 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-/// How deep groups may stand in each other.
-const MAX_GROUPS: usize = 1024;
 /// How deep files may include each other.
 const MAX_INCLUDE_DEPTH: usize = 64;
 /// How many includes a scene may have in all: two files that each include the next twice grow without measure.
@@ -250,12 +249,7 @@ impl Reader<'_> {
         if let Err(message) = group.affine() {
             return Err(scope.error(place, "begin", message));
         }
-        let mut depth = 0;
-        let mut around = group.parent;
-        while let Some(index) = around {
-            depth += 1;
-            around = self.scene.groups[index as usize].parent;
-        }
+        let depth = self.scene.chain(group.parent).len();
         if depth >= MAX_GROUPS {
             return Err(scope.error(place, "begin", format!("groups stand more than {MAX_GROUPS} deep in each other")));
         }
@@ -265,9 +259,10 @@ impl Reader<'_> {
     }
 
     fn material(&mut self, scope: &mut Scope<'_>, place: Place, material: Material) -> Result<(), SceneError> {
-        let Ok(number) = u16::try_from(self.scene.materials.len()) else {
-            return Err(scope.error(place, "material", "a scene has at most 65536 materials"));
-        };
+        let number = self.scene.materials.len() as u16;
+        if usize::from(number) >= MAX_MATERIALS {
+            return Err(scope.error(place, "material", format!("a scene has at most {MAX_MATERIALS}")));
+        }
         if scope.borrowed {
             scope.materials.clear();
             scope.borrowed = false;
@@ -280,7 +275,7 @@ impl Reader<'_> {
     fn texture(&mut self, scope: &Scope<'_>, place: Place, file: &str) -> String {
         let texture = scope.named(file);
         if !self.files.exists(&beside(self.root, &texture)) {
-            let error = scope.error(place, "material", format!("there is no texture '{file}'; it is left out"));
+            let error = scope.error(place, "material", format!("there is no texture file '{file}'"));
             self.warnings.push(error.to_string());
         }
         texture

@@ -63,8 +63,11 @@ impl Writer {
     }
 
     fn settings(&mut self, scene: &SceneFile) {
+        if scene.schema.is_some() {
+            self.warn("$schema: .scn has no schema; it is left out");
+        }
         if !scene.about.is_empty() {
-            scene.about.lines().for_each(|text| self.line(format_args!("# {text}")));
+            scene.about.split(['\n', '\r']).for_each(|text| self.line(format_args!("# {text}")));
             self.warn("about: kept as a comment");
         }
         if scene.run != Run::default() {
@@ -80,8 +83,8 @@ impl Writer {
         let Material { ambient, diffuse, specular, transmission, emission, .. } = material;
         let colors = [*ambient, *diffuse, *specular, *transmission, *emission];
         let texture = match material.texture.as_deref() {
-            Some(file) if file.contains(char::is_whitespace) => {
-                self.warn(format!("materials: the texture '{file}' has blanks in its name; it is left out"));
+            Some(file) if !is_word(file) || file == "0" => {
+                self.warn(format!("materials: .scn cannot name the texture '{file}'; it is left out"));
                 "0"
             }
             file => file.unwrap_or("0"),
@@ -126,16 +129,27 @@ impl Writer {
         }
     }
 
-    /// Opens and closes groups as the list of scenery enters and leaves them.
+    /// Opens and closes groups as the list of scenery enters and leaves them; each first in the order of its number,
+    /// so that those of nothing are not lost.
     fn scenery(&mut self, scene: &SceneFile) {
-        let mut open: Vec<u32> = Vec::new();
+        let (mut open, mut next): (Vec<u32>, u32) = (Vec::new(), 0);
         for (i, Item { shape, material, group }) in scene.scenery.iter().enumerate() {
             let Some(shape) = self.shape(&format!("scenery[{i}]"), shape, true) else { continue };
+            self.open_until(scene, &mut open, &mut next, group.map_or(0, |group| group + 1));
             self.enter(scene, &mut open, &scene.chain(*group));
             let (name, arguments) = shape.split_once(' ').unwrap_or((&shape, ""));
             self.line(format_args!("{name} {} {arguments}", number(*material)));
         }
+        self.open_until(scene, &mut open, &mut next, scene.groups.len() as u32);
         self.enter(scene, &mut open, &[]);
+    }
+
+    /// Opens every group below `end` that never was.
+    fn open_until(&mut self, scene: &SceneFile, open: &mut Vec<u32>, next: &mut u32, end: u32) {
+        for group in *next..end {
+            self.enter(scene, open, &scene.chain(Some(group)));
+        }
+        *next = end.max(*next);
     }
 
     fn enter(&mut self, scene: &SceneFile, open: &mut Vec<u32>, wanted: &[u32]) {
@@ -153,20 +167,30 @@ impl Writer {
 
     /// `.scn` knows one gravity, and has drag and Newton's law always.
     fn forces(&mut self, scene: &SceneFile) {
-        let mut gravity = Vec3::ZERO;
-        let (mut drag, mut newton) = (0, 0);
+        let mut gravity: Option<Vec3> = None;
+        let (mut drag, mut newton, mut order) = (0, 0, Vec::new());
         for force in &scene.forces {
             match force {
-                ForceKind::Gravity(force) => gravity += force.acceleration,
+                ForceKind::Gravity(force) => gravity = Some(gravity.unwrap_or(Vec3::ZERO) + force.acceleration),
                 ForceKind::Drag(_) => drag += 1,
                 ForceKind::MutualGravity(force) if *force == MutualGravity::NEWTON => newton += 1,
                 ForceKind::MutualGravity(_) => {
                     self.warn("forces: .scn has mutual gravity with G = 6.67428e-11 and no softening only");
                 }
             }
+            order.push(match force {
+                ForceKind::Gravity(_) => 0,
+                ForceKind::Drag(_) => 1,
+                ForceKind::MutualGravity(_) => 2,
+            });
         }
-        if gravity != Vec3::ZERO {
-            self.line(format_args!("particle_gravity {}", Numbers(&gravity.to_array())));
+        if !order.is_sorted_by(|a, b| a < b) {
+            self.warn("forces: .scn adds them up as one gravity, drag, mutual gravity: sums may round in another way");
+        }
+        match gravity {
+            Some(g) if g.is_finite() => self.line(format_args!("particle_gravity {}", Numbers(&g.to_array()))),
+            Some(_) => self.warn("forces: the sum of all gravities is beyond a 32-bit float; it is left out"),
+            None => {}
         }
         if newton != 1 {
             self.warn("forces: in .scn all particles always attract each other with G = 6.67428e-11, once");
@@ -238,8 +262,8 @@ impl Writer {
             Shape::Cone(s) => return with("cone", &[s.center], &[s.radius, s.height]),
             Shape::Circle(s) if !is_scenery => return with("circle", &[s.center, s.normal], &[s.radius]),
             Shape::Triangle(s) if is_scenery => return with("tri", &s.corners, &[]),
-            Shape::Mesh(file) if !file.contains(char::is_whitespace) => return Some(format!("mesh {file}")),
-            Shape::Mesh(_) => "a mesh with blanks in its name",
+            Shape::Mesh(file) if is_word(file) => return Some(format!("mesh {file}")),
+            Shape::Mesh(_) => "a mesh of such a name",
             Shape::Circle(_) => "a circle that is solid",
             Shape::Triangle(_) => "a triangle that gives birth or takes away",
             Shape::Plane(_) => "a plane",
@@ -247,6 +271,11 @@ impl Writer {
         self.warn(format!("{at}: .scn does not have {kind}; it is left out"));
         None
     }
+}
+
+/// Whether a name is a word of `.scn`: not empty, without blanks, no comment.
+fn is_word(name: &str) -> bool {
+    !name.is_empty() && !name.contains(char::is_whitespace) && !name.starts_with('#')
 }
 
 /// A material's number as `.scn` writes it.

@@ -100,7 +100,7 @@ impl<'a> Lexer<'a> {
             let blank = self.rest.find(|c: char| !c.is_whitespace()).unwrap_or(self.rest.len());
             self.skip(blank);
             if self.rest.starts_with('#') {
-                self.skip(self.rest.find('\n').unwrap_or(self.rest.len()));
+                self.skip(self.rest.find(['\n', '\r']).unwrap_or(self.rest.len()));
             } else {
                 break;
             }
