@@ -196,7 +196,7 @@ impl Path {
     fn hull(&self) -> Aabb {
         let third = self.duration * (1.0 / 3.0);
         let (a, b) = (self.x0 + self.v0 * third, self.x1 - self.v1 * third);
-        Aabb { min: low(low(self.x0, self.x1), low(a, b)), max: high(high(self.x0, self.x1), high(a, b)) }
+        Aabb { min: low(low(self.x0, self.x1), low(a, b)), max: high(high(self.x0, self.x1), high(a, b)) }.with_slack()
     }
 
     /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.

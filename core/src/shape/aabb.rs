@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use crate::math::{high, low};
+use crate::math::{high, largest, low, max};
 use glam::Vec3;
 
 /// An axis-aligned box.
@@ -26,6 +26,13 @@ impl Aabb {
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The box with as much room around it as the rounding of its largest coordinate may need.
+    #[must_use]
+    pub fn with_slack(self) -> Self {
+        let room = 8.0 * f32::EPSILON * max(largest(self.min), largest(self.max));
+        Self { min: self.min - room, max: self.max + room }
     }
 
     /// Whether the two share a point, rounding errors of a few units in the last place allowed for.

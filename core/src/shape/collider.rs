@@ -1,7 +1,7 @@
 //! What a moving point can run into, one by one or in lists.
 
 use super::Aabb;
-use crate::math::{largest, max};
+use crate::math::{high, largest, low, max};
 use glam::Vec3;
 
 /// Something that a moving point can run into.
@@ -62,6 +62,12 @@ impl Segment {
         self.from + self.step() * time
     }
 
+    /// A box around it, with room for rounding.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        Aabb { min: low(self.from, self.to), max: high(self.from, self.to) }.with_slack()
+    }
+
     /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
     #[inline]
     pub(crate) fn slack(&self, size: f32) -> f32 {
@@ -95,7 +101,9 @@ impl<T: Collider + ?Sized> Collider for &T {
 
 impl<T: Collider> Collider for [T] {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        self.iter().fold(None, |best, c| earlier(best, c.first_hit(segment)))
+        let bounds = segment.bounds();
+        let near = self.iter().filter(|c| c.may_touch(&bounds));
+        near.fold(None, |best, c| earlier(best, c.first_hit(segment)))
     }
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.iter().any(|c| c.may_touch(bounds))
