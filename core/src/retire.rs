@@ -42,6 +42,6 @@ fn last_doomed(m: &Slices<'_>, end: usize, now: Time) -> Option<usize> {
     moving.zip(ending).rposition(|((x, v), (&dies, &fate))| {
         // Zero times anything finite is zero, and NaN otherwise.
         let probe = *x * 0.0 + *v * 0.0;
-        dies <= now || fate != Fate::Lives || !(probe.x + probe.y + probe.z == 0.0)
+        (dies <= now && dies != Time::NEVER) || fate != Fate::Lives || !(probe.x + probe.y + probe.z == 0.0)
     })
 }

@@ -68,6 +68,7 @@ impl<B: Storage> System<B> {
     /// short is counted in the report.
     pub fn step(&mut self, scene: &Scene<'_>, dt: Time) -> Report {
         let mut report = Report::default();
+        self.status.emitters = self.status.emitters.max(scene.emitters.count());
         if scene.fits(self.memory.columns().size()) {
             self.view().step(scene, dt, &mut report);
         } else {

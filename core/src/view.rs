@@ -247,6 +247,9 @@ impl Dynamics for Field<'_> {
         acceleration.fill(Vec3::ZERO);
         self.scene.forces.add_to(&state, rows.clone(), acceleration);
         springs.add_to(&state, rows.clone(), acceleration);
-        each_row_with(acceleration, Vec3::ZERO, &self.inverse_mass[rows], |force, _, inverse| force * inverse);
+        each_row_with(acceleration, Vec3::ZERO, &self.inverse_mass[rows], |force, _, inverse| {
+            // What is fixed stays so under a force that is beyond an f32.
+            if inverse == 0.0 { 0.0 } else { force * inverse }
+        });
     }
 }

@@ -98,7 +98,7 @@ impl<M: Surface + Sync> Emit for Emitter<M> {
         let (start, stop) = (Time::from_seconds(self.start), self.stop.map_or(Time::NEVER, Time::from_seconds));
         if let Some(burst) = &self.burst {
             let number = births.claim();
-            self.emit_bursts(burst, [from, to], births, number);
+            self.emit_bursts(burst, [from.max(start), to.min(stop)], births, number);
         }
         let (first, last) = (from.max(start), to.min(stop));
         if first < last {

@@ -40,8 +40,8 @@ pub struct Springs<'a> {
 impl<'a> Springs<'a> {
     /// The springs at the particle in `row`, each with the number of its other end.
     fn at(&self, row: usize) -> impl Iterator<Item = (&'a Spring, u32)> {
-        let Self { springs, incident, last_spring, start, .. } = *self;
-        let number = self.serial.get(row).copied().filter(|&number| number < start);
+        let Self { springs, incident, last_spring, .. } = *self;
+        let number = self.serial.get(row).copied().filter(|&number| self.row(number) == Some(row));
         let range = number.and_then(|n| {
             let first = if n == 0 { 0 } else { *last_spring.get(n as usize - 1)? };
             Some(first as usize..*last_spring.get(n as usize)? as usize)

@@ -12,6 +12,9 @@ use glam::Vec3;
 
 type Checked = Result<(), SceneError>;
 
+/// How many births a second there may be: rates are kept as fixed-point numbers.
+const MAX_RATE: f32 = 4e9;
+
 /// How many materials there may be: particles keep their number plus one in 16 bits.
 pub(super) const MAX_MATERIALS: usize = u16::MAX as usize;
 
@@ -110,11 +113,9 @@ impl SceneFile {
     }
 
     fn check_emitter(&self, at: &str, emitter: &Emitter<String>) -> Checked {
-        if !(emitter.rate >= 0.0 && emitter.rate.is_finite()) {
-            return Err(SceneError::value(
-                format!("{at}.rate"),
-                format!("has to be zero or more, not {}", emitter.rate),
-            ));
+        if !(emitter.rate >= 0.0 && emitter.rate <= MAX_RATE) {
+            let message = format!("has to be from zero to {MAX_RATE:e}, not {}", emitter.rate);
+            return Err(SceneError::value(format!("{at}.rate"), message));
         }
         let Emitter { speed, mass, drag, elasticity, lifetime, .. } = emitter;
         for (name, Varied { mean, variance }) in

@@ -145,8 +145,9 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
                 self.gravity = Some(Gravity { acceleration });
                 Ok(())
             }
-            Command::Scenery(Scenery { shape: Shape::Line(_), .. }) => Ok(()),
-            Command::Scenery(Scenery { shape, .. }) => {
+            Command::Scenery(Scenery { shape: Shape::Line(_), material }) => self.material(material.value).map(drop),
+            Command::Scenery(Scenery { shape, material }) => {
+                self.material(material.value)?;
                 let placed = Placed::new(plain(&shape)?, self.place()).ok_or("its groups flatten space")?;
                 self.scene.colliders.push(placed).map_err(|_| "too many solids for this array")
             }

@@ -10,8 +10,8 @@ use glam::Vec3;
 pub trait Collider: Sync {
     /// Where `segment` first meets it, if it does.
     ///
-    /// A point that starts on the surface and leaves it does not hit it; a closed solid's surface belongs to the
-    /// outside. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
+    /// A point that starts on the surface and leaves it does not hit it: the surface of a closed solid belongs to the
+    /// outside, an open surface to the side that its normal points to. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
     fn first_hit(&self, segment: &Segment) -> Option<Hit>;
 
     /// Whether a path inside `bounds` might meet it. May say yes too often, never no wrongly: it spares the search.

@@ -36,7 +36,7 @@ impl Span {
             if other.enter > self.enter { (other.enter, other.enter_normal) } else { (self.enter, self.enter_normal) };
         let (leave, leave_normal) =
             if other.leave < self.leave { (other.leave, other.leave_normal) } else { (self.leave, self.leave_normal) };
-        (enter < leave).then_some(Self { enter, leave, enter_normal, leave_normal })
+        (enter <= leave).then_some(Self { enter, leave, enter_normal, leave_normal })
     }
 
     /// Where a line with coordinate `from` + t × `step` lies between `low` and `high` along `axis`.
@@ -77,7 +77,7 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
         // Straight through. A start within rounding of the surface may seem inside the span: it enters if the
         // entrance is the nearer end, and else it leaves.
         (false, false) => {
-            let ahead = span.enter >= 0.0 || -span.enter < span.leave;
+            let ahead = span.enter > 0.0 || -span.enter < span.leave;
             if ahead && span.enter <= 1.0 { hit(span.enter, span.enter_normal) } else { None }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::plane::crossing;
 use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
-use crate::math::{frame, largest, length, max, sin_cos_turns, sqrt, unit};
+use crate::math::{frame, largest, length, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
 use glam::Vec3;
 
@@ -44,9 +44,10 @@ impl Surface for Disc {
 
     fn bounds(&self) -> Aabb {
         let n = unit(self.normal);
-        // A disc reaches r √(1 − nᵢ²) along axis i.
-        let reach = Vec3::new(1.0 - n.x * n.x, 1.0 - n.y * n.y, 1.0 - n.z * n.z);
-        let reach = Vec3::new(sqrt(max(reach.x, 0.0)), sqrt(max(reach.y, 0.0)), sqrt(max(reach.z, 0.0))) * self.radius;
+        // A disc reaches r √(1 − nᵢ²) along axis i; the two other squares keep the digits.
+        let square = n * n;
+        let reach = Vec3::new(square.y + square.z, square.z + square.x, square.x + square.y);
+        let reach = Vec3::new(sqrt(reach.x), sqrt(reach.y), sqrt(reach.z)) * self.radius;
         Aabb { min: self.center - reach, max: self.center + reach }
     }
 }

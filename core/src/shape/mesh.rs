@@ -147,6 +147,9 @@ impl Surface for Mesh<'_> {
 impl Collider for Mesh<'_> {
     /// Looks at every triangle. Watertight: an edge shared by two triangles is judged by the same arithmetic for both.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        if !self.bounds.overlaps(&segment.bounds()) {
+            return None;
+        }
         self.faces().fold(None, |best, face| earlier(best, face.first_hit(segment)))
     }
 

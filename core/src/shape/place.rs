@@ -1,7 +1,7 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
 use super::{Aabb, Collider, Hit, Segment, Surface};
-use crate::math::{length, unit};
+use crate::math::{high, length, unit};
 use glam::{Mat3, Vec3};
 
 /// A linear map and a shift.
@@ -66,6 +66,10 @@ impl<C: Surface> Placed<C> {
     #[must_use]
     pub fn new(collider: C, to_world: Affine) -> Option<Self> {
         let bounds = to_world.bounds(&collider.bounds());
+        // What cancels on the way there and back is rounding that the coordinates themselves do not show.
+        let reach = high(collider.bounds().min.abs(), collider.bounds().max.abs());
+        let room = (to_world.linear.abs() * reach + to_world.shift.abs()) * (16.0 * f32::EPSILON);
+        let bounds = Aabb { min: bounds.min - room, max: bounds.max + room };
         let to_local = to_world.inverse()?;
         let maps = (to_world != Affine::IDENTITY).then_some((to_world, to_local));
         Some(Self { collider, bounds, maps })

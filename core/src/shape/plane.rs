@@ -47,16 +47,16 @@ impl Collider for Plane {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
         let distance = self.normal.dot(middle - self.point).abs();
-        // Twice as far leaves room for rounding.
-        distance <= 2.0 * self.normal.abs().dot(half)
+        let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
+        distance <= self.normal.abs().dot(half + room)
     }
 }
 
 /// When a path with signed distances `before` and `after` to a plane meets it, and the normal on the side it comes
-/// from. A path that begins on the plane leaves it, whichever way it goes.
+/// from. A point on the plane is on the side its normal points to: it can leave that way freely, and lie there.
 #[inline]
 pub(super) fn crossing(normal: Vec3, before: f32, after: f32) -> Option<(f32, Vec3)> {
-    if before > 0.0 && after <= 0.0 {
+    if before >= 0.0 && after <= 0.0 && before > after {
         Some((before / (before - after), normal))
     } else if before < 0.0 && after >= 0.0 {
         Some((before / (before - after), -normal))
