@@ -38,7 +38,7 @@ pub struct Died {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Caps {
-    /// A particle hit more often in one step than it may, and waited at the surface for the step's end.
+    /// A particle hit as often in one step as it may, and waited at the surface for the step's end.
     pub bounces: u64,
     /// A path was so curved that its collisions were sought along fewer chords than its accuracy asks.
     pub chords: u64,

@@ -108,8 +108,8 @@ impl View<'_> {
         old
     }
 
-    /// Moves the `old` particles by the integrator. The newborn fly on from their birth with the acceleration they
-    /// have there, and act on others from the next step on.
+    /// Moves the `old` particles by the integrator. The newborn fly on from their places of birth with the acceleration
+    /// they have there at the step's beginning; they act on the old from the next step on.
     fn update(&mut self, scene: &Scene<'_>, old: usize, dt: Time) {
         let (len, now) = (self.status.len, self.status.time);
         let capacity = self.capacity();

@@ -47,12 +47,7 @@ impl World {
     /// # Errors
     /// If the scene cannot be used: one line with the place and what was expected.
     #[wasm_bindgen(constructor)]
-    pub fn new(
-        text: &str,
-        files: Option<Files>,
-        capacity: Option<u32>,
-        seed: Option<u64>,
-    ) -> Result<World, JsError> {
+    pub fn new(text: &str, files: Option<Files>, capacity: Option<u32>, seed: Option<u64>) -> Result<World, JsError> {
         let mut files = files.unwrap_or_default();
         let (file, warnings) = if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
             (SceneFile::from_json("scene", text)?, Vec::new())
