@@ -41,9 +41,11 @@ impl Backdrop {
                 let rows = colors.len() / lens.width;
                 let sky = |y| shader.sky.at(y as f32 + 0.5);
                 let mut band = Band::new(BAND * number, rows, lens.width, sky);
+                let opaque = visible.iter().filter(|(facet, _)| model.skins[facet.skin].opacity >= 1.0);
+                opaque.for_each(|(_, triangle)| band.hide(triangle));
                 for (facet, triangle) in &visible {
                     let skin = &model.skins[facet.skin];
-                    band.fill(triangle, skin.opacity, |part| shader.color(facet, skin, part));
+                    band.paint(triangle, skin.opacity, |part| shader.color(facet, skin, part));
                 }
                 for ((color, depth), samples) in colors.iter_mut().zip(depths).zip(&band.samples) {
                     *color = mean(samples);

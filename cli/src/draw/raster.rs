@@ -113,51 +113,52 @@ impl Band {
         Self { top, rows, width, samples }
     }
 
-    /// Fills a triangle where it is in front. `shade` is asked once for each pixel.
-    ///
-    /// Only an opaque triangle hides what is drawn behind it later.
-    pub(super) fn fill(&mut self, triangle: &Triangle, opacity: f32, mut shade: impl FnMut(Fragment) -> Vec3) {
+    /// Hides what is behind a triangle from what is painted later.
+    pub(super) fn hide(&mut self, triangle: &Triangle) {
+        self.each_pixel(triangle, |_, _, samples, weights| {
+            for (sample, weights) in samples.iter_mut().zip(weights) {
+                let depth = weights.map_or(f32::INFINITY, |weights| triangle.depth(weights));
+                sample.depth = sample.depth.min(depth);
+            }
+        });
+    }
+
+    /// Paints a triangle where nothing hides it. `shade` is asked once for each pixel.
+    pub(super) fn paint(&mut self, triangle: &Triangle, opacity: f32, mut shade: impl FnMut(Fragment) -> Vec3) {
+        self.each_pixel(triangle, |x, y, samples, weights| {
+            let (mut sum, mut count) = ([0.0; 3], 0.0);
+            let hits = std::array::from_fn::<_, { SAMPLES.len() }, _>(|at| {
+                let seen = |weights: &_| triangle.depth(*weights) <= samples[at].depth * (1.0 + COPLANAR);
+                let Some(weights) = weights[at].filter(seen) else { return false };
+                sum = [0, 1, 2].map(|at| sum[at] + weights[at]);
+                count += 1.0;
+                true
+            });
+            if count > 0.0 {
+                // The middle of the samples that hit is always inside the triangle.
+                let at = triangle.vertex(sum.map(|weight| weight / count));
+                let color = shade(Fragment { x, y, at });
+                for (sample, _) in samples.iter_mut().zip(hits).filter(|(_, hit)| *hit) {
+                    sample.color = sample.color.lerp(color, opacity);
+                }
+            }
+        });
+    }
+
+    /// Visits the pixels a triangle may touch, with its weights at each sample.
+    fn each_pixel(
+        &mut self,
+        triangle: &Triangle,
+        mut visit: impl FnMut(usize, usize, &mut [Sample; SAMPLES.len()], [Option<[f32; 3]>; SAMPLES.len()]),
+    ) {
         let (low, high) = triangle.bounds();
         let rows = within(low.y, high.y, self.top, self.top + self.rows);
         let columns = within(low.x, high.x, 0, self.width);
         for y in rows {
             for x in columns.clone() {
-                self.fill_pixel(x, y, triangle, opacity, &mut shade);
-            }
-        }
-    }
-
-    fn fill_pixel(
-        &mut self,
-        x: usize,
-        y: usize,
-        triangle: &Triangle,
-        opacity: f32,
-        shade: &mut impl FnMut(Fragment) -> Vec3,
-    ) {
-        let corner = Vec2::new(x as f32, y as f32);
-        let samples = &mut self.samples[(y - self.top) * self.width + x];
-        let mut hits = [false; SAMPLES.len()];
-        let mut sum = [0.0; 3];
-        let mut count = 0.0;
-        for ((hit, sample), offset) in hits.iter_mut().zip(samples.iter_mut()).zip(SAMPLES) {
-            let Some(weights) = triangle.weights(corner + offset) else { continue };
-            let depth = triangle.depth(weights);
-            if depth < sample.depth * (1.0 + COPLANAR) {
-                *hit = true;
-                count += 1.0;
-                sum = [0, 1, 2].map(|at| sum[at] + weights[at]);
-                if opacity >= 1.0 {
-                    sample.depth = depth;
-                }
-            }
-        }
-        if count > 0.0 {
-            // The middle of the samples that hit is always inside the triangle.
-            let at = triangle.vertex(sum.map(|weight| weight / count));
-            let color = shade(Fragment { x, y, at });
-            for (sample, _) in samples.iter_mut().zip(hits).filter(|(_, hit)| *hit) {
-                sample.color = sample.color.lerp(color, opacity);
+                let corner = Vec2::new(x as f32, y as f32);
+                let samples = &mut self.samples[(y - self.top) * self.width + x];
+                visit(x, y, samples, SAMPLES.map(|offset| triangle.weights(corner + offset)));
             }
         }
     }
@@ -192,7 +193,7 @@ mod tests {
     fn triangles_that_share_an_edge_fill_each_sample_once() {
         let mut band = band();
         for triangle in &wall(3.0) {
-            band.fill(triangle, 0.5, |_| Vec3::ONE);
+            band.paint(triangle, 0.5, |_| Vec3::ONE);
         }
         for sample in band.samples.iter().flatten() {
             assert_eq!(sample.color, Vec3::splat(0.5));
@@ -203,9 +204,10 @@ mod tests {
     fn the_nearer_one_shows_in_either_order() {
         for depths in [[2.0, 3.0], [3.0, 2.0]] {
             let mut band = band();
+            depths.iter().flat_map(|&depth| wall(depth)).for_each(|triangle| band.hide(&triangle));
             for depth in depths {
                 for triangle in &wall(depth) {
-                    band.fill(triangle, 1.0, |_| Vec3::splat(depth));
+                    band.paint(triangle, 1.0, |_| Vec3::splat(depth));
                 }
             }
             for sample in band.samples.iter().flatten() {
@@ -221,7 +223,7 @@ mod tests {
         let corners = [[-9.0, -1.0, -2.0], [9.0, -1.0, -2.0], [0.0, 1.0, -30.0]];
         let corners = corners.map(|at| Vertex { place: Vec3::from_array(at), normal: Vec3::Y });
         let triangle = Triangle::new(corners, &lens).unwrap();
-        band().fill(&triangle, 1.0, |fragment| {
+        band().paint(&triangle, 1.0, |fragment| {
             let error = lens.project(fragment.at.place) - Vec2::new(fragment.x as f32, fragment.y as f32);
             assert!(error.min_element() >= 0.0 && error.max_element() <= 1.0, "{error}");
             assert!((fragment.at.place.y + 1.0 - 2.0 * (-2.0 - fragment.at.place.z) / 28.0).abs() < 1e-4);

@@ -60,18 +60,18 @@ impl Rays {
     }
 
     /// The first wall along a ray, if there is one within `reach`.
-    pub(super) fn first(&self, from: Vec3, towards: Vec3, mut reach: f32) -> Option<Hit> {
-        let (from, towards) = (self.upright * from, self.upright * towards);
+    pub(super) fn first(&self, from: Vec3, towards: Vec3, reach: f32) -> Option<Hit> {
+        let mut packet = Packet::new(self.upright * from, [self.upright * towards], reach);
         let mut hit = None;
-        let mut look = |wall: &Wall| {
-            if let Some(distance) = wall.distance(from, towards, reach) {
-                reach = distance;
+        let mut look = |wall: &Wall, packet: &mut Packet<1>| {
+            let [distance] = wall.distances(packet);
+            if distance < packet.reach[0] {
+                packet.reach = [distance];
                 hit = Some(Hit { distance, normal: self.upright.transpose() * wall.flat });
             }
-            true
         };
-        self.endless.iter().for_each(|wall| _ = look(wall));
-        self.walk(&Beam::new(from, towards, 0.0, reach), look);
+        self.endless.iter().for_each(|wall| look(wall, &mut packet));
+        self.walk(packet, look);
         hit
     }
 
@@ -82,35 +82,33 @@ impl Rays {
     /// lit by a lamp outside it, which is how people light the rooms they want to look into.
     pub(super) fn seen(&self, from: Vec3, towards: Vec3, width: f32, reach: f32, turn: f32) -> f32 {
         let (from, towards) = (self.upright * from, self.upright * towards);
-        let beam = Beam::new(from, towards, width, reach);
         let (x, y) = towards.any_orthonormal_pair();
+        let ray = |at: Vec2| towards + width * (at.x * x + at.y * y);
         // Four rays say whether this is the edge of a shadow; if so, ask more.
-        let few = self.passing(&beam, spread::<4>(turn).map(|at| towards + width * (at.x * x + at.y * y)));
+        let few = self.passing(Packet::new(from, spread::<4>(turn).map(ray), reach));
         if few == 0.0 || few == 1.0 {
             return few;
         }
-        self.passing(&beam, spread::<24>(turn).map(|at| towards + width * (at.x * x + at.y * y)))
+        self.passing(Packet::new(from, spread::<24>(turn).map(ray), reach))
     }
 
-    /// The share of light that gets through along a beam's rays.
-    fn passing<const N: usize>(&self, beam: &Beam, rays: [Vec3; N]) -> f32 {
+    /// The share of light that gets through along some rays.
+    fn passing<const N: usize>(&self, packet: Packet<N>) -> f32 {
         let mut passing = [1.0; N];
-        self.walk(beam, |wall| {
-            if wall.flat.dot(beam.from - wall.corner) > 0.0 {
-                for (passing, ray) in passing.iter_mut().zip(rays) {
-                    if *passing > 0.0 && wall.distance(beam.from, ray, beam.reach).is_some() {
-                        *passing *= 1.0 - wall.opacity;
-                    }
+        self.walk(packet, |wall, packet| {
+            if wall.flat.dot(packet.from - wall.corner) > 0.0 {
+                let distances = wall.distances(packet);
+                for at in 0..N {
+                    passing[at] *= if distances[at] < packet.reach[at] { 1.0 - wall.opacity } else { 1.0 };
+                    packet.reach[at] = if passing[at] > 0.0 { packet.reach[at] } else { -1.0 };
                 }
             }
-            passing != [0.0; N]
         });
         passing.iter().sum::<f32>() / N as f32
     }
 
-    /// Visits the solid walls that a beam may meet, in no particular order, as long as the visitor
-    /// wants more.
-    fn walk(&self, beam: &Beam, mut visit: impl FnMut(&Wall) -> bool) {
+    /// Visits the solid walls that rays may meet, in no particular order. The visitor may shorten the rays.
+    fn walk<const N: usize>(&self, mut packet: Packet<N>, mut visit: impl FnMut(&Wall, &mut Packet<N>)) {
         // Halving leaves a tree too shallow to fill this, however many walls there are.
         let mut open = [0; 64];
         let mut count = usize::from(!self.nodes.is_empty());
@@ -118,7 +116,7 @@ impl Rays {
             count -= 1;
             let at = open[count];
             let node = &self.nodes[at];
-            if !beam.crosses(node) {
+            if !packet.crosses(node) {
                 continue;
             }
             if node.second_child > 0 {
@@ -126,8 +124,8 @@ impl Rays {
                 open[count + 1] = at + 1;
                 count += 2;
             }
-            if !self.solid[node.walls.0..node.walls.1].iter().all(&mut visit) {
-                return;
+            for wall in &self.solid[node.walls.0..node.walls.1] {
+                visit(wall, &mut packet);
             }
         }
     }
@@ -157,34 +155,38 @@ impl Rays {
     }
 }
 
-/// All rays from one place whose directions differ by no more than a width in each coordinate.
-struct Beam {
+/// Some rays from one place.
+struct Packet<const N: usize> {
     from: Vec3,
-    /// One over the least direction, and one over the greatest.
-    inverse: [Vec3; 2],
-    reach: f32,
+    /// The directions, one array for each coordinate, and one over them.
+    towards: [[f32; N]; 3],
+    inverse: [[f32; N]; 3],
+    /// How far to look, in lengths of the direction; negative for not at all.
+    reach: [f32; N],
 }
 
-impl Beam {
-    fn new(from: Vec3, towards: Vec3, width: f32, reach: f32) -> Self {
+impl<const N: usize> Packet<N> {
+    fn new(from: Vec3, rays: [Vec3; N], reach: f32) -> Self {
+        let towards = [0, 1, 2].map(|axis| rays.map(|ray| ray[axis]));
         // No division by zero, which would make the boxes' bounds meaningless.
-        let inverse = |d: f32| 1.0 / if d.abs() < 1e-12 { 1e-12 } else { d };
-        Self { from, inverse: [-width, width].map(|width| (towards + width).map(inverse)), reach }
+        let inverse = towards.map(|row| row.map(|d| 1.0 / if d.abs() < 1e-12 { 1e-12 } else { d }));
+        Self { from, towards, inverse, reach: [reach; N] }
     }
 
-    /// Whether any of the rays may cross a box.
+    /// Whether any of the rays crosses a box.
     fn crosses(&self, node: &Node) -> bool {
-        let (mut enter, mut leave) = (0.0, self.reach);
+        let (mut enter, mut leave) = ([0.0; N], self.reach);
         for axis in 0..3 {
-            // The greatest direction gets above the box's low side first, or stays above it longest;
-            // the least direction does the same for the high side.
-            let low = (node.low[axis] - self.from[axis]) * self.inverse[1][axis];
-            let high = (node.high[axis] - self.from[axis]) * self.inverse[0][axis];
-            if self.inverse[1][axis] > 0.0 { enter = low.max(enter) } else { leave = low.min(leave) }
-            if self.inverse[0][axis] < 0.0 { enter = high.max(enter) } else { leave = high.min(leave) }
+            let (low, high) = (node.low[axis] - self.from[axis], node.high[axis] - self.from[axis]);
+            for at in 0..N {
+                let (a, b) = (low * self.inverse[axis][at], high * self.inverse[axis][at]);
+                let (near, far) = if a < b { (a, b) } else { (b, a) };
+                enter[at] = if near > enter[at] { near } else { enter[at] };
+                leave[at] = if far < leave[at] { far } else { leave[at] };
+            }
         }
         // Rounding must not lose a wall that lies flat in its box.
-        enter <= leave * 1.000_01
+        (0..N).fold(false, |any, at| any | (enter[at] <= leave[at] * 1.000_01))
     }
 }
 
@@ -207,17 +209,19 @@ impl Wall {
         [self.corner, self.corner + self.sides[0], self.corner + self.sides[1]]
     }
 
-    /// How far along a ray the wall is, if within reach (Möller and Trumbore's method).
-    fn distance(&self, from: Vec3, towards: Vec3, reach: f32) -> Option<f32> {
-        let across = towards.cross(self.sides[1]);
-        let scale = 1.0 / self.sides[0].dot(across);
-        let out = from - self.corner;
-        let u = scale * out.dot(across);
-        let along = out.cross(self.sides[0]);
-        let v = scale * towards.dot(along);
-        let distance = scale * self.sides[1].dot(along);
-        let met = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < reach;
-        met.then_some(distance)
+    /// How far along each ray the wall is; infinite or not a number for not at all (Möller and
+    /// Trumbore's method).
+    fn distances<const N: usize>(&self, packet: &Packet<N>) -> [f32; N] {
+        let out = packet.from - self.corner;
+        let flat = self.sides[1].cross(self.sides[0]);
+        let (u, v) = (self.sides[1].cross(out), out.cross(self.sides[0]));
+        let height = self.sides[1].dot(v);
+        std::array::from_fn(|at| {
+            let dot = |a: Vec3| a.x * packet.towards[0][at] + a.y * packet.towards[1][at] + a.z * packet.towards[2][at];
+            let scale = 1.0 / dot(flat);
+            let (u, v, distance) = (scale * dot(u), scale * dot(v), scale * height);
+            if (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0) { distance } else { f32::INFINITY }
+        })
     }
 }
 

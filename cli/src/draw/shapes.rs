@@ -59,11 +59,16 @@ pub fn cone(center: Vec3, radius: f32, height: f32) -> Surface {
 pub fn disc(center: Vec3, normal: Vec3, radius: f32) -> Surface {
     let normal = normal.normalize_or(Vec3::Y);
     let turn = Quat::from_rotation_arc(Vec3::Z, normal);
-    // Slices that meet in the middle: unlike long slivers from side to side, they stay apart.
-    let rim = (0..=SIDES).map(|step| center + radius * (turn * around(step)));
-    let mut surface = Surface::default();
-    surface.fan(std::iter::once(center).chain(rim), normal);
-    surface
+    let vertices = (0..SIDES).map(|step| center + radius * (turn * around(step))).collect();
+    // One triangle in the middle and ever smaller ones around it: unlike slivers, they stay apart.
+    let third = SIDES / 3;
+    let mut triangles = vec![[0, third, 2 * third]];
+    let halves = std::iter::successors(Some(third / 2), |half| Some(half / 2)).take_while(|&half| half > 0);
+    for half in halves {
+        let corners = (0..SIDES).step_by(2 * half as usize);
+        triangles.extend(corners.map(|at| [at, at + half, (at + 2 * half) % SIDES]));
+    }
+    Surface { vertices, normals: vec![normal; SIDES as usize], triangles }
 }
 
 /// A square of a plane through `point`, reaching `reach` to each side. See
