@@ -2,7 +2,7 @@
 //!
 //! Without a heap, `scn` parses command by command and [`InlineScene`] holds a small scene. With the feature `alloc`,
 //! text → [`SceneFile`] (what the file says, for writing back) → [`Model`] (meshes loaded, colours and transforms
-//! settled) → [`Scene`](crate::Scene) (what a system steps through).
+//! settled) → [`Scene`] (what a system steps through).
 
 #[cfg(feature = "alloc")]
 mod check;
