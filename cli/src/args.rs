@@ -42,10 +42,10 @@ pub enum Command {
 pub struct World {
     /// The scene: .json or .scn
     pub scene: PathBuf,
-    /// How long [s]; by default what the scene says, 10 for .scn
+    /// How many seconds; by default what the scene says, 10 for .scn
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub duration: Option<f64>,
-    /// The step [s], such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
+    /// The step in seconds, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
     #[arg(long, value_name = "S", value_parser = step)]
     pub dt: Option<f64>,
     /// The method: euler, symplectic, midpoint, verlet or rk4; by default what the scene says, rk4 for .scn
