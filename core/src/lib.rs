@@ -53,6 +53,7 @@ mod collide;
 pub mod emit;
 pub mod force;
 mod hash;
+pub mod index;
 pub mod integrate;
 pub mod math;
 #[cfg(feature = "std")]

@@ -12,6 +12,12 @@ fn main() {
         other => panic!("no board for {other}: see tests/firmware/build.rs"),
     };
 
+    // The microbit has 16 KiB, which the scenes take.
+    println!("cargo::rustc-check-cfg=cfg(roomy)");
+    if board != "microbit" {
+        println!("cargo::rustc-cfg=roomy");
+    }
+
     let source = format!("memory/{board}.x");
     let out = env::var("OUT_DIR").expect("cargo sets OUT_DIR");
     fs::copy(&source, Path::new(&out).join("memory.x")).expect("memory map");

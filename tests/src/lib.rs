@@ -2,6 +2,7 @@
 
 pub mod busy;
 pub mod emitting;
+pub mod points;
 pub mod solids;
 
 use core::ops::Range;

@@ -19,6 +19,9 @@ impl Memory {
     }
 }
 
+/// The hashes in the form of `all` in `expected.rs`.
+pub(crate) const EXPECTED: &str = include_str!("../../hashes.txt");
+
 const SCENES: [(&str, &str); 3] = [
     ("overflow", include_str!("../../../scenes/overflow.scn")),
     ("rope", include_str!("../../../scenes/rope.scn")),

@@ -1,0 +1,120 @@
+//! How points are placed in an index: wrapped into a periodic domain, scaled where squares would leave an `f32`.
+
+use crate::math::{floor, largest, max, min};
+use glam::Vec3;
+
+/// A domain: all of space, or a box whose opposite faces are one and the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Domain {
+    low: Vec3,
+    /// Its sides \[m\]; zero where it is open.
+    sides: Vec3,
+    /// A power of two that brings coordinates into the middle of an `f32`'s range.
+    scale: f32,
+}
+
+/// Which image of the points is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Image {
+    /// The points themselves.
+    Itself,
+    /// The points moved by so much.
+    Moved(Vec3),
+    /// Of each point the image that is nearest, in a domain of these sides: each side of the difference is taken into
+    /// (-side/2, side/2].
+    Nearest(Vec3),
+}
+
+impl Image {
+    /// How far the points are moved.
+    #[inline(always)]
+    pub(super) fn moved(self) -> Vec3 {
+        if let Self::Moved(by) = self { by } else { Vec3::ZERO }
+    }
+}
+
+impl Domain {
+    pub(super) const OPEN: Self = Self { low: Vec3::ZERO, sides: Vec3::ZERO, scale: 1.0 };
+
+    /// A box from `low` on; sides that are not positive and finite are open.
+    pub(super) fn periodic(low: Vec3, sides: Vec3) -> Self {
+        let side = |low: f32, side: f32| if low.is_finite() && side > 0.0 && side.is_finite() { side } else { 0.0 };
+        let sides = Vec3::new(side(low.x, sides.x), side(low.y, sides.y), side(low.z, sides.z));
+        let low = Vec3::select(sides.cmpgt(Vec3::ZERO), low, Vec3::ZERO);
+        Self { low, sides, scale: 1.0 }
+    }
+
+    /// Chooses the scale for points like these.
+    pub(super) fn fit(&mut self, points: &[Vec3]) {
+        let most = points.iter().filter(|point| point.is_finite()).fold(0.0, |most, point| max(largest(*point), most));
+        let most = max(most, largest(self.sides));
+        let exponent = ((most.to_bits() >> 23) as i32 - 127).clamp(-126, 126);
+        let usual = most == 0.0 || (-30..=30).contains(&exponent);
+        self.scale = if usual { 1.0 } else { f32::from_bits(((127 - exponent) as u32) << 23) };
+    }
+
+    /// Where a point is in the index.
+    #[inline(always)]
+    pub(super) fn place(&self, point: Vec3) -> Vec3 {
+        if self.sides == Vec3::ZERO { point * self.scale } else { self.wrap(point) * self.scale }
+    }
+
+    /// A length in the index.
+    pub(super) fn length(&self, length: f32) -> f32 {
+        length * self.scale
+    }
+
+    /// A length outside of it.
+    pub(super) fn unscaled(&self, length: f32) -> f32 {
+        length / self.scale
+    }
+
+    fn wrap(&self, point: Vec3) -> Vec3 {
+        let side = |x: f32, low: f32, side: f32| {
+            if side == 0.0 {
+                return x;
+            }
+            let x = x - low;
+            let x = x - side * floor(x / side);
+            if x >= 0.0 && x < side { x } else { 0.0 }
+        };
+        let (low, sides) = (self.low, self.sides);
+        Vec3::new(side(point.x, low.x, sides.x), side(point.y, low.y, sides.y), side(point.z, low.z, sides.z))
+    }
+
+    /// Half of the shortest side, in the index: within less, a point is met in one of its images only. Zero if its
+    /// square is beyond an `f32`, infinite if the domain is open.
+    pub(super) fn half(&self) -> f32 {
+        let side = |side: f32| if side == 0.0 { f32::INFINITY } else { side * self.scale * 0.5 };
+        let half = min(side(self.sides.x), min(side(self.sides.y), side(self.sides.z)));
+        if half * half >= f32::MIN_POSITIVE { half } else { 0.0 }
+    }
+
+    /// The image in which any point may be looked at.
+    pub(super) fn image_of_all(&self) -> Image {
+        if self.sides == Vec3::ZERO { Image::Itself } else { Image::Nearest(self.sides * self.scale) }
+    }
+
+    /// Visits the images of the points that can come within `radius`, less than half of a side, of a box.
+    pub(super) fn images(&self, low: Vec3, high: Vec3, radius: f32, mut visit: impl FnMut(Image)) {
+        if self.sides == Vec3::ZERO {
+            return visit(Image::Itself);
+        }
+        let sides = (self.sides * self.scale).to_array();
+        let reach = radius * 1.000_001;
+        let across = |axis: usize, sign: i32| match sign {
+            0 => true,
+            _ if sides[axis] == 0.0 => false,
+            1 => high[axis] + reach >= sides[axis] * 0.999_999,
+            _ => low[axis] - reach <= sides[axis] * 0.000_001,
+        };
+        for code in 0..27 {
+            let signs = [code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1];
+            if (0..3).all(|axis| across(axis, signs[axis])) {
+                // What is met beyond the upper face is a point near the lower one, moved up by a side.
+                let side = |axis: usize| signs[axis] as f32 * sides[axis];
+                visit(Image::Moved(Vec3::new(side(0), side(1), side(2))));
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Cells of one size in a bounded box.
+
+use super::domain::{Domain, Image};
+use super::search::{Partition, Region, Run, Search, widened};
+use super::sorted::{LANES, Sorted};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers};
+use crate::math::max;
+use core::ops::Range;
+use glam::Vec3;
+
+/// A uniform grid over the box around the points, each cell's points one behind the other, the cells along x first, so
+/// that three neighbouring cells are one run.
+///
+/// The fastest where points are spread evenly and the radius is known: cells are as large as the reach. If there were
+/// more cells than memory, they are made larger, which [`Stats::crowded`] counts.
+#[derive(Debug)]
+pub struct Grid<'m> {
+    sorted: Sorted<'m>,
+    /// Where each cell begins, and one more: where the last ends.
+    starts: &'m mut [u32],
+    reach: f32,
+    layout: Layout,
+    enlarged: usize,
+}
+
+/// Where cells are.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Layout {
+    low: Vec3,
+    pub(super) cell: f32,
+    inverse: f32,
+    /// Cells along each axis.
+    cells: [usize; 3],
+    /// More than a coordinate of a cell's face is wrong by.
+    slack: f32,
+}
+
+impl Layout {
+    /// Cells of a given size over a box; none if there were more than `most`.
+    fn new([low, high]: [Vec3; 2], cell: f32, most: usize) -> Option<Self> {
+        let mut layout = Self { low, cell, inverse: 1.0 / cell, cells: [usize::MAX; 3], slack: 0.0 };
+        let count = (high - low).to_array().map(|side| side * layout.inverse);
+        if !count.iter().all(|&count| count < most as f32) {
+            return None;
+        }
+        layout.cells = [0, 1, 2].map(|axis| layout.along(axis, high[axis]) + 1);
+        layout.slack = 1e-6 * max(crate::math::largest(low), crate::math::largest(high));
+        let [x, y, z] = layout.cells;
+        (x.saturating_mul(y).saturating_mul(z) <= most).then_some(layout)
+    }
+
+    /// Cells at least so large over a box, at most so many; and how often they had to grow.
+    fn enlarged(bounds: [Vec3; 2], cell: f32, most: usize) -> (Self, usize) {
+        let extent = crate::math::largest(bounds[1] - bounds[0]);
+        let mut cell = max(cell, max(extent * 1e-9, f32::MIN_POSITIVE));
+        let mut times = 0;
+        loop {
+            if let Some(layout) = Self::new(bounds, cell, most.max(1)) {
+                return (layout, times);
+            }
+            cell *= GROWTH;
+            times += 1;
+        }
+    }
+
+    /// About eight points in each cell, if they were spread evenly over the box.
+    pub(super) fn by_density(bounds: [Vec3; 2], points: usize, most: usize) -> Self {
+        Self::enlarged(bounds, 0.0, (points / 8).clamp(1, most.max(1))).0
+    }
+
+    /// Which cell along an axis: never falls as the coordinate grows.
+    #[inline(always)]
+    fn along(&self, axis: usize, x: f32) -> usize {
+        let cell = ((x - self.low[axis]) * self.inverse) as u32 as usize;
+        cell.min(self.cells[axis] - 1)
+    }
+
+    #[inline(always)]
+    fn cell(&self, point: Vec3) -> usize {
+        let [nx, ny, _] = self.cells;
+        (self.along(2, point.z) * ny + self.along(1, point.y)) * nx + self.along(0, point.x)
+    }
+
+    fn count(&self) -> usize {
+        self.cells.iter().product()
+    }
+
+    /// A cell's lower face.
+    #[inline(always)]
+    fn face(&self, axis: usize, cell: usize) -> f32 {
+        self.low[axis] + cell as f32 * self.cell
+    }
+}
+
+/// Cells grow by this factor until there is memory for all.
+const GROWTH: f32 = 1.25;
+
+impl<'m> Grid<'m> {
+    /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
+    #[must_use]
+    pub fn new(memory: &'m mut [u32]) -> Self {
+        Self::within_domain(memory, Domain::OPEN)
+    }
+
+    /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
+    /// open; points outside are wrapped in.
+    #[must_use]
+    pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
+        Self::within_domain(memory, Domain::periodic(low, sides))
+    }
+
+    pub(super) const fn words(points: usize) -> usize {
+        8 * points + 4 * LANES + 4
+    }
+
+    fn within_domain(memory: &'m mut [u32], domain: Domain) -> Self {
+        let capacity = memory.len().saturating_sub(Self::words(0)) / 8;
+        let (sorted, starts) = Sorted::new(memory, capacity, domain);
+        Self { sorted, starts, reach: 0.0, layout: Layout::default(), enlarged: 0 }
+    }
+
+    /// Cells as large as the reach, or as memory demands; without a reach by the density.
+    fn lay_out(&mut self) {
+        let bounds = [self.sorted.low, self.sorted.high];
+        let most = self.starts.len().saturating_sub(2);
+        let reach = self.sorted.domain.length(self.reach);
+        (self.layout, self.enlarged) = if reach > 0.0 {
+            // Just over the reach, so that rounding does not bring in a cell more.
+            Layout::enlarged(bounds, reach * 1.000_01, most)
+        } else {
+            (Layout::by_density(bounds, self.sorted.len, most), 0)
+        };
+    }
+}
+
+/// Sorts the points by cell: counts what each gets, then deals them out. `starts` has two entries more than cells.
+pub(super) fn sort_by_cell(
+    sorted: &mut Sorted<'_>,
+    starts: &mut [u32],
+    points: &[Vec3],
+    cell_of: impl Fn(Vec3) -> usize,
+) {
+    let domain = sorted.domain;
+    let sound = || points.iter().enumerate().filter(|(_, point)| point.is_finite());
+    starts.fill(0);
+    let (_, cells) = sorted.rows_and_scratch();
+    for ((_, point), cell) in sound().zip(cells) {
+        *cell = cell_of(domain.place(*point)) as u32;
+        starts[*cell as usize + 2] += 1;
+    }
+    let mut sum = 0;
+    for start in starts.iter_mut() {
+        sum += *start;
+        *start = sum;
+    }
+    // The next free slot of a cell is kept one further on, where in the end the following cell's start has to be.
+    for (i, (row, point)) in sound().enumerate() {
+        let next = &mut starts[sorted.scratch(i) as usize + 1];
+        sorted.put(*next as usize, domain.place(*point), row as u32);
+        *next += 1;
+    }
+}
+
+impl Partition for Grid<'_> {
+    const BOXED: bool = false;
+
+    fn sorted(&self) -> &Sorted<'_> {
+        &self.sorted
+    }
+
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>)) {
+        for cell in self.starts[..self.layout.count() + 1].windows(2) {
+            if cell[0] < cell[1] {
+                visit(cell[0] as usize..cell[1] as usize);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn near(&self, region: &Region, image: Image, radius: f32, visit: &mut impl FnMut(Run) -> bool) -> u64 {
+        let (layout, moved) = (&self.layout, image.moved());
+        let mut cells = [[0; 2]; 3];
+        for axis in 0..3 {
+            let (low, high) = (region.low[axis] - moved[axis], region.high[axis] - moved[axis]);
+            let reach = widened(radius, low, high);
+            if low - reach > self.sorted.high[axis] || high + reach < self.sorted.low[axis] {
+                return 0;
+            }
+            cells[axis] = [layout.along(axis, low - reach), layout.along(axis, high + reach)];
+        }
+        let [[x0, x1], [y0, y1], [z0, z1]] = cells;
+        let (low_x, high_x) = (layout.face(0, x0) - layout.slack, layout.face(0, x1 + 1) + layout.slack);
+        let mut visits = 0;
+        for z in z0..=z1 {
+            let (low_z, high_z) = (layout.face(2, z) - layout.slack, layout.face(2, z + 1) + layout.slack);
+            for y in y0..=y1 {
+                let row = (z * layout.cells[1] + y) * layout.cells[0];
+                let slots = self.starts[row + x0] as usize..self.starts[row + x1 + 1] as usize;
+                visits += 1;
+                let (low_y, high_y) = (layout.face(1, y) - layout.slack, layout.face(1, y + 1) + layout.slack);
+                let low = Vec3::new(low_x, low_y, low_z);
+                let high = Vec3::new(high_x, high_y, high_z);
+                if !slots.is_empty() && !visit(Run { slots, low, high, frame: 0 }) {
+                    return visits;
+                }
+            }
+        }
+        visits
+    }
+
+    fn stride(&self) -> f32 {
+        self.layout.cell
+    }
+}
+
+impl SpatialIndex for Grid<'_> {
+    fn build(&mut self, points: &[Vec3], reach: f32) -> Result<(), TooSmall> {
+        self.reach = reach;
+        self.layout = Layout::default();
+        self.sorted.survey(points)?;
+        if self.sorted.len == 0 {
+            return Ok(());
+        }
+        self.lay_out();
+        let layout = self.layout;
+        sort_by_cell(&mut self.sorted, &mut self.starts[..layout.count() + 2], points, |point| layout.cell(point));
+        Ok(())
+    }
+
+    fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
+        self.build(points, self.reach)
+    }
+
+    fn stats(&self) -> Stats {
+        let nodes = self.layout.count();
+        let fullest = self.starts.get(..nodes + 1).map_or(0, |s| s.windows(2).map(|c| c[1] - c[0]).max().unwrap_or(0));
+        let stats = self.sorted.stats();
+        // Of the words to sort in, one a point goes unused.
+        let bytes = stats.bytes - 8 * stats.points + 4 * nodes;
+        Stats { nodes, fullest: fullest as usize, crowded: self.enlarged, bytes, ..stats }
+    }
+
+    answers!();
+}

@@ -1,0 +1,185 @@
+//! Which points are near: one trait, eight ways to organise space, the same answers from all.
+//!
+//! An index sorts a copy of the points so that what is near in space is near in memory, and answers from that copy. It
+//! lives in a slice of words that the caller lends it, allocates nothing, and takes no more points than the slice has
+//! room for. Every answer is exact: two points are within `radius` of each other if, in `f32`,
+//! `dx² + dy² + dz² ≤ radius²`, added in this order, whichever structure is asked, so that all give the same.
+//!
+//! ```
+//! use pointmass::Vec3;
+//! use pointmass::index::{Grid, SpatialIndex, Structure};
+//!
+//! let points = [Vec3::ZERO, Vec3::X, Vec3::new(0.1, 0.0, 0.0)];
+//! let mut memory = [0; Structure::Grid.words(3)];
+//! let mut grid = Grid::new(&mut memory);
+//! grid.build(&points, 0.5)?;
+//! let mut pairs = Vec::new();
+//! grid.pairs(0.5, &mut |row, others| pairs.extend(others.iter().map(|&other| (row.min(other), row.max(other)))));
+//! assert_eq!(pairs, [(0, 2)]);
+//! # Ok::<(), pointmass::index::TooSmall>(())
+//! ```
+//!
+//! Whatever works through all points (`counts`, `neighbours`, `pairs`, `all_nearest`) is several times faster than as many
+//! single queries, since near points share their way through the structure.
+
+mod brute;
+mod bsp;
+mod bvh;
+mod domain;
+mod grid;
+mod hash;
+mod kd;
+mod nearest;
+mod octree;
+mod search;
+mod sorted;
+mod structure;
+mod tree;
+
+pub use brute::Brute;
+pub use bsp::Bsp;
+pub use bvh::Bvh;
+pub use grid::Grid;
+pub use hash::Hash;
+pub use kd::Kd;
+pub use nearest::Neighbour;
+pub use octree::{Octree, Quadtree};
+pub use structure::{AnyIndex, Structure, UnknownStructure};
+
+use glam::Vec3;
+
+/// Points sorted in space, to be asked what is near.
+///
+/// Rows are the positions of points in the slice the index was built from. Rows that are not finite are left out and
+/// counted in [`Stats::skipped`]. A negative or undefined radius finds nothing.
+pub trait SpatialIndex {
+    /// Sorts `points` in. `reach` \[m\] is the radius that most queries will have; grids make their cells as large,
+    /// trees do not need it. Zero: choose by the density.
+    ///
+    /// # Errors
+    /// If the memory is too small for so many points; the index is then empty.
+    fn build(&mut self, points: &[Vec3], reach: f32) -> Result<(), TooSmall>;
+
+    /// Follows the same points to where they are now: cheaper than building where the structure allows it, as exact,
+    /// and slower to ask the farther they have gone. Another number of sound points makes it build.
+    ///
+    /// # Errors
+    /// As `build`.
+    fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall>;
+
+    /// What has been built.
+    fn stats(&self) -> Stats;
+
+    /// The rows of all points in the structure's order: near in space is near in this list. Work in this order is kind
+    /// to caches.
+    fn order(&self) -> &[u32];
+
+    /// How many points lie within `radius` of `center`.
+    fn count(&self, center: Vec3, radius: f32) -> Cost;
+
+    /// Visits all rows within `radius` of `center`, in runs.
+    fn within(&self, center: Vec3, radius: f32, visit: &mut dyn FnMut(&[u32])) -> Cost;
+
+    /// Finds the `found.len()` points nearest to `center` that lie within `radius` (infinite: no limit), the nearest
+    /// first, of equally near ones the lower row. [`Cost::found`] says how many there are.
+    fn nearest(&self, center: Vec3, radius: f32, found: &mut [Neighbour]) -> Cost;
+
+    /// Counts for every row the others within `radius`, into `counts` by row; rows without a sound point get zero.
+    fn counts(&self, radius: f32, counts: &mut [u32]) -> Cost;
+
+    /// Visits every row with the others within `radius`, in runs; all runs of a row follow each other, and rows come
+    /// in the structure's order. Rows without neighbours are not visited.
+    fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost;
+
+    /// Visits every two rows within `radius` of each other once: a row with a run of others.
+    fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost;
+
+    /// Visits every row with its nearest others, as many as `found` has room for, within `radius`, as `nearest` does.
+    fn all_nearest(&self, radius: f32, found: &mut [Neighbour], visit: &mut dyn FnMut(u32, &[Neighbour])) -> Cost;
+}
+
+/// What a query took: the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Nodes or rows of cells that were looked at.
+    pub visits: u64,
+    /// Distances between points that were computed.
+    pub tests: u64,
+    /// Points found, or pairs, or neighbours over all rows.
+    pub found: u64,
+}
+
+impl core::ops::AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.visits += other.visits;
+        self.tests += other.tests;
+        self.found += other.found;
+    }
+}
+
+/// What an index has been built to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Points in it.
+    pub points: usize,
+    /// Rows left out because they are not finite.
+    pub skipped: usize,
+    /// Nodes or cells.
+    pub nodes: usize,
+    /// Levels below the root.
+    pub depth: usize,
+    /// The most points in a leaf or cell.
+    pub fullest: usize,
+    /// Leaves left larger than they should be, or how many times cells had to be doubled, for want of memory.
+    pub crowded: usize,
+    /// Bytes in use, the copy of the points and what building takes among them.
+    pub bytes: usize,
+}
+
+/// The memory of an index is too small for the points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooSmall {
+    /// Points that were to be sorted in.
+    pub points: usize,
+    /// Points that there is room for.
+    pub room: usize,
+}
+
+impl core::fmt::Display for TooSmall {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "the index has room for {} points, not for {}", self.room, self.points)
+    }
+}
+
+impl core::error::Error for TooSmall {}
+
+/// Answers a trait's queries by a partition.
+macro_rules! answers {
+    () => {
+        fn order(&self) -> &[u32] {
+            self.sorted().order()
+        }
+        fn count(&self, center: Vec3, radius: f32) -> Cost {
+            Search(self).count(center, radius)
+        }
+        fn within(&self, center: Vec3, radius: f32, visit: &mut dyn FnMut(&[u32])) -> Cost {
+            Search(self).within(center, radius, visit)
+        }
+        fn nearest(&self, center: Vec3, radius: f32, found: &mut [Neighbour]) -> Cost {
+            Search(self).nearest(center, radius, found)
+        }
+        fn counts(&self, radius: f32, counts: &mut [u32]) -> Cost {
+            Search(self).counts(radius, counts)
+        }
+        fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+            Search(self).neighbours(radius, visit)
+        }
+        fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+            Search(self).pairs(radius, visit)
+        }
+        fn all_nearest(&self, radius: f32, found: &mut [Neighbour], visit: &mut dyn FnMut(u32, &[Neighbour])) -> Cost {
+            Search(self).all_nearest(radius, found, visit)
+        }
+    };
+}
+use answers;

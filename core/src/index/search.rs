@@ -1,0 +1,527 @@
+//! The queries, written once: a structure only says where points may be.
+
+use super::domain::{Domain, Image};
+use super::nearest::Nearest;
+use super::sorted::{Found, LANES, Probe, Sorted, Tally};
+use super::{Cost, Neighbour};
+use crate::math::{self, high as high_of, max, min, sqrt};
+use core::ops::Range;
+use glam::Vec3;
+use wide::f32x8;
+
+/// Space divided: what a structure adds to what all share.
+pub(super) trait Partition {
+    /// Whether the boxes of runs are worth a look for each point.
+    const BOXED: bool = true;
+    /// Whether boxes may be turned.
+    const TURNS: bool = false;
+
+    fn sorted(&self) -> &Sorted<'_>;
+
+    /// Visits runs of slots that lie close together, all of them, in order.
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>));
+
+    /// Visits runs, each once, that hold every point of `image` within `radius` of the region; returns how many nodes
+    /// were looked at. Stops when `visit` says false.
+    fn near(&self, region: &Region, image: Image, radius: f32, visit: &mut impl FnMut(Run) -> bool) -> u64;
+
+    /// A point in the frame of a box.
+    fn turn(&self, frame: u32, point: Vec3) -> Vec3 {
+        let _ = frame;
+        point
+    }
+
+    /// The radius to begin a search for the nearest with; infinite: one go will do.
+    fn stride(&self) -> f32;
+
+    /// Offers to `nearest` every point of `image` within `radius` that it may want.
+    fn seek(&self, center: Vec3, image: Image, radius: f32, nearest: &mut Nearest<'_>) -> Cost {
+        let mut tests = 0;
+        let probe = Probe::new(center, image, 0.0);
+        let visits = self.near(&Region::point(center), image, radius, &mut |run| {
+            tests += run.slots.len() as u64;
+            self.sorted().offer(&run.slots, &probe, nearest);
+            true
+        });
+        Cost { visits, tests, found: 0 }
+    }
+}
+
+/// A box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Region {
+    pub(super) low: Vec3,
+    pub(super) high: Vec3,
+}
+
+impl Region {
+    pub(super) fn point(at: Vec3) -> Self {
+        Self { low: at, high: at }
+    }
+
+    /// The square of the distance to the farthest corner of a box.
+    fn farthest_square(&self, low: Vec3, high: Vec3) -> f32 {
+        let side = high_of((high - self.low).abs(), (self.high - low).abs());
+        side.dot(side)
+    }
+
+    /// The square of the distance to an image of another box: at most that of any of the points inside, as they are
+    /// rounded, since rounding keeps order.
+    #[inline(always)]
+    pub(super) fn square_to(&self, low: Vec3, high: Vec3, moved: Vec3) -> f32 {
+        let gap = |axis: usize| {
+            let above = low[axis] - self.high[axis] + moved[axis];
+            let below = self.low[axis] - high[axis] - moved[axis];
+            let gap = if above > below { above } else { below };
+            if gap > 0.0 { gap } else { 0.0 }
+        };
+        let [x, y, z] = [gap(0), gap(1), gap(2)];
+        x * x + y * y + z * z
+    }
+}
+
+/// How far along an axis from `low` or `high` points may be that are within a radius by their squares: rounding may
+/// bring in some that are a little farther, underflow all that are closer than 4e-23.
+#[inline(always)]
+pub(super) fn widened(radius: f32, low: f32, high: f32) -> f32 {
+    radius + 1e-6 * max(radius, max(low.abs(), high.abs())) + 1e-22
+}
+
+/// Slots that may hold something, and the box around their points.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) slots: Range<usize>,
+    pub(super) low: Vec3,
+    pub(super) high: Vec3,
+    /// The frame of the box; zero is that of the coordinates.
+    pub(super) frame: u32,
+}
+
+/// How many points share one way through the structure at most.
+const GROUP: usize = 64;
+/// How many runs they remember; if there are more, each point goes its own way.
+const RUNS: usize = 128;
+
+/// What is near a group of points.
+struct Near {
+    group: Range<usize>,
+    /// The square within which all is known; negative if nothing is.
+    square: f32,
+    len: usize,
+    full: bool,
+    /// Whether all runs have one image and one frame.
+    alike: bool,
+    slots: [[u32; 2]; RUNS],
+    /// The image and the frame in which its box is.
+    views: [(Image, u32); RUNS],
+    low: [[f32; RUNS + LANES]; 3],
+    high: [[f32; RUNS + LANES]; 3],
+}
+
+impl Near {
+    fn new() -> Self {
+        Self {
+            group: 0..0,
+            square: -1.0,
+            len: 0,
+            full: false,
+            alike: true,
+            slots: [[0; 2]; RUNS],
+            views: [(Image::Itself, 0); RUNS],
+            low: [[0.0; RUNS + LANES]; 3],
+            high: [[0.0; RUNS + LANES]; 3],
+        }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, run: Run, image: Image) -> bool {
+        if self.len == RUNS {
+            self.full = true;
+            return false;
+        }
+        let at = self.len;
+        self.slots[at] = [run.slots.start as u32, run.slots.end as u32];
+        self.views[at] = (image, run.frame);
+        self.alike &= self.views[at] == self.views[0];
+        for axis in 0..3 {
+            // Points are moved against the image when they are held against the box; the slack is more than what
+            // rounding may take from them.
+            let slack = math::largest(image.moved()) * 1e-6;
+            self.low[axis][at] = run.low[axis] - slack;
+            self.high[axis][at] = run.high[axis] + slack;
+        }
+        self.len += 1;
+        true
+    }
+
+    /// Visits what of it is within a distance of a point, with the square of the distance to its box.
+    #[inline(always)]
+    fn each<P: Partition>(
+        &self,
+        partition: &P,
+        boxed: bool,
+        center: Vec3,
+        square: f32,
+        mut visit: impl FnMut(f32, Range<usize>, Image),
+    ) {
+        let mut go = |at: usize, square: f32| {
+            let [start, end] = self.slots[at];
+            visit(square, start as usize..end as usize, self.views[at].0);
+        };
+        if !boxed {
+            return (0..self.len).for_each(|at| go(at, 0.0));
+        }
+        let mut start = 0;
+        while start < self.len {
+            // All that is seen alike at once.
+            let view = self.views[start];
+            let mut end = self.len;
+            if !self.alike {
+                end = (start..self.len).find(|&at| self.views[at] != view).unwrap_or(end);
+            }
+            let center = if view.0 == Image::Itself { center } else { center - view.0.moved() };
+            let center = if P::TURNS { partition.turn(view.1, center) } else { center };
+            let center = center.to_array().map(f32x8::splat);
+            for first in (start..end).step_by(LANES) {
+                let squares = self.squares(first, center);
+                let mut hits = squares.simd_le(f32x8::splat(square)).to_bitmask();
+                hits &= (1u32 << (end - first).min(LANES)) - 1;
+                let squares = squares.to_array();
+                while hits != 0 {
+                    let lane = hits.trailing_zeros() as usize;
+                    go(first + lane, squares[lane]);
+                    hits &= hits - 1;
+                }
+            }
+            start = end;
+        }
+    }
+
+    /// The squares of the distances from a point to eight boxes.
+    #[inline(always)]
+    fn squares(&self, first: usize, center: [f32x8; 3]) -> f32x8 {
+        let gap = |axis: usize| {
+            let side = |column: &[[f32; RUNS + LANES]; 3]| {
+                f32x8::new(*column[axis][first..].first_chunk().unwrap_or(&[0.0; LANES]))
+            };
+            let (above, below) = (side(&self.low) - center[axis], center[axis] - side(&self.high));
+            above.fast_max(below).fast_max(f32x8::ZERO)
+        };
+        let [x, y, z] = [gap(0), gap(1), gap(2)];
+        x * x + y * y + z * z
+    }
+}
+
+/// A query's radius, in the index.
+#[derive(Clone, Copy)]
+struct Reach {
+    radius: f32,
+    square: f32,
+    /// Whether points could be met in two images: then all of them are looked at, each in its nearest image.
+    wraps: bool,
+}
+
+impl Reach {
+    fn new(radius: f32, domain: &Domain) -> Self {
+        Self { radius, square: radius * radius, wraps: domain.half() <= radius }
+    }
+}
+
+/// Whether squares of distances from here are beyond an `f32`: then all points are equally far.
+fn is_far(center: Vec3) -> bool {
+    !(math::largest(center) < 1e18)
+}
+
+/// What is done at each point on the way through all.
+trait Sweep {
+    /// Whether only runs that go on behind a slot are of interest to it.
+    const FORWARD: bool = false;
+    fn begin(&mut self, slot: usize);
+    /// Looks at the slots of a run; returns how many distances that took.
+    fn scan(&mut self, slot: usize, run: Range<usize>, probe: &Probe) -> u64;
+    fn end(&mut self, slot: usize);
+}
+
+/// A partition's queries.
+pub(super) struct Search<'a, P>(pub(super) &'a P);
+
+impl<P: Partition> Search<'_, P> {
+    /// None where nothing can be found: the radius is negative or undefined, or there are no points.
+    fn reach(&self, radius: f32) -> Option<Reach> {
+        let sorted = self.0.sorted();
+        (radius >= 0.0 && sorted.len > 0).then(|| Reach::new(sorted.domain.length(radius), &sorted.domain))
+    }
+
+    /// Visits the runs that may hold points within reach of a region, in every image; returns the nodes visited.
+    #[inline(always)]
+    fn runs(&self, region: &Region, reach: Reach, mut visit: impl FnMut(Run, Image) -> bool) -> u64 {
+        let sorted = self.0.sorted();
+        if reach.wraps || is_far(region.low) || is_far(region.high) {
+            let everywhere = Vec3::splat(f32::INFINITY);
+            visit(
+                Run { slots: 0..sorted.len, low: -everywhere, high: everywhere, frame: 0 },
+                sorted.domain.image_of_all(),
+            );
+            return 1;
+        }
+        let mut visits = 0;
+        sorted.domain.images(region.low, region.high, reach.radius, |image| {
+            visits += self.0.near(region, image, reach.radius, &mut |run| visit(run, image));
+        });
+        visits
+    }
+
+    /// Scans everything that may be within reach of one place.
+    #[inline(always)]
+    fn scan(&self, center: Vec3, reach: Reach, mut scan: impl FnMut(&Range<usize>, &Probe)) -> Cost {
+        let mut tests = 0;
+        let visits = self.runs(&Region::point(center), reach, |run, image| {
+            tests += run.slots.len() as u64;
+            scan(&run.slots, &Probe::new(center, image, reach.square));
+            true
+        });
+        Cost { visits, tests, found: 0 }
+    }
+
+    /// Scans for every slot everything that may be within reach of it, near slots together.
+    fn sweep<W: Sweep>(&self, reach: Reach, sweep: &mut W) -> Cost {
+        let (sorted, mut cost, mut near) = (self.0.sorted(), Cost::default(), Near::new());
+        self.0.groups(&mut |slots| {
+            for group in chunks(slots) {
+                let from = if W::FORWARD { group.start + 1 } else { 0 };
+                cost.visits += self.gather(&group, from, reach, &mut near);
+                for slot in group {
+                    let center = sorted.point(slot);
+                    sweep.begin(slot);
+                    if near.full {
+                        cost.visits += self.runs(&Region::point(center), reach, |run, image| {
+                            cost.tests += sweep.scan(slot, run.slots, &Probe::new(center, image, reach.square));
+                            true
+                        });
+                    } else {
+                        let probe = Probe::new(center, Image::Itself, reach.square);
+                        near.each(self.0, P::BOXED, center, reach.square, |_, run, image| {
+                            cost.tests += sweep.scan(slot, run, &probe.of(image));
+                        });
+                    }
+                    sweep.end(slot);
+                }
+            }
+        });
+        cost
+    }
+
+    /// Remembers what of the slots `from` some on is near a group; returns the nodes visited.
+    fn gather(&self, group: &Range<usize>, from: usize, reach: Reach, near: &mut Near) -> u64 {
+        let [low, high] = self.0.sorted().bounds(group.clone());
+        (near.group, near.square) = (group.clone(), reach.square);
+        (near.len, near.full, near.alike) = (0, false, true);
+        self.runs(&Region { low, high }, reach, |run, image| run.slots.end <= from || near.push(run, image))
+    }
+
+    pub(super) fn count(&self, center: Vec3, radius: f32) -> Cost {
+        let Some((center, reach)) = self.place(center).zip(self.reach(radius)) else { return Cost::default() };
+        let mut tally = Tally::default();
+        let cost = self.scan(center, reach, |run, probe| self.0.sorted().count(run, probe, &mut tally));
+        Cost { found: tally.total().into(), ..cost }
+    }
+
+    pub(super) fn within(&self, center: Vec3, radius: f32, visit: &mut dyn FnMut(&[u32])) -> Cost {
+        let Some((center, reach)) = self.place(center).zip(self.reach(radius)) else { return Cost::default() };
+        let mut found = Found::default();
+        let cost = self.scan(center, reach, |run, probe| {
+            self.0.sorted().gather(run, probe, usize::MAX, &mut found, &mut *visit);
+        });
+        found.flush(visit);
+        Cost { found: found.total, ..cost }
+    }
+
+    pub(super) fn counts(&self, radius: f32, counts: &mut [u32]) -> Cost {
+        counts.fill(0);
+        let Some(reach) = self.reach(radius) else { return Cost::default() };
+        let mut sweep = Counts { sorted: self.0.sorted(), counts, tally: Tally::default(), total: 0 };
+        let cost = self.sweep(reach, &mut sweep);
+        Cost { found: sweep.total, ..cost }
+    }
+
+    pub(super) fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+        self.lists::<true>(radius, visit)
+    }
+
+    pub(super) fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+        self.lists::<false>(radius, visit)
+    }
+
+    fn lists<const BOTH: bool>(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+        let Some(reach) = self.reach(radius) else { return Cost::default() };
+        let mut sweep = Lists::<BOTH> { sorted: self.0.sorted(), found: Found::default(), visit };
+        let cost = self.sweep(reach, &mut sweep);
+        Cost { found: sweep.found.total, ..cost }
+    }
+
+    pub(super) fn nearest(&self, center: Vec3, radius: f32, found: &mut [Neighbour]) -> Cost {
+        let Some((center, reach)) = self.place(center).zip(self.reach(radius)) else { return Cost::default() };
+        let mut nearest = Nearest::new(found);
+        let cost = self.seek(center, reach.radius, self.0.stride(), &mut nearest);
+        Cost { found: nearest.finish(|length| self.0.sorted().domain.unscaled(length)) as u64, ..cost }
+    }
+
+    pub(super) fn all_nearest(
+        &self,
+        radius: f32,
+        found: &mut [Neighbour],
+        visit: &mut dyn FnMut(u32, &[Neighbour]),
+    ) -> Cost {
+        let Some(reach) = self.reach(radius) else { return Cost::default() };
+        let (sorted, mut cost, mut near) = (self.0.sorted(), Cost::default(), Near::new());
+        let mut stride = self.0.stride();
+        self.0.groups(&mut |slots| {
+            for group in chunks(slots) {
+                near.square = -1.0;
+                for slot in group.clone() {
+                    let (center, row) = (sorted.point(slot), sorted.order()[slot]);
+                    let mut nearest = Nearest::new(found);
+                    nearest.skip = row;
+                    if !self.seek_near(center, reach, &near, &mut nearest, &mut cost) {
+                        cost += self.seek(center, reach.radius, stride, &mut nearest);
+                    }
+                    if P::BOXED && slot == group.start && nearest.is_full() {
+                        // The others will hardly have to go twice as far as the first.
+                        let twice = Reach::new(min(2.0 * sqrt(nearest.bound()), reach.radius), &sorted.domain);
+                        if !twice.wraps {
+                            cost.visits += self.gather(&group, 0, twice, &mut near);
+                        }
+                    }
+                    if !P::BOXED && nearest.is_full() {
+                        stride = max(sqrt(nearest.bound()) * 1.1, self.0.stride() * 0.1);
+                    }
+                    let n = nearest.finish(|length| sorted.domain.unscaled(length));
+                    cost.found += n as u64;
+                    if n > 0 {
+                        visit(row, &found[..n]);
+                    }
+                }
+            }
+        });
+        cost
+    }
+
+    /// The nearest to one point of a group: first among the group itself, which tells how far to look, then among what
+    /// is near the group. False if that is not far enough.
+    #[inline]
+    fn seek_near(&self, center: Vec3, reach: Reach, near: &Near, nearest: &mut Nearest<'_>, cost: &mut Cost) -> bool {
+        if near.full || near.square < 0.0 {
+            return false;
+        }
+        let (sorted, probe) = (self.0.sorted(), Probe::new(center, Image::Itself, 0.0));
+        nearest.restart(reach.square);
+        sorted.offer(&near.group, &probe, nearest);
+        cost.tests += near.group.len() as u64;
+        if !(nearest.bound() <= near.square) {
+            return false;
+        }
+        near.each(self.0, true, center, nearest.bound(), |square, run, image| {
+            if !(square <= nearest.bound()) {
+                return;
+            }
+            let rest = if image.moved() == Vec3::ZERO { without(run, &near.group) } else { [run, 0..0] };
+            for part in rest {
+                cost.tests += part.len() as u64;
+                sorted.offer(&part, &probe.of(image), nearest);
+            }
+        });
+        true
+    }
+
+    /// The nearest to any place: with a larger and larger radius where the structure needs one.
+    fn seek(&self, center: Vec3, limit: f32, stride: f32, nearest: &mut Nearest<'_>) -> Cost {
+        let (sorted, mut cost, mut radius) = (self.0.sorted(), Cost::default(), stride);
+        let (domain, half) = (&sorted.domain, sorted.domain.half());
+        let farthest = sqrt(Region::point(center).farthest_square(sorted.low, sorted.high)) * 1.000_001;
+        while !is_far(center) && radius < half * 1.5 {
+            // Whatever is nearer than half a side is met in one image only.
+            let reach = min(min(radius, limit), half * 0.999_999);
+            nearest.restart(reach * reach);
+            domain.images(center, center, reach, |image| cost += self.0.seek(center, image, reach, nearest));
+            let all = half == f32::INFINITY && radius > farthest;
+            if nearest.is_full() || limit <= reach || all {
+                return cost;
+            }
+            radius *= 1.5;
+        }
+        nearest.restart(limit * limit);
+        sorted.offer(&(0..sorted.len), &Probe::new(center, domain.image_of_all(), 0.0), nearest);
+        cost.tests += sorted.len as u64;
+        cost
+    }
+
+    fn place(&self, center: Vec3) -> Option<Vec3> {
+        center.is_finite().then(|| self.0.sorted().domain.place(center))
+    }
+}
+
+struct Counts<'a> {
+    sorted: &'a Sorted<'a>,
+    counts: &'a mut [u32],
+    tally: Tally,
+    total: u64,
+}
+
+impl Sweep for Counts<'_> {
+    #[inline(always)]
+    fn begin(&mut self, _: usize) {
+        self.tally = Tally::default();
+    }
+    #[inline(always)]
+    fn scan(&mut self, _: usize, run: Range<usize>, probe: &Probe) -> u64 {
+        self.sorted.count(&run, probe, &mut self.tally);
+        run.len() as u64
+    }
+    #[inline(always)]
+    fn end(&mut self, slot: usize) {
+        // It has found itself as well.
+        let others = self.tally.total() - 1;
+        self.total += u64::from(others);
+        if let Some(count) = self.counts.get_mut(self.sorted.order()[slot] as usize) {
+            *count = others;
+        }
+    }
+}
+
+/// Lists of neighbours: of all others, or of those in higher slots only, so that every pair comes once.
+struct Lists<'a, const BOTH: bool> {
+    sorted: &'a Sorted<'a>,
+    found: Found,
+    visit: &'a mut dyn FnMut(u32, &[u32]),
+}
+
+impl<const BOTH: bool> Sweep for Lists<'_, BOTH> {
+    const FORWARD: bool = !BOTH;
+    #[inline(always)]
+    fn begin(&mut self, _: usize) {}
+    #[inline(always)]
+    fn scan(&mut self, slot: usize, run: Range<usize>, probe: &Probe) -> u64 {
+        let row = self.sorted.order()[slot];
+        let run = if BOTH { run } else { run.start.max(slot + 1).min(run.end)..run.end };
+        self.sorted.gather(&run, probe, slot, &mut self.found, |rows| (self.visit)(row, rows));
+        run.len() as u64
+    }
+    #[inline(always)]
+    fn end(&mut self, slot: usize) {
+        let row = self.sorted.order()[slot];
+        let visit = &mut self.visit;
+        self.found.flush(|rows| visit(row, rows));
+    }
+}
+
+/// What of a run lies before and behind some slots.
+#[inline(always)]
+fn without(run: Range<usize>, slots: &Range<usize>) -> [Range<usize>; 2] {
+    [run.start..run.end.min(slots.start).max(run.start), run.start.max(slots.end).min(run.end)..run.end]
+}
+
+/// A run in pieces of at most `GROUP`.
+fn chunks(slots: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let end = slots.end;
+    slots.step_by(GROUP).map(move |start| start..(start + GROUP).min(end))
+}

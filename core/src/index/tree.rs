@@ -1,0 +1,470 @@
+//! What the trees share: nodes in one flat list, each with the box around its points, and the way through them.
+//!
+//! Nodes come in the order of a walk that goes down first, and each knows where to go on if its points are of no
+//! interest, so that a walk needs neither pointers nor a stack. The trees differ in how they split, and only there.
+
+use super::domain::{Domain, Image};
+use super::nearest::Nearest;
+use super::search::{Partition, Region, Run, Search};
+use super::sorted::{Entry, LANES, Probe, Sorted};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers};
+use crate::math;
+use core::ops::{ControlFlow, Range};
+use glam::{Mat3, Vec3};
+use wide::f32x4;
+
+/// A node: what of the points it holds, and where.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Node {
+    low: [f32; 3],
+    high: [f32; 3],
+    /// Its first slot; the last is before the first of the node to go on with.
+    first: u32,
+    /// The node to go on with if this one is of no interest.
+    next: u32,
+}
+
+/// Words of a node.
+const NODE: usize = size_of::<Node>() / 4;
+
+impl Node {
+    fn low(&self) -> Vec3 {
+        Vec3::from_array(self.low)
+    }
+    fn high(&self) -> Vec3 {
+        Vec3::from_array(self.high)
+    }
+}
+
+/// At most so many children has a node.
+pub(super) const CHILDREN: usize = 8;
+
+/// How a tree divides points among a node's children.
+pub trait Split: Default {
+    /// Points in a leaf, at most.
+    const LEAF: usize;
+    /// Bytes of nodes for every point; the leaves become larger if that is not enough.
+    const BYTES: usize;
+    /// Whether boxes may be turned against the axes.
+    const TURNS: bool = false;
+    /// What is handed down from node to node.
+    type Cell: Copy;
+
+    /// The root's.
+    fn root(&mut self, low: Vec3, high: Vec3) -> Self::Cell;
+
+    /// The frame in which a node has its box; it may choose one for the node's entries.
+    fn frame(&self, cell: &mut Self::Cell, entries: &[Entry], frames: &mut Frames<'_>) -> u32 {
+        let _ = (cell, entries, frames);
+        0
+    }
+
+    /// Sorts the entries of a node with more points than a leaf has by the child they go to, and appends for each child
+    /// that gets some where it ends, and its cell. With less than two children the node stays a leaf.
+    fn split(
+        &self,
+        cell: Self::Cell,
+        bounds: [Vec3; 2],
+        entries: &mut [Entry],
+        frames: &Frames<'_>,
+        children: &mut heapless::Vec<(usize, Self::Cell), CHILDREN>,
+    );
+}
+
+/// Right-handed frames, by their axes. The first, number zero, is that of the coordinates.
+#[derive(Debug, Default)]
+pub struct Frames<'m> {
+    axes: &'m mut [[f32; 9]],
+    len: usize,
+    /// More than a turned coordinate of any point is wrong by.
+    slack: f32,
+}
+
+impl Frames<'_> {
+    /// Adds one, and returns its number; zero if there is no room.
+    pub(super) fn add(&mut self, axes: Mat3) -> u32 {
+        let Some(free) = self.axes.get_mut(self.len) else { return 0 };
+        *free = axes.to_cols_array();
+        self.len += 1;
+        self.len as u32
+    }
+
+    /// The axes of a frame, unless it is that of the coordinates.
+    #[inline(always)]
+    fn axes(&self, frame: u32) -> Option<[Vec3; 3]> {
+        let &[a, b, c, d, e, f, g, h, i] = self.axes.get((frame as usize).checked_sub(1)?)?;
+        Some([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i)])
+    }
+
+    /// A frame's axis.
+    pub(super) fn axis(&self, frame: u32, axis: usize) -> Vec3 {
+        self.axes(frame).unwrap_or(Vec3::AXES)[axis]
+    }
+
+    /// A point's coordinates in a frame.
+    #[inline(always)]
+    pub(super) fn turn(&self, frame: u32, point: Vec3) -> Vec3 {
+        self.axes(frame).map_or(point, |[x, y, z]| Vec3::new(x.dot(point), y.dot(point), z.dot(point)))
+    }
+
+    /// A box in a frame that holds what a region holds.
+    fn turn_region(&self, frame: u32, region: &Region) -> Region {
+        if frame == 0 {
+            return *region;
+        }
+        let (middle, half) = ((region.low + region.high) * 0.5, (region.high - region.low) * 0.5);
+        let center = self.turn(frame, middle);
+        let reach = |axis: usize| self.axis(frame, axis).abs().dot(half);
+        let slack = ERROR * (math::largest(region.low) + math::largest(region.high));
+        let half = Vec3::new(reach(0), reach(1), reach(2)) + slack;
+        Region { low: center - half, high: center + half }
+    }
+
+    /// The box around some points in a frame.
+    pub(super) fn bounds(&self, frame: u32, points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+        let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+        for point in points {
+            let point = self.turn(frame, point);
+            (low, high) = (math::low(point, low), math::high(point, high));
+        }
+        [low - self.slack, high + self.slack]
+    }
+}
+
+/// A turned coordinate is wrong by less than this times the largest coordinate: three products, two sums, and axes that
+/// are unit vectors within some units in the last place.
+const ERROR: f32 = 4e-6;
+
+/// A tree over points.
+#[derive(Debug)]
+pub struct Tree<'m, S> {
+    sorted: Sorted<'m>,
+    /// `len` nodes, and one that says where the last one's points end.
+    nodes: &'m mut [Node],
+    /// The frames of their boxes; empty unless boxes are turned.
+    turned: &'m mut [u32],
+    frames: Frames<'m>,
+    len: usize,
+    depth: usize,
+    fullest: usize,
+    crowded: usize,
+    split: S,
+}
+
+/// Deeper than this no node is split: coordinates have no more bits.
+const DEEPEST: u32 = 64;
+/// Nodes that wait to be built, or to be searched.
+const WAITING: usize = 256;
+
+impl<'m, S: Split> Tree<'m, S> {
+    /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
+    #[must_use]
+    pub fn new(memory: &'m mut [u32]) -> Self {
+        Self::within_domain(memory, Domain::OPEN)
+    }
+
+    /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
+    /// open; points outside are wrapped in.
+    #[must_use]
+    pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
+        Self::within_domain(memory, Domain::periodic(low, sides))
+    }
+
+    pub(super) const fn words(points: usize) -> usize {
+        (7 + S::BYTES / 4) * points + 4 * LANES + 4 * NODE
+    }
+
+    fn within_domain(memory: &'m mut [u32], domain: Domain) -> Self {
+        let capacity = memory.len().saturating_sub(Self::words(0)) / (7 + S::BYTES / 4);
+        let (sorted, rest) = Sorted::new(memory, capacity, domain);
+        // A sixteenth is for frames, and a word a node says which is its.
+        let (frames, rest) = rest.split_at_mut(if S::TURNS { rest.len() / 144 * 9 } else { 0 });
+        let nodes = rest.len() / if S::TURNS { NODE + 1 } else { NODE };
+        let (nodes, rest) = rest.split_at_mut(nodes * NODE);
+        let frames = Frames { axes: bytemuck::cast_slice_mut(frames), len: 0, slack: 0.0 };
+        let turned = if S::TURNS { rest } else { &mut [] };
+        let nodes = bytemuck::cast_slice_mut(nodes);
+        Self { sorted, nodes, turned, frames, len: 0, depth: 0, fullest: 0, crowded: 0, split: S::default() }
+    }
+
+    /// Makes the nodes and sorts the entries by them.
+    fn grow(&mut self) {
+        let len = self.sorted.len;
+        if len == 0 {
+            return;
+        }
+        self.frames.len = 0;
+        self.frames.slack = ERROR * math::max(math::largest(self.sorted.low), math::largest(self.sorted.high));
+        let root = self.split.root(self.sorted.low, self.sorted.high);
+        // Nodes are dealt out as if all leaves were half full.
+        let room = self.nodes.len() - 1;
+        let leaf = S::LEAF.max((4 * len).div_ceil(room));
+        let mut waiting = heapless::Vec::<_, WAITING>::new();
+        let _ = waiting.push((0..len, 0u32, root));
+        let mut children = heapless::Vec::new();
+        while let Some((slots, depth, mut cell)) = waiting.pop() {
+            let entries = &mut self.sorted.entries()[slots.clone()];
+            let frame = self.split.frame(&mut cell, entries, &mut self.frames);
+            let bounds = match frame {
+                0 => bounds(entries),
+                _ => self.frames.bounds(frame, entries.iter().map(|entry| Vec3::from_array(entry.x))),
+            };
+            let [low, high] = bounds.map(|corner| corner.to_array());
+            self.nodes[self.len] = Node { low, high, first: slots.start as u32, next: slots.end as u32 };
+            if let Some(turned) = self.turned.get_mut(self.len) {
+                *turned = frame;
+            }
+            self.len += 1;
+            self.depth = self.depth.max(depth as usize);
+            children.clear();
+            if slots.len() > leaf {
+                let free = (room - self.len - waiting.len()).min(WAITING - waiting.len());
+                if free >= CHILDREN && depth < DEEPEST {
+                    self.split.split(cell, bounds, entries, &self.frames, &mut children);
+                }
+            }
+            if children.len() < 2 {
+                self.fullest = self.fullest.max(slots.len());
+                self.crowded += usize::from(slots.len() > S::LEAF);
+                continue;
+            }
+            // Backwards, so that the first is built next.
+            for i in (0..children.len()).rev() {
+                let start = if i == 0 { 0 } else { children[i - 1].0 };
+                let (end, cell) = children[i];
+                let _ = waiting.push((slots.start + start..slots.start + end, depth + 1, cell));
+            }
+        }
+        self.sorted.spread();
+        self.link();
+    }
+
+    /// Says where to go on from each node, which knows by now where its points end: with the first node that begins
+    /// there.
+    fn link(&mut self) {
+        let len = self.sorted.len as u32;
+        let (_, first_at) = self.sorted.rows_and_scratch();
+        self.nodes[self.len] = Node { first: len, next: self.len as u32, ..Node::default() };
+        for i in (0..=self.len).rev() {
+            let Node { first, next: end, .. } = self.nodes[i];
+            if i < self.len {
+                self.nodes[i].next = first_at[end as usize];
+            }
+            // Parents come before their children, so what stays is the highest that begins here.
+            first_at[first as usize] = i as u32;
+        }
+    }
+
+    fn is_leaf(&self, node: usize) -> bool {
+        self.nodes[node].next as usize == node + 1
+    }
+
+    /// The slots of a leaf.
+    #[inline(always)]
+    fn slots(&self, leaf: usize) -> Range<usize> {
+        self.nodes[leaf].first as usize..self.nodes[leaf + 1].first as usize
+    }
+
+    /// Draws the boxes anew around where the points are now.
+    fn redraw(&mut self) {
+        self.frames.slack = ERROR * math::max(math::largest(self.sorted.low), math::largest(self.sorted.high));
+        for i in (0..self.len).rev() {
+            let frame = self.frame(i);
+            let same = |child: usize| self.frame(child) == frame;
+            let [low, high] = if self.is_leaf(i) && frame == 0 {
+                self.sorted.bounds(self.slots(i))
+            } else if !self.is_leaf(i) && self.children(i).all(same) {
+                let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+                for child in self.children(i) {
+                    low = math::low(self.nodes[child].low(), low);
+                    high = math::high(self.nodes[child].high(), high);
+                }
+                [low, high]
+            } else {
+                let end = self.nodes[self.nodes[i].next as usize].first as usize;
+                let slots = self.nodes[i].first as usize..end;
+                self.frames.bounds(frame, slots.map(|slot| self.sorted.point(slot)))
+            };
+            (self.nodes[i].low, self.nodes[i].high) = (low.to_array(), high.to_array());
+        }
+    }
+
+    /// The frame of a node's box.
+    #[inline(always)]
+    fn frame(&self, node: usize) -> u32 {
+        if S::TURNS { self.turned[node] } else { 0 }
+    }
+
+    #[inline(always)]
+    fn children(&self, node: usize) -> impl Iterator<Item = usize> {
+        let end = self.nodes[node].next as usize;
+        let first = (node + 1 < end).then_some(node + 1);
+        core::iter::successors(first, move |&child| {
+            let next = self.nodes[child].next as usize;
+            (next < end).then_some(next)
+        })
+    }
+
+    /// The square of the distance from a region to a node; `view` remembers the region in the frame of the last one.
+    #[inline(always)]
+    fn square(&self, node: usize, region: &Region, view: &mut (u32, Region), moved: Vec3) -> f32 {
+        let Node { low, high, .. } = &self.nodes[node];
+        let (low, high, frame) = (Vec3::from_slice(low), Vec3::from_slice(high), self.frame(node));
+        if S::TURNS && frame != view.0 {
+            let placed = Region { low: region.low - moved, high: region.high - moved };
+            *view = (frame, self.frames.turn_region(frame, if frame == 0 { region } else { &placed }));
+        }
+        view.1.square_to(low, high, if frame == 0 { moved } else { Vec3::ZERO })
+    }
+
+    /// Visits the leaves from one node to another that are within a distance that may change on the way.
+    #[inline(always)]
+    fn walk(
+        &self,
+        nodes: Range<usize>,
+        region: &Region,
+        moved: Vec3,
+        mut visit: impl FnMut(f32, usize) -> ControlFlow<(), f32>,
+        mut square: f32,
+    ) -> u64 {
+        let (mut node, mut visits, mut view) = (nodes.start, 0, (0, *region));
+        while node < nodes.end {
+            visits += 1;
+            let distance = self.square(node, region, &mut view, moved);
+            let Node { next, .. } = self.nodes[node];
+            if !(distance <= square) {
+                node = next as usize;
+                continue;
+            }
+            node += 1;
+            if node == next as usize {
+                match visit(distance, node - 1) {
+                    ControlFlow::Continue(now) => square = now,
+                    ControlFlow::Break(()) => break,
+                }
+            }
+        }
+        visits
+    }
+}
+
+impl<S: Split> Partition for Tree<'_, S> {
+    const TURNS: bool = S::TURNS;
+
+    fn turn(&self, frame: u32, point: Vec3) -> Vec3 {
+        self.frames.turn(frame, point)
+    }
+
+    fn sorted(&self) -> &Sorted<'_> {
+        &self.sorted
+    }
+
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>)) {
+        (0..self.len).filter(|&node| self.is_leaf(node)).for_each(|leaf| visit(self.slots(leaf)));
+    }
+
+    fn near(&self, region: &Region, image: Image, radius: f32, visit: &mut impl FnMut(Run) -> bool) -> u64 {
+        let square = radius * radius;
+        let visit = |_, leaf: usize| {
+            let node = &self.nodes[leaf];
+            let frame = self.frame(leaf);
+            let more = visit(Run { slots: self.slots(leaf), low: node.low(), high: node.high(), frame });
+            if more { ControlFlow::Continue(square) } else { ControlFlow::Break(()) }
+        };
+        self.walk(0..self.len, region, image.moved(), visit, square)
+    }
+
+    fn stride(&self) -> f32 {
+        f32::INFINITY
+    }
+
+    /// Goes down to the nearer child first.
+    fn seek(&self, center: Vec3, image: Image, _: f32, nearest: &mut Nearest<'_>) -> Cost {
+        let (region, moved, probe) = (Region::point(center), image.moved(), Probe::new(center, image, 0.0));
+        let (mut cost, mut view) = (Cost::default(), (0, region));
+        let mut waiting = heapless::Vec::<(f32, u32), WAITING>::new();
+        let _ = waiting.push((0.0, 0));
+        while let Some((square, node)) = waiting.pop() {
+            let node = node as usize;
+            if !(square <= nearest.bound()) {
+                continue;
+            }
+            let room = waiting.capacity() - waiting.len();
+            if self.is_leaf(node) || room < CHILDREN {
+                // Where there is no room to remember the way, all below is looked at in its own order.
+                let nodes = node..self.nodes[node].next as usize;
+                let bound = nearest.bound();
+                let offer = |_, leaf| {
+                    cost.tests += self.slots(leaf).len() as u64;
+                    self.sorted.offer(&self.slots(leaf), &probe, nearest);
+                    ControlFlow::Continue(nearest.bound())
+                };
+                cost.visits += self.walk(nodes, &region, moved, offer, bound);
+                continue;
+            }
+            let first = waiting.len();
+            for child in self.children(node) {
+                cost.visits += 1;
+                let square = self.square(child, &region, &mut view, moved);
+                if square <= nearest.bound() {
+                    let _ = waiting.push((square, child as u32));
+                }
+            }
+            // The nearest last, since the last is taken first; of equally near ones the earlier.
+            waiting[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        }
+        cost
+    }
+}
+
+impl<S: Split> SpatialIndex for Tree<'_, S> {
+    fn build(&mut self, points: &[Vec3], _: f32) -> Result<(), TooSmall> {
+        (self.len, self.depth, self.fullest, self.crowded) = (0, 0, 0, 0);
+        self.sorted.take(points)?;
+        self.grow();
+        Ok(())
+    }
+
+    fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
+        if !self.sorted.follow(points) {
+            return self.build(points, 0.0);
+        }
+        self.redraw();
+        Ok(())
+    }
+
+    fn stats(&self) -> Stats {
+        let stats = self.sorted.stats();
+        let node = if S::TURNS { NODE + 1 } else { NODE };
+        let bytes = stats.bytes + 4 * node * (self.len + 1) + 36 * self.frames.len;
+        let (nodes, depth, fullest, crowded) = (self.len, self.depth, self.fullest, self.crowded);
+        Stats { nodes, depth, fullest, crowded, bytes, ..stats }
+    }
+
+    answers!();
+}
+
+/// The box around some entries.
+fn bounds(entries: &[Entry]) -> [Vec3; 2] {
+    let (mut low, mut high) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
+    for entry in entries {
+        // The row goes along as a fourth number that means nothing.
+        let x = bytemuck::cast::<Entry, f32x4>(*entry);
+        (low, high) = (x.fast_min(low), x.fast_max(high));
+    }
+    [low, high].map(|x| Vec3::from_slice(&x.to_array()))
+}
+
+/// Brings the entries that are `below` before the others, and returns how many they are.
+#[inline(always)]
+pub(super) fn partition(entries: &mut [Entry], below: impl Fn(&Entry) -> bool) -> usize {
+    let mut n = 0;
+    for i in 0..entries.len() {
+        // Both are written whether they change places or not: no branch to mispredict.
+        let lower = below(&entries[i]);
+        entries.swap(i, n);
+        n += usize::from(lower);
+    }
+    n
+}
