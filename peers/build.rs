@@ -6,10 +6,14 @@ fn main() {
     println!("cargo::rustc-check-cfg=cfg(nanoflann)");
     println!("cargo::rerun-if-changed=src/nanoflann.cpp");
     let header = Path::new("/usr/include/nanoflann.hpp");
-    println!("cargo::rerun-if-changed={}", header.display());
     if !header.exists() {
+        // A package keeps its files' old dates: only the folder tells that it was installed meanwhile.
+        if let Some(folder) = header.parent().filter(|folder| folder.exists()) {
+            println!("cargo::rerun-if-changed={}", folder.display());
+        }
         return;
     }
+    println!("cargo::rerun-if-changed={}", header.display());
     let mut build = cc::Build::new();
     build.cpp(true).std("c++17").file("src/nanoflann.cpp").opt_level(3).define("NDEBUG", None);
     // Without a C++ compiler there is one rival less, which is no reason to fail or to warn.

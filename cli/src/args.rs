@@ -1,8 +1,10 @@
 //! The command line, parsed and nothing more.
 
-use crate::formats::{RecordFormat, SceneFormat, extension};
+use crate::compare::{Distribution, Workload};
+use crate::formats::{PointsFormat, RecordFormat, SceneFormat, StudyFormat, extension};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::Method;
+use pointmass::index::Structure;
 use std::path::PathBuf;
 
 /// Particle systems that are exact, bounded and the same everywhere.
@@ -16,7 +18,8 @@ Examples:
   pointmass render scenes/fountain.json --out fountain.gif
   pointmass run scenes/rope.scn --duration 10 --dt 0.001 --out rope.csv
   pointmass run scenes/fountain.json --report json | jq .died
-  pointmass convert lab.scn lab.json"
+  pointmass convert lab.scn lab.json
+  pointmass compare --distribution uniform,plummer --n 1e3,1e4,1e5 --out study.html"
 )]
 pub struct Args {
     /// What to do.
@@ -33,6 +36,8 @@ pub enum Command {
     Render(Render),
     /// Translate a scene between .scn and .json
     Convert(Convert),
+    /// Measure which spatial partition suits which points and queries
+    Compare(Compare),
     /// Print the JSON Schema of .json scenes
     Schema,
 }
@@ -118,6 +123,99 @@ pub struct Convert {
     pub to: (PathBuf, SceneFormat),
 }
 
+/// Arguments of `compare`.
+#[derive(Debug, ClapArgs)]
+pub struct Compare {
+    /// Points from a file: .csv, .ply, .xyz or .npy
+    #[arg(long, value_name = "FILE", value_parser = pointed, conflicts_with_all = ["scene", "distribution"])]
+    pub points: Option<(PathBuf, PointsFormat)>,
+    /// The particles of a scene: .json or .scn, run to the time --at
+    #[arg(long, value_name = "SCENE", conflicts_with = "distribution")]
+    pub scene: Option<PathBuf>,
+    /// When a scene's particles are taken, in seconds; by default at the end of its duration
+    #[arg(long, value_name = "S", value_parser = seconds, requires = "scene")]
+    pub at: Option<f64>,
+    /// Made-up points, one or more
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',', default_value = "uniform")]
+    pub distribution: Vec<Distribution>,
+    /// How many points, such as 1e3,1e4; by default 1e3,1e4,1e5, or all that the file or the scene has, of which
+    /// other numbers take a random subset
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = count)]
+    pub n: Vec<usize>,
+    /// The radius of queries, in the points' unit
+    #[arg(long, value_name = "R", value_parser = radius, conflicts_with = "neighbours")]
+    pub radius: Option<f32>,
+    /// Choose the radius so that a point has so many others within it on average
+    #[arg(long, value_name = "M", default_value_t = 30.0, value_parser = neighbours)]
+    pub neighbours: f64,
+    /// How many nearest others `nearest` looks for
+    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub k: u8,
+    /// What is asked; building is always measured
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "count,within,nearest,pairs,moving"
+    )]
+    pub queries: Vec<Workload>,
+    /// Which structures, such as grid,kd; or all
+    #[arg(long, value_name = "NAME,...", default_value = "all", value_parser = structures)]
+    pub structures: Structures,
+    /// Measure other libraries as well, where the program is built with them (--features peers)
+    #[arg(long)]
+    pub peers: bool,
+    /// How many times everything is measured; by default as often as three seconds allow, from 7 to 31 times, or 3
+    /// times where a round takes very long
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub repeat: Option<u32>,
+    /// The seed of made-up points, subsets and scenes; by default 1, or what the scene says
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Write the comparison into FILE: .html, a page with charts; .svg, the charts; .csv or .json, all figures; may be
+    /// given several times
+    #[arg(long, value_name = "FILE", value_parser = studied)]
+    pub out: Vec<(PathBuf, StudyFormat)>,
+    /// Print spreads, minima and counters of every measurement as well
+    #[arg(long)]
+    pub detail: bool,
+}
+
+/// Structures to compare, each once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Structures(pub Vec<Structure>);
+
+fn structures(text: &str) -> Result<Structures, String> {
+    let mut chosen = Vec::new();
+    for name in text.split(',').map(str::trim) {
+        let named = match name {
+            "all" => Structure::ALL,
+            _ => &[name.parse().map_err(|unknown: pointmass::index::UnknownStructure| format!("{unknown}, or all"))?],
+        };
+        chosen.extend_from_slice(named);
+    }
+    // In the order in which they are listed everywhere.
+    Ok(Structures(Structure::ALL.iter().copied().filter(|structure| chosen.contains(structure)).collect()))
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    const MOST: f64 = 1e8;
+    let value = number(text)?;
+    let whole = value.fract() == 0.0 && (2.0..=MOST).contains(&value);
+    if whole { Ok(value as usize) } else { Err("expected a whole number of points, from 2 to 1e8".into()) }
+}
+
+fn radius(text: &str) -> Result<f32, String> {
+    let value = number(text)? as f32;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("expected a positive, finite radius".into()) }
+}
+
+fn neighbours(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if (1e-3..=1e6).contains(&value) { Ok(value) } else { Err("expected a number from 0.001 to 1e6".into()) }
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     let longest = f64::from(1u32 << 31);
     let value = match text.split_once('/') {
@@ -152,6 +250,22 @@ fn recorded(text: &str) -> Result<(PathBuf, RecordFormat), String> {
     }
 }
 
+fn pointed(text: &str) -> Result<(PathBuf, PointsFormat), String> {
+    let path = PathBuf::from(text);
+    match PointsFormat::of(&path) {
+        Some(format) => Ok((path, format)),
+        None => Err("expected a name that ends in .csv, .ply, .xyz or .npy".into()),
+    }
+}
+
+fn studied(text: &str) -> Result<(PathBuf, StudyFormat), String> {
+    let path = PathBuf::from(text);
+    match StudyFormat::of(&path) {
+        Some(format) => Ok((path, format)),
+        None => Err("expected a name that ends in .html, .svg, .csv or .json".into()),
+    }
+}
+
 fn drawn(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     match extension(&path).as_str() {
@@ -176,6 +290,21 @@ mod tests {
     fn the_command_line_is_sound() {
         use clap::CommandFactory;
         Args::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_may_have_exponents() {
+        assert_eq!([count("1e3"), count("25"), count(" 5e6 ")], [Ok(1000), Ok(25), Ok(5_000_000)]);
+        for bad in ["0", "1", "-5", "1.5", "1e9", "nan", "x", ""] {
+            assert!(count(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn structures_come_once_and_in_order() {
+        assert_eq!(structures("all"), Ok(Structures(Structure::ALL.to_vec())));
+        assert_eq!(structures("grid, brute,grid"), Ok(Structures(vec![Structure::Brute, Structure::Grid])));
+        assert!(structures("grid,nonsense").is_err_and(|error| error.contains("brute") && error.contains("all")));
     }
 
     #[test]

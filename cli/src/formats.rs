@@ -24,6 +24,32 @@ pub enum RecordFormat {
     Xyz,
 }
 
+/// A format of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointsFormat {
+    /// A table, with or without a head line.
+    Csv,
+    /// Point clouds and meshes, text or binary.
+    Ply,
+    /// Atoms, or lines of three numbers.
+    Xyz,
+    /// An array as NumPy saves it.
+    Npy,
+}
+
+/// A format of comparisons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StudyFormat {
+    /// A table, one row a measurement.
+    Csv,
+    /// Everything, for programs.
+    Json,
+    /// A page for people: tables, charts, advice.
+    Html,
+    /// The charts alone.
+    Svg,
+}
+
 impl SceneFormat {
     /// By the end of the file's name.
     #[must_use]
@@ -45,6 +71,34 @@ impl RecordFormat {
             "jsonl" => Some(Self::Jsonl),
             "ply" => Some(Self::Ply),
             "xyz" => Some(Self::Xyz),
+            _ => None,
+        }
+    }
+}
+
+impl PointsFormat {
+    /// By the end of the file's name.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        match extension(path).as_str() {
+            "csv" => Some(Self::Csv),
+            "ply" => Some(Self::Ply),
+            "xyz" => Some(Self::Xyz),
+            "npy" => Some(Self::Npy),
+            _ => None,
+        }
+    }
+}
+
+impl StudyFormat {
+    /// By the end of the file's name.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        match extension(path).as_str() {
+            "csv" => Some(Self::Csv),
+            "json" => Some(Self::Json),
+            "html" => Some(Self::Html),
+            "svg" => Some(Self::Svg),
             _ => None,
         }
     }

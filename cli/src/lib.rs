@@ -1,11 +1,12 @@
 //! The library behind the `pointmass` binary.
 //!
-//! `args` parses, one module a command does the work: `run`, `render`, `convert`. They share `load` (scenes and meshes
+//! `args` parses, one module a command does the work: `run`, `render`, `convert`, `compare`. They share `load` (scenes and meshes
 //! from disk), `world` (a scene in motion), `clock` (when steps end), `record` (state to files) and `draw` (state to
 //! pictures).
 
 pub mod args;
 pub mod clock;
+pub mod compare;
 pub mod convert;
 pub mod draw;
 pub mod formats;

@@ -22,12 +22,35 @@ impl Progress {
         Self { bar, since: Instant::now(), shown: false }
     }
 
-    /// One step further.
-    pub(crate) fn step(&mut self, particles: usize) {
+    /// Progress through work of which only the sum is known.
+    pub(crate) fn of_work(units: u64) -> Self {
+        let progress = Self::new(units);
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %, {eta} left  {wide_msg}") {
+            progress.bar.set_style(style);
+        }
+        progress
+    }
+
+    /// So many units further, and about so many left.
+    pub(crate) fn work(&mut self, units: u64, left: u64, doing: &str) {
+        self.show();
+        self.bar.set_length(self.bar.position() + units + left);
+        self.bar.inc(units);
+        if self.shown {
+            self.bar.set_message(doing.to_string());
+        }
+    }
+
+    fn show(&mut self) {
         if !self.shown && self.since.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
             self.shown = true;
         }
+    }
+
+    /// One step further.
+    pub(crate) fn step(&mut self, particles: usize) {
+        self.show();
         self.bar.inc(1);
         if self.shown {
             self.bar.set_message(format!("{particles} particles"));

@@ -55,6 +55,7 @@ pub mod force;
 mod hash;
 pub mod index;
 pub mod integrate;
+mod lanes;
 pub mod math;
 #[cfg(feature = "std")]
 mod measure;

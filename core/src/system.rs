@@ -130,7 +130,7 @@ impl<B: Storage> System<B> {
         let Columns { position, velocity, mass, drag, serial, row_of, last_spring, incident, .. } = self.particles();
         let springs =
             Springs { springs: scene.springs, start: self.status.start, serial, row_of, last_spring, incident };
-        State { time: self.status.time, position, velocity, mass, drag, springs }
+        State { time: self.status.time, position, velocity, mass, drag, springs, tree: None }
     }
 
     /// A fingerprint of time, counters, and every column in the order of ids: equal on all targets for equal states.

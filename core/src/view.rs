@@ -3,6 +3,7 @@
 use crate::collide::collide;
 use crate::emit::Births;
 use crate::force::{Force, Spring, Springs, State, spring};
+use crate::index::BarnesHut;
 use crate::integrate::{Dynamics, Motion, Work};
 use crate::particles::{Full, Id, Particle, WHITE};
 use crate::report::Report;
@@ -128,6 +129,7 @@ impl View<'_> {
             ..
         } = self.memory.slices();
         let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
+        let (tree, rest) = rest.split_at_mut(scene.forces.needs().columns() * capacity);
         let (start_x, start_v) = start.split_at_mut(start.len() / 2);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(&position[..len]);
@@ -141,7 +143,8 @@ impl View<'_> {
             last_spring,
             incident,
         };
-        let mut field = Field { scene, mass, inverse_mass, drag, springs, first: old };
+        let tree = bytemuck::cast_slice_mut(tree);
+        let mut field = Field { scene, mass, inverse_mass, drag, springs, tree, first: old };
 
         let newborn = old..len;
         if !newborn.is_empty() {
@@ -235,6 +238,8 @@ struct Field<'a> {
     inverse_mass: &'a [f32],
     drag: &'a [f32],
     springs: Springs<'a>,
+    /// Memory for what forces need to find.
+    tree: &'a mut [u32],
     first: usize,
 }
 
@@ -243,7 +248,10 @@ impl Dynamics for Field<'_> {
         let len = position.len();
         let rows = self.first..len;
         let (mass, drag, springs) = (&self.mass[..len], &self.drag[..len], self.springs);
-        let state = State { time, position, velocity, mass, drag, springs };
+        let mut tree = BarnesHut::new(self.tree);
+        let grown = len >= BarnesHut::FEWEST && tree.build(position, mass).is_ok();
+        let tree = grown.then_some(&tree);
+        let state = State { time, position, velocity, mass, drag, springs, tree };
         acceleration.fill(Vec3::ZERO);
         self.scene.forces.add_to(&state, rows.clone(), acceleration);
         springs.add_to(&state, rows.clone(), acceleration);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "/usr/include/nanoflann.hpp"
+#include <nanoflann.hpp>
 
 namespace {
 

@@ -47,7 +47,7 @@ fn ring() -> (Vec<Particle>, Vec<Spring>) {
 pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
     let (start, springs) = ring();
     let emitters = emitters();
-    let forces = (Gravity::EARTH, Drag {}, MutualGravity { constant: 0.02, softening: 0.05 });
+    let forces = (Gravity::EARTH, Drag {}, MutualGravity { constant: 0.02, softening: 0.05, ..MutualGravity::NEWTON });
     let ground = Plane { point: Vec3::ZERO, normal: Vec3::new(0.1, 1.0, 0.0) };
     let box_ = Cuboid { min: Vec3::new(0.6, 0.2, -0.2), max: Vec3::new(0.9, 0.5, 0.2) };
     let sink = Sphere { center: Vec3::new(-0.4, 0.0, 0.0), radius: 0.3 };

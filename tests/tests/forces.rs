@@ -7,7 +7,7 @@ use pointmass::{
 };
 use pointmass_tests::{Form, Random, f64s, gap, often, point, run, started};
 
-const UNIT: MutualGravity = MutualGravity { constant: 1.0, softening: 0.0 };
+const UNIT: MutualGravity = MutualGravity { constant: 1.0, softening: 0.0, ..MutualGravity::NEWTON };
 
 /// The lecture's sink, about the origin.
 fn sink(shape: Form) -> Sink<pointmass::shape::Mesh<'static>> {
@@ -189,7 +189,7 @@ fn mutual_gravity_is_the_direct_sum() {
         let scene = Scene { start: &start, ..Scene::EMPTY };
         let system = started(&scene, n, 0);
         for (constant, softening) in [(1.0, 0.0), (6.674_28e-11, 0.0), (1.0, 0.05)] {
-            let law = MutualGravity { constant, softening };
+            let law = MutualGravity { constant, softening, ..MutualGravity::NEWTON };
             for (i, force) in forces(&system, &scene, &law).into_iter().enumerate() {
                 let (mut sum, mut size) = ([0.0; 3], 0.0);
                 for other in &start {
@@ -211,7 +211,7 @@ fn mutual_gravity_is_the_direct_sum() {
 #[test]
 fn particles_that_coincide_do_not_act_on_each_other() {
     for softening in [0.0, 0.1] {
-        let law = MutualGravity { constant: 1.0, softening };
+        let law = MutualGravity { constant: 1.0, softening, ..MutualGravity::NEWTON };
         let here = Particle { position: Vec3::new(0.1, 0.2, 0.3), ..Particle::REST };
         let start = [here; 9];
         let scene = Scene { start: &start, forces: &law, ..Scene::EMPTY };
@@ -228,7 +228,7 @@ fn forces_of_pairs_conserve_momentum() {
     start[49].fixed = false;
     let springs: Vec<Spring> =
         (0..120).map(|i| Spring { ends: [i % 50, (i * 7 + 3) % 50], rest_length: 0.5, ks: 20.0, kd: 0.5 }).collect();
-    let law = MutualGravity { constant: 0.05, softening: 0.1 };
+    let law = MutualGravity { constant: 0.05, softening: 0.1, ..MutualGravity::NEWTON };
     for &method in Method::ALL {
         for (forces, springs) in [(&law as &dyn Force, &[][..]), (&() as &dyn Force, &springs)] {
             let scene = Scene { start: &start, springs, forces, integrator: method.integrator(), ..Scene::EMPTY };
@@ -280,7 +280,7 @@ fn forces_are_the_slopes_of_their_energies() {
     start[10].position += Vec3::splat(0.3);
     let springs: Vec<Spring> =
         (0..30).map(|i| Spring { ends: [i % 20, (i * 7 + 3) % 20], rest_length: 0.5, ks: 20.0, kd: 0.0 }).collect();
-    let soft = MutualGravity { constant: 1.0, softening: 0.5 };
+    let soft = MutualGravity { constant: 1.0, softening: 0.5, ..MutualGravity::NEWTON };
     let sink = sink(point(Vec3::splat(2.0)));
     let forces: [&dyn Force; 4] = [&Gravity::EARTH, &soft, &sink, &(Gravity::EARTH, soft, &sink)];
     for force in forces {
@@ -333,7 +333,8 @@ fn any_division_of_the_rows_gives_the_same_bits() {
 #[test]
 fn lists_of_forces_are_their_sum_to_the_bit() {
     let start = cloud(30);
-    let (g, d, m) = (Gravity::EARTH, Drag {}, MutualGravity { constant: 1.0, softening: 0.05 });
+    let (g, d, m) =
+        (Gravity::EARTH, Drag {}, MutualGravity { constant: 1.0, softening: 0.05, ..MutualGravity::NEWTON });
     let sink = sink(point(Vec3::X * 3.0));
     let dynamic: [&dyn Force; 4] = [&g, &d, &m, &sink];
     let lists: [&dyn Force; 6] = [

@@ -59,7 +59,7 @@ fn what_is_not_a_number_is_removed_and_harms_nobody() {
 
 #[test]
 fn what_is_not_a_number_is_not_passed_on_by_mutual_gravity() {
-    not_passed_on(&[], &MutualGravity { constant: 1.0, softening: 0.1 });
+    not_passed_on(&[], &MutualGravity { constant: 1.0, softening: 0.1, ..MutualGravity::NEWTON });
 }
 
 #[test]

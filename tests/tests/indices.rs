@@ -2,7 +2,7 @@
 
 use core::fmt::Display;
 use pointmass::Vec3;
-use pointmass::index::{AnyIndex, Cost, Neighbour, SpatialIndex, Stats, Structure, TooSmall};
+use pointmass::index::{AnyIndex, Cost, Neighbour, SpatialIndex, Structure, TooSmall};
 use pointmass_tests::points::{Oracle, Spread, extent, shuffle};
 use pointmass_tests::{Random, f64s, gap, often};
 use proptest::prelude::*;
@@ -78,7 +78,7 @@ impl<'a> Expected<'a> {
         let expected: Vec<u32> = self.others.iter().map(|others| others.len() as u32).collect();
         let total = expected.iter().sum::<u32>() as usize;
         // Room for too few rows, for all, and for others that do not exist.
-        for room in [0, expected.len() / 2, expected.len(), expected.len() + 3] {
+        for room in [expected.len() / 2, expected.len(), expected.len() + 3] {
             let mut counts = vec![u32::MAX; room];
             let cost = index.counts(self.radius, &mut counts);
             let padded: Vec<u32> = expected.iter().copied().chain([0; 3]).take(room).collect();
@@ -212,7 +212,7 @@ impl Set {
         let mut random = Random::new(!self.seed);
         let offset = random.vector(self.offset);
         points.iter_mut().for_each(|point| *point = (*point + offset) * self.size);
-        let mut one_in = |n: usize| n > 0 && random.word() as usize % n == 0;
+        let mut one_in = |n: usize| n > 0 && (random.word() as usize).is_multiple_of(n);
         for row in 0..self.n {
             if one_in(self.copies) {
                 points[row] = points[row / 2];
@@ -280,7 +280,7 @@ fn config(cases: usize) -> ProptestConfig {
 }
 
 proptest! {
-    #![proptest_config(config(600))]
+    #![proptest_config(config(1000))]
 
     #[test]
     fn all_answer_like_brute_force(set in sets(200), radius in radii(), reach in reaches()) {
@@ -291,7 +291,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(200))]
+    #![proptest_config(config(400))]
 
     /// The same memory takes one set after another, and follows points wherever they go.
     #[test]
@@ -477,11 +477,8 @@ fn awkward_points_are_points() {
         println!("{name}");
         let size = extent(&points).min(1e38);
         let spacing = size / (points.len().max(1) as f32).cbrt();
-        check(
-            &points,
-            &[0.0, spacing, 10.0 * spacing, 1e-6 * spacing],
-            &[0.0, 1e-30, spacing, 0.1 * spacing, 2.0 * size, INF],
-        );
+        check(&points, &[0.0, 0.1 * spacing], &[0.0, spacing, INF]);
+        check(&points, &[spacing, 1e-6 * spacing], &[1e-30, 0.3 * spacing, size]);
     }
 }
 
@@ -495,7 +492,7 @@ fn senseless_lengths_find_nothing_and_harm_nobody() {
 /// Enough points for whatever only happens in large sets.
 #[test]
 fn many_points_are_found_too() {
-    let n = if cfg!(debug_assertions) { 500 } else { 2000 };
+    let n = if cfg!(debug_assertions) { 250 } else { 2000 };
     for spread in Spread::ALL {
         println!("{spread:?}");
         let points = spread.points(n, 5);
@@ -621,7 +618,7 @@ impl Torus {
 }
 
 proptest! {
-    #![proptest_config(config(300))]
+    #![proptest_config(config(500))]
 
     #[test]
     fn opposite_faces_are_one(
@@ -669,5 +666,4 @@ fn structures_go_by_their_names() {
     }
     let unknown = "kdtree".parse::<Structure>().expect_err("there is none").to_string();
     assert!(Structure::ALL.iter().all(|structure| unknown.contains(structure.name())), "{unknown}");
-    assert_eq!(Stats::default().points, 0);
 }

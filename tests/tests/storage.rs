@@ -185,7 +185,7 @@ proptest! {
         let lifetime = Varied { mean: lifetime, variance: 0.2 };
         let emitters = (Emitter { rate: rates[0], burst, lifetime, ..first }, Emitter { rate: rates[1], ..second });
         let (gravity, mutual) =
-            (Gravity { acceleration: gravity.into() }, MutualGravity { constant, softening: 0.01 });
+            (Gravity { acceleration: gravity.into() }, MutualGravity { constant, softening: 0.01, ..MutualGravity::NEWTON });
         let integrator = Method::ALL[method].integrator();
         busy(|scene| {
             let forces = (gravity, mutual);

@@ -31,7 +31,7 @@ impl Error for MeshError {}
 
 /// A fault in a file whose name the reader doesn't know.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     line: Option<usize>,
     message: String,
 }
@@ -41,13 +41,18 @@ impl Fault {
         Self { line: None, message: message.into() }
     }
 
+    /// The line, if there is one, and what is wrong with it.
+    pub(crate) fn parts(self) -> (Option<usize>, String) {
+        (self.line, self.message)
+    }
+
     pub(super) fn at(line: usize, message: impl Into<String>) -> Self {
         Self { line: Some(line), message: message.into() }
     }
 }
 
 /// A piece of the file, or of a library's message, on one line and cut where it is long.
-pub(super) fn excerpt(piece: &str) -> String {
+pub(crate) fn excerpt(piece: &str) -> String {
     const LONGEST: usize = 120;
     let mut line = String::new();
     for word in piece.split_whitespace() {

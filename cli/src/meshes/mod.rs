@@ -3,10 +3,10 @@
 //! Whatever the bytes are, the answer is a mesh or one line saying what is wrong with the file: nothing here panics,
 //! and nothing is allocated because a header promises it.
 
-mod error;
+pub(crate) mod error;
 mod obj;
 mod off;
-mod ply;
+pub(crate) mod ply;
 mod stl;
 #[cfg(test)]
 mod tests;

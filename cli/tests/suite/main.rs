@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod command_line;
+mod compare;
 mod conversion;
 mod course;
 mod fuzz;

@@ -290,8 +290,9 @@ fn force() -> impl Strategy<Value = ForceKind> {
         uniform3(everyday()).prop_map(|a| ForceKind::Gravity(Gravity { acceleration: a.into() })),
         Just(ForceKind::Drag(Drag {})),
         Just(ForceKind::MutualGravity(MutualGravity::NEWTON)),
-        (number(), number())
-            .prop_map(|(constant, softening)| { ForceKind::MutualGravity(MutualGravity { constant, softening }) }),
+        (number(), number()).prop_map(|(constant, softening)| {
+            ForceKind::MutualGravity(MutualGravity { constant, softening, ..MutualGravity::NEWTON })
+        }),
     ]
 }
 

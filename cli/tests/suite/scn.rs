@@ -125,7 +125,7 @@ fn everything() -> SceneFile {
         forces: vec![
             ForceKind::Gravity(Gravity { acceleration: v(0.0, -9.8, 0.0) }),
             ForceKind::Drag(Drag {}),
-            ForceKind::MutualGravity(MutualGravity { constant: 6.67428e-11, softening: 0.0 }),
+            ForceKind::MutualGravity(MutualGravity { constant: 6.67428e-11, softening: 0.0, ..MutualGravity::NEWTON }),
         ],
         sinks,
         scenery: vec![

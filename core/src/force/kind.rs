@@ -1,6 +1,6 @@
 //! The forces that a file can name.
 
-use super::{Drag, Force, Gravity, MutualGravity, State};
+use super::{Drag, Force, Gravity, MutualGravity, Needs, State};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -23,6 +23,14 @@ impl Force for ForceKind {
             Self::Gravity(force) => force.add_to(state, rows, total),
             Self::Drag(force) => force.add_to(state, rows, total),
             Self::MutualGravity(force) => force.add_to(state, rows, total),
+        }
+    }
+
+    fn needs(&self) -> Needs {
+        match self {
+            Self::Gravity(force) => force.needs(),
+            Self::Drag(force) => force.needs(),
+            Self::MutualGravity(force) => force.needs(),
         }
     }
 

@@ -14,6 +14,7 @@ pub use mutual::MutualGravity;
 pub use sink::Sink;
 pub use spring::{Spring, Springs};
 
+use crate::index::BarnesHut;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -27,12 +28,38 @@ pub trait Force: Sync {
     /// Rows are independent of each other, so that any division of the work gives the same bits.
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]);
 
+    /// What it has to find in the state.
+    fn needs(&self) -> Needs {
+        Needs::default()
+    }
+
     /// Potential energy \[J\]; zero for forces that have none. For reports: in double precision, and so with the
     /// feature `std` only, since a chip without such hardware would carry its emulation about for nothing.
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         let _ = state;
         0.0
+    }
+}
+
+/// What forces have to find in the state, beyond the particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// [`State::tree`].
+    pub tree: bool,
+}
+
+impl Needs {
+    /// What two forces need.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self { tree: self.tree || other.tree }
+    }
+
+    /// Vectors for each particle that it takes to work it out.
+    #[must_use]
+    pub const fn columns(self) -> usize {
+        if self.tree { BarnesHut::COLUMNS } else { 0 }
     }
 }
 
@@ -51,6 +78,8 @@ pub struct State<'a> {
     pub drag: &'a [f32],
     /// The springs between them.
     pub springs: Springs<'a>,
+    /// Their masses in a tree, if a force needs it and there are enough of them.
+    pub tree: Option<&'a BarnesHut<'a>>,
 }
 
 impl Force for () {
@@ -60,6 +89,9 @@ impl Force for () {
 impl<T: Force + ?Sized> Force for &T {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         (**self).add_to(state, rows, total);
+    }
+    fn needs(&self) -> Needs {
+        (**self).needs()
     }
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
@@ -72,6 +104,9 @@ impl<T: Force> Force for [T] {
         for force in self {
             force.add_to(state, rows.clone(), total);
         }
+    }
+    fn needs(&self) -> Needs {
+        self.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()))
     }
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
@@ -86,6 +121,9 @@ macro_rules! lists {
         impl<$($generics)*> Force for $list {
             fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
                 self.as_slice().add_to(state, rows, total);
+            }
+            fn needs(&self) -> Needs {
+                self.as_slice().needs()
             }
             #[cfg(feature = "std")]
             fn energy(&self, state: &State<'_>) -> f64 {
@@ -108,6 +146,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 $($name.add_to(state, rows.clone(), total);)+
+            }
+            fn needs(&self) -> Needs {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                Needs::default()$(.and($name.needs()))+
             }
             #[cfg(feature = "std")]
             fn energy(&self, state: &State<'_>) -> f64 {

@@ -46,7 +46,7 @@ impl Split for Halves {
 pub(super) fn halve(entries: &mut [Entry], height: impl Fn(&Entry) -> f32) -> usize {
     if entries.len() <= FEW {
         let half = (entries.len() / 2).next_multiple_of(LANES).min(entries.len() - 1);
-        entries.select_nth_unstable_by(half, |a, b| height(a).total_cmp(&height(b)));
+        select(entries, half, height);
         return half;
     }
     let pivot = median(entries, &height);
@@ -54,6 +54,27 @@ pub(super) fn halve(entries: &mut [Entry], height: impl Fn(&Entry) -> f32) -> us
         // The lowest itself has nothing below it.
         0 => partition(entries, |entry| height(entry) <= pivot),
         n => n,
+    }
+}
+
+/// Brings the `n` lowest entries to the front (Hoare's quickselect). The order is ours, not that of a library's version.
+fn select(mut entries: &mut [Entry], mut n: usize, height: impl Fn(&Entry) -> f32) {
+    while n > 0 && n < entries.len() {
+        let pivot = median(entries, &height);
+        let mut below = partition(entries, |entry| height(entry) < pivot);
+        if below == 0 {
+            // Those that are equal to the pivot are in order already.
+            below = partition(entries, |entry| height(entry) <= pivot);
+            if n <= below {
+                return;
+            }
+        }
+        if n < below {
+            entries = &mut entries[..below];
+        } else {
+            entries = &mut entries[below..];
+            n -= below;
+        }
     }
 }
 

@@ -22,6 +22,7 @@
 //! Whatever works through all points (`counts`, `neighbours`, `pairs`, `all_nearest`) is several times faster than as many
 //! single queries, since near points share their way through the structure.
 
+mod barnes_hut;
 mod brute;
 mod bsp;
 mod bvh;
@@ -36,6 +37,9 @@ mod sorted;
 mod structure;
 mod tree;
 
+#[cfg(feature = "std")]
+pub use barnes_hut::FieldError;
+pub use barnes_hut::{BarnesHut, Opening};
 pub use brute::Brute;
 pub use bsp::Bsp;
 pub use bvh::Bvh;

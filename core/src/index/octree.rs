@@ -47,7 +47,7 @@ impl Cube {
 
 impl<const AXES: usize> Split for Cubes<AXES> {
     const LEAF: usize = 32;
-    const BYTES: usize = 16;
+    const BYTES: usize = 8;
     type Cell = Cube;
 
     fn root(&mut self, low: Vec3, high: Vec3) -> Cube {

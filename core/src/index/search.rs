@@ -438,7 +438,7 @@ impl<P: Partition> Search<'_, P> {
         let (sorted, mut cost, mut radius) = (self.0.sorted(), Cost::default(), stride);
         let (domain, half) = (&sorted.domain, sorted.domain.half());
         let farthest = sqrt(Region::point(center).farthest_square(sorted.low, sorted.high)) * 1.000_001;
-        while !is_far(center) && radius < half * 1.5 {
+        while !is_far(center) && half > 0.0 {
             // Whatever is nearer than half a side is met in one image only.
             let reach = min(min(radius, limit), half * 0.999_999);
             nearest.restart(reach * reach);
@@ -446,6 +446,9 @@ impl<P: Partition> Search<'_, P> {
             let all = half == f32::INFINITY && radius > farthest;
             if nearest.is_full() || limit <= reach || all {
                 return cost;
+            }
+            if radius >= half {
+                break;
             }
             radius *= 1.5;
         }

@@ -7,8 +7,7 @@ use core::ops::Range;
 use glam::Vec3;
 use wide::{f32x8, i32x8};
 
-/// Points looked at side by side.
-pub(super) const LANES: usize = 8;
+pub(super) use crate::lanes::LANES;
 
 /// A point while it is being sorted.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]

@@ -29,11 +29,15 @@ pub(super) struct Node {
 const NODE: usize = size_of::<Node>() / 4;
 
 impl Node {
-    fn low(&self) -> Vec3 {
+    pub(super) fn low(&self) -> Vec3 {
         Vec3::from_array(self.low)
     }
-    fn high(&self) -> Vec3 {
+    pub(super) fn high(&self) -> Vec3 {
         Vec3::from_array(self.high)
+    }
+    /// The node to go on with if this one is of no interest.
+    pub(super) fn next(&self) -> usize {
+        self.next as usize
     }
 }
 
@@ -256,13 +260,28 @@ impl<'m, S: Split> Tree<'m, S> {
         }
     }
 
-    fn is_leaf(&self, node: usize) -> bool {
+    /// The points.
+    pub(super) fn points(&self) -> &Sorted<'m> {
+        &self.sorted
+    }
+
+    /// All nodes, and one that says where the last one's points end.
+    pub(super) fn nodes(&self) -> &[Node] {
+        &self.nodes[..if self.len == 0 { 0 } else { self.len + 1 }]
+    }
+
+    /// The slots of a node.
+    pub(super) fn all_slots(&self, node: usize) -> Range<usize> {
+        self.nodes[node].first as usize..self.nodes[self.nodes[node].next()].first as usize
+    }
+
+    pub(super) fn is_leaf(&self, node: usize) -> bool {
         self.nodes[node].next as usize == node + 1
     }
 
     /// The slots of a leaf.
     #[inline(always)]
-    fn slots(&self, leaf: usize) -> Range<usize> {
+    pub(super) fn slots(&self, leaf: usize) -> Range<usize> {
         self.nodes[leaf].first as usize..self.nodes[leaf + 1].first as usize
     }
 
@@ -282,9 +301,7 @@ impl<'m, S: Split> Tree<'m, S> {
                 }
                 [low, high]
             } else {
-                let end = self.nodes[self.nodes[i].next as usize].first as usize;
-                let slots = self.nodes[i].first as usize..end;
-                self.frames.bounds(frame, slots.map(|slot| self.sorted.point(slot)))
+                self.frames.bounds(frame, self.all_slots(i).map(|slot| self.sorted.point(slot)))
             };
             (self.nodes[i].low, self.nodes[i].high) = (low.to_array(), high.to_array());
         }
@@ -297,7 +314,7 @@ impl<'m, S: Split> Tree<'m, S> {
     }
 
     #[inline(always)]
-    fn children(&self, node: usize) -> impl Iterator<Item = usize> {
+    pub(super) fn children(&self, node: usize) -> impl Iterator<Item = usize> + Clone {
         let end = self.nodes[node].next as usize;
         let first = (node + 1 < end).then_some(node + 1);
         core::iter::successors(first, move |&child| {

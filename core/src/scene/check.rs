@@ -60,7 +60,13 @@ impl SceneFile {
             match force {
                 ForceKind::Gravity(g) => finite(&at, &g.acceleration.to_array())?,
                 ForceKind::Drag(_) => {}
-                ForceKind::MutualGravity(m) => finite(&at, &[m.constant, m.softening])?,
+                ForceKind::MutualGravity(m) => {
+                    finite(&at, &[m.constant, m.softening, m.theta])?;
+                    if m.theta < 0.0 {
+                        let message = format!("has to be zero or more, not {}", m.theta);
+                        return Err(SceneError::value(format!("{at}.theta"), message));
+                    }
+                }
             }
         }
         self.check_scenery()?;

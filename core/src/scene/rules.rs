@@ -54,7 +54,7 @@ impl Scene<'_> {
     pub fn columns(&self) -> usize {
         let start = if self.needs_start() { 2 } else { 0 };
         // Newborns need one column for their acceleration, whatever the method.
-        self.integrator.columns().max(1).saturating_add(start)
+        self.integrator.columns().max(1).saturating_add(start + self.forces.needs().columns())
     }
 
     /// The least memory it runs in; `particles` is what it begins with.

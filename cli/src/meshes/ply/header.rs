@@ -11,7 +11,7 @@ use super::{Fault, excerpt, text};
 const LONGEST: usize = 1 << 20;
 
 /// Splits the file behind its header.
-pub(super) fn split(bytes: &[u8]) -> Result<(Header, Payload<'_>), Fault> {
+pub(crate) fn split(bytes: &[u8]) -> Result<(Header, Payload<'_>), Fault> {
     const END: &[u8] = b"\nend_header";
     let start = &bytes[..bytes.len().min(LONGEST)];
     if !start.starts_with(b"ply") {

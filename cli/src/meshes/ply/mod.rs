@@ -12,7 +12,9 @@ use ply_rs_bw::ply::Property;
 use super::MeshData;
 use super::error::{Fault, excerpt};
 use super::text;
-use elements::{Face, Point, Skipped};
+use elements::Face;
+pub(crate) use elements::{Point, Skipped};
+pub(crate) use header::split;
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
     let (header, mut payload) = header::split(bytes)?;

@@ -11,7 +11,7 @@ use super::{Fault, excerpt, text};
 const LONGEST: usize = 1 << 20;
 
 /// What follows the header.
-pub(super) struct Payload<'a> {
+pub(crate) struct Payload<'a> {
     encoding: Encoding,
     unread: &'a [u8],
     /// Of a text, the line that was read last.
@@ -24,7 +24,7 @@ impl<'a> Payload<'a> {
     }
 
     /// Reads the next element, the `number`-th of its kind.
-    pub(super) fn next<E: PropertyAccess>(&mut self, element: &ElementDef, number: usize) -> Result<E, Fault> {
+    pub(crate) fn next<E: PropertyAccess>(&mut self, element: &ElementDef, number: usize) -> Result<E, Fault> {
         let parser = Parser::new();
         let read = match self.encoding {
             Encoding::Ascii => return self.next_of_text(&parser, element, number),

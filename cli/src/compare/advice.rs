@@ -1,0 +1,183 @@
+//! What to use, and why: sentences made of measured figures.
+
+use super::study::{Advice, Case, Contestant, Figure, line, series, workloads};
+use super::workload::Workload;
+
+/// One sentence or two for every workload of every series of points, about its largest number of points; and one for all.
+pub(crate) fn advise(cases: &[Case]) -> Vec<Advice> {
+    let mut advice = Vec::new();
+    for (points, cases) in series(cases) {
+        let Some(largest) = cases.last() else { continue };
+        let queries: Vec<_> = workloads(&cases).into_iter().filter(|workload| workload.is_query()).collect();
+        for &workload in &queries {
+            advice.extend(for_workload(points, &cases, largest, workload));
+        }
+        if queries.len() > 1 {
+            advice.extend(all_round(points, &cases, &queries));
+        }
+    }
+    advice
+}
+
+fn for_workload(points: &str, cases: &[&Case], largest: &Case, workload: Workload) -> Option<Advice> {
+    let ranking = largest.ranking(workload);
+    let (best, figure) = *ranking.first()?;
+    let like: Vec<&str> =
+        ranking[1..].iter().filter(|(_, other)| other.ties).map(|(other, _)| other.name.as_str()).collect();
+    let next = ranking[1..].iter().find(|(_, other)| !other.ties);
+    let mut text = match like[..] {
+        [] => format!("use {}: {} ns a point", best.name, digits(figure.median)),
+        [other] => format!(
+            "use {} or {other}: {} ns a point, and they are within {:.0} %, which is within the spread",
+            best.name,
+            digits(figure.median),
+            between(&ranking[..2])
+        ),
+        _ => format!(
+            "use any of {}, {}: {} ns a point, and they are within {:.0} %, which is within the spread",
+            best.name,
+            like.join(", "),
+            digits(figure.median),
+            between(&ranking[..=like.len()])
+        ),
+    };
+    if let Some((other, slower)) = next {
+        text.push_str(&format!("; {} takes {} times as long", other.name, digits(slower.ratio)));
+        text.push_str(&reason((best, figure), (other, slower)));
+    }
+    text.push('.');
+    text.push_str(&with_build(largest, workload, &best.name));
+    text.push_str(&elsewhere(cases, workload, &best.name, &like));
+    Some(Advice { points: points.into(), workload: Some(workload), best: best.name.clone(), text })
+}
+
+/// By how many per cent the slowest of some is slower than the fastest.
+fn between(ranking: &[(&Contestant, &Figure)]) -> f64 {
+    let slowest = ranking.last().map_or(1.0, |(_, figure)| figure.ratio);
+    ((slowest - 1.0) * 100.0).max(1.0)
+}
+
+/// Why the first is faster than the second, by what both counted.
+fn reason((best, a): (&Contestant, &Figure), (other, b): (&Contestant, &Figure)) -> String {
+    let (Some(a_tests), Some(b_tests), Some(a_visits), Some(b_visits)) = (a.tests, b.tests, a.visits, b.visits) else {
+        return String::new();
+    };
+    let found = a.found.unwrap_or_default();
+    let counted = |visits: f64, tests: f64| format!("{} nodes and {} distances", digits(visits), digits(tests));
+    let (mine, theirs) = (counted(a_visits, a_tests), counted(b_visits, b_tests));
+    let compared = format!("for {} found it looks at {mine} a point, {} at {theirs}", digits(found), other.name);
+    if a_tests > b_tests && a_visits > b_visits {
+        // It does more and is faster still.
+        return format!(" ({compared}; it does more, but simpler, work)");
+    }
+    /// More points in a cell than this are a reason of their own.
+    const FULL: usize = 256;
+    let fullest = |one: &Contestant| one.build.fullest.unwrap_or(0);
+    match fullest(other) > FULL && fullest(best) <= FULL {
+        true => format!(" ({compared}, with up to {} points in one cell)", fullest(other)),
+        false => format!(" ({compared})"),
+    }
+}
+
+/// Whether building changes the order, for those who ask but once.
+fn with_build(case: &Case, workload: Workload, best: &str) -> String {
+    if workload == Workload::Moving {
+        return String::new();
+    }
+    let total = |one: &Contestant| Some(one.figure(workload)?.median + one.figure(Workload::Build)?.median);
+    let mut totals: Vec<_> = case.contestants.iter().filter_map(|one| Some((total(one)?, one))).collect();
+    totals.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let (Some((first, one)), Some((own, _))) = (totals.first(), totals.iter().find(|(_, one)| one.name == best)) else {
+        return String::new();
+    };
+    if one.name == best || *own <= first * (1.0 + super::study::INDISTINCT) {
+        return String::new();
+    }
+    let (name, first, own) = (&one.name, digits(*first), digits(*own));
+    format!(" Built anew for every query, {name} comes first: {first} ns with the build, {best} {own} ns.")
+}
+
+/// Numbers of points for which another is clearly better.
+fn elsewhere(cases: &[&Case], workload: Workload, best: &str, like: &[&str]) -> String {
+    let mut text = String::new();
+    for case in cases.iter().rev().skip(1) {
+        let ranking = case.ranking(workload);
+        let Some((other, _)) = ranking.first() else { continue };
+        let own = ranking.iter().find(|(one, _)| one.name == best);
+        let Some((_, own)) = own.filter(|(_, own)| !own.ties && !like.contains(&other.name.as_str())) else { continue };
+        let (other, ratio, n) = (&other.name, digits(own.ratio), thousands(case.n));
+        text.push_str(&format!(" Of {n} points, {other} is {ratio} times as fast as {best}."));
+    }
+    text
+}
+
+/// Who is never far behind.
+fn all_round(points: &str, cases: &[&Case], queries: &[Workload]) -> Option<Advice> {
+    let names: Vec<&str> = cases.last()?.contestants.iter().map(|one| one.name.as_str()).collect();
+    let worst = |name: &str| -> Option<f64> {
+        let mut worst = 1.0f64;
+        for &workload in queries {
+            let line = line(cases, name, workload);
+            // Who was left out somewhere is no choice for all of it.
+            if line.len() < cases.len() {
+                return None;
+            }
+            worst = line.iter().fold(worst, |worst, (_, figure)| worst.max(figure.ratio));
+        }
+        Some(worst)
+    };
+    let mut all: Vec<_> = names.iter().filter_map(|name| Some((worst(name)?, *name))).collect();
+    all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let (ratio, best) = *all.first()?;
+    let text = match ratio <= 1.0 + super::study::INDISTINCT {
+        true => format!("{best} is the best or as good as the best in every query."),
+        false => {
+            let next = all.get(1).map_or(String::new(), |(ratio, name)| format!(" (next: {name}, {})", digits(*ratio)));
+            format!("if one has to do for all of this, {best}: never more than {} times the best{next}.", digits(ratio))
+        }
+    };
+    Some(Advice { points: points.into(), workload: None, best: best.into(), text })
+}
+
+/// A number with three digits that count.
+pub(crate) fn digits(x: f64) -> String {
+    match x.abs() {
+        x if !x.is_finite() => "-".into(),
+        a if a >= 999_500.0 => format!("{x:.2e}"),
+        a if a >= 99.95 => format!("{x:.0}"),
+        a if a >= 9.995 => format!("{x:.1}"),
+        a if a >= 0.9995 => format!("{x:.2}"),
+        0.0 => "0".into(),
+        a if a >= 1e-4 => format!("{x:.*}", (2 - a.log10().floor() as i32).clamp(3, 7) as usize),
+        _ => format!("{x:.2e}"),
+    }
+}
+
+/// A whole number in groups of three digits.
+pub(crate) fn thousands(n: usize) -> String {
+    let text = n.to_string();
+    let mut grouped = String::new();
+    for (i, digit) in text.chars().enumerate() {
+        if i > 0 && (text.len() - i).is_multiple_of(3) {
+            grouped.push(' ');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases =
+            [(0.0, "0"), (1.0, "1.00"), (12.345, "12.3"), (99.96, "100"), (1234.5, "1234"), (0.01234, "0.0123")];
+        for (x, text) in cases {
+            assert_eq!(digits(x), text);
+        }
+        assert_eq!(digits(f64::NAN), "-");
+        assert_eq!([thousands(7), thousands(1000), thousands(1_234_567)], ["7", "1 000", "1 234 567"]);
+    }
+}

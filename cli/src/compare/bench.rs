@@ -1,0 +1,246 @@
+//! Where contenders meet: one set of points after the other, first verified, then measured.
+
+use super::advice::thousands;
+use super::contender::{Entrant, Question};
+use super::measure::{Measured, Plan, measure};
+use super::radius::radius_for;
+use super::sample::sample;
+use super::source::Source;
+use super::study::{Case, Contestant, Figure};
+use super::verify::{EXHAUSTIVE, Expected, SAMPLE};
+use super::workload::Workload;
+use crate::progress::Progress;
+use crate::{Failure, Outcome, args};
+use pointmass::Vec3;
+use pointmass::index::Cost;
+use pointmass::rng::Stream;
+
+/// What all cases share.
+pub(crate) struct Bench<'a> {
+    args: &'a args::Compare,
+    seed: u64,
+    queries: Vec<Workload>,
+    entrants: &'a mut [Entrant],
+    /// Lent to one structure after the other.
+    memory: Vec<u32>,
+    gauge: Gauge,
+}
+
+/// What an entrant does in a case.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Share {
+    /// What is asked of it; of those who do not take part, nothing.
+    pub(crate) queries: Vec<Workload>,
+    /// Whether it takes part.
+    pub(crate) is_in: bool,
+    /// What it does not do, and why.
+    pub(crate) left_out: Option<String>,
+}
+
+/// Up to so many distances for a query of all points, anybody may take part.
+const CHEAP: f64 = 2e8;
+/// And up to so many for each point, or for each that is found.
+const DEAR: f64 = 5e3;
+const DEAR_FOUND: f64 = 20.0;
+/// How many points are asked to find out.
+const TRIED: usize = 64;
+
+/// Rounds that verification takes as long as, and rounds that are expected.
+const VERIFICATION: u64 = 3;
+const ROUNDS: u64 = 7;
+
+impl<'a> Bench<'a> {
+    /// For so many points in all.
+    pub(crate) fn new(
+        args: &'a args::Compare,
+        queries: Vec<Workload>,
+        entrants: &'a mut [Entrant],
+        points: usize,
+    ) -> Self {
+        let ahead = points as u64 * entrants.len() as u64 * (VERIFICATION + ROUNDS);
+        let gauge = Gauge { progress: Progress::of_work(ahead), ahead, title: String::new() };
+        Self { args, seed: args.seed.unwrap_or(1), queries, entrants, memory: Vec::new(), gauge }
+    }
+
+    /// Everything is done.
+    pub(crate) fn finish(&self) {
+        self.gauge.progress.finish();
+    }
+
+    /// Verifies and measures everybody on so many of the source's points.
+    ///
+    /// # Errors
+    /// If somebody's answer is wrong, or nobody can be asked.
+    pub(crate) fn case(&mut self, source: &Source, n: usize) -> Outcome<Case> {
+        let points = source.points(n);
+        let words = self.entrants.iter().map(|entrant| entrant.words(n)).max().unwrap_or(0);
+        provide(&mut self.memory, words)?;
+        let all = n as u64 * self.entrants.len() as u64;
+        self.gauge.begin(format!("{}, {} points", source.name(), thousands(n)), all * (VERIFICATION + ROUNDS));
+        self.gauge.step(0, all * (VERIFICATION + ROUNDS), "radius");
+        let radius = match self.args.radius {
+            Some(radius) => radius,
+            None => radius_for(&points, self.args.neighbours, self.seed, &mut self.memory)?,
+        };
+        let moved = moved(&points, radius, self.seed);
+        let question = Question { points: &points, moved: &moved, radius, k: usize::from(self.args.k) };
+        let shares = self.shares(&question)?;
+        let (expected, verified) = self.verify(&question, &shares)?;
+        let plan = Plan { shares: &shares, repeat: self.args.repeat };
+        let measured = measure(self.entrants, &question, &mut self.memory, &plan, &mut self.gauge)?;
+        let rounds = measured.iter().flat_map(|one| &one.series).map(|(_, samples, _)| samples.len()).max();
+        let contestants = self.entrants.iter().zip(measured).zip(shares);
+        let mut case = Case {
+            points: source.name().into(),
+            about: source.about(n),
+            n,
+            radius,
+            neighbours: expected.neighbours(),
+            verified,
+            rounds: rounds.unwrap_or(0),
+            contestants: contestants
+                .map(|((entrant, measured), share)| contestant(entrant.name(), measured, share.left_out, n))
+                .collect(),
+        };
+        case.rank();
+        Ok(case)
+    }
+
+    /// What everybody does, leaving out what would take too long.
+    fn shares(&mut self, question: &Question<'_>) -> Outcome<Vec<Share>> {
+        let n = question.points.len();
+        let rows = sample(n, TRIED, self.seed);
+        let mut shares = Vec::new();
+        for entrant in self.entrants.iter_mut() {
+            let mut contender = entrant.enter(n, &mut self.memory);
+            contender.build(question.points, question.radius)?;
+            let mut too_much = |query| {
+                let (tests, found) = contender.effort(query, question, &rows)?;
+                let limit = CHEAP.max(n as f64 * DEAR.max(DEAR_FOUND * found));
+                let tests = tests * n as f64;
+                (tests > limit).then(|| format!("would compute about {tests:.0e} distances, more than {limit:.0e}"))
+            };
+            // What is within a radius costs about the same, however it is told.
+            shares.push(match (too_much(Workload::Count), self.queries.contains(&Workload::Nearest)) {
+                (Some(why), _) => Share { left_out: Some(format!("every query {why}")), ..Share::default() },
+                (None, true) => match too_much(Workload::Nearest) {
+                    Some(why) => Share {
+                        queries: self.queries.iter().copied().filter(|query| *query != Workload::Nearest).collect(),
+                        is_in: true,
+                        left_out: Some(format!("nearest {why}")),
+                    },
+                    None => Share { queries: self.queries.clone(), is_in: true, left_out: None },
+                },
+                (None, false) => Share { queries: self.queries.clone(), is_in: true, left_out: None },
+            });
+        }
+        match shares.iter().find(|share| share.is_in) {
+            Some(_) => Ok(shares),
+            None => {
+                let why = shares.into_iter().find_map(|share| share.left_out).unwrap_or_default();
+                Err(Failure::new(format!("{}: nobody is left to compare: {why}; lower --n", self.gauge.title)))
+            }
+        }
+    }
+
+    /// Holds everybody's answers against an exhaustive search; says how.
+    fn verify(&mut self, question: &Question<'_>, shares: &[Share]) -> Outcome<(Expected, String)> {
+        let n = question.points.len();
+        let turns = shares.iter().filter(|share| share.is_in).count() as u64;
+        self.gauge.step(0, n as u64 * turns * (VERIFICATION + ROUNDS), "exhaustive search");
+        let (expected, asked) = self.expected(question, shares)?;
+        let mut left = turns;
+        for (entrant, share) in self.entrants.iter_mut().zip(shares).filter(|(_, share)| share.is_in) {
+            let name = entrant.name().to_string();
+            left -= 1;
+            self.gauge.step(n as u64 * VERIFICATION, n as u64 * (left * VERIFICATION + turns * ROUNDS), &name);
+            let queries: Vec<_> = share.queries.iter().copied().filter(|query| asked.contains(query)).collect();
+            let mut contender = entrant.enter(n, &mut self.memory);
+            expected.check(contender.as_mut(), &name, question, &queries)?;
+        }
+        let is_peer = |(entrant, share): (&Entrant, &Share)| share.is_in && !entrant.is_own();
+        let has_peers = self.entrants.iter().zip(shares).any(is_peer);
+        let rounding = if has_peers { "; other libraries up to rounding" } else { "" };
+        let rows = SAMPLE.min(n);
+        let verified = match n <= EXHAUSTIVE {
+            true => format!("verified against an exhaustive search, all rows{rounding}"),
+            false => {
+                format!("verified against each other, all rows, and an exhaustive search, {rows} of them{rounding}")
+            }
+        };
+        Ok((expected, verified))
+    }
+
+    /// What everybody has to answer, and to which queries.
+    fn expected(&mut self, question: &Question<'_>, shares: &[Share]) -> Outcome<(Expected, Vec<Workload>)> {
+        let n = question.points.len();
+        let own = self.entrants.iter_mut().zip(shares).filter(|(entrant, share)| share.is_in && entrant.is_own());
+        // Who does the most; the first of these.
+        let leader = own.min_by_key(|(_, share)| std::cmp::Reverse(share.queries.len()));
+        match leader.filter(|_| n > EXHAUSTIVE) {
+            None => Ok((Expected::exhaustive(question, &self.queries), self.queries.clone())),
+            Some((entrant, share)) => {
+                let name = entrant.name().to_string();
+                let mut contender = entrant.enter(n, &mut self.memory);
+                let expected = Expected::by(contender.as_mut(), &name, question, &share.queries, self.seed)?;
+                Ok((expected, share.queries.clone()))
+            }
+        }
+    }
+}
+
+/// How far the whole comparison is; a unit of work is a point that an entrant goes through once.
+pub(crate) struct Gauge {
+    progress: Progress,
+    /// Units of the cases after this one.
+    ahead: u64,
+    title: String,
+}
+
+impl Gauge {
+    /// A case begins, of which so much was expected.
+    fn begin(&mut self, title: String, expected: u64) {
+        self.title = title;
+        self.ahead = self.ahead.saturating_sub(expected);
+    }
+
+    /// So many units further, and so many left in this case.
+    pub(crate) fn step(&mut self, units: u64, left: u64, doing: &str) {
+        self.progress.work(units, left + self.ahead, &format!("{}: {doing}", self.title));
+    }
+}
+
+/// Makes so many words of memory available.
+pub(crate) fn provide(memory: &mut Vec<u32>, words: usize) -> Outcome {
+    let more = words.saturating_sub(memory.len());
+    memory.try_reserve_exact(more).map_err(|_| {
+        let megabytes = words >> 18;
+        Failure::new(format!("there are no {megabytes} MB of memory for a structure of so many points; lower --n"))
+    })?;
+    memory.resize(memory.len() + more, 0);
+    Ok(())
+}
+
+/// All points, each a little further: up to 5 % of the radius along every axis.
+pub(crate) fn moved(points: &[Vec3], radius: f32, seed: u64) -> Vec<Vec3> {
+    /// Apart from the streams of made-up points.
+    const EMITTER: u32 = 1 << 18;
+    let step = 0.05 * radius;
+    let go = |(row, point): (usize, &Vec3)| {
+        let stream = Stream::new(seed, EMITTER, row as u32);
+        let ([x, y], [z, _]) = (stream.units(0), stream.units(1));
+        let there = *point + step * (2.0 * Vec3::new(x, y, z) - 1.0);
+        if there.is_finite() { there } else { *point }
+    };
+    points.iter().enumerate().map(go).collect()
+}
+
+fn contestant(name: &str, measured: Measured, left_out: Option<String>, n: usize) -> Contestant {
+    let each = |count: u64| count as f64 / n as f64;
+    let counters = |cost: Cost| [each(cost.visits), each(cost.tests), each(cost.found)];
+    let figures = measured.series.into_iter();
+    let mut figures: Vec<_> =
+        figures.map(|(workload, samples, cost)| Figure::new(workload, samples, cost.map(counters))).collect();
+    figures.sort_by_key(|figure| figure.workload);
+    Contestant { name: name.into(), left_out, build: measured.build, figures }
+}

@@ -1,0 +1,305 @@
+//! A comparison as a page that stands alone: no scripts, nothing from the network.
+
+use super::advice::{digits, thousands};
+use super::chart::{Chart, charts};
+use super::study::{Case, Contestant, Crossover, Study, series, workloads};
+use super::table::{heading, ratio};
+use super::workload::Workload;
+use super::{stopwatch, study, verify};
+use crate::Outcome;
+use std::fmt::Write;
+
+const STYLE: &str = "\
+body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:72rem;margin:2rem auto;padding:0 1.5rem}
+h1{font-size:1.7rem;line-height:1.25}h2{margin-top:2.4rem;border-bottom:1px solid #ccc}h3{margin:1.6rem 0 .4rem}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.6rem 0;font-size:.9rem}
+th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #e4e4e4;white-space:nowrap}
+th{border-bottom:2px solid #999}th:first-child,td:first-child{text-align:left}
+td.best{background:#e5f3ea;font-weight:600}td small{color:#666;font-weight:400}td.why{text-align:left;white-space:normal}
+.charts{display:flex;flex-wrap:wrap;gap:.5rem 1rem}.charts svg{max-width:100%;height:auto;border:1px solid #eee}
+dt{font-weight:600}dd{margin:0 0 .5rem 1.5rem}code{background:#f3f3f3;padding:.1rem .3rem;overflow-wrap:anywhere}
+.wide{overflow-x:auto}@media print{.charts svg{break-inside:avoid}body{margin:0}}";
+
+/// The page.
+///
+/// # Errors
+/// If a chart cannot be drawn.
+pub(crate) fn html(study: &Study) -> Outcome<String> {
+    let mut page = Page(String::new());
+    let title = "Which spatial partition?";
+    page.raw("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">");
+    page.raw("<meta name=\"viewport\" content=\"width=device-width\">");
+    page.raw(&format!("<title>{title}</title>\n<style>\n{STYLE}\n</style></head>\n<body>\n<h1>{title}</h1>\n"));
+    page.summary(study);
+    page.advice(study);
+    let charts = charts(study);
+    for (points, cases) in series(&study.cases) {
+        page.tagged("h2", &format!("Measurements: {points}"));
+        for case in &cases {
+            page.case(case);
+        }
+        page.growth(study, points, &cases);
+        page.crossovers(study, points);
+        page.charts(points, &charts)?;
+        if let Some(largest) = cases.last() {
+            page.details(largest);
+        }
+    }
+    page.method(study);
+    page.raw("</body></html>\n");
+    Ok(page.0)
+}
+
+/// HTML in the making. What comes from users passes `escape`.
+struct Page(String);
+
+/// Text as it may stand in HTML.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            c if c.is_control() => escaped.push(char::REPLACEMENT_CHARACTER),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+impl Page {
+    fn raw(&mut self, html: &str) {
+        self.0.push_str(html);
+    }
+
+    fn tagged(&mut self, tag: &str, text: &str) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "<{tag}>{}</{tag}>", escape(text));
+    }
+
+    fn items(&mut self, items: &[(String, String)]) {
+        self.raw("<dl>\n");
+        for (name, text) in items {
+            let _ = writeln!(self.0, "<dt>{}</dt><dd>{}</dd>", escape(name), escape(text));
+        }
+        self.raw("</dl>\n");
+    }
+
+    fn summary(&mut self, study: &Study) {
+        let machine = &study.machine;
+        let names = study::names(&study.cases).join(", ");
+        self.raw("<dl>\n");
+        let _ = writeln!(self.0, "<dt>Compared</dt><dd>{}</dd>", escape(&names));
+        for (points, cases) in series(&study.cases) {
+            let sizes: Vec<_> = cases.iter().map(|case| thousands(case.n)).collect();
+            let about = cases.last().map_or("", |case| case.about.as_str());
+            let text = format!("{}; {} points", about, sizes.join(", "));
+            let _ = writeln!(self.0, "<dt>{}</dt><dd>{}</dd>", escape(points), escape(&text));
+        }
+        let machine = format!("{}, {} cores (one is used), {}", machine.cpu, machine.cores, machine.os);
+        let _ = writeln!(self.0, "<dt>Machine</dt><dd>{}</dd>", escape(&machine));
+        let program = format!("pointmass {}, {}", study.version, study.machine.build);
+        let _ = writeln!(self.0, "<dt>Program</dt><dd>{}</dd>", escape(&program));
+        let _ = writeln!(self.0, "<dt>Command</dt><dd><code>{}</code></dd>", escape(&study.command));
+        self.raw("</dl>\n");
+    }
+
+    fn advice(&mut self, study: &Study) {
+        self.tagged("h2", "What to use");
+        for (points, cases) in series(&study.cases) {
+            let Some(largest) = cases.last() else { continue };
+            self.tagged("h3", &format!("{points}, {} points", thousands(largest.n)));
+            let of = study.advice.iter().filter(|advice| advice.points == points);
+            let items: Vec<_> = of
+                .map(|advice| (advice.workload.map_or("all round", Workload::name).into(), advice.text.clone()))
+                .collect();
+            self.items(&items);
+        }
+        for note in &study.notes {
+            // What points are is told above.
+            if !study.cases.iter().any(|case| note.starts_with(&format!("{}: ", case.points))) {
+                self.tagged("p", &format!("Note: {note}."));
+            }
+        }
+    }
+
+    fn case(&mut self, case: &Case) {
+        self.tagged("h3", &heading(case));
+        let rounds = case.rounds;
+        let verified = &case.verified;
+        let text = format!(
+            "Medians of {rounds} rounds, in ns a point, and times the best; {verified}. Green: the best and \
+                            what cannot be told apart from it."
+        );
+        self.tagged("p", &text);
+        let workloads = case.workloads();
+        self.raw("<div class=\"wide\"><table><tr><th></th>");
+        workloads.iter().for_each(|workload| self.cell("th", "", workload.name()));
+        ["bytes a point", "nodes", "depth", "fullest", "crowded"].iter().for_each(|name| self.cell("th", "", name));
+        self.raw("</tr>\n");
+        for one in &case.contestants {
+            self.row(case, one, &workloads);
+        }
+        self.raw("</table></div>\n");
+        let partly = case.contestants.iter().filter(|one| !one.figures.is_empty());
+        let partly: Vec<_> =
+            partly.filter_map(|one| Some(format!("{}: {}", one.name, one.left_out.as_ref()?))).collect();
+        if !partly.is_empty() {
+            self.tagged("p", &format!("Left out: {}.", partly.join("; ")));
+        }
+    }
+
+    fn cell(&mut self, tag: &str, class: &str, text: &str) {
+        let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
+        let _ = write!(self.0, "<{tag}{class}>{}</{tag}>", escape(text));
+    }
+
+    fn row(&mut self, case: &Case, one: &Contestant, workloads: &[Workload]) {
+        self.raw("<tr>");
+        self.cell("td", "", &one.name);
+        if let Some(why) = one.left_out.as_ref().filter(|_| one.figures.is_empty()) {
+            let _ =
+                write!(self.0, "<td class=\"why\" colspan=\"{}\">left out: {}</td>", workloads.len() + 5, escape(why));
+        } else {
+            for workload in case.workloads() {
+                match one.figure(workload) {
+                    Some(figure) => {
+                        let class = if figure.ties { " class=\"best\"" } else { "" };
+                        let (median, ratio) = (digits(figure.median), ratio(figure.ratio));
+                        let _ = write!(self.0, "<td{class}>{median} <small>{ratio}</small></td>");
+                    }
+                    None => self.cell("td", "", "-"),
+                }
+            }
+            let bytes = one.build.bytes_per_point.map_or("-".into(), |bytes| format!("{bytes:.0}"));
+            self.cell("td", "", &bytes);
+            let build = &one.build;
+            for count in [build.nodes, build.depth, build.fullest, build.crowded] {
+                self.cell("td", "", &count.map_or("-".into(), thousands));
+            }
+        }
+        self.raw("</tr>\n");
+    }
+
+    fn growth(&mut self, study: &Study, points: &str, cases: &[&Case]) {
+        let of: Vec<_> = study.growth.iter().filter(|growth| growth.points == points).collect();
+        if of.is_empty() {
+            return;
+        }
+        self.tagged("h3", "Growth: time for all points, as a power of their number");
+        let workloads = workloads(cases);
+        self.raw("<table><tr><th></th>");
+        workloads.iter().for_each(|workload| self.cell("th", "", workload.name()));
+        self.raw("</tr>\n");
+        for name in study::names(&study.cases) {
+            if !of.iter().any(|growth| growth.name == name) {
+                continue;
+            }
+            self.raw("<tr>");
+            self.cell("td", "", name);
+            for workload in &workloads {
+                let growth = of.iter().find(|growth| growth.name == name && growth.workload == *workload);
+                self.cell("td", "", &growth.map_or("-".into(), |growth| format!("{:.2}", growth.exponent)));
+            }
+            self.raw("</tr>\n");
+        }
+        self.raw("</table>\n");
+        let meaning = "1 is linear; n log n looks like 1.1 here, all pairs like 2. The slope of log time against log \
+                       number, by least squares.";
+        self.tagged("p", meaning);
+    }
+
+    fn crossovers(&mut self, study: &Study, points: &str) {
+        let of: Vec<_> = study.crossovers.iter().filter(|crossover| crossover.points == points).collect();
+        if of.is_empty() {
+            return;
+        }
+        self.tagged("h3", "Where one overtakes another");
+        self.raw("<ul>\n");
+        for (i, first) in of.iter().enumerate() {
+            let is_like = |other: &&&Crossover| other.workload == first.workload && other.winner == first.winner;
+            if of[..i].iter().any(|other| is_like(&other)) {
+                continue;
+            }
+            let losers = of.iter().filter(is_like).map(|other| format!("{} at {}", other.loser, other.size()));
+            let losers = losers.collect::<Vec<_>>().join(", ");
+            self.tagged("li", &format!("{}: {} overtakes {losers} points", first.workload.name(), first.winner));
+        }
+        self.raw("</ul>\n");
+    }
+
+    fn charts(&mut self, points: &str, charts: &[Chart<'_>]) -> Outcome {
+        self.raw("<div class=\"charts\">\n");
+        for chart in charts.iter().filter(|chart| chart.points == points) {
+            self.raw(&chart.svg()?);
+        }
+        self.raw("</div>\n");
+        Ok(())
+    }
+
+    fn details(&mut self, case: &Case) {
+        self.tagged("h3", &format!("In detail: {} points", thousands(case.n)));
+        for workload in case.workloads() {
+            self.tagged("p", &format!("{}: {}", workload.name(), workload.describe()));
+            self.raw("<div class=\"wide\"><table><tr><th></th>");
+            let head = ["median ns", "minimum ns", "spread", "times the best", "nodes visited", "distances", "found"];
+            head.iter().for_each(|name| self.cell("th", "", name));
+            self.raw("</tr>\n");
+            for (one, figure) in case.ranking(workload) {
+                let counter = |counter: Option<f64>| counter.map_or("-".into(), digits);
+                let cells = [
+                    digits(figure.median),
+                    digits(figure.min),
+                    format!("{:.0} %", figure.spread * 100.0),
+                    ratio(figure.ratio),
+                    counter(figure.visits),
+                    counter(figure.tests),
+                    counter(figure.found),
+                ];
+                self.raw("<tr>");
+                self.cell("td", "", &one.name);
+                cells.iter().for_each(|cell| self.cell("td", "", cell));
+                self.raw("</tr>\n");
+            }
+            self.raw("</table></div>\n");
+        }
+        self.tagged(
+            "p",
+            "All of it for each point. Nodes, distances and finds are counted, not timed: the same on every machine.",
+        );
+    }
+
+    fn method(&mut self, study: &Study) {
+        self.tagged("h2", "How it was measured");
+        let work = study::workloads(&study.cases.iter().collect::<Vec<_>>());
+        self.items(&work.iter().map(|w| (w.name().into(), w.describe().into())).collect::<Vec<_>>());
+        let (most, sample, k) = (thousands(verify::EXHAUSTIVE), verify::SAMPLE, study.k);
+        let (totals, distances) = (verify::TOTALS, verify::DISTANCES);
+        let paragraphs = [
+            format!(
+                "Verification comes first: who gives a wrong answer ends the comparison. Counts, neighbours, pairs and the \
+                 distances of the {k} nearest of every row have to be the same from all structures, to the last bit, and \
+                 the same as those of an exhaustive search: of all rows up to {most} points, of {sample} random rows \
+                 beyond. Other libraries round in their own way, so their totals may differ by {totals} and their \
+                 distances by {distances} of the value."
+            ),
+            format!("Everybody takes a turn in every round, another one first each time, so that what else the machine does hits \
+             all alike. A turn builds, asks, moves all points by up to 5 % of the radius along every axis, refits and \
+             counts. Times are {}; the spread is the range of the middle half of the samples over their median. \
+             Two medians are told apart where they differ by more than 3 % and by more than two standard errors. Who \
+             would compute very many distances is left out, and the table says so.", stopwatch::SHOWS),
+            "Structures answer for all rows in one call, which shares work between rows that are near each other. Other \
+             libraries are asked row by row in the order of the points, or in the best way they have for all rows."
+                .into(),
+            "Of what was built, nodes are nodes or cells, depth is the levels below the root, fullest the most points in a \
+             leaf or cell, and crowded the leaves left larger than they should be, or how many times cells were doubled, \
+             for want of memory. Bytes are all that the structure uses, its copy of the points included."
+                .into(),
+            format!("All randomness comes from the seed {}.", study.seed),
+        ];
+        paragraphs.iter().for_each(|paragraph| self.tagged("p", paragraph));
+    }
+}

@@ -1,0 +1,149 @@
+//! Arrays as NumPy saves them: N x 3 or N x 2, single or double precision, in either order.
+//!
+//! The format is that of NEP 1: a magic word, a version, the length of a head, and the head, a Python dictionary of which
+//! three entries matter. The crates that read it multiply the sides of the array unchecked and bring a parser of all
+//! Python literals with them.
+
+use super::{Cloud, Fault};
+use crate::meshes::error::excerpt;
+use std::io::{BufRead, ErrorKind};
+
+const MAGIC: &[u8] = b"\x93NUMPY";
+/// The longest head, in bytes; NumPy itself warns beyond 10000.
+const LONGEST: usize = 1 << 16;
+/// Rows that are read at a time.
+const CHUNK: usize = 4096;
+
+pub(super) fn read(mut file: impl BufRead) -> Result<Cloud, Fault> {
+    let head = Head::read(&mut file)?;
+    let mut cloud = Cloud::default();
+    let mut rows = Vec::new();
+    if head.by_columns {
+        // All x come first, then all y, then all z.
+        for axis in 0..head.columns {
+            let mut row = 0;
+            head.numbers(&mut file, head.rows, 1, &mut |numbers| {
+                for &x in numbers {
+                    if axis == 0 {
+                        rows.push([x, 0.0, 0.0]);
+                    } else {
+                        rows[row][axis] = x;
+                    }
+                    row += 1;
+                }
+                if rows.len() > super::MOST { Err(format!("more than {} points", super::MOST)) } else { Ok(()) }
+            })?;
+        }
+        rows.into_iter().try_for_each(|row| cloud.push(row)).map_err(Fault::new)?;
+    } else {
+        head.numbers(&mut file, head.rows, head.columns, &mut |numbers| {
+            let mut rows = numbers.chunks_exact(head.columns);
+            rows.try_for_each(|row| cloud.push([row[0], row[1], row.get(2).copied().unwrap_or(0.0)]))
+        })?;
+    }
+    Ok(cloud)
+}
+
+/// What the array is.
+#[derive(Debug, PartialEq)]
+struct Head {
+    big_endian: bool,
+    /// Bytes of a number: 4 or 8.
+    size: usize,
+    by_columns: bool,
+    rows: u64,
+    columns: usize,
+}
+
+impl Head {
+    fn read(file: &mut impl BufRead) -> Result<Self, Fault> {
+        let cut = |_| Fault::new("the head ends early: is it cut short?");
+        let mut start = [0; 8];
+        file.read_exact(&mut start).map_err(cut)?;
+        if !start.starts_with(MAGIC) {
+            return Err(Fault::new("expected an array as numpy.save writes it: it does not begin with \\x93NUMPY"));
+        }
+        let mut length = [0; 4];
+        let wide = if start[6] == 1 { 2 } else { 4 };
+        file.read_exact(&mut length[..wide]).map_err(cut)?;
+        let length = u32::from_le_bytes(length) as usize;
+        if length > LONGEST {
+            return Err(Fault::new(format!("has a head of {length} bytes: expected {LONGEST} at most")));
+        }
+        let mut head = vec![0; length];
+        file.read_exact(&mut head).map_err(cut)?;
+        Self::parse(&String::from_utf8_lossy(&head)).map_err(|message| Fault::new(format!("head: {message}")))
+    }
+
+    /// `{'descr': '<f8', 'fortran_order': False, 'shape': (100, 3), }`
+    fn parse(head: &str) -> Result<Self, String> {
+        let entry = |key: &str| {
+            let (_, rest) = head.split_once(&format!("'{key}'"))?;
+            rest.trim_start().strip_prefix(':').map(str::trim_start)
+        };
+        let missing = |key: &str| format!("`{}`: expected an entry '{key}'", excerpt(head));
+        let kind = entry("descr").ok_or_else(|| missing("descr"))?;
+        let (big_endian, size) = match kind.get(..5).unwrap_or_default() {
+            "'<f4'" | "'=f4'" => (false, 4),
+            "'<f8'" | "'=f8'" => (false, 8),
+            "'>f4'" => (true, 4),
+            "'>f8'" => (true, 8),
+            _ => {
+                let kind = kind.split(", '").next().unwrap_or_default();
+                return Err(format!("type {}: expected float32 or float64; see numpy's astype", excerpt(kind)));
+            }
+        };
+        let by_columns = entry("fortran_order").ok_or_else(|| missing("fortran_order"))?.starts_with("True");
+        let shape =
+            entry("shape").and_then(|rest| rest.strip_prefix('(')?.split_once(')')).ok_or_else(|| missing("shape"))?.0;
+        let sides: Option<Vec<u64>> =
+            shape.split(',').map(str::trim).filter(|side| !side.is_empty()).map(|side| side.parse().ok()).collect();
+        match sides.as_deref() {
+            Some(&[rows, columns @ (2 | 3)]) => {
+                Ok(Self { big_endian, size, by_columns, rows, columns: columns as usize })
+            }
+            _ => Err(format!("shape ({}): expected (N, 3) or (N, 2)", excerpt(shape))),
+        }
+    }
+
+    /// Reads so many times `width` numbers and visits them in chunks.
+    fn numbers(
+        &self,
+        file: &mut impl BufRead,
+        rows: u64,
+        width: usize,
+        visit: &mut dyn FnMut(&[f32]) -> Result<(), String>,
+    ) -> Result<(), Fault> {
+        let mut bytes = vec![0; CHUNK * width * self.size];
+        let mut numbers = Vec::with_capacity(CHUNK * width);
+        let mut row = 0;
+        while row < rows {
+            let some = (rows - row).min(CHUNK as u64) as usize;
+            let bytes = &mut bytes[..some * width * self.size];
+            file.read_exact(bytes).map_err(|error| match error.kind() {
+                ErrorKind::UnexpectedEof => {
+                    let last = row + some as u64;
+                    Fault::new(format!("the file ends before row {last} of {rows}: is it cut short?"))
+                }
+                _ => error.into(),
+            })?;
+            numbers.clear();
+            numbers.extend(bytes.chunks_exact(self.size).map(|number| self.number(number)));
+            visit(&numbers).map_err(Fault::new)?;
+            row += some as u64;
+        }
+        Ok(())
+    }
+
+    fn number(&self, bytes: &[u8]) -> f32 {
+        // Little-endian from here on.
+        let mut little = [0; 8];
+        for (i, to) in little[..self.size].iter_mut().enumerate() {
+            *to = bytes[if self.big_endian { self.size - 1 - i } else { i }];
+        }
+        match self.size {
+            4 => f32::from_bits(u64::from_le_bytes(little) as u32),
+            _ => f64::from_le_bytes(little) as f32,
+        }
+    }
+}

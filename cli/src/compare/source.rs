@@ -1,0 +1,135 @@
+//! Where the points come from: made up, a file, or a scene that was run.
+
+use super::distribution::Distribution;
+use super::points;
+use super::sample::sample;
+use crate::args;
+use crate::clock::Clock;
+use crate::progress::Progress;
+use crate::world::World;
+use crate::{Failure, Outcome};
+use pointmass::Vec3;
+
+/// How many points are made up if nobody says.
+const SIZES: [usize; 3] = [1000, 10_000, 100_000];
+
+/// Points that are to be compared on, in one or more sizes.
+pub(crate) enum Source {
+    Made(Distribution, u64),
+    Given { name: String, about: String, points: Vec<Vec3>, seed: u64 },
+}
+
+/// All that the arguments name, and the numbers of points, ascending.
+///
+/// # Errors
+/// If a file or scene cannot be used, or has fewer points than are asked for.
+pub(crate) fn sources(args: &args::Compare) -> Outcome<(Vec<Source>, Vec<usize>)> {
+    let seed = args.seed.unwrap_or(1);
+    let given = match (&args.points, &args.scene) {
+        (Some((path, format)), _) => Some(from_file(path, *format, seed)?),
+        (None, Some(scene)) => Some(from_scene(scene, args, seed)?),
+        (None, None) => None,
+    };
+    let mut sizes = args.n.clone();
+    let sources = match given {
+        Some(source) => {
+            if let Source::Given { name, points, .. } = &source {
+                let len = points.len();
+                if let Some(n) = sizes.iter().find(|n| **n > len) {
+                    return Err(Failure::new(format!("{name}: has {len} points: expected --n {n} or more; lower --n")));
+                }
+                if sizes.is_empty() {
+                    sizes.push(len);
+                }
+            }
+            vec![source]
+        }
+        None => {
+            if sizes.is_empty() {
+                sizes = SIZES.to_vec();
+            }
+            let mut made: Vec<Distribution> = Vec::new();
+            args.distribution.iter().for_each(|one| {
+                if !made.contains(one) {
+                    made.push(*one);
+                }
+            });
+            made.into_iter().map(|distribution| Source::Made(distribution, seed)).collect()
+        }
+    };
+    sizes.sort_unstable();
+    sizes.dedup();
+    Ok((sources, sizes))
+}
+
+fn from_file(path: &std::path::Path, format: crate::formats::PointsFormat, seed: u64) -> Outcome<Source> {
+    let cloud = points::load(path, format)?;
+    let mut about = format!("{} points of {}", cloud.points.len(), path.display());
+    if cloud.skipped > 0 {
+        let rows = if cloud.skipped == 1 { "row" } else { "rows" };
+        about.push_str(&format!("; {} {rows} skipped, not finite", cloud.skipped));
+    }
+    if cloud.earlier > 0 {
+        about.push_str(&format!("; the last of {} records", cloud.earlier + 1));
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Source::Given { name, about, points: cloud.points, seed })
+}
+
+fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outcome<Source> {
+    let settings = args::World {
+        scene: scene.to_path_buf(),
+        duration: args.at,
+        dt: None,
+        integrator: None,
+        seed: args.seed,
+        capacity: None,
+    };
+    let mut world = World::load(&settings)?;
+    let clock = Clock::new(world.duration, world.dt);
+    let mut progress = Progress::new(clock.steps());
+    for step in 1..=clock.steps() {
+        world.step_to(clock.end(step));
+        progress.step(world.system.len());
+    }
+    progress.finish();
+    let points = world.system.particles().position.to_vec();
+    let (len, at, path) = (points.len(), crate::clock::nanoseconds(world.system.time().seconds_f64()), scene.display());
+    if len < 2 {
+        return Err(Failure::new(format!(
+            "{path}: {len} particles live at {at} s: expected two or more; try another --at"
+        )));
+    }
+    let name = format!("{} at {at} s", scene.file_name().unwrap_or_default().to_string_lossy());
+    Ok(Source::Given { name, about: format!("the {len} particles of {path} at {at} s"), points, seed })
+}
+
+impl Source {
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Self::Made(distribution, _) => distribution.name(),
+            Self::Given { name, .. } => name,
+        }
+    }
+
+    /// What so many of its points are.
+    pub(crate) fn about(&self, n: usize) -> String {
+        match self {
+            Self::Made(distribution, seed) => format!("{}; seed {seed}", distribution.describe()),
+            Self::Given { about, points, seed, .. } if n < points.len() => {
+                format!("{about}; {n} of them at random, seed {seed}")
+            }
+            Self::Given { about, .. } => about.clone(),
+        }
+    }
+
+    /// So many points: made up, or a random subset in the order of the whole.
+    pub(crate) fn points(&self, n: usize) -> Vec<Vec3> {
+        match self {
+            Self::Made(distribution, seed) => distribution.points(n, *seed),
+            Self::Given { points, seed, .. } => {
+                sample(points.len(), n, *seed).into_iter().map(|row| points[row]).collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! What a comparison came to, as every report tells it.
+
+use super::contender::Build;
+use super::machine::Machine;
+use super::statistics::{Summary, crossing, growth};
+use super::workload::Workload;
+use serde::Serialize;
+
+/// A comparison.
+#[derive(Clone, Debug, Serialize)]
+pub struct Study {
+    /// Of this program.
+    pub version: String,
+    /// What to type to have it all again.
+    pub command: String,
+    /// What it ran on.
+    pub machine: Machine,
+    /// The seed of all randomness.
+    pub seed: u64,
+    /// How many nearest others were looked for.
+    pub k: usize,
+    /// One for every set of points.
+    pub cases: Vec<Case>,
+    /// How time grows with the number of points.
+    pub growth: Vec<Growth>,
+    /// Where one overtakes another.
+    pub crossovers: Vec<Crossover>,
+    /// What to use, and why.
+    pub advice: Vec<Advice>,
+    /// What a reader should know before believing any of it.
+    pub notes: Vec<String>,
+}
+
+/// A set of points and all that was measured on it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Case {
+    /// The name of the distribution, file or scene.
+    pub points: String,
+    /// What they are.
+    pub about: String,
+    /// How many.
+    pub n: usize,
+    /// The radius of queries, in the points' unit.
+    pub radius: f32,
+    /// How many others a point has within the radius, on average.
+    pub neighbours: f64,
+    /// How the answers were verified.
+    pub verified: String,
+    /// How often everything was measured.
+    pub rounds: usize,
+    /// Who took part.
+    pub contestants: Vec<Contestant>,
+}
+
+/// One who took part.
+#[derive(Clone, Debug, Serialize)]
+pub struct Contestant {
+    /// Its name.
+    pub name: String,
+    /// What it did not do, and why.
+    pub left_out: Option<String>,
+    /// What it built.
+    pub build: Build,
+    /// What was measured.
+    pub figures: Vec<Figure>,
+}
+
+/// A measurement; times are in nanoseconds for each point.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figure {
+    /// What was measured.
+    pub workload: Workload,
+    /// In the middle of all samples.
+    pub median: f64,
+    /// The least.
+    pub min: f64,
+    /// The interquartile range over the median.
+    pub spread: f64,
+    /// The median over the best contestant's.
+    pub ratio: f64,
+    /// Whether the best cannot be told apart from it.
+    pub ties: bool,
+    /// Nodes or rows of cells looked at, for each point.
+    pub visits: Option<f64>,
+    /// Distances computed, for each point.
+    pub tests: Option<f64>,
+    /// Others, pairs or nearest found, for each point.
+    pub found: Option<f64>,
+    /// All samples, in the order in which they were taken.
+    pub samples: Vec<f64>,
+}
+
+/// How a contestant's time grows with the number of points.
+#[derive(Clone, Debug, Serialize)]
+pub struct Growth {
+    /// Of which points.
+    pub points: String,
+    /// Doing what.
+    pub workload: Workload,
+    /// Who.
+    pub name: String,
+    /// The power of the number of points that its time in all grows with.
+    pub exponent: f64,
+}
+
+/// Where one contestant overtakes another.
+#[derive(Clone, Debug, Serialize)]
+pub struct Crossover {
+    /// Of which points.
+    pub points: String,
+    /// Doing what.
+    pub workload: Workload,
+    /// The faster of more points.
+    pub winner: String,
+    /// The faster of fewer.
+    pub loser: String,
+    /// The sizes that were measured next to it.
+    pub between: [usize; 2],
+    /// Where the lines cross.
+    pub at: f64,
+    /// Whether the loser was the best of all at fewer points, and the winner is at more.
+    pub leads: bool,
+}
+
+/// A sentence of advice.
+#[derive(Clone, Debug, Serialize)]
+pub struct Advice {
+    /// For which points.
+    pub points: String,
+    /// For what; none: for all of it.
+    pub workload: Option<Workload>,
+    /// What to use.
+    pub best: String,
+    /// The advice and its reason.
+    pub text: String,
+}
+
+/// Two medians closer than this are not told apart: what surrounds a loop, such as where it lies in memory, does as much.
+pub(crate) const INDISTINCT: f64 = 0.03;
+
+impl Figure {
+    /// Of samples; ratio and ties are filled in once all are known.
+    pub(crate) fn new(workload: Workload, samples: Vec<f64>, counters: Option<[f64; 3]>) -> Self {
+        let Summary { median, min, spread } = Summary::of(&samples);
+        let [visits, tests, found] = [0, 1, 2].map(|i| counters.map(|counters| counters[i]));
+        Self { workload, median, min, spread, ratio: 1.0, ties: true, visits, tests, found, samples }
+    }
+
+    /// Whether two figures are closer than what their spreads leave open.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        let apart = (self.median - other.median).abs();
+        apart <= self.median.min(other.median) * INDISTINCT || apart <= self.doubt().hypot(other.doubt())
+    }
+
+    /// Two standard errors of the median: of a normal distribution, each is 1.253 σ / √samples, and σ is the
+    /// interquartile range over 1.349.
+    fn doubt(&self) -> f64 {
+        2.0 * 1.253 / 1.349 * self.spread * self.median / (self.samples.len().max(1) as f64).sqrt()
+    }
+}
+
+impl Contestant {
+    /// What it did, if it was measured.
+    pub(crate) fn figure(&self, workload: Workload) -> Option<&Figure> {
+        self.figures.iter().find(|figure| figure.workload == workload)
+    }
+}
+
+impl Case {
+    /// What was measured, in order.
+    pub(crate) fn workloads(&self) -> Vec<Workload> {
+        let mut workloads: Vec<_> = self.contestants.iter().flat_map(|one| &one.figures).map(|f| f.workload).collect();
+        workloads.sort_unstable();
+        workloads.dedup();
+        workloads
+    }
+
+    /// Who did this, the fastest first.
+    pub(crate) fn ranking(&self, workload: Workload) -> Vec<(&Contestant, &Figure)> {
+        let mut ranking: Vec<_> =
+            self.contestants.iter().filter_map(|one| one.figure(workload).map(|figure| (one, figure))).collect();
+        ranking.sort_by(|(_, a), (_, b)| a.median.total_cmp(&b.median));
+        ranking
+    }
+
+    /// Holds all figures against the best.
+    pub(crate) fn rank(&mut self) {
+        for workload in self.workloads() {
+            let Some(best) = self.ranking(workload).first().map(|(_, figure)| (*figure).clone()) else { continue };
+            for figure in self.contestants.iter_mut().flat_map(|one| &mut one.figures) {
+                if figure.workload == workload {
+                    figure.ratio = if best.median > 0.0 { figure.median / best.median } else { 1.0 };
+                    figure.ties = figure.is_like(&best);
+                }
+            }
+        }
+    }
+}
+
+/// Cases of the same points, by their number.
+pub(crate) fn series(cases: &[Case]) -> Vec<(&str, Vec<&Case>)> {
+    let mut series: Vec<(&str, Vec<&Case>)> = Vec::new();
+    for case in cases {
+        match series.iter_mut().find(|(points, _)| *points == case.points) {
+            Some((_, cases)) => cases.push(case),
+            None => series.push((&case.points, vec![case])),
+        }
+    }
+    series.iter_mut().for_each(|(_, cases)| cases.sort_by_key(|case| case.n));
+    series
+}
+
+/// Every name that takes part somewhere, in order.
+pub(crate) fn names(cases: &[Case]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for one in cases.iter().flat_map(|case| &case.contestants) {
+        if !names.contains(&one.name.as_str()) {
+            names.push(&one.name);
+        }
+    }
+    names
+}
+
+/// What was measured in any of the cases, in order.
+pub(crate) fn workloads(cases: &[&Case]) -> Vec<Workload> {
+    let mut workloads: Vec<_> = cases.iter().flat_map(|case| case.workloads()).collect();
+    workloads.sort_unstable();
+    workloads.dedup();
+    workloads
+}
+
+/// (number of points, figure) of one who took part, by number.
+pub(crate) fn line<'a>(cases: &[&'a Case], name: &str, workload: Workload) -> Vec<(usize, &'a Figure)> {
+    let figure = |case: &&'a Case| {
+        let one = case.contestants.iter().find(|one| one.name == name)?;
+        Some((case.n, one.figure(workload)?))
+    };
+    cases.iter().filter_map(figure).collect()
+}
+
+/// How time grows, of all who were measured on two numbers of points or more.
+pub(crate) fn growths(cases: &[Case]) -> Vec<Growth> {
+    let mut growths = Vec::new();
+    for (points, cases) in series(cases) {
+        for workload in workloads(&cases) {
+            for name in names_of(&cases) {
+                let times: Vec<_> = line(&cases, name, workload)
+                    .iter()
+                    .map(|(n, figure)| (*n as f64, figure.median * *n as f64))
+                    .collect();
+                if let Some(exponent) = growth(&times) {
+                    growths.push(Growth { points: points.into(), workload, name: name.into(), exponent });
+                }
+            }
+        }
+    }
+    growths
+}
+
+fn names_of<'a>(cases: &[&'a Case]) -> Vec<&'a str> {
+    let mut all: Vec<&str> = Vec::new();
+    for one in cases.iter().flat_map(|case| &case.contestants) {
+        if !all.contains(&one.name.as_str()) {
+            all.push(&one.name);
+        }
+    }
+    all
+}
+
+/// Where one overtakes another, if they can be told apart on both sides.
+pub(crate) fn crossovers(cases: &[Case]) -> Vec<Crossover> {
+    let mut crossovers = Vec::new();
+    for (points, cases) in series(cases) {
+        for workload in workloads(&cases) {
+            for pair in cases.windows(2) {
+                cross(points, workload, [pair[0], pair[1]], &mut crossovers);
+            }
+        }
+    }
+    crossovers
+}
+
+fn cross(points: &str, workload: Workload, ends: [&Case; 2], crossovers: &mut Vec<Crossover>) {
+    let names = names_of(&ends);
+    let best = ends.map(|case| case.ranking(workload).first().map(|(one, _)| one.name.as_str()));
+    for (i, a) in names.iter().enumerate() {
+        for b in &names[i + 1..] {
+            let (of_a, of_b) = (line(&ends, a, workload), line(&ends, b, workload));
+            let ([(n0, a0), (n1, a1)], [(_, b0), (_, b1)]) = (&of_a[..], &of_b[..]) else { continue };
+            if a0.is_like(b0) || a1.is_like(b1) {
+                continue;
+            }
+            let at = crossing([*n0 as f64, *n1 as f64], [a0.median, a1.median], [b0.median, b1.median]);
+            let (winner, loser) = if a1.median < b1.median { (a, b) } else { (b, a) };
+            let leads = workload.is_query() && best == [Some(*loser), Some(*winner)];
+            crossovers.extend(at.map(|at| Crossover {
+                points: points.into(),
+                workload,
+                winner: winner.to_string(),
+                loser: loser.to_string(),
+                between: [*n0, *n1],
+                at,
+                leads,
+            }));
+        }
+    }
+}

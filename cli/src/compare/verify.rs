@@ -1,0 +1,316 @@
+//! Verification before measurement: who is wrong is not timed.
+//!
+//! Few points are searched exhaustively, by loops that share nothing with the structures. Of many, one structure says what
+//! is expected of the others, and the exhaustive search judges it on a sample of rows.
+
+use super::contender::{Answer, Contender, Question, link};
+use super::sample::sample;
+use super::workload::Workload;
+use crate::{Failure, Outcome};
+use pointmass::Vec3;
+
+/// Up to so many points, every row is searched exhaustively.
+pub(crate) const EXHAUSTIVE: usize = 20_000;
+/// How many rows are otherwise.
+pub(crate) const SAMPLE: usize = 100;
+
+/// What everybody has to answer.
+#[derive(Debug, Default)]
+pub(crate) struct Expected {
+    counts: Vec<u32>,
+    links: Vec<u64>,
+    distances: Vec<f32>,
+    /// Counts after the move.
+    moved: Vec<u32>,
+}
+
+/// What was asked of everybody.
+pub(crate) const ASKED: [Workload; 5] =
+    [Workload::Count, Workload::Within, Workload::Pairs, Workload::Nearest, Workload::Moving];
+
+impl Expected {
+    /// By exhaustive search of all rows.
+    pub(crate) fn exhaustive(question: &Question<'_>, queries: &[Workload]) -> Self {
+        let mut expected = Self::default();
+        let search = Search::new(question.points, question);
+        for row in 0..question.points.len() {
+            let found = search.row(row, queries.contains(&Workload::Nearest));
+            expected.counts.push(found.count);
+            expected.links.push(found.links);
+            expected.distances.extend(found.distances);
+        }
+        if queries.contains(&Workload::Moving) {
+            let search = Search::new(question.moved, question);
+            expected.moved = (0..question.moved.len()).map(|row| search.row(row, false).count).collect();
+        }
+        expected
+    }
+
+    /// By what one contender says, which is searched exhaustively for a sample of rows.
+    ///
+    /// # Errors
+    /// If it is wrong about one of these.
+    pub(crate) fn by(
+        leader: &mut dyn Contender,
+        name: &str,
+        question: &Question<'_>,
+        queries: &[Workload],
+        seed: u64,
+    ) -> Outcome<Self> {
+        let mut expected = Self::default();
+        leader.build(question.points, question.radius)?;
+        for query in [Workload::Count, Workload::Within, Workload::Nearest] {
+            if query != Workload::Nearest || queries.contains(&query) {
+                expected.take(leader.answer(query, question));
+            }
+        }
+        let rows = sample(question.points.len(), SAMPLE, seed);
+        expected.judge(name, &rows, question, queries)?;
+        if queries.contains(&Workload::Moving) {
+            leader.follow(question.moved, question.radius)?;
+            if let Some(Answer::Counts(moved)) = leader.answer(Workload::Count, question) {
+                expected.moved = moved;
+            }
+            expected.judge_moved(name, &rows, question)?;
+        }
+        Ok(expected)
+    }
+
+    fn take(&mut self, answer: Option<Answer>) {
+        match answer {
+            Some(Answer::Counts(counts)) => self.counts = counts,
+            Some(Answer::Links(links)) => self.links = links,
+            Some(Answer::Distances(distances)) => self.distances = distances,
+            Some(Answer::Total(_)) | None => {}
+        }
+    }
+
+    /// Searches some rows exhaustively.
+    fn judge(&self, name: &str, rows: &[usize], question: &Question<'_>, queries: &[Workload]) -> Outcome {
+        let search = Search::new(question.points, question);
+        for &row in rows {
+            let found = search.row(row, queries.contains(&Workload::Nearest));
+            let wrong = |query, what| Err(wrong(name, query, row, what, question, &search));
+            if self.counts.get(row) != Some(&found.count) {
+                return wrong(Workload::Count, told(&found.count, self.counts.get(row)));
+            }
+            if self.links.get(row) != Some(&found.links) {
+                return wrong(
+                    Workload::Within,
+                    format!("expected {} neighbours, found others than these", found.count),
+                );
+            }
+            let distances = self.distances.chunks(question.k).nth(row).unwrap_or_default();
+            if !same(distances, &found.distances) {
+                return wrong(Workload::Nearest, format!("expected {:?}, found {distances:?}", found.distances));
+            }
+        }
+        Ok(())
+    }
+
+    fn judge_moved(&self, name: &str, rows: &[usize], question: &Question<'_>) -> Outcome {
+        let search = Search::new(question.moved, question);
+        for &row in rows {
+            let count = search.row(row, false).count;
+            if self.moved.get(row) != Some(&count) {
+                let what = told(&count, self.moved.get(row));
+                return Err(wrong(name, Workload::Moving, row, what, question, &search));
+            }
+        }
+        Ok(())
+    }
+
+    /// How many others a point has within the radius, on average.
+    pub(crate) fn neighbours(&self) -> f64 {
+        total(&self.counts) as f64 / self.counts.len().max(1) as f64
+    }
+
+    /// Builds a contender and has it answer everything.
+    ///
+    /// # Errors
+    /// If it is wrong: by a bit if it is one of ours, by more than rounding if not.
+    pub(crate) fn check(
+        &self,
+        contender: &mut dyn Contender,
+        name: &str,
+        question: &Question<'_>,
+        queries: &[Workload],
+    ) -> Outcome {
+        contender.build(question.points, question.radius)?;
+        for query in ASKED.into_iter().filter(|query| queries.contains(query)) {
+            if query == Workload::Moving {
+                contender.follow(question.moved, question.radius)?;
+            }
+            let Some(answer) = contender.answer(query, question) else { continue };
+            let fault = if contender.is_exact() {
+                self.exactly(query, &answer)
+            } else {
+                self.nearly(query, &answer).map(|what| (0, what))
+            };
+            if let Some((row, what)) = fault {
+                let points = if query == Workload::Moving { question.moved } else { question.points };
+                return Err(wrong(name, query, row, what, question, &Search::new(points, question)));
+            }
+        }
+        Ok(())
+    }
+
+    /// The first row that differs, and how.
+    fn exactly(&self, query: Workload, answer: &Answer) -> Option<(usize, String)> {
+        match answer {
+            Answer::Counts(counts) => {
+                let expected = if query == Workload::Moving { &self.moved } else { &self.counts };
+                first_unlike(expected, counts).map(|row| (row, told(&expected[row], counts.get(row))))
+            }
+            Answer::Links(links) => first_unlike(&self.links, links)
+                .map(|row| (row, format!("expected {} neighbours, found others than these", self.counts[row]))),
+            Answer::Distances(distances) => {
+                let bits = |distances: &[f32]| distances.iter().map(|d| d.to_bits()).collect::<Vec<_>>();
+                let k = (self.distances.len() / self.counts.len().max(1)).max(1);
+                let (expected, found) = (self.distances.chunks(k), distances.chunks(k));
+                let row = expected.zip(found).position(|(a, b)| bits(a) != bits(b))?;
+                let [expected, found] = [&self.distances, distances].map(|all| &all[row * k..(row + 1) * k]);
+                Some((row, format!("expected the distances {expected:?}, found {found:?}")))
+            }
+            Answer::Total(found) => {
+                let expected = total(&self.counts);
+                (expected != *found).then(|| (0, format!("expected {expected} in all, found {found}")))
+            }
+        }
+    }
+
+    /// Whether another library, which rounds in its own way, differs by more than that.
+    fn nearly(&self, query: Workload, answer: &Answer) -> Option<String> {
+        let sums = |counts: &[u32], found: u64| {
+            let expected = total(counts);
+            let most = (expected as f64 * TOTALS).ceil() as u64;
+            (expected.abs_diff(found) > most).then(|| format!("expected {expected} neighbours in all, found {found}"))
+        };
+        match answer {
+            Answer::Counts(found) if query == Workload::Moving => sums(&self.moved, total(found)),
+            Answer::Counts(found) => sums(&self.counts, total(found)),
+            Answer::Total(found) => sums(&self.counts, *found),
+            Answer::Links(links) => {
+                let unlike = self.links.iter().zip(links).filter(|(a, b)| a != b).count();
+                let most = (self.links.len() as f64 * ROWS).ceil() as usize;
+                (unlike > most || self.links.len() != links.len())
+                    .then(|| format!("{unlike} rows have other neighbours than expected"))
+            }
+            Answer::Distances(found) => {
+                let far = |(a, b): (&f32, &f32)| !((a - b).abs() <= DISTANCES * a.abs() || a == b);
+                let at = self.distances.iter().zip(found).position(far)?;
+                Some(format!("expected the distance {}, found {}", self.distances[at], found[at]))
+            }
+        }
+    }
+}
+
+/// By how much the totals of another library may differ, relatively.
+pub(crate) const TOTALS: f64 = 1e-4;
+/// Which part of rows may have other neighbours there.
+const ROWS: f64 = 1e-3;
+/// By how much its distances may differ, relatively.
+pub(crate) const DISTANCES: f32 = 1e-5;
+
+fn total(counts: &[u32]) -> u64 {
+    counts.iter().map(|&count| u64::from(count)).sum()
+}
+
+fn told(expected: &u32, found: Option<&u32>) -> String {
+    match found {
+        Some(found) => format!("expected {expected} others within the radius, found {found}"),
+        None => format!("expected {expected} others within the radius, found no answer"),
+    }
+}
+
+fn first_unlike<T: PartialEq>(expected: &[T], found: &[T]) -> Option<usize> {
+    let unlike = expected.iter().zip(found).position(|(a, b)| a != b);
+    unlike.or_else(|| (expected.len() != found.len()).then(|| expected.len().min(found.len()).saturating_sub(1)))
+}
+
+fn same(a: &[f32], b: &[f32]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+fn wrong(
+    name: &str,
+    query: Workload,
+    row: usize,
+    what: String,
+    question: &Question<'_>,
+    search: &Search<'_>,
+) -> Failure {
+    let (query, n, radius) = (query.name(), question.points.len(), question.radius);
+    let some = search.others(row).map(|row| row.to_string()).take(8).collect::<Vec<_>>().join(" ");
+    Failure::new(format!(
+        "{name} gives a wrong answer to {query}, row {row} of {n}, radius {radius}: {what} (the first that an exhaustive \
+         search finds within the radius: {some}); nothing was measured; please report this with the points and the command"
+    ))
+}
+
+/// Exhaustive search.
+struct Search<'a> {
+    points: Vec<Vec3>,
+    square: f32,
+    scale: f32,
+    question: &'a Question<'a>,
+}
+
+/// What it finds for a row.
+struct Found {
+    count: u32,
+    links: u64,
+    distances: Vec<f32>,
+}
+
+impl<'a> Search<'a> {
+    fn new(points: &[Vec3], question: &'a Question<'a>) -> Self {
+        let scale = scale(points);
+        let radius = question.radius * scale;
+        Self { points: points.iter().map(|&point| point * scale).collect(), square: radius * radius, scale, question }
+    }
+
+    fn square_to(&self, row: usize, other: usize) -> f32 {
+        let d = self.points[other] - self.points[row];
+        d.x * d.x + d.y * d.y + d.z * d.z
+    }
+
+    /// The others within the radius.
+    fn others(&self, row: usize) -> impl Iterator<Item = usize> {
+        (0..self.points.len()).filter(move |&other| other != row && self.square_to(row, other) <= self.square)
+    }
+
+    fn row(&self, row: usize, nearest: bool) -> Found {
+        let mut found = Found { count: 0, links: 0, distances: Vec::new() };
+        let k = if nearest { self.question.k } else { 0 };
+        let mut squares = vec![f32::INFINITY; k];
+        for other in 0..self.points.len() {
+            let square = self.square_to(row, other);
+            if other == row {
+                continue;
+            }
+            if square <= self.square {
+                found.count += 1;
+                found.links = found.links.wrapping_add(link(row as u32, other as u32));
+            }
+            if squares.last().is_some_and(|last| square < *last) {
+                let at = squares.partition_point(|smaller| *smaller <= square);
+                squares[at..].rotate_right(1);
+                squares[at] = square;
+            }
+        }
+        found.distances = squares.into_iter().map(|square| square.sqrt() / self.scale).collect();
+        found
+    }
+}
+
+/// A power of two by which coordinates far from 1 are multiplied so that their squares stay within an `f32`, as
+/// structures do.
+fn scale(points: &[Vec3]) -> f32 {
+    let most = points.iter().fold(0.0f32, |most, point| most.max(point.abs().max_element()));
+    let exponent = ((most.to_bits() >> 23) as i32 - 127).clamp(-126, 126);
+    match most == 0.0 || (-30..=30).contains(&exponent) {
+        true => 1.0,
+        false => f32::from_bits(((127 - exponent) as u32) << 23),
+    }
+}

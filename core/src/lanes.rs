@@ -1,0 +1,61 @@
+//! Eight numbers side by side, and the inverse square law on them.
+//!
+//! The number of lanes and the order in which they are added are part of every sum's definition: they decide how it
+//! rounds, and so they are the same on every target, whatever its registers hold.
+
+use glam::Vec3;
+use wide::f32x8;
+
+/// How many there are.
+pub(crate) const LANES: usize = 8;
+
+/// Where a lane that stands for nothing is put, without weight: so far that whatever is divided by its distance is zero,
+/// and so near that its square is a number.
+pub(crate) const NOWHERE: f32 = 1e19;
+
+/// Square roots, correctly rounded on every target.
+#[inline(always)]
+pub(crate) fn sqrt(x: f32x8) -> f32x8 {
+    if cfg!(any(target_feature = "sse2", target_feature = "simd128")) {
+        x.sqrt()
+    } else {
+        f32x8::new(x.to_array().map(crate::math::sqrt))
+    }
+}
+
+/// The sum of all lanes, as a tree.
+#[inline(always)]
+pub(crate) fn total(lanes: f32x8) -> f32 {
+    let s = lanes.to_array();
+    ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))
+}
+
+/// A vector in every lane.
+#[inline(always)]
+pub(crate) fn splat(v: Vec3) -> [f32x8; 3] {
+    v.to_array().map(f32x8::splat)
+}
+
+/// Σ w d⃗ / (d² + s²)^{3/2}, eight sums side by side.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Pull([f32x8; 3]);
+
+impl Pull {
+    /// Adds what eight sources at `x` with the weights `w` do at `place`; `square` is s². Sources at the place itself
+    /// do nothing unless s is positive, when their distance does away with them.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, place: [f32x8; 3], x: [f32x8; 3], w: f32x8, square: f32x8) {
+        let d = [x[0] - place[0], x[1] - place[1], x[2] - place[2]];
+        let r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + square;
+        let weight = (w / (r2 * sqrt(r2))) & r2.simd_gt(f32x8::ZERO);
+        for (sum, d) in self.0.iter_mut().zip(d) {
+            *sum += weight * d;
+        }
+    }
+
+    /// The sum.
+    #[inline(always)]
+    pub(crate) fn total(self) -> Vec3 {
+        Vec3::from_array(self.0.map(total))
+    }
+}
