@@ -187,8 +187,7 @@ impl<'m> BarnesHut<'m> {
         visit: &mut dyn FnMut(usize, Vec3),
     ) -> Cost {
         let (points, order, nodes) = (self.tree.points(), self.tree.order(), self.tree.nodes());
-        let [low, high] = points.bounds(group.clone());
-        let region = Region { low, high };
+        let region = Region::new(points.bounds(group.clone()));
         sums.begin(group.clone().map(|slot| points.point(slot)));
         let (mut node, mut cost) = (0, Cost::default());
         while node + 1 < nodes.len() {

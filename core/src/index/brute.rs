@@ -37,8 +37,8 @@ impl Partition for Brute<'_> {
     fn sorted(&self) -> &Sorted<'_> {
         &self.sorted
     }
-    fn groups(&self, visit: &mut impl FnMut(Range<usize>)) {
-        visit(0..self.sorted.len);
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
+        visit(0..self.sorted.len, 0);
     }
     fn near(&self, _: &Region, _: Image, _: f32, visit: &mut impl FnMut(Run) -> bool) -> u64 {
         visit(Run { slots: 0..self.sorted.len, low: self.sorted.low, high: self.sorted.high, frame: 0 });

@@ -16,8 +16,9 @@ pub type Bsp<'m> = Tree<'m, Planes>;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Planes;
 
-/// Fewer points than this do not turn: they are soon a leaf.
-const FEWEST: usize = 48;
+/// Nodes with fewer points than this keep the frame they have, so that one serves many leaves: whoever goes from leaf to
+/// leaf has to turn with the frames. The root turns with as few as are looked at.
+const FEWEST: usize = 1024;
 /// Points that are looked at to find the axes.
 const SAMPLE: usize = 32;
 /// A turned box has to have less surface than the present one by this factor.
@@ -27,42 +28,42 @@ impl Split for Planes {
     const LEAF: usize = 32;
     const BYTES: usize = 4;
     const TURNS: bool = true;
-    /// The frame's number.
-    type Cell = u32;
+    /// The frame's number; none at the root.
+    type Cell = Option<u32>;
 
-    fn root(&mut self, _: Vec3, _: Vec3) -> u32 {
-        0
+    fn root(&mut self, _: Vec3, _: Vec3) -> Option<u32> {
+        None
     }
 
-    fn frame(&self, cell: &mut u32, entries: &[Entry], frames: &mut Frames<'_>) -> u32 {
-        if entries.len() >= FEWEST {
+    fn frame(&self, cell: &mut Option<u32>, entries: &[Entry], frames: &mut Frames<'_>) -> u32 {
+        let mut frame = cell.unwrap_or(0);
+        if entries.len() >= if cell.is_none() { SAMPLE } else { FEWEST } {
             let sample = || entries.iter().step_by(entries.len() / SAMPLE).map(|entry| Vec3::from_array(entry.x));
             let axes = principal_axes(sample);
-            let now = frames.bounds(*cell, sample());
-            let then = bounds_along(axes, sample());
-            if surface(then) < GAIN * surface(now) {
-                let frame = frames.add(axes);
-                *cell = if frame == 0 { *cell } else { frame };
+            let now = frames.bounds(frame, sample());
+            if surface(bounds_along(axes, sample())) < GAIN * surface(now) {
+                frame = frames.add(axes).unwrap_or(frame);
             }
         }
-        *cell
+        *cell = Some(frame);
+        frame
     }
 
     fn split(
         &self,
-        frame: u32,
+        cell: Option<u32>,
         [low, high]: [Vec3; 2],
         entries: &mut [Entry],
         frames: &Frames<'_>,
-        children: &mut heapless::Vec<(usize, u32), CHILDREN>,
+        children: &mut heapless::Vec<(usize, Option<u32>), CHILDREN>,
     ) {
         let axis = longest(high - low);
-        let normal = frames.axis(frame, axis);
+        let normal = frames.axis(cell.unwrap_or(0), axis);
         let height = |entry: &Entry| normal.dot(Vec3::from_array(entry.x));
         let n = halve(entries, height);
         if n < entries.len() {
-            let _ = children.push((n, frame));
-            let _ = children.push((entries.len(), frame));
+            let _ = children.push((n, cell));
+            let _ = children.push((entries.len(), cell));
         }
     }
 }

@@ -168,10 +168,10 @@ impl Partition for Grid<'_> {
         &self.sorted
     }
 
-    fn groups(&self, visit: &mut impl FnMut(Range<usize>)) {
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
         for cell in self.starts[..self.layout.count() + 1].windows(2) {
             if cell[0] < cell[1] {
-                visit(cell[0] as usize..cell[1] as usize);
+                visit(cell[0] as usize..cell[1] as usize, 0);
             }
         }
     }

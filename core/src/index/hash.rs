@@ -125,7 +125,7 @@ impl Partition for Hash<'_> {
     }
 
     /// Buckets, or what of them is of one cell: others can be anywhere.
-    fn groups(&self, visit: &mut impl FnMut(Range<usize>)) {
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
         for bucket in self.starts[..self.buckets.len + 1].windows(2) {
             let mut slots = bucket[0] as usize..bucket[1] as usize;
             if slots.is_empty() {
@@ -133,13 +133,13 @@ impl Partition for Hash<'_> {
             }
             let [low, high] = self.sorted.bounds(slots.clone());
             if largest(high - low) <= self.buckets.cell {
-                visit(slots);
+                visit(slots, 0);
                 continue;
             }
             let cell = |slot: usize| self.sorted.point(slot).to_array().map(|x| self.buckets.along(x));
             while let Some(start) = slots.next() {
                 let end = (start..slots.end).find(|&slot| cell(slot) != cell(start)).unwrap_or(slots.end);
-                visit(start..end);
+                visit(start..end, 0);
                 slots.start = end;
             }
         }

@@ -18,8 +18,8 @@ pub(super) trait Partition {
 
     fn sorted(&self) -> &Sorted<'_>;
 
-    /// Visits runs of slots that lie close together, all of them, in order.
-    fn groups(&self, visit: &mut impl FnMut(Range<usize>));
+    /// Visits runs of slots that lie close together, all of them, in order, with the frame that suits them.
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32));
 
     /// Visits runs, each once, that hold every point of `image` within `radius` of the region; returns how many nodes
     /// were looked at. Stops when `visit` says false.
@@ -52,11 +52,17 @@ pub(super) trait Partition {
 pub(super) struct Region {
     pub(super) low: Vec3,
     pub(super) high: Vec3,
+    /// A frame, and the box around the same in it.
+    pub(super) home: (u32, [Vec3; 2]),
 }
 
 impl Region {
     pub(super) fn point(at: Vec3) -> Self {
-        Self { low: at, high: at }
+        Self::new([at, at])
+    }
+
+    pub(super) fn new([low, high]: [Vec3; 2]) -> Self {
+        Self { low, high, home: (0, [low, high]) }
     }
 
     /// The square of the distance to the farthest corner of a box.
@@ -111,6 +117,9 @@ struct Near {
     full: bool,
     /// Whether all runs have one image and one frame.
     alike: bool,
+    /// The frame of the group, and its points in it.
+    home: u32,
+    turned: [Vec3; GROUP],
     slots: [[u32; 2]; RUNS],
     /// The image and the frame in which its box is.
     views: [(Image, u32); RUNS],
@@ -126,6 +135,8 @@ impl Near {
             len: 0,
             full: false,
             alike: true,
+            home: 0,
+            turned: [Vec3::ZERO; GROUP],
             slots: [[0; 2]; RUNS],
             views: [(Image::Itself, 0); RUNS],
             low: [[0.0; RUNS + LANES]; 3],
@@ -160,7 +171,7 @@ impl Near {
         &self,
         partition: &P,
         boxed: bool,
-        center: Vec3,
+        (slot, center): (usize, Vec3),
         square: f32,
         mut visit: impl FnMut(f32, Range<usize>, Image),
     ) {
@@ -180,7 +191,11 @@ impl Near {
                 end = (start..self.len).find(|&at| self.views[at] != view).unwrap_or(end);
             }
             let center = if view.0 == Image::Itself { center } else { center - view.0.moved() };
-            let center = if P::TURNS { partition.turn(view.1, center) } else { center };
+            let center = match view {
+                _ if !P::TURNS => center,
+                (Image::Itself, frame) if frame == self.home && frame != 0 => self.turned[slot - self.group.start],
+                (_, frame) => partition.turn(frame, center),
+            };
             let center = center.to_array().map(f32x8::splat);
             for first in (start..end).step_by(LANES) {
                 let squares = self.squares(first, center);
@@ -286,10 +301,10 @@ impl<P: Partition> Search<'_, P> {
     /// Scans for every slot everything that may be within reach of it, near slots together.
     fn sweep<W: Sweep>(&self, reach: Reach, sweep: &mut W) -> Cost {
         let (sorted, mut cost, mut near) = (self.0.sorted(), Cost::default(), Near::new());
-        self.0.groups(&mut |slots| {
+        self.0.groups(&mut |slots, frame| {
             for group in chunks(slots) {
                 let from = if W::FORWARD { group.start + 1 } else { 0 };
-                cost.visits += self.gather(&group, from, reach, &mut near);
+                cost.visits += self.gather(&group, frame, from, reach, &mut near);
                 for slot in group {
                     let center = sorted.point(slot);
                     sweep.begin(slot);
@@ -300,7 +315,7 @@ impl<P: Partition> Search<'_, P> {
                         });
                     } else {
                         let probe = Probe::new(center, Image::Itself, reach.square);
-                        near.each(self.0, P::BOXED, center, reach.square, |_, run, image| {
+                        near.each(self.0, P::BOXED, (slot, center), reach.square, |_, run, image| {
                             cost.tests += sweep.scan(slot, run, &probe.of(image));
                         });
                     }
@@ -312,11 +327,18 @@ impl<P: Partition> Search<'_, P> {
     }
 
     /// Remembers what of the slots `from` some on is near a group; returns the nodes visited.
-    fn gather(&self, group: &Range<usize>, from: usize, reach: Reach, near: &mut Near) -> u64 {
-        let [low, high] = self.0.sorted().bounds(group.clone());
-        (near.group, near.square) = (group.clone(), reach.square);
+    fn gather(&self, group: &Range<usize>, frame: u32, from: usize, reach: Reach, near: &mut Near) -> u64 {
+        let sorted = self.0.sorted();
+        let mut region = Region::new(sorted.bounds(group.clone()));
+        if P::TURNS && frame != 0 {
+            for (turned, slot) in near.turned.iter_mut().zip(group.clone()) {
+                *turned = self.0.turn(frame, sorted.point(slot));
+            }
+            region.home = (frame, bounds(&near.turned[..group.len()]));
+        }
+        (near.group, near.home, near.square) = (group.clone(), frame, reach.square);
         (near.len, near.full, near.alike) = (0, false, true);
-        self.runs(&Region { low, high }, reach, |run, image| run.slots.end <= from || near.push(run, image))
+        self.runs(&region, reach, |run, image| run.slots.end <= from || near.push(run, image))
     }
 
     pub(super) fn count(&self, center: Vec3, radius: f32) -> Cost {
@@ -375,21 +397,21 @@ impl<P: Partition> Search<'_, P> {
         let Some(reach) = self.reach(radius) else { return Cost::default() };
         let (sorted, mut cost, mut near) = (self.0.sorted(), Cost::default(), Near::new());
         let mut stride = self.0.stride();
-        self.0.groups(&mut |slots| {
+        self.0.groups(&mut |slots, frame| {
             for group in chunks(slots) {
                 near.square = -1.0;
                 for slot in group.clone() {
                     let (center, row) = (sorted.point(slot), sorted.order()[slot]);
                     let mut nearest = Nearest::new(found);
                     nearest.skip = row;
-                    if !self.seek_near(center, reach, &near, &mut nearest, &mut cost) {
+                    if !self.seek_near(slot, reach, &near, &mut nearest, &mut cost) {
                         cost += self.seek(center, reach.radius, stride, &mut nearest);
                     }
                     if P::BOXED && slot == group.start && nearest.is_full() {
                         // The others will hardly have to go twice as far as the first.
                         let twice = Reach::new(min(2.0 * sqrt(nearest.bound()), reach.radius), &sorted.domain);
                         if !twice.wraps {
-                            cost.visits += self.gather(&group, 0, twice, &mut near);
+                            cost.visits += self.gather(&group, frame, 0, twice, &mut near);
                         }
                     }
                     if !P::BOXED && nearest.is_full() {
@@ -409,18 +431,19 @@ impl<P: Partition> Search<'_, P> {
     /// The nearest to one point of a group: first among the group itself, which tells how far to look, then among what
     /// is near the group. False if that is not far enough.
     #[inline]
-    fn seek_near(&self, center: Vec3, reach: Reach, near: &Near, nearest: &mut Nearest<'_>, cost: &mut Cost) -> bool {
+    fn seek_near(&self, slot: usize, reach: Reach, near: &Near, nearest: &mut Nearest<'_>, cost: &mut Cost) -> bool {
         if near.full || near.square < 0.0 {
             return false;
         }
-        let (sorted, probe) = (self.0.sorted(), Probe::new(center, Image::Itself, 0.0));
+        let (sorted, center) = (self.0.sorted(), self.0.sorted().point(slot));
+        let probe = Probe::new(center, Image::Itself, 0.0);
         nearest.restart(reach.square);
         sorted.offer(&near.group, &probe, nearest);
         cost.tests += near.group.len() as u64;
         if !(nearest.bound() <= near.square) {
             return false;
         }
-        near.each(self.0, true, center, nearest.bound(), |square, run, image| {
+        near.each(self.0, true, (slot, center), nearest.bound(), |square, run, image| {
             if !(square <= nearest.bound()) {
                 return;
             }
@@ -521,6 +544,13 @@ impl<const BOTH: bool> Sweep for Lists<'_, BOTH> {
 #[inline(always)]
 fn without(run: Range<usize>, slots: &Range<usize>) -> [Range<usize>; 2] {
     [run.start..run.end.min(slots.start).max(run.start), run.start.max(slots.end).min(run.end)..run.end]
+}
+
+/// The box around some points.
+fn bounds(points: &[Vec3]) -> [Vec3; 2] {
+    points.iter().fold([Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY)], |[low, high], point| {
+        [math::low(*point, low), math::high(*point, high)]
+    })
 }
 
 /// A run in pieces of at most `GROUP`.

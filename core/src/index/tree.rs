@@ -86,12 +86,11 @@ pub struct Frames<'m> {
 }
 
 impl Frames<'_> {
-    /// Adds one, and returns its number; zero if there is no room.
-    pub(super) fn add(&mut self, axes: Mat3) -> u32 {
-        let Some(free) = self.axes.get_mut(self.len) else { return 0 };
-        *free = axes.to_cols_array();
+    /// Adds one, and returns its number, if there is room.
+    pub(super) fn add(&mut self, axes: Mat3) -> Option<u32> {
+        *self.axes.get_mut(self.len)? = axes.to_cols_array();
         self.len += 1;
-        self.len as u32
+        Some(self.len as u32)
     }
 
     /// The axes of a frame, unless it is that of the coordinates.
@@ -112,17 +111,19 @@ impl Frames<'_> {
         self.axes(frame).map_or(point, |[x, y, z]| Vec3::new(x.dot(point), y.dot(point), z.dot(point)))
     }
 
-    /// A box in a frame that holds what a region holds.
-    fn turn_region(&self, frame: u32, region: &Region) -> Region {
-        if frame == 0 {
-            return *region;
-        }
-        let (middle, half) = ((region.low + region.high) * 0.5, (region.high - region.low) * 0.5);
-        let center = self.turn(frame, middle);
-        let reach = |axis: usize| self.axis(frame, axis).abs().dot(half);
-        let slack = ERROR * (math::largest(region.low) + math::largest(region.high));
-        let half = Vec3::new(reach(0), reach(1), reach(2)) + slack;
-        Region { low: center - half, high: center + half }
+    /// A box in a frame that holds what a region holds, moved.
+    fn turn_region(&self, frame: u32, region: &Region, moved: Vec3) -> [Vec3; 2] {
+        let slack = ERROR * (math::largest(region.low) + math::largest(region.high) + math::largest(moved));
+        let (home, [low, high]) = region.home;
+        let (center, half) = if frame == home {
+            ((low + high) * 0.5 + self.turn(frame, moved), (high - low) * 0.5)
+        } else {
+            let half = (region.high - region.low) * 0.5;
+            let reach = |axis: usize| self.axis(frame, axis).abs().dot(half);
+            let center = self.turn(frame, (region.low + region.high) * 0.5 + moved);
+            (center, Vec3::new(reach(0), reach(1), reach(2)))
+        };
+        [center - half - slack, center + half + slack]
     }
 
     /// The box around some points in a frame.
@@ -201,9 +202,9 @@ impl<'m, S: Split> Tree<'m, S> {
         self.frames.len = 0;
         self.frames.slack = ERROR * math::max(math::largest(self.sorted.low), math::largest(self.sorted.high));
         let root = self.split.root(self.sorted.low, self.sorted.high);
-        // Nodes are dealt out as if all leaves were half full.
+        // Nodes are dealt out as if leaves were five eighths full.
         let room = self.nodes.len() - 1;
-        let leaf = S::LEAF.max((4 * len).div_ceil(room));
+        let leaf = S::LEAF.max((16 * len).div_ceil(5 * room));
         let mut waiting = heapless::Vec::<_, WAITING>::new();
         let _ = waiting.push((0..len, 0u32, root));
         let mut children = heapless::Vec::new();
@@ -329,8 +330,8 @@ impl<'m, S: Split> Tree<'m, S> {
         let Node { low, high, .. } = &self.nodes[node];
         let (low, high, frame) = (Vec3::from_slice(low), Vec3::from_slice(high), self.frame(node));
         if S::TURNS && frame != view.0 {
-            let placed = Region { low: region.low - moved, high: region.high - moved };
-            *view = (frame, self.frames.turn_region(frame, if frame == 0 { region } else { &placed }));
+            let turned = || Region::new(self.frames.turn_region(frame, region, -moved));
+            *view = (frame, if frame == 0 { *region } else { turned() });
         }
         view.1.square_to(low, high, if frame == 0 { moved } else { Vec3::ZERO })
     }
@@ -377,8 +378,9 @@ impl<S: Split> Partition for Tree<'_, S> {
         &self.sorted
     }
 
-    fn groups(&self, visit: &mut impl FnMut(Range<usize>)) {
-        (0..self.len).filter(|&node| self.is_leaf(node)).for_each(|leaf| visit(self.slots(leaf)));
+    fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
+        let leaves = (0..self.len).filter(|&node| self.is_leaf(node));
+        leaves.for_each(|leaf| visit(self.slots(leaf), self.frame(leaf)));
     }
 
     fn near(&self, region: &Region, image: Image, radius: f32, visit: &mut impl FnMut(Run) -> bool) -> u64 {
