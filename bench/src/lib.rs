@@ -73,3 +73,18 @@ impl Bare {
         }
     }
 }
+
+/// `n` points of Plummer's sphere with scale length 1, without the outermost thousandth.
+#[must_use]
+pub fn plummer(n: usize) -> Vec<Vec3> {
+    let point = |i: u32| {
+        let ([mass, height], [turn, _]) = (Stream::new(2, 0, i).units(0), Stream::new(2, 0, i).units(1));
+        // The radius within which there is so much of the mass (Aarseth, Hénon and Wielen 1974).
+        let radius = 1.0 / ((0.999 * mass).max(1e-9).powf(-2.0 / 3.0) - 1.0).sqrt();
+        let z = 2.0 * height - 1.0;
+        let ring = (1.0 - z * z).max(0.0).sqrt();
+        let (sin, cos) = pointmass::math::sin_cos_turns(turn);
+        Vec3::new(ring * cos, ring * sin, z) * radius
+    };
+    (0..n as u32).map(point).collect()
+}
