@@ -60,7 +60,7 @@ fn all_pairs(group: &mut Group<'_>, points: &[Vec3]) {
 #[cfg(feature = "peers")]
 fn particular(group: &mut Group<'_>, points: &[Vec3]) {
     let n = points.len();
-    let at: Vec<[f32; 3]> = points.iter().map(|point| point.to_array()).collect();
+    let at: Vec<[f32; 3]> = points.iter().map(Vec3::to_array).collect();
     let masses = vec![1.0 / n as f32; n];
     let mut out = vec![[0.0; 3]; n];
     group.bench_function(format!("particular/{n}"), |b| {

@@ -5,7 +5,7 @@ use crate::formats::{PointsFormat, RecordFormat, SceneFormat, StudyFormat, exten
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::Method;
 use pointmass::index::Structure;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Particle systems that are exact, bounded and the same everywhere.
 #[derive(Debug, Parser)]
@@ -126,7 +126,8 @@ pub struct Convert {
 /// Arguments of `compare`.
 #[derive(Debug, ClapArgs)]
 pub struct Compare {
-    /// Points from a file: .csv, .ply, .xyz or .npy
+    /// Points from a file: .csv, .ply, .xyz or .npy. Tables may be parted by commas, semicolons, tabs or blanks; columns
+    /// are found by a head that names x, y and z, else the first three with numbers are taken
     #[arg(long, value_name = "FILE", value_parser = pointed, conflicts_with_all = ["scene", "distribution"])]
     pub points: Option<(PathBuf, PointsFormat)>,
     /// The particles of a scene: .json or .scn, run to the time --at
@@ -243,26 +244,26 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 }
 
 fn recorded(text: &str) -> Result<(PathBuf, RecordFormat), String> {
-    let path = PathBuf::from(text);
-    match RecordFormat::of(&path) {
-        Some(format) => Ok((path, format)),
-        None => Err("expected a name that ends in .csv, .jsonl, .ply or .xyz".into()),
-    }
+    ending(text, RecordFormat::of, ".csv, .jsonl, .ply or .xyz")
 }
 
 fn pointed(text: &str) -> Result<(PathBuf, PointsFormat), String> {
-    let path = PathBuf::from(text);
-    match PointsFormat::of(&path) {
-        Some(format) => Ok((path, format)),
-        None => Err("expected a name that ends in .csv, .ply, .xyz or .npy".into()),
-    }
+    ending(text, PointsFormat::of, ".csv, .ply, .xyz or .npy")
 }
 
 fn studied(text: &str) -> Result<(PathBuf, StudyFormat), String> {
+    ending(text, StudyFormat::of, ".html, .svg, .csv or .json")
+}
+
+fn scene_format(text: &str) -> Result<(PathBuf, SceneFormat), String> {
+    ending(text, SceneFormat::of, ".scn or .json")
+}
+
+fn ending<F>(text: &str, format: fn(&Path) -> Option<F>, known: &str) -> Result<(PathBuf, F), String> {
     let path = PathBuf::from(text);
-    match StudyFormat::of(&path) {
+    match format(&path) {
         Some(format) => Ok((path, format)),
-        None => Err("expected a name that ends in .html, .svg, .csv or .json".into()),
+        None => Err(format!("expected a name that ends in {known}")),
     }
 }
 
@@ -271,14 +272,6 @@ fn drawn(text: &str) -> Result<PathBuf, String> {
     match extension(&path).as_str() {
         "gif" | "png" => Ok(path),
         _ => Err("expected a name that ends in .gif or .png".into()),
-    }
-}
-
-fn scene_format(text: &str) -> Result<(PathBuf, SceneFormat), String> {
-    let path = PathBuf::from(text);
-    match SceneFormat::of(&path) {
-        Some(format) => Ok((path, format)),
-        None => Err("expected a name that ends in .scn or .json".into()),
     }
 }
 

@@ -42,14 +42,16 @@ pub(crate) struct Pull([f32x8; 3]);
 
 impl Pull {
     /// Adds what eight sources at `x` with the weights `w` do at `place`; `square` is s². Sources at the place itself
-    /// do nothing unless s is positive, when their distance does away with them.
+    /// do nothing.
     #[inline(always)]
     pub(crate) fn add(&mut self, place: [f32x8; 3], x: [f32x8; 3], w: f32x8, square: f32x8) {
         let d = [x[0] - place[0], x[1] - place[1], x[2] - place[2]];
-        let r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + square;
-        let weight = (w / (r2 * sqrt(r2))) & r2.simd_gt(f32x8::ZERO);
+        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        // No power of the distance above the second is formed: the third would leave an f32 within the solar system.
+        let inverse = (f32x8::ONE / sqrt(d2 + square)) & d2.simd_gt(f32x8::ZERO);
+        let strength = w * inverse * inverse;
         for (sum, d) in self.0.iter_mut().zip(d) {
-            *sum += weight * d;
+            *sum += strength * (d * inverse);
         }
     }
 

@@ -129,7 +129,8 @@ impl View<'_> {
             ..
         } = self.memory.slices();
         let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
-        let (tree, rest) = rest.split_at_mut(scene.forces.needs().columns() * capacity);
+        let wanted = scene.forces.needs().columns() * capacity;
+        let (tree, rest) = rest.split_at_mut(wanted.min(rest.len()));
         let (start_x, start_v) = start.split_at_mut(start.len() / 2);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(&position[..len]);
@@ -248,7 +249,9 @@ impl Dynamics for Field<'_> {
         let len = position.len();
         let rows = self.first..len;
         let (mass, drag, springs) = (&self.mass[..len], &self.drag[..len], self.springs);
-        let mut tree = BarnesHut::new(self.tree);
+        // No more memory than these particles call for: more would make other nodes, and so other bits.
+        let words = (3 * BarnesHut::COLUMNS * len).min(self.tree.len());
+        let mut tree = BarnesHut::new(&mut self.tree[..words]);
         let grown = len >= BarnesHut::FEWEST && tree.build(position, mass).is_ok();
         let tree = grown.then_some(&tree);
         let state = State { time, position, velocity, mass, drag, springs, tree };

@@ -2,6 +2,7 @@
 
 pub mod busy;
 pub mod emitting;
+pub mod fields;
 pub mod points;
 pub mod solids;
 

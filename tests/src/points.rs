@@ -101,9 +101,10 @@ impl Oracle {
     /// Points in a box whose opposite faces are one, along the axes where its side is not zero.
     #[must_use]
     pub fn periodic(points: &[Vec3], low: Vec3, sides: Vec3) -> Self {
-        let finite = points.iter().filter(|point| point.is_finite());
-        let largest = finite.chain([&sides]).map(|point| point.abs().max_element()).fold(0.0, f32::max);
-        let mut oracle = Self { rows: vec![], low, sides, scale: scale(largest) };
+        let mut oracle = Self { rows: vec![], low, sides, scale: 1.0 };
+        let wrapped = points.iter().filter(|point| point.is_finite()).map(|&point| oracle.place(point));
+        let largest = wrapped.chain([sides]).map(|point| point.abs().max_element()).fold(0.0, f32::max);
+        oracle.scale = scale(largest);
         oracle.rows = points.iter().map(|&point| point.is_finite().then(|| oracle.place(point))).collect();
         oracle
     }
@@ -179,7 +180,7 @@ impl Oracle {
     }
 }
 
-/// The power of two that coordinates are multiplied by before they are squared: one, unless the largest is above 2³¹ or
+/// The power of two that coordinates are multiplied by before they are squared: one, unless the largest is above 2⁶¹ or
 /// below 2⁻³⁰, which is brought to between 1 and 2 as far as factors between 2⁻¹²⁶ and 2¹²⁶ can.
 fn scale(largest: f32) -> f32 {
     if largest == 0.0 {
@@ -187,7 +188,7 @@ fn scale(largest: f32) -> f32 {
     }
     // Exact, since doubles hold every f32 as a normal number.
     let exponent = ((f64::from(largest).to_bits() >> 52) as i32 - 1023).clamp(-126, 126);
-    if exponent.abs() <= 30 { 1.0 } else { 2f32.powi(-exponent) }
+    if (-30..=60).contains(&exponent) { 1.0 } else { 2f32.powi(-exponent) }
 }
 
 #[cfg(test)]
@@ -209,7 +210,7 @@ mod tests {
 
     #[test]
     fn scales_bring_the_largest_near_one() {
-        for (largest, expected) in [(0.0, 1.0), (1e9, 1.0), (1e-9, 1.0), (4_294_967_296.0, 2f32.powi(-32))] {
+        for (largest, expected) in [(0.0, 1.0), (1e9, 1.0), (1e-9, 1.0), (1e18, 1.0), (2f32.powi(62), 2f32.powi(-62))] {
             assert_eq!(scale(largest), expected);
         }
         for largest in [1e30, 1e-30, 1e20, f32::MIN_POSITIVE] {

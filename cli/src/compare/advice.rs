@@ -8,7 +8,8 @@ pub(crate) fn advise(cases: &[Case]) -> Vec<Advice> {
     let mut advice = Vec::new();
     for (points, cases) in series(cases) {
         let Some(largest) = cases.last() else { continue };
-        let queries: Vec<_> = workloads(&cases).into_iter().filter(|workload| workload.is_query()).collect();
+        let queries: Vec<_> =
+            workloads(cases.iter().copied()).into_iter().filter(|workload| workload.is_query()).collect();
         for &workload in &queries {
             advice.extend(for_workload(points, &cases, largest, workload));
         }
@@ -62,21 +63,28 @@ fn reason((best, a): (&Contestant, &Figure), (other, b): (&Contestant, &Figure))
     let (Some(a_tests), Some(b_tests), Some(a_visits), Some(b_visits)) = (a.tests, b.tests, a.visits, b.visits) else {
         return String::new();
     };
-    let found = a.found.unwrap_or_default();
-    let counted = |visits: f64, tests: f64| format!("{} nodes and {} distances", digits(visits), digits(tests));
-    let (mine, theirs) = (counted(a_visits, a_tests), counted(b_visits, b_tests));
-    let compared = format!("for {} found it looks at {mine} a point, {} at {theirs}", digits(found), other.name);
-    if a_tests > b_tests && a_visits > b_visits {
-        // It does more and is faster still.
-        return format!(" ({compared}; it does more, but simpler, work)");
+    let (mine, theirs) = ([a_visits, a_tests].map(digits), [b_visits, b_tests].map(digits));
+    if mine == theirs {
+        return format!(", though both look at {} nodes and {} distances a point", mine[0], mine[1]);
     }
+    let mut reason = format!(
+        ": to find {} it looks at {} nodes and {} distances a point, {} at {} and {}",
+        digits(a.found.unwrap_or_default()),
+        theirs[0],
+        theirs[1],
+        best.name,
+        mine[0],
+        mine[1]
+    );
     /// More points in a cell than this are a reason of their own.
     const FULL: usize = 256;
     let fullest = |one: &Contestant| one.build.fullest.unwrap_or(0);
-    match fullest(other) > FULL && fullest(best) <= FULL {
-        true => format!(" ({compared}, with up to {} points in one cell)", fullest(other)),
-        false => format!(" ({compared})"),
+    if a_tests > b_tests && a_visits > b_visits {
+        reason.push_str(", which is more work, but simpler");
+    } else if fullest(other) > FULL && fullest(best) <= FULL {
+        reason.push_str(&format!(", and up to {} points share one of its cells", thousands(fullest(other))));
     }
+    reason
 }
 
 /// Whether building changes the order, for those who ask but once.
@@ -137,6 +145,11 @@ fn all_round(points: &str, cases: &[&Case], queries: &[Workload]) -> Option<Advi
         }
     };
     Some(Advice { points: points.into(), workload: None, best: best.into(), text })
+}
+
+/// A number of things, in words that agree.
+pub(crate) fn counted(n: usize, what: &str) -> String {
+    format!("{} {what}{}", thousands(n), if n == 1 { "" } else { "s" })
 }
 
 /// A number with three digits that count.

@@ -1,7 +1,7 @@
 //! Where contenders meet: one set of points after the other, first verified, then measured.
 
 use super::advice::thousands;
-use super::contender::{Entrant, Question};
+use super::contender::{Effort, Entrant, Question};
 use super::measure::{Measured, Plan, measure};
 use super::radius::radius_for;
 use super::sample::sample;
@@ -31,17 +31,26 @@ pub(crate) struct Bench<'a> {
 pub(crate) struct Share {
     /// What is asked of it; of those who do not take part, nothing.
     pub(crate) queries: Vec<Workload>,
-    /// Whether it takes part.
-    pub(crate) is_in: bool,
     /// What it does not do, and why.
     pub(crate) left_out: Option<String>,
 }
 
-/// Up to so many distances for a query of all points, anybody may take part.
-const CHEAP: f64 = 2e8;
-/// And up to so many for each point, or for each that is found.
+impl Share {
+    /// Whether it takes part.
+    pub(crate) fn is_in(&self) -> bool {
+        !self.queries.is_empty()
+    }
+}
+
+/// Up to so many distances for a query of all points, anybody may take part: a few seconds.
+const CHEAP: f64 = 1e9;
+/// Beyond that, who computes at most so many times what the thriftiest does,
+const TIMES: f64 = 10.0;
+/// if these are no more than so many for each point, or for each that is found.
 const DEAR: f64 = 5e3;
 const DEAR_FOUND: f64 = 20.0;
+/// But nobody is waited for longer than this takes: some minutes for every query.
+const MOST: f64 = 1e11;
 /// How many points are asked to find out.
 const TRIED: usize = 64;
 
@@ -80,7 +89,7 @@ impl<'a> Bench<'a> {
         self.gauge.step(0, all * (VERIFICATION + ROUNDS), "radius");
         let radius = match self.args.radius {
             Some(radius) => radius,
-            None => radius_for(&points, self.args.neighbours, self.seed, &mut self.memory)?,
+            None => radius_for(&points, self.args.neighbours, &mut self.memory)?,
         };
         let moved = moved(&points, radius, self.seed);
         let question = Question { points: &points, moved: &moved, radius, k: usize::from(self.args.k) };
@@ -110,47 +119,48 @@ impl<'a> Bench<'a> {
     fn shares(&mut self, question: &Question<'_>) -> Outcome<Vec<Share>> {
         let n = question.points.len();
         let rows = sample(n, TRIED, self.seed);
-        let mut shares = Vec::new();
+        // What is within a radius costs about the same, however it is told.
+        let mut efforts = Vec::new();
         for entrant in self.entrants.iter_mut() {
             let mut contender = entrant.enter(n, &mut self.memory);
             contender.build(question.points, question.radius)?;
-            let mut too_much = |query| {
-                let (tests, found) = contender.effort(query, question, &rows)?;
-                let limit = CHEAP.max(n as f64 * DEAR.max(DEAR_FOUND * found));
-                let tests = tests * n as f64;
-                (tests > limit).then(|| format!("would compute about {tests:.0e} distances, more than {limit:.0e}"))
+            efforts.push([Workload::Count, Workload::Nearest].map(|query| contender.effort(query, question, &rows)));
+        }
+        let limits = [0, 1].map(|i| limit(n, efforts.iter().filter_map(|effort| effort[i])));
+        let share = |effort: [Option<Effort>; 2]| {
+            let too_much = |i: usize| {
+                let distances = effort[i].map(|effort| effort.distances * n as f64)?;
+                let limit = limits[i];
+                let why = format!("would compute about {distances:.0e} distances, more than {limit:.0e}");
+                (distances > limit).then_some(why)
             };
-            // What is within a radius costs about the same, however it is told.
-            shares.push(match (too_much(Workload::Count), self.queries.contains(&Workload::Nearest)) {
-                (Some(why), _) => Share { left_out: Some(format!("every query {why}")), ..Share::default() },
-                (None, true) => match too_much(Workload::Nearest) {
-                    Some(why) => Share {
-                        queries: self.queries.iter().copied().filter(|query| *query != Workload::Nearest).collect(),
-                        is_in: true,
-                        left_out: Some(format!("nearest {why}")),
-                    },
-                    None => Share { queries: self.queries.clone(), is_in: true, left_out: None },
-                },
-                (None, false) => Share { queries: self.queries.clone(), is_in: true, left_out: None },
-            });
-        }
-        match shares.iter().find(|share| share.is_in) {
-            Some(_) => Ok(shares),
-            None => {
-                let why = shares.into_iter().find_map(|share| share.left_out).unwrap_or_default();
-                Err(Failure::new(format!("{}: nobody is left to compare: {why}; lower --n", self.gauge.title)))
+            let mut queries = self.queries.clone();
+            let mut left_out = too_much(0).map(|why| format!("every query {why}"));
+            if left_out.is_some() {
+                queries.clear();
+            } else if queries.contains(&Workload::Nearest) {
+                left_out = too_much(1).map(|why| format!("nearest {why}"));
+                queries.retain(|query| *query != Workload::Nearest || left_out.is_none());
             }
+            Share { queries, left_out }
+        };
+        let shares: Vec<_> = efforts.into_iter().map(share).collect();
+        if shares.iter().any(Share::is_in) {
+            return Ok(shares);
         }
+        let why = shares.into_iter().find_map(|share| share.left_out).unwrap_or_default();
+        let title = &self.gauge.title;
+        Err(Failure::new(format!("{title}: nobody is left to compare: {why}; lower --n or the radius")))
     }
 
     /// Holds everybody's answers against an exhaustive search; says how.
     fn verify(&mut self, question: &Question<'_>, shares: &[Share]) -> Outcome<(Expected, String)> {
         let n = question.points.len();
-        let turns = shares.iter().filter(|share| share.is_in).count() as u64;
+        let turns = shares.iter().filter(|share| share.is_in()).count() as u64;
         self.gauge.step(0, n as u64 * turns * (VERIFICATION + ROUNDS), "exhaustive search");
         let (expected, asked) = self.expected(question, shares)?;
         let mut left = turns;
-        for (entrant, share) in self.entrants.iter_mut().zip(shares).filter(|(_, share)| share.is_in) {
+        for (entrant, share) in self.entrants.iter_mut().zip(shares).filter(|(_, share)| share.is_in()) {
             let name = entrant.name().to_string();
             left -= 1;
             self.gauge.step(n as u64 * VERIFICATION, n as u64 * (left * VERIFICATION + turns * ROUNDS), &name);
@@ -158,7 +168,7 @@ impl<'a> Bench<'a> {
             let mut contender = entrant.enter(n, &mut self.memory);
             expected.check(contender.as_mut(), &name, question, &queries)?;
         }
-        let is_peer = |(entrant, share): (&Entrant, &Share)| share.is_in && !entrant.is_own();
+        let is_peer = |(entrant, share): (&Entrant, &Share)| share.is_in() && !entrant.is_own();
         let has_peers = self.entrants.iter().zip(shares).any(is_peer);
         let rounding = if has_peers { "; other libraries up to rounding" } else { "" };
         let rows = SAMPLE.min(n);
@@ -174,7 +184,7 @@ impl<'a> Bench<'a> {
     /// What everybody has to answer, and to which queries.
     fn expected(&mut self, question: &Question<'_>, shares: &[Share]) -> Outcome<(Expected, Vec<Workload>)> {
         let n = question.points.len();
-        let own = self.entrants.iter_mut().zip(shares).filter(|(entrant, share)| share.is_in && entrant.is_own());
+        let own = self.entrants.iter_mut().zip(shares).filter(|(entrant, share)| share.is_in() && entrant.is_own());
         // Who does the most; the first of these.
         let leader = own.min_by_key(|(_, share)| std::cmp::Reverse(share.queries.len()));
         match leader.filter(|_| n > EXHAUSTIVE) {
@@ -187,6 +197,17 @@ impl<'a> Bench<'a> {
             }
         }
     }
+}
+
+/// How many distances a query of all points may compute, by what everybody would.
+pub(crate) fn limit(n: usize, efforts: impl Iterator<Item = Effort>) -> f64 {
+    let none = Effort { distances: f64::INFINITY, found: 0.0 };
+    let least = efforts.fold(none, |least, effort| Effort {
+        distances: least.distances.min(effort.distances),
+        found: least.found.max(effort.found),
+    });
+    let each = (TIMES * least.distances).min(DEAR.max(DEAR_FOUND * least.found));
+    CHEAP.max(n as f64 * each).min(MOST)
 }
 
 /// How far the whole comparison is; a unit of work is a point that an entrant goes through once.

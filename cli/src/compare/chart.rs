@@ -76,11 +76,11 @@ pub(crate) fn charts(study: &Study) -> Vec<Chart<'_>> {
     let looks = names(&study.cases);
     let mut charts = Vec::new();
     for (points, cases) in series(&study.cases) {
-        for workload in workloads(&cases).into_iter().filter(|_| cases.len() > 1) {
+        for workload in workloads(cases.iter().copied()).into_iter().filter(|_| cases.len() > 1) {
             charts.push(lines(points, &cases, workload, &looks));
         }
         let Some(largest) = cases.last() else { continue };
-        for workload in workloads(&cases).into_iter().filter(|workload| workload.is_query()) {
+        for workload in workloads(cases.iter().copied()).into_iter().filter(|workload| workload.is_query()) {
             charts.push(bars(points, largest, workload, &looks));
         }
         charts.push(memory(points, largest, &looks));
@@ -219,6 +219,7 @@ fn draw_lines(area: &Area<'_>, lines: &[Line<'_>]) -> Outcome {
     let mut chart = ChartBuilder::on(&plot)
         .margin_top(36)
         .margin_right(8)
+        .margin_left(6)
         .margin_bottom(6)
         .x_label_area_size(40)
         .y_label_area_size(62)
@@ -279,10 +280,14 @@ fn bounds<'d>(dots: impl Iterator<Item = &'d (f64, f64)>) -> Option<([f64; 2], [
     (all.0[1] > 0.0 && all.1[1] > 0.0).then_some(all)
 }
 
-/// 1, 2 and 5 times the powers of ten between two numbers; of a wide range, the powers alone.
+/// 1, 2 and 5 times the powers of ten between two numbers; of a wide range, the powers alone, of a narrow one, more.
 fn ticks(low: f64, high: f64) -> Vec<f64> {
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
-    let steps: &[f64] = if high / low > 2e3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let steps: &[f64] = match high / low {
+        wide if wide > 2e3 => &[1.0],
+        narrow if narrow < 8.0 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
+        _ => &[1.0, 2.0, 5.0],
+    };
     let all = powers.flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
     all.filter(|tick| (low..=high).contains(tick)).collect()
 }
@@ -290,8 +295,8 @@ fn ticks(low: f64, high: f64) -> Vec<f64> {
 /// A tick, without digits that do not count.
 fn tick(value: f64) -> String {
     match value {
-        value if value >= 1.0 => thousands(value.round() as usize),
-        _ => digits(value).trim_end_matches('0').to_string(),
+        value if value >= 10.0 => thousands(value.round() as usize),
+        _ => digits(value).trim_end_matches('0').trim_end_matches('.').to_string(),
     }
 }
 
@@ -328,14 +333,27 @@ fn draw_bars(area: &Area<'_>, bars: &[Bar<'_>]) -> Outcome {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::case;
     use super::*;
+
+    #[test]
+    fn lines_and_bars_are_as_long_as_medians() {
+        let cases = [case(10, &[("a", 100.0), ("b", 70.0)]), case(20, &[("a", 200.0), ("b", 90.0)])];
+        let looks = names(&cases);
+        let Kind::Lines(lines) = lines("p", &[&cases[0], &cases[1]], Workload::Count, &looks).kind else { panic!() };
+        assert_eq!((lines[0].name, &lines[0].dots[..]), ("a", &[(10.0, 100.0), (20.0, 200.0)][..]));
+        let Kind::Bars(bars) = bars("p", &cases[1], Workload::Count, &looks).kind else { panic!() };
+        // The build takes 10 ns everywhere.
+        assert_eq!((bars[0].name, bars[0].parts, bars[1].parts), ("b", [90.0, 10.0], [200.0, 10.0]));
+    }
 
     #[test]
     fn ticks_lie_within_and_are_few() {
         assert_eq!(ticks(0.9, 60.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
-        assert_eq!(ticks(15.0, 90.0), [20.0, 50.0]);
+        assert_eq!(ticks(14.0, 45.0), [15.0, 20.0, 30.0, 40.0]);
+        assert_eq!(ticks(15.0, 150.0), [20.0, 50.0, 100.0]);
         assert_eq!(ticks(0.5, 20_000.0), [1.0, 10.0, 100.0, 1000.0, 10_000.0]);
-        assert_eq!([tick(0.5), tick(2.0), tick(10_000.0)], ["0.5", "2", "10 000"]);
+        assert_eq!([tick(0.5), tick(1.5), tick(2.0), tick(20.0), tick(1e4)], ["0.5", "1.5", "2", "20", "10 000"]);
     }
 
     #[test]

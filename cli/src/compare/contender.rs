@@ -71,6 +71,15 @@ pub struct Build {
     pub bytes_per_point: Option<f64>,
 }
 
+/// What a query takes for a point, before it is asked of all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Distances computed, and nodes visited.
+    pub(crate) distances: f64,
+    /// Points found.
+    pub(crate) found: f64,
+}
+
 /// Who takes part: sorts points in, and answers. `None`: it has no such query.
 pub(crate) trait Contender {
     /// Whether its answers have to be the same as ours to the last bit.
@@ -91,8 +100,8 @@ pub(crate) trait Contender {
     /// Answers; what is verified.
     fn answer(&mut self, query: Workload, question: &Question<'_>) -> Option<Answer>;
 
-    /// Distances it would compute for a point, and points it would find, on average of some rows; none if it does not say.
-    fn effort(&mut self, query: Workload, question: &Question<'_>, rows: &[usize]) -> Option<(f64, f64)>;
+    /// What it would do for a point, on average of some rows; none if it does not say.
+    fn effort(&mut self, query: Workload, question: &Question<'_>, rows: &[usize]) -> Option<Effort>;
 }
 
 /// One of our structures.
@@ -181,7 +190,7 @@ impl Contender for Own<'_> {
         })
     }
 
-    fn effort(&mut self, query: Workload, question: &Question<'_>, rows: &[usize]) -> Option<(f64, f64)> {
+    fn effort(&mut self, query: Workload, question: &Question<'_>, rows: &[usize]) -> Option<Effort> {
         let mut found = vec![Neighbour::default(); question.k + 1];
         let mut sum = Cost::default();
         for &row in rows {
@@ -192,7 +201,7 @@ impl Contender for Own<'_> {
             };
         }
         let each = |count: u64| count as f64 / rows.len().max(1) as f64;
-        Some((each(sum.tests + sum.visits), each(sum.found)))
+        Some(Effort { distances: each(sum.tests + sum.visits), found: each(sum.found) })
     }
 }
 

@@ -68,7 +68,7 @@ impl Distribution {
 
     fn point(self, serial: u32, seed: u64) -> Vec3 {
         let stream = Stream::new(seed, self as u32, serial);
-        let along = unit(Vec3::new(1.0, 2.0, 3.0));
+        let along = unit(Vec3::ONE);
         match self {
             Self::Uniform => in_cube(&stream),
             Self::Plummer => plummer_radius(stream.units(1)[0]) * direction(stream.units(0)),
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn plane_and_line_are_flat_and_oblique() {
-        let along = unit(Vec3::new(1.0, 2.0, 3.0));
+        let along = unit(Vec3::ONE);
         let plane = Distribution::Plane.points(N, 1);
         assert!(plane.iter().all(|point| point.dot(along).abs() < 1e-6));
         // The mean square of a side 1 about its middle is 1/12, here of two.

@@ -54,7 +54,7 @@ pub(crate) fn measure(
 ) -> Outcome<Vec<Measured>> {
     let mut measured = vec![Measured::default(); entrants.len()];
     let mut scratch = Scratch::new(question);
-    let (n, turns) = (question.points.len(), plan.shares.iter().filter(|share| share.is_in).count());
+    let (n, turns) = (question.points.len(), plan.shares.iter().filter(|share| share.is_in()).count());
     let begun = Instant::now();
     let (mut round, mut rounds) = (0, plan.rounds(Duration::ZERO, 1));
     while round < rounds {
@@ -63,7 +63,7 @@ pub(crate) fn measure(
         for turn in 0..entrants.len() {
             let at = (turn + round) % entrants.len();
             let (entrant, share) = (&mut entrants[at], &plan.shares[at]);
-            if share.is_in {
+            if share.is_in() {
                 left -= 1;
                 gauge.step(n as u64, (n * (left + turns * (rounds - round - 1))) as u64, entrant.name());
                 let mut contender = entrant.enter(n, memory);

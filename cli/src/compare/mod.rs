@@ -40,6 +40,7 @@ use crate::{Failure, Outcome, args, print};
 use bench::Bench;
 use contender::Entrant;
 use std::io::Write;
+use std::path::Path;
 
 /// Compares as the arguments say. Files are written whole, at the end, or not at all.
 ///
@@ -47,11 +48,25 @@ use std::io::Write;
 /// If the points cannot be used, a contender gives a wrong answer, or a file cannot be written.
 pub fn compare(args: &args::Compare) -> Outcome {
     let mut entrants = entrants(args)?;
+    spare_the_points(args)?;
     let outs = args.out.iter().map(|(path, format)| Ok((WholeFile::create(path)?, *format)));
     let outs = outs.collect::<Outcome<Vec<_>>>()?;
     let study = study(args, &mut entrants)?;
     write(outs, &study)?;
     print(&table::text(&study, args.detail))
+}
+
+/// Refuses to write over what is read.
+fn spare_the_points(args: &args::Compare) -> Outcome {
+    let read = args.points.iter().map(|(path, _)| path).chain(&args.scene).filter_map(|path| path.canonicalize().ok());
+    let read: Vec<_> = read.collect();
+    let is_read = |path: &Path| path.canonicalize().is_ok_and(|path| read.contains(&path));
+    match args.out.iter().find(|(path, _)| is_read(path)) {
+        Some((path, _)) => {
+            Err(Failure::new(format!("{}: is read, so it cannot be written; choose another --out", path.display())))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Those who take part, in the order of every table.
@@ -92,7 +107,7 @@ fn study(args: &args::Compare, entrants: &mut [Entrant]) -> Outcome<Study> {
         growth: study::growths(&cases),
         crossovers: study::crossovers(&cases),
         advice: advice::advise(&cases),
-        notes: notes(&cases),
+        notes: notes(&cases, args.radius.is_none().then_some(args.neighbours)),
         cases,
     })
 }
@@ -106,19 +121,23 @@ fn queries(args: &args::Compare) -> Vec<Workload> {
 }
 
 /// What a reader should know before believing any of it.
-fn notes(cases: &[Case]) -> Vec<String> {
+fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
     let mut notes = Vec::new();
-    for (name, cases) in study::series(cases) {
-        if let Some(case) = cases.last() {
-            notes.push(format!("{name}: {}", case.about));
+    for case in cases {
+        let (name, n, found) = (&case.points, advice::thousands(case.n), case.neighbours);
+        if let Some(wanted) = wanted.filter(|wanted| (found - wanted).abs() > 0.2 * wanted) {
+            let [wanted, found] = [wanted, found].map(advice::digits);
+            notes.push(format!(
+                "{name}, {n} points: there is no radius with {wanted} others within it on average; {found} is the closest"
+            ));
         }
-    }
-    let figures = cases.iter().flat_map(|case| &case.contestants).flat_map(|one| &one.figures);
-    let spreads: Vec<_> = figures.map(|figure| figure.spread).collect();
-    let usual = statistics::Summary::of(&spreads).median;
-    if usual > 0.1 {
-        let usual = usual * 100.0;
-        notes.push(format!("the machine was busy: samples usually spread by {usual:.0} %; try again with --repeat 31"));
+        let spreads = case.contestants.iter().flat_map(|one| &one.figures).map(|figure| figure.spread);
+        let usual = 100.0 * statistics::Summary::of(&spreads.collect::<Vec<_>>()).median;
+        if usual > 10.0 {
+            notes.push(format!(
+                "{name}, {n} points: the machine was busy, samples usually spread by {usual:.0} %; try again with --repeat 31"
+            ));
+        }
     }
     if cases.iter().any(|case| case.rounds < 5) {
         notes.push("of fewer than 5 rounds, spreads say little; believe no small differences".into());

@@ -1,6 +1,6 @@
 //! A comparison as a page that stands alone: no scripts, nothing from the network.
 
-use super::advice::{digits, thousands};
+use super::advice::{counted, digits, thousands};
 use super::chart::{Chart, charts};
 use super::study::{Case, Contestant, Crossover, Study, series, workloads};
 use super::table::{heading, ratio};
@@ -16,7 +16,8 @@ table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.6rem 0;
 th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #e4e4e4;white-space:nowrap}
 th{border-bottom:2px solid #999}th:first-child,td:first-child{text-align:left}
 td.best{background:#e5f3ea;font-weight:600}td small{color:#666;font-weight:400}td.why{text-align:left;white-space:normal}
-.charts{display:flex;flex-wrap:wrap;gap:.5rem 1rem}.charts svg{max-width:100%;height:auto;border:1px solid #eee}
+.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(28rem,100%),1fr));gap:.5rem;align-items:start}
+.charts svg{width:100%;height:auto;border:1px solid #eee}
 dt{font-weight:600}dd{margin:0 0 .5rem 1.5rem}code{background:#f3f3f3;padding:.1rem .3rem;overflow-wrap:anywhere}
 .wide{overflow-x:auto}@media print{.charts svg{break-inside:avoid}body{margin:0}}";
 
@@ -118,21 +119,15 @@ impl Page {
                 .collect();
             self.items(&items);
         }
-        for note in &study.notes {
-            // What points are is told above.
-            if !study.cases.iter().any(|case| note.starts_with(&format!("{}: ", case.points))) {
-                self.tagged("p", &format!("Note: {note}."));
-            }
-        }
+        study.notes.iter().for_each(|note| self.tagged("p", &format!("Note: {note}.")));
     }
 
     fn case(&mut self, case: &Case) {
         self.tagged("h3", &heading(case));
-        let rounds = case.rounds;
-        let verified = &case.verified;
+        let (rounds, verified) = (counted(case.rounds, "round"), &case.verified);
         let text = format!(
-            "Medians of {rounds} rounds, in ns a point, and times the best; {verified}. Green: the best and \
-                            what cannot be told apart from it."
+            "Medians of {rounds}, in ns a point, and times the best; {verified}. Green: the best and what cannot be told \
+             apart from it."
         );
         self.tagged("p", &text);
         let workloads = case.workloads();
@@ -190,7 +185,7 @@ impl Page {
             return;
         }
         self.tagged("h3", "Growth: time for all points, as a power of their number");
-        let workloads = workloads(cases);
+        let workloads = workloads(cases.iter().copied());
         self.raw("<table><tr><th></th>");
         workloads.iter().for_each(|workload| self.cell("th", "", workload.name()));
         self.raw("</tr>\n");
@@ -274,7 +269,7 @@ impl Page {
 
     fn method(&mut self, study: &Study) {
         self.tagged("h2", "How it was measured");
-        let work = study::workloads(&study.cases.iter().collect::<Vec<_>>());
+        let work = workloads(&study.cases);
         self.items(&work.iter().map(|w| (w.name().into(), w.describe().into())).collect::<Vec<_>>());
         let (most, sample, k) = (thousands(verify::EXHAUSTIVE), verify::SAMPLE, study.k);
         let (totals, distances) = (verify::TOTALS, verify::DISTANCES);

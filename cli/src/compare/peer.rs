@@ -1,6 +1,6 @@
 //! Other libraries as contenders.
 
-use super::contender::{Answer, Build, Contender, Question, Scratch, tie};
+use super::contender::{Answer, Build, Contender, Effort, Question, Scratch, tie};
 use super::workload::Workload;
 use crate::Outcome;
 use pointmass::Vec3;
@@ -100,7 +100,7 @@ impl Contender for &mut Foreign {
         }
     }
 
-    fn effort(&mut self, _: Workload, _: &Question<'_>, _: &[usize]) -> Option<(f64, f64)> {
+    fn effort(&mut self, _: Workload, _: &Question<'_>, _: &[usize]) -> Option<Effort> {
         None
     }
 }

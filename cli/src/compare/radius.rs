@@ -2,21 +2,21 @@
 
 use super::bench::provide;
 use super::contender::Own;
-use super::sample::sample;
 use crate::{Failure, Outcome};
 use pointmass::Vec3;
 use pointmass::index::{SpatialIndex, Structure};
 
 /// How many points are asked.
-const ASKED: usize = 1000;
+const ASKED: usize = 2000;
 /// How often the interval is halved; a single has 24 digits.
 const HALVINGS: u32 = 40;
 
-/// Finds it by bisection on the counts of a sample of points, which is true to a few per cent.
+/// Finds it by bisection on the counts of a sample of points, which is true to a few per cent: the sample is taken at equal
+/// distances of the structure's order, so that every part of space is in it with its share.
 ///
 /// # Errors
 /// If the points cannot be sorted in.
-pub(crate) fn radius_for(points: &[Vec3], neighbours: f64, seed: u64, memory: &mut Vec<u32>) -> Outcome<f32> {
+pub(crate) fn radius_for(points: &[Vec3], neighbours: f64, memory: &mut Vec<u32>) -> Outcome<f32> {
     // Of all structures the one least sensitive to how points lie and to the radius.
     let tree = Structure::ALL.iter().copied().find(|structure| structure.name() == "kd");
     let structure = tree.or(Structure::ALL.last().copied()).unwrap_or(Structure::Brute);
@@ -25,10 +25,15 @@ pub(crate) fn radius_for(points: &[Vec3], neighbours: f64, seed: u64, memory: &m
     let mut own = Own::new(structure, points.len(), memory);
     let index = own.index();
     index.build(points, 0.0).map_err(|small| Failure::new(small.to_string()))?;
-    let rows = sample(points.len(), ASKED, seed);
-    let mean = |radius: f32| {
-        let found: u64 = rows.iter().map(|&row| index.count(points[row], radius).found.saturating_sub(1)).sum();
-        found as f64 / rows.len().max(1) as f64
+    let (order, asked) = (index.order(), ASKED.min(points.len()));
+    let asked: Vec<_> = (0..asked).map(|i| points[order[i * order.len() / asked] as usize]).collect();
+    let enough = neighbours * asked.len() as f64;
+    let has_enough = |radius: f32| {
+        let mut found = 0.0;
+        asked.iter().any(|&point| {
+            found += index.count(point, radius).found.saturating_sub(1) as f64;
+            found >= enough
+        })
     };
     let (mut low, mut high) = (0.0, widest(points));
     for _ in 0..HALVINGS {
@@ -36,7 +41,7 @@ pub(crate) fn radius_for(points: &[Vec3], neighbours: f64, seed: u64, memory: &m
         if middle <= low || middle >= high {
             break;
         }
-        if mean(middle) < neighbours { low = middle } else { high = middle }
+        if has_enough(middle) { high = middle } else { low = middle }
     }
     Ok(high)
 }
@@ -67,7 +72,7 @@ mod tests {
         for distribution in [Distribution::Uniform, Distribution::Plummer, Distribution::Line, Distribution::Mixed] {
             let points = distribution.points(500, 5);
             for wanted in [1.0, 30.0, 100.0] {
-                let found = mean(&points, radius_for(&points, wanted, 1, &mut Vec::new())?);
+                let found = mean(&points, radius_for(&points, wanted, &mut Vec::new())?);
                 // All points are asked here, so it is as exact as one more or less of them allows.
                 assert!((found - wanted).abs() <= 0.05 + 0.01 * wanted, "{distribution:?}: {found}, {wanted} wanted");
             }
@@ -76,13 +81,21 @@ mod tests {
     }
 
     #[test]
+    fn a_part_of_the_points_is_enough_to_find_it() -> Outcome {
+        let points = Distribution::Clusters.points(4000, 5);
+        let found = mean(&points, radius_for(&points, 30.0, &mut Vec::new())?);
+        assert!((found - 30.0).abs() < 1.0, "{found}");
+        Ok(())
+    }
+
+    #[test]
     fn too_many_neighbours_and_one_place_have_a_radius_too() -> Outcome {
         let points = Distribution::Uniform.points(50, 5);
-        let radius = radius_for(&points, 1000.0, 1, &mut Vec::new())?;
+        let radius = radius_for(&points, 1000.0, &mut Vec::new())?;
         assert!(radius.is_finite() && mean(&points, radius) == 49.0);
-        assert!(radius_for(&[Vec3::ONE; 20], 3.0, 1, &mut Vec::new())? > 0.0);
+        assert!(radius_for(&[Vec3::ONE; 20], 3.0, &mut Vec::new())? > 0.0);
         let far = [Vec3::splat(-3e38), Vec3::splat(3e38), Vec3::ZERO];
-        assert!(radius_for(&far, 1.0, 1, &mut Vec::new())?.is_finite());
+        assert!(radius_for(&far, 1.0, &mut Vec::new())?.is_finite());
         Ok(())
     }
 }

@@ -1,10 +1,12 @@
 //! Where the points come from: made up, a file, or a scene that was run.
 
+use super::advice::thousands;
 use super::distribution::Distribution;
 use super::points;
 use super::sample::sample;
 use crate::args;
 use crate::clock::Clock;
+use crate::meshes::error::excerpt;
 use crate::progress::Progress;
 use crate::world::World;
 use crate::{Failure, Outcome};
@@ -64,15 +66,24 @@ pub(crate) fn sources(args: &args::Compare) -> Outcome<(Vec<Source>, Vec<usize>)
 
 fn from_file(path: &std::path::Path, format: crate::formats::PointsFormat, seed: u64) -> Outcome<Source> {
     let cloud = points::load(path, format)?;
-    let mut about = format!("{} points of {}", cloud.points.len(), path.display());
+    let mut about = format!("{} points of {}", thousands(cloud.points.len()), excerpt(&path.to_string_lossy()));
+    if !cloud.columns.is_empty() {
+        let columns: Vec<_> = cloud.columns.iter().map(usize::to_string).collect();
+        let axes = if columns.len() == 2 { "x and y" } else { "x, y and z" };
+        about.push_str(&format!("; no head names {axes}, columns {} were taken", columns.join(", ")));
+    }
+    if cloud.origin != [0.0; 3] {
+        let [x, y, z] = cloud.origin;
+        about.push_str(&format!("; ({x}, {y}, {z}) was subtracted before rounding to single precision"));
+    }
     if cloud.skipped > 0 {
         let rows = if cloud.skipped == 1 { "row" } else { "rows" };
-        about.push_str(&format!("; {} {rows} skipped, not finite", cloud.skipped));
+        about.push_str(&format!("; {} {rows} skipped, not finite", thousands(cloud.skipped)));
     }
     if cloud.earlier > 0 {
         about.push_str(&format!("; the last of {} records", cloud.earlier + 1));
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = excerpt(&path.file_name().unwrap_or_default().to_string_lossy());
     Ok(Source::Given { name, about, points: cloud.points, seed })
 }
 
@@ -101,7 +112,7 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         )));
     }
     let name = format!("{} at {at} s", scene.file_name().unwrap_or_default().to_string_lossy());
-    Ok(Source::Given { name, about: format!("the {len} particles of {path} at {at} s"), points, seed })
+    Ok(Source::Given { name, about: format!("the {} particles of {path} at {at} s", thousands(len)), points, seed })
 }
 
 impl Source {
@@ -117,7 +128,7 @@ impl Source {
         match self {
             Self::Made(distribution, seed) => format!("{}; seed {seed}", distribution.describe()),
             Self::Given { about, points, seed, .. } if n < points.len() => {
-                format!("{about}; {n} of them at random, seed {seed}")
+                format!("{about}; {} of them at random, seed {seed}", thousands(n))
             }
             Self::Given { about, .. } => about.clone(),
         }

@@ -169,10 +169,7 @@ impl Contestant {
 impl Case {
     /// What was measured, in order.
     pub(crate) fn workloads(&self) -> Vec<Workload> {
-        let mut workloads: Vec<_> = self.contestants.iter().flat_map(|one| &one.figures).map(|f| f.workload).collect();
-        workloads.sort_unstable();
-        workloads.dedup();
-        workloads
+        workloads([self])
     }
 
     /// Who did this, the fastest first.
@@ -210,10 +207,10 @@ pub(crate) fn series(cases: &[Case]) -> Vec<(&str, Vec<&Case>)> {
     series
 }
 
-/// Every name that takes part somewhere, in order.
-pub(crate) fn names(cases: &[Case]) -> Vec<&str> {
+/// Every name that takes part in any of the cases, in order.
+pub(crate) fn names<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<&'a str> {
     let mut names: Vec<&str> = Vec::new();
-    for one in cases.iter().flat_map(|case| &case.contestants) {
+    for one in cases.into_iter().flat_map(|case| &case.contestants) {
         if !names.contains(&one.name.as_str()) {
             names.push(&one.name);
         }
@@ -222,8 +219,9 @@ pub(crate) fn names(cases: &[Case]) -> Vec<&str> {
 }
 
 /// What was measured in any of the cases, in order.
-pub(crate) fn workloads(cases: &[&Case]) -> Vec<Workload> {
-    let mut workloads: Vec<_> = cases.iter().flat_map(|case| case.workloads()).collect();
+pub(crate) fn workloads<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<Workload> {
+    let contestants = cases.into_iter().flat_map(|case| &case.contestants);
+    let mut workloads: Vec<_> = contestants.flat_map(|one| &one.figures).map(|figure| figure.workload).collect();
     workloads.sort_unstable();
     workloads.dedup();
     workloads
@@ -242,8 +240,8 @@ pub(crate) fn line<'a>(cases: &[&'a Case], name: &str, workload: Workload) -> Ve
 pub(crate) fn growths(cases: &[Case]) -> Vec<Growth> {
     let mut growths = Vec::new();
     for (points, cases) in series(cases) {
-        for workload in workloads(&cases) {
-            for name in names_of(&cases) {
+        for workload in workloads(cases.iter().copied()) {
+            for name in names(cases.iter().copied()) {
                 let times: Vec<_> = line(&cases, name, workload)
                     .iter()
                     .map(|(n, figure)| (*n as f64, figure.median * *n as f64))
@@ -257,21 +255,11 @@ pub(crate) fn growths(cases: &[Case]) -> Vec<Growth> {
     growths
 }
 
-fn names_of<'a>(cases: &[&'a Case]) -> Vec<&'a str> {
-    let mut all: Vec<&str> = Vec::new();
-    for one in cases.iter().flat_map(|case| &case.contestants) {
-        if !all.contains(&one.name.as_str()) {
-            all.push(&one.name);
-        }
-    }
-    all
-}
-
 /// Where one overtakes another, if they can be told apart on both sides.
 pub(crate) fn crossovers(cases: &[Case]) -> Vec<Crossover> {
     let mut crossovers = Vec::new();
     for (points, cases) in series(cases) {
-        for workload in workloads(&cases) {
+        for workload in workloads(cases.iter().copied()) {
             for pair in cases.windows(2) {
                 cross(points, workload, [pair[0], pair[1]], &mut crossovers);
             }
@@ -281,7 +269,7 @@ pub(crate) fn crossovers(cases: &[Case]) -> Vec<Crossover> {
 }
 
 fn cross(points: &str, workload: Workload, ends: [&Case; 2], crossovers: &mut Vec<Crossover>) {
-    let names = names_of(&ends);
+    let names = names(ends);
     let best = ends.map(|case| case.ranking(workload).first().map(|(one, _)| one.name.as_str()));
     for (i, a) in names.iter().enumerate() {
         for b in &names[i + 1..] {

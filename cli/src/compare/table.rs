@@ -1,7 +1,7 @@
 //! A comparison for those who sit at a terminal.
 
-use super::advice::{digits, thousands};
-use super::study::{Case, Study, series};
+use super::advice::{counted, digits, thousands};
+use super::study::{Case, Study, names, series, workloads};
 use super::workload::Workload;
 use std::fmt::Write;
 
@@ -17,16 +17,28 @@ pub(crate) fn text(study: &Study, detail: bool) -> String {
     growth(&mut text, study);
     crossovers(&mut text, study);
     advice(&mut text, study);
-    let mark = "* marks the best and what cannot be told apart from it".to_string();
-    for note in study.notes.iter().chain([&mark]) {
-        say(&mut text, &format!("note: {note}"));
-    }
+    study.notes.iter().for_each(|note| paragraph(&mut text, "note:", note));
     text
 }
 
 /// Writing to a string cannot fail.
 fn say(text: &mut String, line: &str) {
     let _ = writeln!(text, "{}", line.trim_end());
+}
+
+/// Words in lines that can be read, behind a mark; what follows the first line stands further in.
+fn paragraph(text: &mut String, mark: &str, words: &str) {
+    const WIDTH: usize = 100;
+    let mut line = mark.to_string();
+    for word in words.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > WIDTH {
+            say(text, &line);
+            line = "   ".into();
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    say(text, &line);
 }
 
 /// Of what radius, how many neighbours, and how it was verified.
@@ -37,7 +49,11 @@ pub(crate) fn heading(case: &Case) -> String {
 
 fn overview(text: &mut String, case: &Case) {
     say(text, &heading(case));
-    say(text, &format!("  {}; {} rounds; ns a point, times the best", case.verified, case.rounds));
+    paragraph(text, " ", &case.about);
+    paragraph(text, " ", &case.verified);
+    let rounds = counted(case.rounds, "round");
+    let mark = "* marks the best and what cannot be told apart from it";
+    say(text, &format!("  medians of {rounds} in ns a point, and times the best; {mark}"));
     let workloads = case.workloads();
     let mut head = format!("  {:<10}", "");
     workloads.iter().for_each(|workload| head.push_str(&format!(" {:>11}", workload.name())));
@@ -106,17 +122,12 @@ fn growth(text: &mut String, study: &Study) {
         }
         let (from, to) = (thousands(first.n), thousands(last.n));
         say(text, &format!("{points}: time grows from {from} to {to} points with this power of their number"));
-        let workloads = super::study::workloads(&cases);
+        let workloads = workloads(cases.iter().copied());
         let mut head = format!("  {:<10}", "");
         workloads.iter().for_each(|workload| head.push_str(&format!(" {:>8}", workload.name())));
         say(text, &head);
-        let mut names: Vec<&str> = Vec::new();
-        of.iter().for_each(|growth| {
-            if !names.contains(&growth.name.as_str()) {
-                names.push(&growth.name);
-            }
-        });
-        for name in names {
+        let grows = |name: &&str| of.iter().any(|growth| growth.name == *name);
+        for name in names(cases.iter().copied()).into_iter().filter(grows) {
             let mut row = format!("  {name:<10}");
             for workload in &workloads {
                 let growth = of.iter().find(|growth| growth.name == name && growth.workload == *workload);
@@ -159,7 +170,7 @@ fn advice(text: &mut String, study: &Study) {
         say(text, &format!("Advice for {points}, {} points", thousands(largest.n)));
         for advice in study.advice.iter().filter(|advice| advice.points == points) {
             let what = advice.workload.map_or("all round", Workload::name);
-            say(text, &format!("  {what}: {}", advice.text));
+            paragraph(text, &format!("  {what}:"), &advice.text);
         }
         say(text, "");
     }

@@ -128,6 +128,50 @@ fn recordings_can_be_compared_the_last_record_counts() {
 }
 
 #[test]
+fn surveys_are_moved_to_the_origin_and_it_is_told() {
+    let folder = Folder::new();
+    let far: String =
+        circle(30).map(|[x, y, z]| format!("{},{},{z}\n", f64::from(x) + 5e5, f64::from(y) + 5.4e6)).collect();
+    folder.write("utm.csv", far);
+    let said = folder.run("compare --points utm.csv --radius 1 --repeat 1 --out a.json").fine().stdout;
+    // In single precision, northings are rounded to half a metre.
+    assert!(said.contains("radius 1.00, 2.00 others within it on average"), "{said}");
+    let study: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+    let about = study["cases"][0]["about"].as_str().expect("text");
+    assert!(about.contains("no head names x, y and z, columns 1, 2, 3 were taken"), "{about}");
+    assert!(about.contains("; (500000, 5400000, 0) was subtracted before rounding to single precision"), "{about}");
+}
+
+#[test]
+fn few_points_and_many_in_one_place_are_compared_too() {
+    let folder = Folder::new();
+    for (rows, n, note) in [
+        ("1,2,3\n4,5,6\n".into(), 2, "2 points: there is no radius with 5.00 others"),
+        ("1,2,3\n".repeat(300), 300, "300 points: there is no radius with 5.00 others"),
+        (circle(10).map(|[x, y, _]| format!("{x},{y}\n")).collect::<String>(), 10, "Advice for a.csv, 10 points"),
+    ] {
+        folder.write("a.csv", rows);
+        let said = folder.run(&format!("compare --points a.csv {QUICK} --out a.json --out a.html --out a.svg")).fine();
+        assert!(said.stdout.contains(note), "{note} in {}", said.stdout);
+        let study: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+        let contestants = study["cases"][0]["contestants"].as_array().expect("contestants");
+        assert_eq!((&study["cases"][0]["n"], contestants.len()), (&n.into(), Structure::ALL.len()));
+        assert!(contestants.iter().all(|one| one["figures"].as_array().is_some_and(|all| all.len() == 7)), "{study}");
+        assert!(!folder.read("a.html").contains("NaN") && !folder.read("a.svg").contains("NaN"));
+    }
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let folder = Folder::with("a.csv", "1,2,3\n4,5,6\n");
+    for out in ["a.csv", "./a.csv"] {
+        let answer = folder.run(&format!("compare --points a.csv --out {out}"));
+        assert!(answer.error().contains("a.csv: is read, so it cannot be written"), "{answer:?}");
+    }
+    assert_eq!((folder.read("a.csv").as_str(), folder.names()), ("1,2,3\n4,5,6\n", vec!["a.csv".to_string()]));
+}
+
+#[test]
 fn rows_that_are_not_finite_are_skipped_and_told() {
     let folder = Folder::new();
     let rows: String = circle(30).map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
@@ -141,8 +185,9 @@ fn what_is_no_set_of_points_is_refused() {
     let folder = Folder::new();
     for (name, content, expected) in [
         ("a.csv", "x,y,z\n1,2,3\n1,two,3\n", "a.csv:3: `two` in column 2: expected a number as y"),
-        ("a.csv", "x,y,z\n", "a.csv: has 0 finite points: expected two or more"),
-        ("a.csv", "1,2,3\nnan,2,3\n", "a.csv: has 1 finite points and 1 that are not finite"),
+        ("a.csv", "x,y,z\n", "a.csv: has no finite point: expected two or more"),
+        ("a.csv", "1,2,3\nnan,2,3\n", "a.csv: has one finite point and 1 that are not: expected two or more"),
+        ("a.csv", "1,oops,3\n4,5,6\n", "a.csv:1: `oops` in column 2: expected a number, as in line 2"),
         ("a.csv", "", "a.csv: is empty: expected points"),
         ("a.xyz", "1 2 3\n1 2 x\n", "a.xyz:2: `1 2 x`: expected the numbers x y z"),
         ("a.ply", "ply\nformat ascii 1.0\nend_header\n", "a.ply: header: expected an element `vertex`"),
@@ -186,8 +231,8 @@ fn the_command_line_says_what_it_wants() {
         assert_eq!(answer.code, 2, "{args}: {answer:?}");
         assert!(answer.stderr.contains(expected), "{args}: {expected} in {}", answer.stderr);
     }
-    let answer = folder.run("compare --n 2e4 --structures brute");
-    assert!(answer.error().contains("nobody is left to compare: every query would compute about 4e8 distances"));
+    let answer = folder.run("compare --n 4e4 --structures brute");
+    assert!(answer.error().contains("nobody is left to compare: every query would compute about 2e9 distances"));
     assert!(folder.run("compare --n 50 --out no/a.html").error().contains("there is no folder no"));
     #[cfg(not(feature = "peers"))]
     assert!(folder.run("compare --n 50 --peers").error().contains("cargo run --release --features peers"));

@@ -78,7 +78,7 @@ pub struct State<'a> {
     pub drag: &'a [f32],
     /// The springs between them.
     pub springs: Springs<'a>,
-    /// Their masses in a tree, if a force needs it and there are enough of them.
+    /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
     pub tree: Option<&'a BarnesHut<'a>>,
 }
 

@@ -9,7 +9,8 @@ use wide::f32x8;
 
 /// Every two particles attract each other with G m₁ m₂ / (d² + s²), s being the softening (Plummer's): f = G m₁ m₂ d⃗ /
 /// (d² + s²)^{3/2}. Two that coincide do not act on each other. Costs the square of their number, or with an opening
-/// angle about N log N: then far groups act as one, see [`BarnesHut`](crate::index::BarnesHut).
+/// angle about N log N: then far groups act as one, see [`BarnesHut`](crate::index::BarnesHut). The energy is always
+/// that of all pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

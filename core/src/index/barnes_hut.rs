@@ -23,6 +23,8 @@ pub struct BarnesHut<'m> {
     weights: &'m mut [f32],
     /// By node.
     moments: &'m mut [Moments],
+    /// The weights are divided by this power of two, so that their moments are within an `f32`.
+    unit: f32,
 }
 
 /// What counts as far, and how far groups act.
@@ -109,7 +111,10 @@ impl<'m> BarnesHut<'m> {
     pub fn new(memory: &'m mut [u32]) -> Self {
         // The inverse of `words`, rounded down.
         let (none, four) = (Self::words(0), Self::words(4));
-        let capacity = memory.len().saturating_sub(none) * 4 / (four - none);
+        let mut capacity = memory.len().saturating_sub(none) * 4 / (four - none);
+        while Self::words(capacity + 1) <= memory.len() {
+            capacity += 1;
+        }
         let (tree, rest) = memory.split_at_mut(Octree::words(capacity).min(memory.len()));
         let (weights, moments) = rest.split_at_mut(capacity.min(rest.len()));
         let whole = moments.len() / MOMENTS * MOMENTS;
@@ -117,6 +122,7 @@ impl<'m> BarnesHut<'m> {
             tree: Octree::new(tree),
             weights: bytemuck::cast_slice_mut(weights),
             moments: bytemuck::cast_slice_mut(&mut moments[..whole]),
+            unit: 1.0,
         }
     }
 
@@ -124,14 +130,17 @@ impl<'m> BarnesHut<'m> {
     ///
     /// # Errors
     /// If the memory is too small.
+    #[inline(never)]
     pub fn build(&mut self, points: &[Vec3], weights: &[f32]) -> Result<(), TooSmall> {
         self.tree.build(points, 0.0)?;
+        let given = |row: u32| weights.get(row as usize).copied().filter(|weight| weight.is_finite()).unwrap_or(0.0);
+        let most = self.tree.order().iter().fold(0.0, |most, &row| max(given(row).abs(), most));
+        self.unit = f32::from_bits((most.to_bits() >> 23).clamp(7, 247) << 23);
         for (weight, &row) in self.weights.iter_mut().zip(self.tree.order()) {
-            let given = weights.get(row as usize).copied().unwrap_or(0.0);
-            *weight = if given.is_finite() { given } else { 0.0 };
+            *weight = given(row) / self.unit;
         }
         let (tree, weights) = (&self.tree, &*self.weights);
-        for node in (0..tree.nodes().len() - 1).rev() {
+        for node in (0..tree.nodes().len().saturating_sub(1)).rev() {
             let moments = if tree.is_leaf(node) {
                 Moments::of(tree.slots(node).map(|slot| Moments {
                     center: tree.points().point(slot).to_array(),
@@ -157,7 +166,9 @@ impl<'m> BarnesHut<'m> {
 
     /// Visits each of `rows` that is in the tree with the sum there, without what it does to itself.
     ///
-    /// Which rows are asked for together makes no difference to any sum.
+    /// Which rows are asked for together makes no difference to any sum. It takes some 20 kB of stack, which is why it is
+    /// never part of another function.
+    #[inline(never)]
     pub fn field(&self, law: Opening, rows: Range<usize>, visit: &mut dyn FnMut(usize, Vec3)) -> Cost {
         let (order, mut cost, mut sums) = (self.tree.order(), Cost::default(), Sums::new(law, self.tree.points()));
         let mut node = 0;
@@ -195,7 +206,10 @@ impl<'m> BarnesHut<'m> {
             let moments = &self.moments[node];
             let center = Vec3::from_array(moments.center);
             let square = region.square_to(center, center, Vec3::ZERO);
-            if nodes[node].side() * nodes[node].side() < sums.theta_squared * square {
+            let side = nodes[node].side();
+            let slots = self.tree.all_slots(node);
+            let itself = slots.start < group.end && group.start < slots.end;
+            if !itself && side * side < sums.theta_squared * square {
                 sums.push_far(moments);
                 cost.tests += group.len() as u64;
                 node = nodes[node].next();
@@ -215,7 +229,7 @@ impl<'m> BarnesHut<'m> {
             let row = order[slot] as usize;
             if rows.contains(&row) {
                 cost.found += 1;
-                visit(row, *sum * sums.unscale);
+                visit(row, *sum * sums.scale * self.unit * sums.scale);
             }
         }
         cost
@@ -235,8 +249,8 @@ impl Node {
 struct Sums {
     theta_squared: f32,
     softening_squared: f32,
-    /// Takes a sum from the tree's scale to that of the points.
-    unscale: f32,
+    /// That of the tree against the points.
+    scale: f32,
     quadrupole: bool,
     len: usize,
     places: [Vec3; GROUP],
@@ -284,7 +298,7 @@ impl Sums {
         Self {
             theta_squared: law.theta * law.theta,
             softening_squared: softening * softening,
-            unscale: scale * scale,
+            scale,
             quadrupole: law.quadrupole,
             len: 0,
             places: [Vec3::ZERO; GROUP],
@@ -360,16 +374,17 @@ fn add_far(sum: &mut [f32x8; 3], place: [f32x8; 3], node: [f32x8; 13], square: f
     let r = [x - place[0], y - place[1], z - place[2]];
     let dot = |a: [f32x8; 3], b: [f32x8; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let u2 = dot(r, r) + square;
-    let some = u2.simd_gt(f32x8::ZERO);
-    let one = (f32x8::ONE / u2) & some;
-    let cube = (one / crate::lanes::sqrt(u2)) & some;
-    let d = [dx, dy, dz];
+    let inverse = (f32x8::ONE / crate::lanes::sqrt(u2)) & u2.simd_gt(f32x8::ZERO);
+    // From here on the way is a unit vector, or less by softening, and each moment is over its power of the distance.
+    let r = r.map(|r| r * inverse);
+    let over = |moment: f32x8| moment * inverse;
+    let [xx, yy, zz, xy, yz, zx] = [xx, yy, zz, xy, yz, zx].map(|moment| over(over(moment)));
+    let d = [over(dx), over(dy), over(dz)];
     let s = [xx * r[0] + xy * r[1] + zx * r[2], xy * r[0] + yy * r[1] + yz * r[2], zx * r[0] + yz * r[1] + zz * r[2]];
     let trace = xx + yy + zz;
-    let along = w - one * (f32x8::splat(3.0) * dot(r, d) + f32x8::splat(1.5) * trace)
-        + one * one * f32x8::splat(7.5) * dot(r, s);
+    let along = w - f32x8::splat(3.0) * dot(r, d) - f32x8::splat(1.5) * trace + f32x8::splat(7.5) * dot(r, s);
     for axis in 0..3 {
-        sum[axis] += cube * (r[axis] * along + d[axis] - f32x8::splat(3.0) * one * s[axis]);
+        sum[axis] += over(over(r[axis] * along + d[axis] - f32x8::splat(3.0) * s[axis]));
     }
 }
 
@@ -408,7 +423,7 @@ impl BarnesHut<'_> {
         let points = self.tree.points();
         let wide = |slot: usize| points.point(slot).to_array().map(f64::from);
         let (place, square) = (wide(slot), f64::from(points.domain.length(law.softening)).powi(2));
-        let unscale = f64::from(points.domain.length(1.0)).powi(2);
+        let unscale = f64::from(points.domain.length(1.0)).powi(2) * f64::from(self.unit);
         let mut sum = [0.0; 3];
         for (other, &weight) in self.weights[..points.len].iter().enumerate() {
             let at = wide(other);

@@ -81,11 +81,12 @@ fn cheapest(bins: &[Bin; BINS]) -> usize {
     for i in (0..BINS).rev() {
         above[i] = above[i + 1].with(bins[i]);
     }
-    let (mut below, mut best, mut least) = (Bin::EMPTY, BINS / 2, f32::INFINITY);
+    let (mut below, mut best, mut least) = (Bin::EMPTY, 1_usize, f32::INFINITY);
     for cut in 1..BINS {
         below = below.with(bins[cut - 1]);
         let cost = below.cost() + above[cut].cost();
-        if cost < least {
+        // Of equal ones the middle: points on a line have no surface anywhere.
+        if cost < least || (cost == least && cut.abs_diff(BINS / 2) < best.abs_diff(BINS / 2)) {
             (best, least) = (cut, cost);
         }
     }

@@ -31,20 +31,17 @@ pub(super) struct Layout {
     inverse: f32,
     /// Cells along each axis.
     cells: [usize; 3],
-    /// More than a coordinate of a cell's face is wrong by.
-    slack: f32,
 }
 
 impl Layout {
     /// Cells of a given size over a box; none if there were more than `most`.
     fn new([low, high]: [Vec3; 2], cell: f32, most: usize) -> Option<Self> {
-        let mut layout = Self { low, cell, inverse: 1.0 / cell, cells: [usize::MAX; 3], slack: 0.0 };
+        let mut layout = Self { low, cell, inverse: 1.0 / cell, cells: [usize::MAX; 3] };
         let count = (high - low).to_array().map(|side| side * layout.inverse);
         if !count.iter().all(|&count| count < most as f32) {
             return None;
         }
         layout.cells = [0, 1, 2].map(|axis| layout.along(axis, high[axis]) + 1);
-        layout.slack = 1e-6 * max(crate::math::largest(low), crate::math::largest(high));
         let [x, y, z] = layout.cells;
         (x.saturating_mul(y).saturating_mul(z) <= most).then_some(layout)
     }
@@ -83,12 +80,6 @@ impl Layout {
 
     fn count(&self) -> usize {
         self.cells.iter().product()
-    }
-
-    /// A cell's lower face.
-    #[inline(always)]
-    fn face(&self, axis: usize, cell: usize) -> f32 {
-        self.low[axis] + cell as f32 * self.cell
     }
 }
 
@@ -189,18 +180,14 @@ impl Partition for Grid<'_> {
             cells[axis] = [layout.along(axis, low - reach), layout.along(axis, high + reach)];
         }
         let [[x0, x1], [y0, y1], [z0, z1]] = cells;
-        let (low_x, high_x) = (layout.face(0, x0) - layout.slack, layout.face(0, x1 + 1) + layout.slack);
         let mut visits = 0;
         for z in z0..=z1 {
-            let (low_z, high_z) = (layout.face(2, z) - layout.slack, layout.face(2, z + 1) + layout.slack);
             for y in y0..=y1 {
                 let row = (z * layout.cells[1] + y) * layout.cells[0];
                 let slots = self.starts[row + x0] as usize..self.starts[row + x1 + 1] as usize;
                 visits += 1;
-                let (low_y, high_y) = (layout.face(1, y) - layout.slack, layout.face(1, y + 1) + layout.slack);
-                let low = Vec3::new(low_x, low_y, low_z);
-                let high = Vec3::new(high_x, high_y, high_z);
-                if !slots.is_empty() && !visit(Run { slots, low, high, frame: 0 }) {
+                let run = Run { slots, low: self.sorted.low, high: self.sorted.high, frame: 0 };
+                if !run.slots.is_empty() && !visit(run) {
                     return visits;
                 }
             }

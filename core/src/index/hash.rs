@@ -12,7 +12,8 @@ use glam::Vec3;
 /// A hashed grid (Teschner et al. 2003): memory by the number of points, however far apart they are.
 ///
 /// Only y and z are hashed, x is added: cells that follow each other along x are neighbours in memory, as in the grid.
-/// Cells that share a bucket cost time, nothing else.
+/// Cells that share a bucket cost time, nothing else. A radius of more than five times the reach the index was built with
+/// looks at every point, and so does the search for the nearest where they are so far away.
 #[derive(Debug)]
 pub struct Hash<'m> {
     sorted: Sorted<'m>,

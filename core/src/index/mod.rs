@@ -3,7 +3,11 @@
 //! An index sorts a copy of the points so that what is near in space is near in memory, and answers from that copy. It
 //! lives in a slice of words that the caller lends it, allocates nothing, and takes no more points than the slice has
 //! room for. Every answer is exact: two points are within `radius` of each other if, in `f32`,
-//! `dx² + dy² + dz² ≤ radius²`, added in this order, whichever structure is asked, so that all give the same.
+//! `dx² + dy² + dz² ≤ radius²`, added in this order, whichever structure is asked, so that all give the same. Points
+//! whose coordinates are all below 1e-9 or some above 1e18 are scaled by a power of two first, so that their squares fit;
+//! one point so far off makes all distances below 1e-19 of its own count as zero.
+//!
+//! In a periodic box a radius of half its shortest side and more looks at every point.
 //!
 //! ```
 //! use pointmass::Vec3;
@@ -134,7 +138,7 @@ pub struct Stats {
     pub depth: usize,
     /// The most points in a leaf or cell.
     pub fullest: usize,
-    /// Leaves left larger than they should be, or how many times cells had to be doubled, for want of memory.
+    /// Leaves larger than they should be, or how many times cells had to grow by a quarter, for want of memory.
     pub crowded: usize,
     /// Bytes in use, the copy of the points and what building takes among them.
     pub bytes: usize,

@@ -465,12 +465,14 @@ impl<P: Partition> Search<'_, P> {
             // Whatever is nearer than half a side is met in one image only.
             let reach = min(min(radius, limit), half * 0.999_999);
             nearest.restart(reach * reach);
+            let before = cost.tests;
             domain.images(center, center, reach, |image| cost += self.0.seek(center, image, reach, nearest));
             let all = half == f32::INFINITY && radius > farthest;
             if nearest.is_full() || limit <= reach || all {
                 return cost;
             }
-            if radius >= half {
+            // Once all points had to be looked at, looking at all without a limit ends the search.
+            if radius >= half || cost.tests - before >= sorted.len as u64 {
                 break;
             }
             radius *= 1.5;

@@ -166,21 +166,21 @@ impl<'m, S: Split> Tree<'m, S> {
     /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
     #[must_use]
     pub fn new(memory: &'m mut [u32]) -> Self {
-        Self::within_domain(memory, Domain::OPEN)
+        Self::in_domain(memory, Domain::OPEN)
     }
 
     /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
     /// open; points outside are wrapped in.
     #[must_use]
     pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
-        Self::within_domain(memory, Domain::periodic(low, sides))
+        Self::in_domain(memory, Domain::periodic(low, sides))
     }
 
     pub(super) const fn words(points: usize) -> usize {
         (7 + S::BYTES / 4) * points + 4 * LANES + 4 * NODE
     }
 
-    fn within_domain(memory: &'m mut [u32], domain: Domain) -> Self {
+    fn in_domain(memory: &'m mut [u32], domain: Domain) -> Self {
         let capacity = memory.len().saturating_sub(Self::words(0)) / (7 + S::BYTES / 4);
         let (sorted, rest) = Sorted::new(memory, capacity, domain);
         // A sixteenth is for frames, and a word a node says which is its.
@@ -199,12 +199,23 @@ impl<'m, S: Split> Tree<'m, S> {
         if len == 0 {
             return;
         }
-        self.frames.len = 0;
         self.frames.slack = ERROR * math::max(math::largest(self.sorted.low), math::largest(self.sorted.high));
-        let root = self.split.root(self.sorted.low, self.sorted.high);
-        // Nodes are dealt out as if leaves were five eighths full.
+        // Nodes are dealt out as if leaves were five eighths full. If that is not enough, larger leaves everywhere are
+        // better than a huge one where they ran out.
         let room = self.nodes.len() - 1;
-        let leaf = S::LEAF.max((16 * len).div_ceil(5 * room));
+        let mut leaf = S::LEAF.max((16 * len).div_ceil(5 * room));
+        while !self.grow_to(leaf, room) {
+            leaf *= 2;
+        }
+        self.sorted.spread();
+        self.link();
+    }
+
+    /// Makes the nodes with leaves of a given size. False if they are too many; of one leaf there are never too many.
+    fn grow_to(&mut self, leaf: usize, room: usize) -> bool {
+        let len = self.sorted.len;
+        (self.len, self.depth, self.fullest, self.crowded, self.frames.len) = (0, 0, 0, 0, 0);
+        let root = self.split.root(self.sorted.low, self.sorted.high);
         let mut waiting = heapless::Vec::<_, WAITING>::new();
         let _ = waiting.push((0..len, 0u32, root));
         let mut children = heapless::Vec::new();
@@ -224,8 +235,10 @@ impl<'m, S: Split> Tree<'m, S> {
             self.depth = self.depth.max(depth as usize);
             children.clear();
             if slots.len() > leaf {
-                let free = (room - self.len - waiting.len()).min(WAITING - waiting.len());
-                if free >= CHILDREN && depth < DEEPEST {
+                if room - self.len - waiting.len() < CHILDREN {
+                    return false;
+                }
+                if WAITING - waiting.len() >= CHILDREN && depth < DEEPEST {
                     self.split.split(cell, bounds, entries, &self.frames, &mut children);
                 }
             }
@@ -241,8 +254,7 @@ impl<'m, S: Split> Tree<'m, S> {
                 let _ = waiting.push((slots.start + start..slots.start + end, depth + 1, cell));
             }
         }
-        self.sorted.spread();
-        self.link();
+        true
     }
 
     /// Says where to go on from each node, which knows by now where its points end: with the first node that begins

@@ -1,9 +1,10 @@
 //! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! Every index over 256 points, a few of them equal and one not finite: built, asked everything, refitted to where the
-//! points have moved, asked again, and once more in a box whose opposite faces are one.
+//! points have moved, asked again, and once more in a box whose opposite faces are one. Then the sums of Barnes and Hut
+//! over such points.
 
-use pointmass::index::{Cost, Neighbour, SpatialIndex, Structure};
+use pointmass::index::{BarnesHut, Cost, Neighbour, Opening, SpatialIndex, Structure};
 use pointmass::rng::Stream;
 use pointmass::{Fnv, Vec3};
 
@@ -15,9 +16,17 @@ const POINTS: usize = 256;
 const RADII: [f32; 3] = [0.1, 0.45, f32::INFINITY];
 const CENTERS: [Vec3; 4] = [Vec3::ZERO, Vec3::new(0.49, -0.2, 0.1), Vec3::new(3.0, -4.0, 0.0), Vec3::NAN];
 
+/// What counts as far in the sums, and how it acts.
+const LAWS: [Opening; 4] = [
+    Opening { theta: 0.0, softening: 0.05, quadrupole: false },
+    Opening { theta: 0.5, softening: 0.01, quadrupole: false },
+    Opening { theta: 0.5, softening: 0.01, quadrupole: true },
+    Opening { theta: 0.8, softening: 0.0, quadrupole: true },
+];
+
 /// Words that are enough for every structure.
 const WORDS: usize = {
-    let (mut most, mut i) = (0, 0);
+    let (mut most, mut i) = (BarnesHut::words(POINTS), 0);
     while i < Structure::ALL.len() {
         let words = Structure::ALL[i].words(POINTS);
         most = if words > most { words } else { most };
@@ -29,18 +38,20 @@ const WORDS: usize = {
 /// Everything that the indices need, none of it on the stack.
 pub(crate) struct Memory {
     points: [Vec3; POINTS],
+    weights: [f32; POINTS],
     counts: [u32; POINTS],
     index: [u32; WORDS],
 }
 
 impl Memory {
     pub(crate) const fn new() -> Self {
-        Self { points: [Vec3::ZERO; POINTS], counts: [0; POINTS], index: [0; WORDS] }
+        Self { points: [Vec3::ZERO; POINTS], weights: [0.0; POINTS], counts: [0; POINTS], index: [0; WORDS] }
     }
 }
 
 /// Calls `out` with the name of each structure and the hash of all it said, how and in which order. Before the first
-/// comes `answers`, the hash of what all have to say; it comes again before a structure that says something else.
+/// comes `answers`, the hash of what all have to say; it comes again before a structure that says something else. Last
+/// comes `barnes_hut`, the hash of its sums.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let mut answers = None;
     for &structure in Structure::ALL {
@@ -52,9 +63,32 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         }
         out(structure.name(), log.all.finish());
     }
+    let mut log = Log { answers: 0, all: Fnv::new() };
+    sum(memory, &mut log);
+    out("barnes_hut", log.all.finish());
 }
 
-fn fly(structure: Structure, Memory { points, counts, index: words }: &mut Memory, log: &mut Log) {
+/// The sums of all laws over masses, then over charges of both signs.
+fn sum(Memory { points, weights, index: words, .. }: &mut Memory, log: &mut Log) {
+    let mut tree = BarnesHut::new(words);
+    for sign in [1.0, -1.0] {
+        for ((row, point), weight) in (0..).zip(points.iter_mut()).zip(weights.iter_mut()) {
+            let mass = 0.5 + Stream::new(8, 0, row).units(0)[0];
+            (*point, *weight) = (place(row), if row % 2 == 0 { mass } else { mass * sign });
+        }
+        weights[50] = f32::NAN;
+        log.add(&[1, tree.build(points, weights).is_ok().into()]);
+        for law in LAWS {
+            let cost = tree.field(law, 0..POINTS, &mut |row, sum| {
+                let [x, y, z] = sum.to_array().map(f32::to_bits);
+                log.add(&[2, row as u32, x, y, z]);
+            });
+            log.cost(3, cost);
+        }
+    }
+}
+
+fn fly(structure: Structure, Memory { points, counts, index: words, .. }: &mut Memory, log: &mut Log) {
     for (row, point) in (0..).zip(points.iter_mut()) {
         *point = place(row);
     }

@@ -4,7 +4,7 @@
 //! three entries matter. The crates that read it multiply the sides of the array unchecked and bring a parser of all
 //! Python literals with them.
 
-use super::{Cloud, Fault};
+use super::{Fault, MOST, Rows};
 use crate::meshes::error::excerpt;
 use std::io::{BufRead, ErrorKind};
 
@@ -14,34 +14,36 @@ const LONGEST: usize = 1 << 16;
 /// Rows that are read at a time.
 const CHUNK: usize = 4096;
 
-pub(super) fn read(mut file: impl BufRead) -> Result<Cloud, Fault> {
+pub(super) fn read(mut file: impl BufRead) -> Result<Rows, Fault> {
     let head = Head::read(&mut file)?;
-    let mut cloud = Cloud::default();
-    let mut rows = Vec::new();
-    if head.by_columns {
-        // All x come first, then all y, then all z.
-        for axis in 0..head.columns {
-            let mut row = 0;
-            head.numbers(&mut file, head.rows, 1, &mut |numbers| {
-                for &x in numbers {
-                    if axis == 0 {
-                        rows.push([x, 0.0, 0.0]);
-                    } else {
-                        rows[row][axis] = x;
-                    }
-                    row += 1;
-                }
-                if rows.len() > super::MOST { Err(format!("more than {} points", super::MOST)) } else { Ok(()) }
-            })?;
-        }
-        rows.into_iter().try_for_each(|row| cloud.push(row)).map_err(Fault::new)?;
-    } else {
-        head.numbers(&mut file, head.rows, head.columns, &mut |numbers| {
-            let mut rows = numbers.chunks_exact(head.columns);
-            rows.try_for_each(|row| cloud.push([row[0], row[1], row.get(2).copied().unwrap_or(0.0)]))
+    let mut rows = Rows::default();
+    if !head.by_columns {
+        head.numbers(&mut file, head.columns, &mut |numbers| {
+            let mut numbers = numbers.chunks_exact(head.columns);
+            numbers.try_for_each(|row| rows.push([row[0], row[1], row.get(2).copied().unwrap_or(0.0)]))
+        })?;
+        return Ok(rows);
+    }
+    // All x come first, then all y, then all z.
+    let mut all: Vec<[f64; 3]> = Vec::new();
+    for axis in 0..head.columns {
+        let mut row = 0;
+        head.numbers(&mut file, 1, &mut |numbers| {
+            if axis == 0 {
+                all.extend(numbers.iter().map(|x| [*x, 0.0, 0.0]));
+            } else {
+                all[row..].iter_mut().zip(numbers).for_each(|(to, x)| to[axis] = *x);
+            }
+            row += numbers.len();
+            if all.len() > MOST {
+                Err(format!("more than {MOST} points: expected fewer; thin them out"))
+            } else {
+                Ok(())
+            }
         })?;
     }
-    Ok(cloud)
+    all.into_iter().try_for_each(|row| rows.push(row)).map_err(Fault::new)?;
+    Ok(rows)
 }
 
 /// What the array is.
@@ -106,14 +108,14 @@ impl Head {
         }
     }
 
-    /// Reads so many times `width` numbers and visits them in chunks.
+    /// Reads `width` numbers of every row and visits them in chunks.
     fn numbers(
         &self,
         file: &mut impl BufRead,
-        rows: u64,
         width: usize,
-        visit: &mut dyn FnMut(&[f32]) -> Result<(), String>,
+        visit: &mut dyn FnMut(&[f64]) -> Result<(), String>,
     ) -> Result<(), Fault> {
+        let rows = self.rows;
         let mut bytes = vec![0; CHUNK * width * self.size];
         let mut numbers = Vec::with_capacity(CHUNK * width);
         let mut row = 0;
@@ -135,15 +137,15 @@ impl Head {
         Ok(())
     }
 
-    fn number(&self, bytes: &[u8]) -> f32 {
+    fn number(&self, bytes: &[u8]) -> f64 {
         // Little-endian from here on.
         let mut little = [0; 8];
         for (i, to) in little[..self.size].iter_mut().enumerate() {
             *to = bytes[if self.big_endian { self.size - 1 - i } else { i }];
         }
         match self.size {
-            4 => f32::from_bits(u64::from_le_bytes(little) as u32),
-            _ => f64::from_le_bytes(little) as f32,
+            4 => f64::from(f32::from_bits(u64::from_le_bytes(little) as u32)),
+            _ => f64::from_le_bytes(little),
         }
     }
 }

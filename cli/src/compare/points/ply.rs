@@ -1,10 +1,36 @@
 //! PLY point clouds and meshes, text and binary of both byte orders: the vertices are the points.
 
-use super::{Cloud, Fault};
-use crate::meshes::ply::{Point, Skipped, split};
+use super::{Fault, Rows};
+use crate::meshes::ply::{Skipped, split};
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 use std::io::BufRead;
 
-pub(super) fn read(mut file: impl BufRead) -> Result<Cloud, Fault> {
+/// The position of a vertex; planar if it has no z.
+struct Vertex([f64; 3]);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self([0.0; 3])
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
+            return PropertyAccessResult::Ignored;
+        };
+        // Of the types there are, only the double is rounded by the library, and whole numbers of 32 bits.
+        let number = match value {
+            Property::Double(number) => Some(number),
+            Property::Int(number) => Some(f64::from(number)),
+            Property::UInt(number) => Some(f64::from(number)),
+            other => other.to_f32_lossy().map(f64::from),
+        };
+        let Some(number) = number else { return PropertyAccessResult::UnsupportedType };
+        self.0[axis] = number;
+        PropertyAccessResult::Set
+    }
+}
+
+pub(super) fn read(mut file: impl BufRead) -> Result<Rows, Fault> {
     // The library that reads the elements wants to see where they end.
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)?;
@@ -13,7 +39,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Cloud, Fault> {
     if !has("x") || !has("y") {
         return Err(Fault::new("header: expected an element `vertex` with properties x, y and z"));
     }
-    let mut cloud = Cloud::default();
+    let mut rows = Rows::default();
     for element in header.elements.values() {
         for number in 1..=element.count {
             // Nothing is stored for an element without properties, so it would be read forever.
@@ -21,8 +47,8 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Cloud, Fault> {
                 break;
             }
             if element.name == "vertex" {
-                let Point(point) = payload.next(element, number)?;
-                cloud.push(point).map_err(Fault::new)?;
+                let Vertex(row) = payload.next(element, number)?;
+                rows.push(row).map_err(Fault::new)?;
             } else {
                 let Skipped = payload.next(element, number)?;
             }
@@ -31,7 +57,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Cloud, Fault> {
             break;
         }
     }
-    Ok(cloud)
+    Ok(rows)
 }
 
 impl From<crate::meshes::error::Fault> for Fault {

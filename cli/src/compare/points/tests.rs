@@ -43,8 +43,71 @@ fn tables_have_heads_or_none_and_any_delimiter() {
     ] {
         assert_eq!(points(PointsFormat::Csv, text), TWO, "{text}");
     }
+    for text in [
+        "# id x y z\n7 1 2 3\n8 -4.5 0.25 6\n",
+        "//X Y Z R\n1 2 3 255\n-4.5 0.25 6 255\n",
+        "# id, x, y, z\n7 1 2 3\n8 -4.5 0.25 6\n",
+        "point;East [m];North [m];height (m)\n7;1;2;3\n8;-4.5;0.25;6\n",
+        "height,x,y,z\n9,1,2,3\n9,-4.5,0.25,6\n",
+        "X,1,2,3\nX,-4.5,0.25,6\n",
+        "tree,1,2,3,n/a\nnan,-4.5,0.25,6,7\n",
+        "# an x and a y\n1 2 3\n-4.5 .25 6\n",
+        "# x y z\n1 2 3 7\n-4.5 .25 6 7\n",
+        "step,x,y,z\n1,1,2,3\n2,-4.5,.25,6\n",
+    ] {
+        assert_eq!(points(PointsFormat::Csv, text), TWO, "{text}");
+    }
     assert_eq!(points(PointsFormat::Csv, "x,y\n1,2\n"), [[1.0, 2.0, 0.0]]);
     assert_eq!(points(PointsFormat::Csv, "1,2\n3,4\n"), [[1.0, 2.0, 0.0], [3.0, 4.0, 0.0]]);
+}
+
+#[test]
+fn columns_that_nobody_names_are_told() {
+    let columns = |text: &str| load(PointsFormat::Csv, text).map(|cloud| cloud.columns);
+    assert_eq!(columns("a,1,2,3\nb,4,5,6\n"), Ok(vec![2, 3, 4]));
+    assert_eq!(columns("time,left,up\n1,2,3\n"), Ok(vec![1, 2, 3]));
+    assert_eq!(columns("1,2\n4,5\n"), Ok(vec![1, 2]));
+    assert_eq!(columns("x,y,z\n1,2,3\n"), Ok(vec![]));
+    assert_eq!(columns("# x y z\n1 2 3\n"), Ok(vec![]));
+}
+
+#[test]
+fn what_lies_far_from_zero_is_moved_there_before_digits_are_lost() {
+    // A survey in UTM coordinates, with millimetres.
+    let rows: [[f64; 3]; 3] =
+        [[500_000.123, 5_400_000.456, 311.5], [500_900.124, 5_400_800.457, 312.0], [500_100.5, 5_400_100.25, 9.0]];
+    let table: String = rows.iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
+    let doubles: Vec<u8> = rows.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let ply = PLY.replace("float", "double").replace("vertex 2", "vertex 3").replace("ascii", "binary_little_endian");
+    for (format, bytes) in [
+        (PointsFormat::Csv, table.clone().into_bytes()),
+        (PointsFormat::Xyz, table.into_bytes()),
+        (PointsFormat::Npy, npy("<f8", false, "(3, 3)", &doubles)),
+        (PointsFormat::Ply, [ply.into_bytes(), doubles.clone()].concat()),
+    ] {
+        let cloud = load(format, bytes).unwrap();
+        assert_eq!(cloud.origin, [500_500.0, 5_400_400.0, 0.0], "{format:?}");
+        for (point, row) in cloud.points.iter().zip(rows) {
+            let back = [0, 1, 2].map(|axis| f64::from(point[axis]) + cloud.origin[axis]);
+            // Half a unit in the last place of 400 or so.
+            assert!(back.iter().zip(row).all(|(a, b)| (a - b).abs() <= 2e-5), "{format:?}: {back:?}, {row:?}");
+        }
+    }
+}
+
+#[test]
+fn what_lies_near_zero_or_loses_nothing_stays_where_it_is() {
+    for text in [
+        "0.1,0.2,0.3\n0.9,0.8,0.7\n",
+        "-1000.1,-1000.2,0\n999.9,1000.3,0\n",
+        // Single precision holds all of these.
+        "500000,5400000,16777216\n500001,5400001.5,16777218\n",
+        // In one place.
+        "0.1,0.2,0.3\n0.1,0.2,0.3\n",
+    ] {
+        assert_eq!(load(PointsFormat::Csv, text).map(|cloud| cloud.origin), Ok([0.0; 3]), "{text}");
+    }
+    assert_eq!(load(PointsFormat::Csv, "3e38,1,1\n3.1e38,1,1\n").map(|cloud| cloud.points[0].is_finite()), Ok(true));
 }
 
 #[test]
@@ -58,7 +121,7 @@ fn rows_that_are_not_finite_are_skipped_and_counted() {
     let cloud =
         load(PointsFormat::Npy, npy("<f4", false, "(2, 3)", &f32s(&[1.0, 2.0, 3.0, f32::NAN, 0.0, 0.0]))).unwrap();
     assert_eq!((cloud.points.len(), cloud.skipped), (1, 1));
-    let cloud = load(PointsFormat::Csv, "step,x,y\n0,nan,1\n1,2,3\n").unwrap();
+    let cloud = load(PointsFormat::Csv, "step,id,x,y\n0,0,nan,1\n1,0,2,3\n").unwrap();
     assert_eq!((cloud.points.len(), cloud.skipped, cloud.earlier), (1, 0, 1), "those of the last record");
 }
 
@@ -70,16 +133,27 @@ fn bad_tables_are_refused_with_row_and_value() {
             ("x,y,z\n1,2,3\n1,zwei,3\n", "f:3: `zwei` in column 2: expected a number as y"),
             ("1,2,3\n1,2\n", "f:2: `1,2`: 2 fields: expected z in column 3"),
             ("x,y,z\n1,2,\n", "f:2: `` in column 3: expected a number as z"),
-            ("x;y\n1,5;2,5\n", "f:2: `1,5` in column 1: expected a number as x"),
+            ("x;y\n1,5;2,5\n", "f:2: `1,5` in column 1: expected a number as x, with a decimal point"),
             ("x,z\n1,2\n", "f:1: `x,z`: expected columns x and y"),
             ("a,b,c\nd,e,f\n", "f:2: `d,e,f`: expected two or three columns of numbers"),
             ("5\n6\n", "f:1: `5`: expected two or three columns of numbers"),
+            ("1.0,oops,3.0\n4,5,6\n", "f:1: `oops` in column 2: expected a number, as in line 2"),
+            ("1.0,2,oops\n4,5,6\n", "f:1: `oops` in column 3: expected a number, as in line 2"),
+            ("1,,3\n4,,6\n7,8,9\n", "f:1: `` in column 2: expected a number, as in line 3"),
+            ("oops,1,2,3\n4,5,6,7\n", "f:1: `oops` in column 1: expected a number"),
+            ("1,2,oops,3\n1,2,3,4\n", "f:1: `oops` in column 3: expected a number"),
+            ("1,2\n3,4,5\n", "f:2: `3,4,5`: 3 fields: expected 2, as in line 1"),
+            ("1.0m,2.0m,3.0m\n1,2,3\n", "f:1: `1.0m,2.0m,3.0m`: expected two or three columns of numbers"),
+            ("x,y,z\n1 m,2 m,3 m\n", "f:2: `1 m` in column 1: expected a number as x"),
+            ("x,y,z\r1,2,3\r", "f:1: lines end with \\r alone"),
+            ("x\0,\0y\0", "f:1: is no text"),
             ("x,y,z\r\n1,2,3\r\n\r\n1,2,three\r\n", "f:4: `three` in column 3"),
             ("x,y,z\n1,2,\"3\n4,5,6\n", "f:2: `\"3` in column 3"),
             ("x,y,z\n\n\n1,2,\u{fffd}\n", "f:4: `\u{fffd}` in column 3"),
             ("", "f: is empty: expected points"),
         ],
     );
+    assert!(load(PointsFormat::Csv, b"\xff\xfex\0,\0").is_err_and(|said| said.starts_with("f:1: is UTF-16")));
     assert!(load(PointsFormat::Csv, b"x,y,z\n1,2,\xff\n").is_err_and(|said| said.starts_with("f:2: ")));
 }
 
@@ -104,6 +178,9 @@ fn atoms_and_bare_lines_are_read() {
         PointsFormat::Xyz,
         &[
             ("1 2 3\n1 x 3\n", "f:2: `1 x 3`: expected the numbers x y z"),
+            ("1 2 3\n4 5\n", "f:2: `4 5`: expected the numbers x y z"),
+            ("1 2\n4 5 6\n", "f:2: `4 5 6`: expected the numbers x y z"),
+            ("1 2 3\nX 4 5 6\n", "f:2: `X 4 5 6`: expected the numbers x y z"),
             ("1 2 3\n7\n", "f:2: `7`: expected the numbers x y z"),
             ("2\nc\nX 1 2 3\nX 1 2\n", "f:4: `X 1 2`: expected the numbers x y z"),
             ("3\nc\nX 1 2 3\n", "f:4: the file ends here: expected atom 2 of 3"),
@@ -216,7 +293,7 @@ fn bad_arrays_are_refused() {
 /// A valid file of a format.
 fn valid(format: PointsFormat) -> Vec<u8> {
     match format {
-        PointsFormat::Csv => b"step,x,y,z\n0,1,2,3\n1,-4.5,0.25,6\n".to_vec(),
+        PointsFormat::Csv => b"step,id,x,y,z\n0,7,1,2,3\n1,7,-4.5,0.25,6\n".to_vec(),
         PointsFormat::Ply => format!("{PLY}1 2 3\n-4.5 .25 6\n").into_bytes(),
         PointsFormat::Xyz => b"2\nProperties=species:S:1:pos:R:3\nX 1 2 3\nX -4.5 0.25 6\n".to_vec(),
         PointsFormat::Npy => npy("<f4", true, "(2, 3)", &f32s(TWO.as_flattened())),

@@ -1,74 +1,59 @@
 //! XYZ: atoms, records one behind the other, each after its number of atoms; or bare lines of two or three numbers.
 
-use super::{Cloud, Fault, Lines, number};
-use crate::meshes::error::excerpt;
+use super::{Fault, Lines, Rows, number};
 use std::io::BufRead;
 
-pub(super) fn read(file: impl BufRead) -> Result<Cloud, Fault> {
-    let (mut lines, mut cloud) = (Lines::new(file), Cloud::default());
-    let mut atoms = None;
-    while let Some(line) = lines.next()? {
+pub(super) fn read(file: impl BufRead) -> Result<Rows, Fault> {
+    let (mut lines, mut rows, mut shape) = (Lines::new(file), Rows::default(), None);
+    while let Some((_, line)) = lines.next()? {
         if line.is_empty() || line[0] == b'#' {
             continue;
         }
-        atoms = count(line);
-        if atoms.is_none() {
-            let (point, row) = (bare(line), lines.number);
-            push(&mut cloud, point, line_of(&lines), row)?;
+        if let Some(atoms) = count(line).filter(|_| shape.is_none()) {
+            records(&mut lines, &mut rows, atoms)?;
+            break;
         }
-        break;
+        // As many columns as the first line has, or a word lost from any would be taken for another kind of line.
+        let row = bare(line).filter(|(_, found)| *shape.get_or_insert(*found) == *found).map(|(row, _)| row);
+        push(&mut rows, row, &lines)?;
     }
-    match atoms {
-        Some(atoms) => records(&mut lines, &mut cloud, atoms)?,
-        None => {
-            while let Some(line) = lines.next()? {
-                if !line.is_empty() && line[0] != b'#' {
-                    let point = bare(line);
-                    push(&mut cloud, point, line_of(&lines), lines.number)?;
-                }
-            }
-        }
-    }
-    Ok(cloud)
+    Ok(rows)
 }
 
-fn line_of<R>(lines: &Lines<R>) -> &[u8] {
-    &lines.line
-}
-
-fn push(cloud: &mut Cloud, point: Option<[f32; 3]>, line: &[u8], row: u64) -> Result<(), Fault> {
-    let quoted = || excerpt(&String::from_utf8_lossy(line));
-    let point = point.ok_or_else(|| Fault::at(row, format!("`{}`: expected the numbers x y z", quoted())))?;
-    cloud.push(point).map_err(|message| Fault::at(row, message))
+fn push<R: BufRead>(rows: &mut Rows, row: Option<[f64; 3]>, lines: &Lines<R>) -> Result<(), Fault> {
+    let told = match row {
+        Some(row) => rows.push(row),
+        None => Err(format!("`{}`: expected the numbers x y z", lines.shown())),
+    };
+    told.map_err(|message| Fault::at(lines.number, message))
 }
 
 /// All records; the last is kept.
-fn records(lines: &mut Lines<impl BufRead>, cloud: &mut Cloud, first: u64) -> Result<(), Fault> {
-    let mut atoms = first;
+fn records(lines: &mut Lines<impl BufRead>, rows: &mut Rows, mut atoms: u64) -> Result<(), Fault> {
     loop {
-        let before = lines.next()?.map(place_column);
+        let before = lines.next()?.map(|(_, line)| place_column(line));
         let before = before.ok_or_else(|| Fault::at(lines.number, "the file ends here: expected a comment"))?;
         for atom in 1..=atoms {
-            let Some(line) = lines.next()? else {
+            let Some((_, line)) = lines.next()? else {
                 let message = format!("the file ends here: expected atom {atom} of {atoms}; is it cut short?");
                 return Err(Fault::at(lines.number, message));
             };
-            let point = coordinates(words(line).skip(before));
-            push(cloud, point, line_of(lines), lines.number)?;
+            let row = coordinates(words(line).skip(before));
+            push(rows, row, lines)?;
         }
-        loop {
-            let Some(line) = lines.next()? else { return Ok(()) };
-            if line.is_empty() {
-                continue;
+        let next = loop {
+            match lines.next()? {
+                None => return Ok(()),
+                Some((_, [])) => {}
+                Some((_, line)) => break count(line),
             }
-            let next = count(line);
-            atoms = next.ok_or_else(|| {
-                let line = excerpt(&String::from_utf8_lossy(&lines.line));
-                Fault::at(lines.number, format!("`{line}`: expected the number of atoms of another record"))
-            })?;
-            cloud.restart();
-            break;
-        }
+        };
+        let Some(next) = next else {
+            let message = format!("`{}`: expected the number of atoms of another record", lines.shown());
+            return Err(Fault::at(lines.number, message));
+        };
+        atoms = next;
+        rows.restart();
     }
 }
 
@@ -96,17 +81,22 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|byte| byte.is_ascii_whitespace() || *byte == b',').filter(|word| !word.is_empty())
 }
 
-/// The point of a bare line, with or without a species before it, planar if there are but two numbers.
-fn bare(line: &[u8]) -> Option<[f32; 3]> {
-    let species = words(line).next().is_some_and(|word| number(word).is_none());
-    let rest = || words(line).skip(usize::from(species));
-    match rest().nth(2) {
-        Some(_) => coordinates(rest()),
-        None => coordinates(rest().chain([&b"0"[..]])),
-    }
+/// What a bare line has: a species before the numbers, and but two of these.
+#[derive(Clone, Copy, PartialEq)]
+struct Shape {
+    has_species: bool,
+    is_planar: bool,
 }
 
-fn coordinates<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<[f32; 3]> {
+fn bare(line: &[u8]) -> Option<([f64; 3], Shape)> {
+    let has_species = words(line).next().is_some_and(|word| number(word).is_none());
+    let rest = || words(line).skip(usize::from(has_species));
+    let is_planar = rest().nth(2).is_none();
+    let row = if is_planar { coordinates(rest().chain([&b"0"[..]])) } else { coordinates(rest()) };
+    Some((row?, Shape { has_species, is_planar }))
+}
+
+fn coordinates<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<[f64; 3]> {
     let mut next = || number(words.next()?);
     Some([next()?, next()?, next()?])
 }

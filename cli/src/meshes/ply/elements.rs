@@ -6,7 +6,7 @@ use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 pub(super) const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// The position of a vertex.
-pub(crate) struct Point(pub(crate) [f32; 3]);
+pub(super) struct Point(pub(super) [f32; 3]);
 
 impl PropertyAccess for Point {
     fn new() -> Self {

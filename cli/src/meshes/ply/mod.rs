@@ -12,8 +12,8 @@ use ply_rs_bw::ply::Property;
 use super::MeshData;
 use super::error::{Fault, excerpt};
 use super::text;
-use elements::Face;
-pub(crate) use elements::{Point, Skipped};
+pub(crate) use elements::Skipped;
+use elements::{Face, Point};
 pub(crate) use header::split;
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
