@@ -53,8 +53,8 @@ impl Distribution {
             Self::Uniform => "evenly in a cube of side 1",
             Self::Plummer => "Plummer's sphere of scale length 1, the innermost 99.9 % of its mass",
             Self::Sphere => "evenly on the surface of a sphere of radius 1",
-            Self::Plane => "evenly on a square of side 1 with the normal (1, 2, 3)",
-            Self::Line => "evenly on a segment of length 1 along (1, 2, 3)",
+            Self::Plane => "evenly on a square of side 1 with the normal (1, 1, 1)",
+            Self::Line => "evenly on a segment of length 1 along (1, 1, 1)",
             Self::Clusters => "32 Gaussian clusters of uneven number and width in a cube of side 1",
             Self::Mixed => "half uniform, half clusters, every 16th point at the place of another",
         }

@@ -47,7 +47,11 @@ impl Domain {
     /// Chooses the scale for points like these.
     pub(super) fn fit(&mut self, points: &[Vec3]) {
         let sound = points.iter().filter(|point| point.is_finite());
-        let most = sound.fold(largest(self.sides), |most, point| max(largest(self.wrap(*point)), most));
+        let most = if self.sides == Vec3::ZERO {
+            sound.fold(0.0, |most, point| max(largest(*point), most))
+        } else {
+            sound.fold(largest(self.sides), |most, point| max(largest(self.wrap(*point)), most))
+        };
         let exponent = ((most.to_bits() >> 23) as i32 - 127).clamp(-126, 126);
         let usual = most == 0.0 || (-30..=60).contains(&exponent);
         self.scale = if usual { 1.0 } else { f32::from_bits(((127 - exponent) as u32) << 23) };
