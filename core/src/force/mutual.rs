@@ -75,8 +75,9 @@ impl Force for MutualGravity {
     }
 }
 
-/// Particles for which the sums go on side by side, so that each block of sources is turned into lanes once for all.
-const PLACES: usize = 32;
+/// Particles for which the sums go on side by side, so that each block of sources is turned into lanes once for all. Their
+/// number changes no sum: few on a chip, whose stack is small, many on a host.
+const PLACES: usize = if cfg!(feature = "std") { 32 } else { 2 };
 
 /// Visits the rows with Σ m d⃗ / (d² + `square`)^{3/2} over all others, summed pair by pair.
 ///
