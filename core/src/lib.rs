@@ -72,7 +72,7 @@ mod time;
 mod view;
 
 pub use emit::{Emit, Emitter, Spread, Varied};
-pub use force::{Drag, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
+pub use force::{AllPairs, Drag, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;
 pub use integrate::{Euler, Integrator, Method, Midpoint, Rk4, Symplectic, Verlet};

@@ -2,7 +2,7 @@
 
 use crate::collide::collide;
 use crate::emit::Births;
-use crate::force::{Force, Spring, Springs, State, spring};
+use crate::force::{Force, Needs, Spring, Springs, State, spring};
 use crate::index::BarnesHut;
 use crate::integrate::{Dynamics, Motion, Work};
 use crate::particles::{Full, Id, Particle, WHITE};
@@ -129,8 +129,8 @@ impl View<'_> {
             ..
         } = self.memory.slices();
         let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
-        let wanted = scene.forces.needs().columns() * capacity;
-        let (tree, rest) = rest.split_at_mut(wanted.min(rest.len()));
+        let needs = scene.forces.needs();
+        let (tree, rest) = rest.split_at_mut((needs.columns() * capacity).min(rest.len()));
         let (start_x, start_v) = start.split_at_mut(start.len() / 2);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(&position[..len]);
@@ -145,7 +145,7 @@ impl View<'_> {
             incident,
         };
         let tree = bytemuck::cast_slice_mut(tree);
-        let mut field = Field { scene, mass, inverse_mass, drag, springs, tree, first: old };
+        let mut field = Field { scene, mass, inverse_mass, drag, springs, needs, tree, first: old };
 
         let newborn = old..len;
         if !newborn.is_empty() {
@@ -239,7 +239,8 @@ struct Field<'a> {
     inverse_mass: &'a [f32],
     drag: &'a [f32],
     springs: Springs<'a>,
-    /// Memory for what forces need to find.
+    /// What the forces need to find, and memory for it.
+    needs: Needs,
     tree: &'a mut [u32],
     first: usize,
 }
@@ -250,11 +251,10 @@ impl Dynamics for Field<'_> {
         let rows = self.first..len;
         let (mass, drag, springs) = (&self.mass[..len], &self.drag[..len], self.springs);
         // No more memory than these particles call for: more would make other nodes, and so other bits.
-        let words = (3 * BarnesHut::COLUMNS * len).min(self.tree.len());
-        let mut tree = BarnesHut::new(&mut self.tree[..words]);
-        let grown = len >= BarnesHut::FEWEST && tree.build(position, mass).is_ok();
-        let tree = grown.then_some(&tree);
-        let state = State { time, position, velocity, mass, drag, springs, tree };
+        let words = (3 * self.needs.columns() * len).min(self.tree.len());
+        let grow = self.needs.tree.filter(|_| len >= BarnesHut::FEWEST);
+        let tree = grow.and_then(|grow| grow(&mut self.tree[..words], position, mass));
+        let state = State { time, position, velocity, mass, drag, springs, tree: tree.as_ref() };
         acceleration.fill(Vec3::ZERO);
         self.scene.forces.add_to(&state, rows.clone(), acceleration);
         springs.add_to(&state, rows.clone(), acceleration);

@@ -1,5 +1,6 @@
 //! What pulls and pushes particles: one file a force.
 
+mod all_pairs;
 mod drag;
 mod gravity;
 mod kind;
@@ -7,6 +8,7 @@ mod mutual;
 mod sink;
 pub(crate) mod spring;
 
+pub use all_pairs::AllPairs;
 pub use drag::Drag;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
@@ -42,24 +44,28 @@ pub trait Force: Sync {
     }
 }
 
+/// Sorts points with weights into memory; none if there is too little.
+pub type Grow = for<'m> fn(&'m mut [u32], &[Vec3], &[f32]) -> Option<BarnesHut<'m>>;
+
 /// What forces have to find in the state, beyond the particles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
-    /// [`State::tree`].
-    pub tree: bool,
+    /// [`State::tree`], and what makes it: [`BarnesHut::grow`]. A function, so that a program with no force that names it
+    /// does not carry it about.
+    pub tree: Option<Grow>,
 }
 
 impl Needs {
     /// What two forces need.
     #[must_use]
-    pub const fn and(self, other: Self) -> Self {
-        Self { tree: self.tree || other.tree }
+    pub fn and(self, other: Self) -> Self {
+        Self { tree: self.tree.or(other.tree) }
     }
 
     /// Vectors for each particle that it takes to work it out.
     #[must_use]
     pub const fn columns(self) -> usize {
-        if self.tree { BarnesHut::COLUMNS } else { 0 }
+        if self.tree.is_some() { BarnesHut::COLUMNS } else { 0 }
     }
 }
 

@@ -126,6 +126,14 @@ impl<'m> BarnesHut<'m> {
         }
     }
 
+    /// One over points with weights; none if the memory is too small for them.
+    #[must_use]
+    pub fn grow<'a>(memory: &'a mut [u32], points: &[Vec3], weights: &[f32]) -> Option<BarnesHut<'a>> {
+        let mut grown = BarnesHut::new(memory);
+        grown.build(points, weights).ok()?;
+        Some(grown)
+    }
+
     /// Sorts the points in. Those that are not finite, or have no finite weight, do not act; the former are left out.
     ///
     /// # Errors

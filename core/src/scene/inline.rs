@@ -3,7 +3,7 @@
 use super::Scene;
 use super::scn::{Command, Located, Place, Scenery, ScnError, Source, commands};
 use crate::emit::{Emitter, Spread, Varied};
-use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
+use crate::force::{AllPairs, Drag, Gravity, Sink, Spring};
 use crate::integrate::Rk4;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, Mesh, Placed, Shape};
@@ -30,7 +30,7 @@ pub struct InlineScene<const PARTICLES: usize, const SPRINGS: usize, const OTHER
     particles: Vec<Particle, PARTICLES>,
     springs: Vec<Spring, SPRINGS>,
     emitters: Vec<Emitter<Mesh<'static>>, OTHERS>,
-    forces: (Vec<ForceKind, 3>, Vec<Sink<Mesh<'static>>, OTHERS>),
+    forces: (Vec<Gravity, 1>, Drag, Vec<AllPairs, 1>, Vec<Sink<Mesh<'static>>, OTHERS>),
     colliders: Vec<Placed<Shape<Mesh<'static>>>, OTHERS>,
 }
 
@@ -64,7 +64,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             particles: Vec::new(),
             springs: Vec::new(),
             emitters: Vec::new(),
-            forces: (Vec::new(), Vec::new()),
+            forces: (Vec::new(), Drag {}, Vec::new(), Vec::new()),
             colliders: Vec::new(),
         }
     }
@@ -79,7 +79,8 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
         self.springs.clear();
         self.emitters.clear();
         self.forces.0.clear();
-        self.forces.1.clear();
+        self.forces.2.clear();
+        self.forces.3.clear();
         self.colliders.clear();
         let mut reader = Reader { scene: self, colors: Vec::new(), groups: Vec::new(), gravity: None };
         let mut place = Place { line: 1, column: 1 };
@@ -100,7 +101,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             emitters: &self.emitters,
             forces: &self.forces,
             colliders: &self.colliders,
-            sinks: &self.forces.1,
+            sinks: &self.forces.3,
             integrator: &Rk4,
         }
     }
@@ -134,7 +135,7 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
             Command::Sink(sink) => {
                 let Sink { intensity, ca, la, qa, .. } = sink;
                 let sink = Sink { shape: plain(&sink.shape)?, intensity, ca, la, qa };
-                self.scene.forces.1.push(sink).map_err(|_| "too many sinks for this array")
+                self.scene.forces.3.push(sink).map_err(|_| "too many sinks for this array")
             }
             Command::Spring { ends, rest_length, ks, kd } => {
                 let [a, b] = ends.map(|end| u32::try_from(end.value).unwrap_or(u32::MAX));
@@ -212,9 +213,8 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
         if self.scene.springs.iter().any(|spring| spring.ends.iter().any(|&end| end as usize >= count)) {
             return Err("a spring names a particle that is not there");
         }
-        let gravity = self.gravity.map(ForceKind::Gravity);
-        let always = [ForceKind::Drag(Drag {}), ForceKind::MutualGravity(MutualGravity::NEWTON)];
-        self.scene.forces.0.extend(gravity.into_iter().chain(always));
+        self.scene.forces.0.extend(self.gravity);
+        self.scene.forces.2.extend([AllPairs::NEWTON]);
         Ok(())
     }
 }
