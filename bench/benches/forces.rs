@@ -30,7 +30,7 @@ fn forces(c: &mut Criterion) {
     measure("sink", &many, &[], 10_000, &sink);
     measure("mutual gravity, per pair", &many[..2000], &[], 2000 * 2000, &MutualGravity::NEWTON);
     // A net of 100 by 100.
-    let spring = |a: u32, b: u32| Spring { ends: [a, b], rest_length: 0.1, ks: 100.0, kd: 1.0 };
+    let spring = |a: u32, b: u32| Spring::new([a, b], 0.1, 100.0).damped(1.0);
     let net: Vec<Spring> = (0..10_000u32)
         .flat_map(|i| {
             let right = (i % 100 < 99).then(|| spring(i, i + 1));

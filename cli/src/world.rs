@@ -46,7 +46,7 @@ impl World {
     /// The method of the run.
     #[must_use]
     pub fn integrator(&self) -> Method {
-        self.model.integrator
+        self.model.integrator.method
     }
 
     /// Steps to the instant `end`.

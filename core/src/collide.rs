@@ -1,6 +1,7 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
+use crate::observe::{Impact, Observer};
 use crate::report::Report;
 use crate::retire::Fate;
 use crate::scene::Scene;
@@ -25,7 +26,14 @@ const MAX_RETREATS: u32 = 12;
 const RESTING: f32 = 0.25;
 
 /// Sends every free particle along its path through the step that ends at `end`; those from row `old` on are newborn.
-pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, old: usize, [dt, end]: [Time; 2], report: &mut Report) {
+pub(crate) fn collide(
+    view: &mut View<'_>,
+    scene: &Scene<'_>,
+    old: usize,
+    [dt, end]: [Time; 2],
+    report: &mut Report,
+    observer: &mut dyn Observer,
+) {
     let capacity = view.capacity();
     for row in 0..view.len() {
         let m = &mut view.memory;
@@ -40,7 +48,9 @@ pub(crate) fn collide(view: &mut View<'_>, scene: &Scene<'_>, old: usize, [dt, e
         if !(scene.colliders.may_touch(&hull) || scene.sinks.may_touch(&hull)) || !path.is_finite() {
             continue;
         }
-        let mut flight = Flight { scene, elasticity: m.elasticity[row], dt: dt.seconds(), report: &mut *report };
+        let (mass, elasticity) = (m.mass[row], m.elasticity[row]);
+        let (report, observer) = (&mut *report, &mut *observer);
+        let mut flight = Flight { scene, row, mass, elasticity, dt: dt.seconds(), report, observer };
         let end = flight.follow(if row >= old { flight.let_go(path) } else { path });
         (m.position[row], m.velocity[row], m.fate[row]) = (end.position, end.velocity, end.fate);
     }
@@ -78,10 +88,13 @@ struct Meeting {
 /// What it takes to follow one particle.
 struct Flight<'a> {
     scene: &'a Scene<'a>,
+    row: usize,
+    mass: f32,
     elasticity: f32,
     /// The step \[s\].
     dt: f32,
     report: &'a mut Report,
+    observer: &'a mut dyn Observer,
 }
 
 impl Flight<'_> {
@@ -143,20 +156,22 @@ impl Flight<'_> {
 
     /// The way on from a hit: the normal velocity turned round and scaled by the elasticity, the mean acceleration of
     /// the path so far for the time that is left.
-    fn rebound(&self, path: &Path, meeting: &Meeting) -> Path {
+    fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
         let normal = meeting.hit.normal;
         let rest = path.duration * (1.0 - meeting.time);
         let mut acceleration = if path.duration > 0.0 { (path.v1 - path.v0) / path.duration } else { Vec3::ZERO };
-        let velocity = path.v0 + (path.v1 - path.v0) * meeting.time;
-        let incoming = velocity.dot(normal);
+        let before = path.v0 + (path.v1 - path.v0) * meeting.time;
+        let incoming = before.dot(normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * self.elasticity } else { incoming };
-        let mut velocity = velocity + normal * (outgoing - incoming);
+        let mut velocity = before + normal * (outgoing - incoming);
         let pressing = -acceleration.dot(normal);
         if pressing > 0.0 && (incoming >= 0.0 || 2.0 * outgoing < RESTING * self.dt * pressing) {
             velocity -= normal * outgoing;
             acceleration += normal * pressing;
         }
+        let (row, mass) = (self.row, self.mass);
+        self.observer.hit(&Impact { row, mass, normal, before, after: velocity });
         let x0 = self.set_off(meeting);
         Path {
             x0,

@@ -30,6 +30,14 @@ pub(crate) fn total(lanes: f32x8) -> f32 {
     ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))
 }
 
+/// Σ a · b over two columns.
+pub(crate) fn dot(a: &[Vec3], b: &[Vec3]) -> f32 {
+    let (a, b): (&[f32], &[f32]) = (bytemuck::cast_slice(a), bytemuck::cast_slice(b));
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    let sum = a.iter().zip(b).fold(f32x8::ZERO, |sum, (a, b)| sum + f32x8::new(*a) * f32x8::new(*b));
+    a_rest.iter().zip(b_rest).fold(total(sum), |sum, (a, b)| sum + a * b)
+}
+
 /// A vector in every lane.
 #[inline(always)]
 pub(crate) fn splat(v: Vec3) -> [f32x8; 3] {

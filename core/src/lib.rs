@@ -59,6 +59,7 @@ mod lanes;
 pub mod math;
 #[cfg(feature = "std")]
 mod measure;
+mod observe;
 mod particles;
 mod report;
 mod retire;
@@ -72,14 +73,18 @@ mod time;
 mod view;
 
 pub use emit::{Emit, Emitter, Spread, Varied};
-pub use force::{AllPairs, Drag, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
+pub use force::{AllPairs, Drag, Drive, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;
-pub use integrate::{Euler, Integrator, Method, Midpoint, Rk4, Symplectic, Verlet};
+pub use integrate::{
+    Adaptive, Embedded, Euler, Implicit, Integrator, LectureMidpoint, Method, Midpoint, Rk4, Symplectic, Tuned, Tuning,
+    Verlet,
+};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
+pub use observe::{Impact, Observer, Phase};
 pub use particles::{Color, Full, Id, Particle, WHITE};
-pub use report::{Caps, Died, Report};
+pub use report::{Caps, Died, Effort, Report};
 pub use retire::Fate;
 pub use scene::{Scene, Unfit};
 #[cfg(feature = "alloc")]

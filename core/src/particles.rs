@@ -25,6 +25,8 @@ pub struct Particle {
     pub fixed: bool,
     /// Coefficient of linear drag \[kg/s\].
     pub drag: f32,
+    /// Electric charge \[C\].
+    pub charge: f32,
     /// The share of the normal speed it keeps when it hits something, 0 to 1.
     pub elasticity: f32,
     /// How long it lives \[s\]; zero or less: for ever.
@@ -45,6 +47,7 @@ impl Particle {
         mass: 1.0,
         fixed: false,
         drag: 0.0,
+        charge: 0.0,
         elasticity: 0.5,
         lifetime: 0.0,
         material: None,
@@ -56,7 +59,7 @@ impl Particle {
     pub fn is_sound(&self) -> bool {
         let finite = self.position.is_finite()
             && self.velocity.is_finite()
-            && [self.mass, self.drag, self.elasticity, self.lifetime].iter().all(|x| x.is_finite());
+            && [self.mass, self.drag, self.charge, self.elasticity, self.lifetime].iter().all(|x| x.is_finite());
         // The inverse of a mass below 3e-39 kg overflows.
         let heavy = if self.fixed { self.mass >= 0.0 } else { self.mass > 0.0 && (1.0 / self.mass).is_finite() };
         finite && heavy

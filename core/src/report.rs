@@ -1,7 +1,9 @@
 //! What a step did, counted: nothing that is bounded is bounded silently.
 
+use crate::math::max;
+
 /// What happened in a step, or in all of them so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Report {
     /// Particles put in by the scene's start.
@@ -14,8 +16,45 @@ pub struct Report {
     pub refused: u64,
     /// Times that a particle met a collider.
     pub hits: u64,
+    /// Springs that broke.
+    pub broken: u64,
     /// Times that a bound cut work short.
     pub caps: Caps,
+    /// What the integrator did.
+    pub effort: Effort,
+}
+
+/// What an integrator did. It is no part of the system's hash.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Effort {
+    /// Evaluations of all forces.
+    pub evaluations: u64,
+    /// Steps that a method which chooses its own accepted.
+    pub accepted: u64,
+    /// Steps that it tried and took back.
+    pub rejected: u64,
+    /// Linear systems solved.
+    pub solves: u64,
+    /// Iterations that took.
+    pub iterations: u64,
+    /// The largest residual left, as a share of what the solution began with.
+    pub residual: f32,
+    /// Steps that were taken although they err too much, and solutions cut off before they were good enough.
+    pub capped: u64,
+}
+
+impl Effort {
+    const NONE: Self =
+        Self { evaluations: 0, accepted: 0, rejected: 0, solves: 0, iterations: 0, residual: 0.0, capped: 0 };
+
+    /// Counts a solution.
+    pub(crate) fn solved(&mut self, iterations: u32, residual: f32, capped: bool) {
+        self.solves += 1;
+        self.iterations += u64::from(iterations);
+        self.residual = max(residual, self.residual);
+        self.capped += u64::from(capped);
+    }
 }
 
 /// Particles removed, by cause.
@@ -61,6 +100,7 @@ macro_rules! add_fields {
 add_fields! {
     Died { lifetime sink density chance nonfinite }
     Caps { bounces chords springs unfit }
+    Effort { evaluations accepted rejected solves iterations capped }
 }
 
 impl core::ops::AddAssign for Report {
@@ -70,11 +110,14 @@ impl core::ops::AddAssign for Report {
             (&mut self.born, other.born),
             (&mut self.refused, other.refused),
             (&mut self.hits, other.hits),
+            (&mut self.broken, other.broken),
         ] {
             *sum = sum.saturating_add(more);
         }
         self.died += other.died;
         self.caps += other.caps;
+        self.effort += other.effort;
+        self.effort.residual = max(self.effort.residual, other.effort.residual);
     }
 }
 
@@ -94,14 +137,19 @@ impl Report {
         died: Died { lifetime: 0, sink: 0, density: 0, chance: 0, nonfinite: 0 },
         refused: 0,
         hits: 0,
+        broken: 0,
+        effort: Effort::NONE,
         caps: Caps { bounces: 0, chords: 0, springs: 0, unfit: 0 },
     };
 
-    /// Every counter, in a fixed order.
-    pub(crate) fn counters(&self) -> [u64; 13] {
-        let Self { initial, born, died, refused, hits, caps } = *self;
+    /// Every counter of what happened, in a fixed order.
+    pub(crate) fn counters(&self) -> [u64; 14] {
+        let Self { initial, born, died, refused, hits, broken, caps, effort: _ } = *self;
         let Died { lifetime, sink, density, chance, nonfinite } = died;
         let Caps { bounces, chords, springs, unfit } = caps;
-        [initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, bounces, chords, springs, unfit]
+        [
+            initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, broken, bounces, chords, springs,
+            unfit,
+        ]
     }
 }

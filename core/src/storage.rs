@@ -197,6 +197,8 @@ storage! {
         inverse_mass: f32 = 0.0,
         /// Coefficient of linear drag \[kg/s\], by row.
         drag: f32 = 0.0,
+        /// Electric charge \[C\], by row.
+        charge: f32 = 0.0,
         /// Share of the normal speed kept in a hit, by row.
         elasticity: f32 = 0.0,
         /// When it was born, by row.
@@ -293,6 +295,6 @@ mod tests {
     #[test]
     fn a_particle_takes_the_bytes_that_the_readme_says() {
         let one = size_of::<Inline<1001, 0, 0, 4>>() - size_of::<Inline<1, 0, 0, 4>>();
-        assert_eq!(one, 1000 * (79 + 4 * 12));
+        assert_eq!(one, 1000 * (83 + 4 * 12));
     }
 }

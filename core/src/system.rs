@@ -1,7 +1,8 @@
 //! The state of the world and its one verb, `step`.
 
-use crate::force::{Springs, State};
+use crate::force::{self, Spring, Springs, State};
 use crate::hash::Fnv;
+use crate::observe::Observer;
 use crate::particles::{Full, Id, Particle};
 use crate::report::Report;
 use crate::scene::{Scene, Unfit};
@@ -67,10 +68,15 @@ impl<B: Storage> System<B> {
     /// Moves the world on by `dt`. It cannot fail, does not panic, and its work is bounded; whatever a bound cut
     /// short is counted in the report.
     pub fn step(&mut self, scene: &Scene<'_>, dt: Time) -> Report {
+        self.step_observed(scene, dt, &mut ())
+    }
+
+    /// `step`, while somebody watches.
+    pub fn step_observed(&mut self, scene: &Scene<'_>, dt: Time, observer: &mut dyn Observer) -> Report {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         if scene.fits(self.memory.columns().size()) {
-            self.view().step(scene, dt, &mut report);
+            self.view().step(scene, dt, &mut report, observer);
         } else {
             report.caps.unfit = 1;
         }
@@ -127,10 +133,7 @@ impl<B: Storage> System<B> {
 
     /// The particles as forces see them.
     pub fn state<'a>(&'a self, scene: &Scene<'a>) -> State<'a> {
-        let Columns { position, velocity, mass, drag, serial, row_of, last_spring, incident, .. } = self.particles();
-        let springs =
-            Springs { springs: scene.springs, start: self.status.start, serial, row_of, last_spring, incident };
-        State { time: self.status.time, position, velocity, mass, drag, springs, tree: None }
+        self.memory.columns().state(scene.springs, &self.status)
     }
 
     /// A fingerprint of time, counters, and every column in the order of ids: equal on all targets for equal states.
@@ -148,6 +151,10 @@ impl<B: Storage> System<B> {
             hash.word(tally.serial);
             hash.long(tally.phase);
         }
+        hash.long(self.status.hint.ticks());
+        for &spring in columns.incident.iter().filter(|&&spring| force::is_broken(spring)) {
+            hash.word(spring);
+        }
         for slot in 0..self.status.slots {
             let row = columns.row_of[slot] as usize;
             if columns.slot.get(row) == Some(&(slot as u32)) {
@@ -163,6 +170,14 @@ impl<B: Storage> System<B> {
 }
 
 impl<'a> Columns<'a> {
+    /// The living as forces see them.
+    pub(crate) fn state(self, springs: &'a [Spring], status: &Status) -> State<'a> {
+        let Columns { position, velocity, mass, drag, charge, serial, row_of, last_spring, incident, .. } =
+            self.living(status.len);
+        let springs = Springs { springs, start: status.start, serial, row_of, last_spring, incident };
+        State { time: status.time, position, velocity, mass, drag, charge, springs, tree: None, near: None }
+    }
+
     /// The columns by row, cut to the rows in use.
     fn living(self, len: usize) -> Self {
         Self {
@@ -171,6 +186,7 @@ impl<'a> Columns<'a> {
             mass: &self.mass[..len],
             inverse_mass: &self.inverse_mass[..len],
             drag: &self.drag[..len],
+            charge: &self.charge[..len],
             elasticity: &self.elasticity[..len],
             born: &self.born[..len],
             dies: &self.dies[..len],
@@ -189,7 +205,7 @@ impl<'a> Columns<'a> {
         for vector in [self.position[row], self.velocity[row]] {
             vector.to_array().into_iter().for_each(|x| hash.float(x));
         }
-        for x in [self.mass[row], self.inverse_mass[row], self.drag[row], self.elasticity[row]] {
+        for x in [self.mass[row], self.inverse_mass[row], self.drag[row], self.charge[row], self.elasticity[row]] {
             hash.float(x);
         }
         hash.long(self.born[row].ticks());

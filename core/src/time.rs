@@ -71,6 +71,18 @@ impl Time {
         self.0 as f64 / 4_294_967_296.0
     }
 
+    /// How far a wheel of `frequency` turns a second \[Hz\] has turned by now, from 0 to 1 without the whole turns. Its speed
+    /// is rounded to 2⁻³² turns a second, and counts in whole numbers, so that it is as exact late as early.
+    #[must_use]
+    pub const fn turns(self, frequency: f32) -> f32 {
+        let forth = frequency >= 0.0;
+        let speed = fixed_32(if forth { frequency } else { -frequency });
+        // Both factors are in units of 2⁻³²: the low 64 bits of the product are what is left of whole turns.
+        let turned = speed.wrapping_mul(self.0);
+        let turned = if forth { turned } else { turned.wrapping_neg() };
+        (turned >> 40) as f32 / 16_777_216.0
+    }
+
     /// Half of it, rounded down to a tick.
     #[must_use]
     pub const fn half(self) -> Self {

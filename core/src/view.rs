@@ -3,8 +3,9 @@
 use crate::collide::collide;
 use crate::emit::Births;
 use crate::force::{Force, Needs, Spring, Springs, State, spring};
-use crate::index::BarnesHut;
-use crate::integrate::{Dynamics, Motion, Work};
+use crate::index::{BarnesHut, SpatialIndex};
+use crate::integrate::{Dynamics, Linear, Motion, Work};
+use crate::observe::{Observer, Phase};
 use crate::particles::{Full, Id, Particle, WHITE};
 use crate::report::Report;
 use crate::retire::{Fate, retire};
@@ -37,6 +38,8 @@ pub(crate) struct Status {
     /// Emitters that the scene had then.
     pub(crate) emitters: usize,
     pub(crate) time: Time,
+    /// The step that an integrator which chooses its own goes on with.
+    pub(crate) hint: Time,
     pub(crate) seed: u64,
     pub(crate) totals: Report,
 }
@@ -50,6 +53,7 @@ impl Status {
         start: 0,
         emitters: 0,
         time: Time::ZERO,
+        hint: Time::ZERO,
         seed: 0,
         totals: Report::NOTHING,
     };
@@ -90,15 +94,33 @@ impl View<'_> {
     }
 
     /// The whole of a step: create, update, collide, delete.
-    pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report) {
+    pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
         let end = self.status.time + dt;
+        observer.after(Phase::Begin, &self.state(scene));
         let old = self.create(scene, end, report);
-        self.update(scene, old, dt);
-        if scene.is_swept() {
-            collide(self, scene, old, [dt, end], report);
-        }
-        retire(self, scene.springs, end, report);
+        observer.after(Phase::Create, &self.state(scene));
+        self.update(scene, old, dt, report, observer);
         self.status.time = end;
+        observer.after(Phase::Move, &self.state(scene));
+        if scene.springs.iter().any(|spring| spring.breaks_at.is_some()) {
+            self.snap(scene, report);
+            observer.after(Phase::Snap, &self.state(scene));
+        }
+        if scene.is_swept() {
+            collide(self, scene, old, [dt, end], report, observer);
+        }
+        observer.after(Phase::Collide, &self.state(scene));
+        let before = report.died.total();
+        retire(self, scene.springs, end, report);
+        if report.died.total() > before || report.born + report.hits + report.broken > 0 {
+            self.status.hint = Time::ZERO;
+        }
+        observer.after(Phase::Delete, &self.state(scene));
+    }
+
+    /// The particles as forces see them.
+    fn state<'s>(&'s self, scene: &Scene<'s>) -> State<'s> {
+        self.memory.columns().state(scene.springs, self.status)
     }
 
     /// Lets the emitters emit, and returns how many particles there were before.
@@ -111,7 +133,7 @@ impl View<'_> {
 
     /// Moves the `old` particles by the integrator. The newborn fly on from their places of birth with the acceleration
     /// they have there at the step's beginning; they act on the old from the next step on.
-    fn update(&mut self, scene: &Scene<'_>, old: usize, dt: Time) {
+    fn update(&mut self, scene: &Scene<'_>, old: usize, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
         let (len, now) = (self.status.len, self.status.time);
         let capacity = self.capacity();
         let Slices {
@@ -120,6 +142,7 @@ impl View<'_> {
             mass,
             inverse_mass,
             drag,
+            charge,
             born,
             serial,
             row_of,
@@ -128,9 +151,11 @@ impl View<'_> {
             work,
             ..
         } = self.memory.slices();
-        let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
         let needs = scene.forces.needs();
-        let (tree, rest) = rest.split_at_mut((needs.columns() * capacity).min(rest.len()));
+        let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
+        let (tree, rest) = rest.split_at_mut((needs.tree_columns() * capacity).min(rest.len()));
+        let near_columns = needs.columns(scene.index) - needs.tree_columns();
+        let (near, rest) = rest.split_at_mut((near_columns * capacity).min(rest.len()));
         let (start_x, start_v) = start.split_at_mut(start.len() / 2);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(&position[..len]);
@@ -144,8 +169,20 @@ impl View<'_> {
             last_spring,
             incident,
         };
-        let tree = bytemuck::cast_slice_mut(tree);
-        let mut field = Field { scene, mass, inverse_mass, drag, springs, needs, tree, first: old };
+        let mut field = Field {
+            scene,
+            mass,
+            inverse_mass,
+            drag,
+            charge,
+            springs,
+            needs,
+            tree: bytemuck::cast_slice_mut(tree),
+            near: bytemuck::cast_slice_mut(near),
+            first: old,
+            evaluations: 0,
+            observer,
+        };
 
         let newborn = old..len;
         if !newborn.is_empty() {
@@ -162,8 +199,22 @@ impl View<'_> {
         field.springs.serial = &serial[..old];
         let start = if scene.needs_start() { [&start_x[..old], &start_v[..old]] } else { [&[][..]; 2] };
         let work = Work { memory: rest, stride: capacity, len: old };
-        let motion = Motion { position: &mut position[..old], velocity: &mut velocity[..old], start, work };
+        let (hint, effort) = (&mut self.status.hint, &mut report.effort);
+        let motion =
+            Motion { position: &mut position[..old], velocity: &mut velocity[..old], start, work, hint, effort };
         scene.integrator.advance(motion, now, dt, &mut field);
+        report.effort.evaluations += field.evaluations;
+    }
+
+    /// Breaks the springs that are stretched too far.
+    fn snap(&mut self, scene: &Scene<'_>, report: &mut Report) {
+        for (number, spring) in scene.springs.iter().enumerate() {
+            if spring.is_overstretched(number, &self.state(scene)) {
+                let Slices { last_spring, incident, .. } = self.memory.slices();
+                spring::mark_broken(number, spring, last_spring, incident);
+                report.broken += 1;
+            }
+        }
     }
 
     /// Puts a particle into the next row.
@@ -190,6 +241,7 @@ impl View<'_> {
         m.mass[row] = particle.mass;
         m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };
         m.drag[row] = particle.drag;
+        m.charge[row] = particle.charge;
         m.elasticity[row] = particle.elasticity;
         m.born[row] = born;
         m.dies[row] = death(born, particle.lifetime);
@@ -238,29 +290,64 @@ struct Field<'a> {
     mass: &'a [f32],
     inverse_mass: &'a [f32],
     drag: &'a [f32],
+    charge: &'a [f32],
     springs: Springs<'a>,
     /// What the forces need to find, and memory for it.
     needs: Needs,
     tree: &'a mut [u32],
+    near: &'a mut [u32],
     first: usize,
+    evaluations: u64,
+    observer: &'a mut dyn Observer,
+}
+
+impl Field<'_> {
+    /// Calls `then` with the state as forces see it, trees and indices made.
+    fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(State<'_>)) {
+        let len = position.len();
+        self.evaluations += u64::from(len > 0);
+        let (mass, drag, charge, springs) = (&self.mass[..len], &self.drag[..len], &self.charge[..len], self.springs);
+        // No more memory than these particles call for: more would make other nodes, and so other bits.
+        let words = (3 * self.needs.tree_columns() * len).min(self.tree.len());
+        let grow = self.needs.tree.filter(|_| len >= BarnesHut::FEWEST);
+        let tree = grow.and_then(|grow| grow(&mut self.tree[..words], position, mass));
+        let state = State { time, position, velocity, mass, drag, charge, springs, tree: tree.as_ref(), near: None };
+        if self.needs.reach > 0.0 {
+            let words = (3 * self.scene.index.columns() * len).min(self.near.len());
+            let then = &mut |near: Option<&dyn SpatialIndex>| then(State { near, ..state });
+            self.scene.index.arrange(&mut self.near[..words], position, self.needs.reach, then);
+        } else {
+            then(state);
+        }
+    }
 }
 
 impl Dynamics for Field<'_> {
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
-        let len = position.len();
-        let rows = self.first..len;
-        let (mass, drag, springs) = (&self.mass[..len], &self.drag[..len], self.springs);
-        // No more memory than these particles call for: more would make other nodes, and so other bits.
-        let words = (3 * self.needs.columns() * len).min(self.tree.len());
-        let grow = self.needs.tree.filter(|_| len >= BarnesHut::FEWEST);
-        let tree = grow.and_then(|grow| grow(&mut self.tree[..words], position, mass));
-        let state = State { time, position, velocity, mass, drag, springs, tree: tree.as_ref() };
-        acceleration.fill(Vec3::ZERO);
-        self.scene.forces.add_to(&state, rows.clone(), acceleration);
-        springs.add_to(&state, rows.clone(), acceleration);
-        each_row_with(acceleration, Vec3::ZERO, &self.inverse_mass[rows], |force, _, inverse| {
+        let rows = self.first..position.len();
+        let (forces, inverse_mass) = (self.scene.forces, &self.inverse_mass[rows.clone()]);
+        self.with_state(time, position, velocity, &mut |state| {
+            acceleration.fill(Vec3::ZERO);
+            forces.add_to(&state, rows.clone(), acceleration);
+            state.springs.add_to(&state, rows.clone(), acceleration);
+        });
+        each_row_with(acceleration, Vec3::ZERO, inverse_mass, |force, _, inverse| {
             // What is fixed stays so under a force that is beyond an f32.
             if inverse == 0.0 { 0.0 } else { force * inverse }
         });
+    }
+
+    fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
+        let (forces, inverse_mass) = (self.scene.forces, &self.inverse_mass[..position.len()]);
+        self.with_state(time, position, velocity, &mut |state| {
+            then(&Linear { forces: &(forces, state.springs), state, inverse_mass });
+        });
+    }
+
+    fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
+        let len = position.len();
+        let (mass, drag, charge, springs) = (&self.mass[..len], &self.drag[..len], &self.charge[..len], self.springs);
+        let state = State { time, position, velocity, mass, drag, charge, springs, tree: None, near: None };
+        self.observer.after(Phase::Advance, &state);
     }
 }

@@ -39,7 +39,7 @@ fn ring() -> (Vec<Particle>, Vec<Spring>) {
         lifetime: if i == 3 { 0.8 } else { 0.0 },
         ..Particle::REST
     };
-    let spring = |i| Spring { ends: [i, (i + 1) % 8], rest_length: 0.35, ks: 30.0, kd: 0.1 };
+    let spring = |i| Spring::new([i, (i + 1) % 8], 0.35, 30.0).damped(0.1);
     ((0..8).map(particle).collect(), (0..8).map(spring).collect())
 }
 
@@ -59,6 +59,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         colliders: &(ground, box_),
         sinks: &sink,
         integrator: Method::Rk4.integrator(),
+        index: &(),
     })
 }
 

@@ -7,9 +7,9 @@ pub mod points;
 pub mod solids;
 
 use core::ops::Range;
-use pointmass::force::State;
+use pointmass::force::{Change, State};
 use pointmass::shape::{Line, Mesh, Shape};
-use pointmass::{Force, Heap, Method, Particle, Scene, Size, System, Time, Vec3};
+use pointmass::{Force, Heap, Integrator, Particle, Scene, Size, System, Time, Vec3};
 
 /// Standard gravity \[m/s²\].
 pub const G: f64 = 9.80665;
@@ -70,13 +70,24 @@ impl<F: Fn(f32, f32, f32) -> f32 + Sync> Force for Law<F> {
             total.x += state.mass[row] * (self.0)(t, x, v);
         }
     }
+
+    /// By central differences.
+    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+        const D: f32 = 1.0 / 128.0;
+        for (row, total) in total.iter_mut().enumerate() {
+            let (t, x, v) = (state.time.seconds(), state.position[row].x, state.velocity[row].x);
+            let by_x = ((self.0)(t, x + D, v) - (self.0)(t, x - D, v)) / (2.0 * D);
+            let by_v = ((self.0)(t, x, v + D) - (self.0)(t, x, v - D)) / (2.0 * D);
+            total.x += state.mass[row] * (by_x * change.position + by_v * change.velocity) * change.along[row].x;
+        }
+    }
 }
 
 /// Place and speed along x after `n` steps of `h` under `force`, from `x` and `v`.
 #[must_use]
-pub fn follow(method: Method, force: &dyn Force, [x, v]: [f64; 2], h: f64, n: u32) -> [f64; 2] {
+pub fn follow(integrator: impl Integrator, force: &dyn Force, [x, v]: [f64; 2], h: f64, n: u32) -> [f64; 2] {
     let start = [Particle { position: Vec3::X * x as f32, velocity: Vec3::X * v as f32, drag: 1.0, ..Particle::REST }];
-    let scene = Scene { start: &start, forces: force, integrator: method.integrator(), ..Scene::EMPTY };
+    let scene = Scene { start: &start, forces: force, integrator: &integrator, ..Scene::EMPTY };
     let mut system = started(&scene, 1, 0);
     run(&mut system, &scene, h, n);
     let particles = system.particles();

@@ -77,7 +77,7 @@ impl Integrator for Leapfrog {
         true
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
-        let Motion { position: x, velocity: v, start: [x0, v0], work } = motion;
+        let Motion { position: x, velocity: v, start: [x0, v0], work, .. } = motion;
         assert!(x0 == x && v0 == v, "the state at the beginning");
         let [_, _, _, a] = work.take();
         assert!(a.len() == x.len(), "it asked for four columns");
@@ -217,7 +217,7 @@ fn a_collider() {
 #[derive(Clone)]
 struct Arena {
     vectors: [Vec<Vec3>; 3],
-    numbers: [Vec<f32>; 4],
+    numbers: [Vec<f32>; 5],
     times: [Vec<Time>; 2],
     words: [Vec<u32>; 5],
     colors: Vec<[u8; 4]>,
@@ -246,7 +246,7 @@ impl Arena {
 impl Storage for Arena {
     fn slices(&mut self) -> Slices<'_> {
         let [position, velocity, work] = &mut self.vectors;
-        let [mass, inverse_mass, drag, elasticity] = &mut self.numbers;
+        let [mass, inverse_mass, drag, charge, elasticity] = &mut self.numbers;
         let [born, dies] = &mut self.times;
         let [serial, slot, row_of, last_spring, incident] = &mut self.words;
         Slices {
@@ -255,6 +255,7 @@ impl Storage for Arena {
             mass,
             inverse_mass,
             drag,
+            charge,
             elasticity,
             born,
             dies,
@@ -272,7 +273,7 @@ impl Storage for Arena {
     }
     fn columns(&self) -> Columns<'_> {
         let [position, velocity, work] = &self.vectors;
-        let [mass, inverse_mass, drag, elasticity] = &self.numbers;
+        let [mass, inverse_mass, drag, charge, elasticity] = &self.numbers;
         let [born, dies] = &self.times;
         let [serial, slot, row_of, last_spring, incident] = &self.words;
         Columns {
@@ -281,6 +282,7 @@ impl Storage for Arena {
             mass,
             inverse_mass,
             drag,
+            charge,
             elasticity,
             born,
             dies,
@@ -302,8 +304,7 @@ impl Storage for Arena {
 fn memory() {
     let start: Vec<Particle> =
         (0..6).map(|i| Particle { position: Vec3::X * i as f32, lifetime: 0.1 * i as f32, ..Particle::REST }).collect();
-    let springs: Vec<_> =
-        (0..5).map(|i| pointmass::Spring { ends: [i, i + 1], rest_length: 0.8, ks: 20.0, kd: 0.1 }).collect();
+    let springs: Vec<_> = (0..5).map(|i| pointmass::Spring::new([i, i + 1], 0.8, 20.0).damped(0.1)).collect();
     let emitters = (Helix, Emitter::new(point(Vec3::Y), 20.0));
     let (forces, floor) = ((Gravity::EARTH, Magnet), Plane { point: Vec3::NEG_Y, normal: Vec3::Y });
     let scene = Scene {
@@ -314,6 +315,7 @@ fn memory() {
         colliders: &floor,
         sinks: &(),
         integrator: &Leapfrog,
+        index: &(),
     };
     let size = Size { particles: 40, ..scene.size() };
     let mut arena = System::with(Arena::new(size));

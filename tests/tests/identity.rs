@@ -64,7 +64,7 @@ fn what_is_not_a_number_is_not_passed_on_by_mutual_gravity() {
 
 #[test]
 fn what_is_not_a_number_is_not_passed_on_by_springs() {
-    not_passed_on(&[Spring { ends: [0, 1], rest_length: 1.0, ks: 1.0, kd: 1.0 }], &());
+    not_passed_on(&[Spring::new([0, 1], 1.0, 1.0).damped(1.0)], &());
 }
 
 /// Of two sound particles and one that is not, the sound survive a step.

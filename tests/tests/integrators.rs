@@ -1,6 +1,9 @@
 //! The five methods against their theory: stability, values, order, energy.
 
-use pointmass::{Drag, Gravity, Measures, Method, Particle, Scene, Vec3};
+use pointmass::{
+    Adaptive, Drag, Embedded, Euler, Gravity, Implicit, Integrator, LectureMidpoint, Measures, Method, Midpoint,
+    Particle, Rk4, Scene, Symplectic, Vec3, Verlet,
+};
 use pointmass_tests::{G, Law, follow, often, order, run, started};
 
 /// The largest of some thousand steps' amplitudes near the end over the largest near the beginning.
@@ -96,6 +99,7 @@ fn an_oscillation_after_ten_seconds() {
         (Method::Midpoint, 0.378_467_403_7),
         (Method::Rk4, 0.408_096_657_1),
         (Method::Symplectic, 0.354_578_224_8),
+        (Method::Implicit, 0.172_892_663_6),
         (Method::Verlet, 0.400_451_500_1),
     ] {
         let [x, _] = follow(method, &Law(|_, x: f32, _| -4.0 * x), [1.0, 0.0], 0.05, 200);
@@ -127,7 +131,7 @@ fn starts() -> Vec<[f64; 2]> {
 }
 
 /// The errors of place and speed after 4 s in `n` steps, from every start.
-fn errors<F, D>(method: Method, law: F, double: D, n: u32) -> Vec<f64>
+fn errors<F, D>(integrator: &dyn Integrator, law: F, double: D, n: u32) -> Vec<f64>
 where
     F: Fn(f32, f32, f32) -> f32 + Sync,
     D: Fn(f64, f64, f64) -> f64 + Copy,
@@ -136,7 +140,7 @@ where
         |[x, v]: [f64; 2]| Particle { position: Vec3::X * x as f32, velocity: Vec3::X * v as f32, ..Particle::REST };
     let start: Vec<Particle> = starts().into_iter().map(begin).collect();
     let law = Law(law);
-    let scene = Scene { start: &start, forces: &law, integrator: method.integrator(), ..Scene::EMPTY };
+    let scene = Scene { start: &start, forces: &law, integrator, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 0);
     run(&mut system, &scene, 4.0 / f64::from(n), n);
     let p = system.particles();
@@ -147,58 +151,95 @@ where
     starts().into_iter().enumerate().flat_map(error).collect()
 }
 
-/// The order that a method shows on x'' = `law`, which must be given in both precisions.
-fn measured<F, D>(method: Method, law: F, double: D) -> f64
+/// A method, its order, and numbers of steps that are fine enough for the leading term of the error and coarse enough for
+/// that to be well above the rounding of f32.
+struct Case {
+    name: &'static str,
+    integrator: &'static dyn Integrator,
+    order: f64,
+    steps: [u32; 4],
+}
+
+const FINE: [u32; 4] = [640, 1280, 2560, 5120];
+const MEDIUM: [u32; 4] = [80, 120, 160, 240];
+const COARSE: [u32; 4] = [12, 16, 24, 32];
+
+/// The adaptive ones tolerate anything here, so that they take steps as they come.
+const CASES: [Case; 9] = [
+    Case { name: "euler", integrator: &Euler, order: 1.0, steps: FINE },
+    Case { name: "symplectic", integrator: &Symplectic, order: 1.0, steps: FINE },
+    Case { name: "midpoint", integrator: &Midpoint, order: 2.0, steps: MEDIUM },
+    Case { name: "verlet", integrator: &Verlet, order: 2.0, steps: MEDIUM },
+    Case { name: "rk4", integrator: &Rk4, order: 4.0, steps: COARSE },
+    Case { name: "implicit", integrator: &Implicit::USUAL, order: 1.0, steps: FINE },
+    Case {
+        name: "embedded",
+        integrator: &Embedded { tolerance: f32::INFINITY, ..Embedded::USUAL },
+        order: 3.0,
+        steps: [24, 32, 48, 64],
+    },
+    Case {
+        name: "adaptive(euler)",
+        integrator: &Adaptive { tolerance: f32::INFINITY, ..Adaptive::around(Euler) },
+        order: 1.0,
+        steps: FINE,
+    },
+    Case {
+        name: "adaptive(midpoint)",
+        integrator: &Adaptive { tolerance: f32::INFINITY, ..Adaptive::around(Midpoint) },
+        order: 2.0,
+        steps: [40, 60, 80, 120],
+    },
+];
+
+/// Checks every method's order on x'' = `law`, which must be given in both precisions.
+fn check_orders<F, D>(law: F, double: D)
 where
     F: Fn(f32, f32, f32) -> f32 + Sync + Copy,
     D: Fn(f64, f64, f64) -> f64 + Copy,
 {
-    // Fine enough for the leading term of the error, coarse enough that it is well above the rounding of f32.
-    let steps = match method {
-        Method::Euler | Method::Symplectic => [640, 1280, 2560, 5120],
-        Method::Midpoint | Method::Verlet => [80, 120, 160, 240],
-        Method::Rk4 => [12, 16, 24, 32],
-    };
-    let size = |n| errors(method, law, double, n).iter().map(|e| e * e).sum::<f64>().sqrt();
+    for Case { name, integrator, order, steps } in &CASES {
+        let p = measured(*integrator, *steps, law, double);
+        println!("{name}: {p:.3}");
+        assert!((p - order).abs() < 0.05, "{name}: {p}");
+    }
+}
+
+/// The order that a method shows.
+fn measured<F, D>(integrator: &dyn Integrator, steps: [u32; 4], law: F, double: D) -> f64
+where
+    F: Fn(f32, f32, f32) -> f32 + Sync + Copy,
+    D: Fn(f64, f64, f64) -> f64 + Copy,
+{
+    let size = |n| errors(integrator, law, double, n).iter().map(|e| e * e).sum::<f64>().sqrt();
     order(&steps.map(|n| 4.0 / f64::from(n)), &steps.map(size))
 }
 
-const ORDERS: [(Method, f64); 5] = [
-    (Method::Euler, 1.0),
-    (Method::Symplectic, 1.0),
-    (Method::Midpoint, 2.0),
-    (Method::Verlet, 2.0),
-    (Method::Rk4, 4.0),
-];
-
 #[test]
 fn order_on_a_pendulum() {
-    for (method, expected) in ORDERS {
-        let p = measured(method, |_, x, _| -x.sin(), |_, x, _| -x.sin());
-        println!("{method}: {p:.3}");
-        assert!((p - expected).abs() < 0.05, "{method}: {p}");
-    }
+    check_orders(|_, x, _| -x.sin(), |_, x, _| -x.sin());
 }
 
 #[test]
 fn order_with_a_force_that_depends_on_time() {
-    // As the lecture prints it, midpoint would evaluate at t and fall to order 1.
-    for (method, expected) in ORDERS {
-        let p = measured(method, |t, x, _| 0.5 * t.cos() - x.sin(), |t, x, _| 0.5 * t.cos() - x.sin());
-        println!("{method}: {p:.3}");
-        assert!((p - expected).abs() < 0.05, "{method}: {p}");
-    }
+    check_orders(|t, x, _| 0.5 * t.cos() - x.sin(), |t, x, _| 0.5 * t.cos() - x.sin());
+}
+
+#[test]
+fn the_lecture_s_midpoint_falls_to_order_1_with_such_a_force() {
+    let order = |law: fn(f32, f32) -> f32, double: fn(f64, f64) -> f64| {
+        measured(&LectureMidpoint, FINE, move |t, x, _| law(t, x), move |t, x, _| double(t, x))
+    };
+    let p = order(|t, x| 0.5 * t.cos() - x.sin(), |t, x| 0.5 * t.cos() - x.sin());
+    assert!((p - 1.0).abs() < 0.05, "{p}");
+    let still = measured(&LectureMidpoint, MEDIUM, |_, x, _| -x.sin(), |_, x, _| -x.sin());
+    assert!((still - 2.0).abs() < 0.05, "{still}");
 }
 
 #[test]
 fn order_with_a_force_that_depends_on_velocity() {
     // Verlet is given v + h a for the second evaluation; with v + h/2 a or the old v it would fall to order 1.
-    for (method, expected) in ORDERS {
-        let p =
-            measured(method, |_, x, v| -x.sin() - 0.2 * v - 0.1 * v * v, |_, x, v| -x.sin() - 0.2 * v - 0.1 * v * v);
-        println!("{method}: {p:.3}");
-        assert!((p - expected).abs() < 0.05, "{method}: {p}");
-    }
+    check_orders(|_, x, v| -x.sin() - 0.2 * v - 0.1 * v * v, |_, x, v| -x.sin() - 0.2 * v - 0.1 * v * v);
 }
 
 #[test]
@@ -247,6 +288,6 @@ fn methods_have_names() {
         assert_eq!(method.name().parse(), Ok(method));
         assert_eq!(method.to_string(), method.name());
     }
-    assert_eq!(Method::ALL.len(), 5);
+    assert_eq!(Method::ALL.len(), 9);
     assert!("rk5".parse::<Method>().is_err() && "".parse::<Method>().is_err());
 }

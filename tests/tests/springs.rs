@@ -11,7 +11,7 @@ fn at(x: f32) -> Particle {
 #[test]
 fn two_bodies_on_a_damped_spring() {
     let start = [at(0.0), Particle { mass: 3.0, ..at(1.2) }];
-    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 50.0, kd: 2.0 }];
+    let springs = [Spring::new([0, 1], 1.0, 50.0).damped(2.0)];
     for (method, n, tolerance) in [(Method::Rk4, 60, 2e-6), (Method::Verlet, 480, 2e-5), (Method::Midpoint, 480, 2e-5)]
     {
         let integrator = method.integrator();
@@ -36,7 +36,7 @@ fn critical_damping_does_not_overshoot() {
     for (fixed, critical) in [(true, 2.0 * k.sqrt()), (false, 2.0 * (0.5 * k).sqrt())] {
         for (share, overshoots) in [(0.8, true), (1.0, false), (1.5, false)] {
             let start = [Particle { fixed, ..at(0.0) }, at(1.5)];
-            let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: k, kd: share * critical }];
+            let springs = [Spring::new([0, 1], 1.0, k).damped(share * critical)];
             let integrator = Method::Rk4.integrator();
             let scene = Scene { start: &start, springs: &springs, integrator, ..Scene::EMPTY };
             let mut system = started(&scene, 2, 0);
@@ -57,7 +57,7 @@ fn chain(j: u32) -> (Vec<Particle>, Vec<Spring>) {
     let shape = |i: u32| 0.005 * (PI * f64::from(i * j) / 11.0).sin();
     let place = |i: u32| (0.1 * f64::from(i) + if i.is_multiple_of(11) { 0.0 } else { shape(i) }) as f32;
     let start = (0..12).map(|i: u32| Particle { mass: 0.1, fixed: i.is_multiple_of(11), ..at(place(i)) }).collect();
-    let springs = (0..11).map(|i| Spring { ends: [i, i + 1], rest_length: 0.1, ks: 100.0, kd: 0.0 }).collect();
+    let springs = (0..11).map(|i| Spring::new([i, i + 1], 0.1, 100.0)).collect();
     (start, springs)
 }
 
@@ -107,8 +107,7 @@ fn a_chain_s_largest_verlet_step() {
 fn a_rope_hangs_as_low_as_its_statics_say() {
     let start: Vec<Particle> =
         (0..=20).map(|i| Particle { mass: 0.05, drag: 0.2, fixed: i % 20 == 0, ..at(0.05 * i as f32) }).collect();
-    let springs: Vec<Spring> =
-        (0..20).map(|i| Spring { ends: [i, i + 1], rest_length: 0.06, ks: 200.0, kd: 0.5 }).collect();
+    let springs: Vec<Spring> = (0..20).map(|i| Spring::new([i, i + 1], 0.06, 200.0).damped(0.5)).collect();
     for (method, frames) in [(Method::Rk4, 120), (Method::Verlet, 240), (Method::Symplectic, 240)] {
         let (forces, integrator) = ((Gravity::EARTH, Drag {}), method.integrator());
         let scene = Scene { start: &start, springs: &springs, forces: &forces, integrator, ..Scene::EMPTY };
@@ -130,7 +129,7 @@ fn a_fixed_particle_never_moves() {
         Particle { fixed: true, velocity: Vec3::ONE, mass: 0.0, position: Vec3::new(0.1, 0.2, 0.3), ..Particle::REST },
         at(5.0),
     ];
-    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 30.0, kd: 1.0 }];
+    let springs = [Spring::new([0, 1], 1.0, 30.0).damped(1.0)];
     for &method in Method::ALL {
         let (forces, integrator) = ((Gravity::EARTH, Drag {}), method.integrator());
         let scene = Scene { start: &start, springs: &springs, forces: &forces, integrator, ..Scene::EMPTY };
@@ -146,7 +145,7 @@ fn a_fixed_particle_never_moves() {
 fn a_fixed_particle_outlives_whatever_pulls_at_it() {
     // The other end is so far away that the force overflows.
     let start = [Particle { fixed: true, ..at(0.0) }, at(1e30)];
-    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 1e20, kd: 0.0 }];
+    let springs = [Spring::new([0, 1], 1.0, 1e20)];
     let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 0);
     run(&mut system, &scene, 0.01, 3);
@@ -159,7 +158,7 @@ fn a_spring_that_loses_an_end_is_gone_and_counted_once() {
     // 0 dies after 0.1 s, 1 and 2 together after 0.2 s, 3 and 4 live.
     let lives = [0.1, 0.2, 0.2, 0.0, 0.0];
     let start: Vec<Particle> = (0..5).map(|i| Particle { lifetime: lives[i], ..at(2.0 * i as f32) }).collect();
-    let spring = |a, b| Spring { ends: [a, b], rest_length: 1.0, ks: 1.0, kd: 0.0 };
+    let spring = |a, b| Spring::new([a, b], 1.0, 1.0);
     let springs = [spring(0, 1), spring(1, 2), spring(3, 0), spring(2, 3), spring(3, 4)];
     let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
     let mut system = started(&scene, 5, 0);
@@ -185,7 +184,7 @@ fn a_spring_that_loses_an_end_is_gone_and_counted_once() {
 #[test]
 fn a_spring_whose_end_is_removed_by_hand_is_counted_too() {
     let start = [at(0.0), at(2.0)];
-    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 1.0, kd: 0.0 }];
+    let springs = [Spring::new([0, 1], 1.0, 1.0)];
     let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 0);
     let id = system.id(0).expect("it is there");
@@ -198,7 +197,7 @@ fn a_spring_whose_end_is_removed_by_hand_is_counted_too() {
 #[test]
 fn a_spring_from_a_particle_to_itself_does_nothing() {
     let start = [Particle { lifetime: 0.5, ..at(1.0) }];
-    let springs = [Spring { ends: [0, 0], rest_length: 1.0, ks: 1.0, kd: 1.0 }];
+    let springs = [Spring::new([0, 0], 1.0, 1.0).damped(1.0)];
     let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
     let mut system = started(&scene, 1, 0);
     system.step(&scene, Time::from_seconds(0.25));
@@ -210,7 +209,7 @@ fn a_spring_from_a_particle_to_itself_does_nothing() {
 #[test]
 fn a_spring_to_a_particle_that_found_no_room_is_counted() {
     let start = [at(0.0), at(2.0), at(4.0)];
-    let spring = |a, b| Spring { ends: [a, b], rest_length: 1.0, ks: 1.0, kd: 0.0 };
+    let spring = |a, b| Spring::new([a, b], 1.0, 1.0);
     let springs = [spring(0, 1), spring(1, 2), spring(7, 0)];
     let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 0);
@@ -224,7 +223,7 @@ fn a_spring_to_a_particle_that_found_no_room_is_counted() {
 #[test]
 fn a_newborn_in_a_dead_one_s_place_is_not_attached() {
     let start = [Particle { lifetime: 0.1, ..at(0.0) }, Particle { mass: 2.0, ..at(2.0) }];
-    let springs = [Spring { ends: [0, 1], rest_length: 1.0, ks: 5.0, kd: 0.0 }];
+    let springs = [Spring::new([0, 1], 1.0, 5.0)];
     let emitter = Emitter { start: 0.5, ..Emitter::new(point(Vec3::Y * 9.0), 10.0) };
     let scene = Scene { start: &start, springs: &springs, emitters: &emitter, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 0);
@@ -243,7 +242,7 @@ fn a_newborn_in_a_dead_one_s_place_is_not_attached() {
 fn a_newborn_is_not_taken_for_a_particle_that_the_start_lacks() {
     // The spring names particle 2, but the start has only 0 and 1; the first newborn comes third into the system.
     let start = [at(0.0), at(2.0)];
-    let springs = [Spring { ends: [1, 2], rest_length: 1.0, ks: 5.0, kd: 0.0 }];
+    let springs = [Spring::new([1, 2], 1.0, 5.0)];
     let emitter = Emitter::new(point(Vec3::Y * 9.0), 10.0);
     let scene = Scene { start: &start, springs: &springs, emitters: &emitter, ..Scene::EMPTY };
     let mut system = started(&scene, 10, 0);
@@ -257,7 +256,7 @@ fn the_order_of_the_springs_is_a_matter_of_rounding() {
     let mut random = Random::new(8);
     let start: Vec<Particle> = (0..30).map(|_| Particle { position: random.vector(1.0), ..Particle::REST }).collect();
     let springs: Vec<Spring> =
-        (0..60).map(|i| Spring { ends: [i % 30, (i * 11 + 1) % 30], rest_length: 0.4, ks: 9.0, kd: 0.2 }).collect();
+        (0..60).map(|i| Spring::new([i % 30, (i * 11 + 1) % 30], 0.4, 9.0).damped(0.2)).collect();
     let end = |springs: &[Spring]| {
         let scene = Scene { start: &start, springs, integrator: Method::Verlet.integrator(), ..Scene::EMPTY };
         let mut system = started(&scene, 30, 0);

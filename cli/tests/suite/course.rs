@@ -138,7 +138,7 @@ fn opposites_keep_their_energy() {
     // each, at random, at speeds up to 2.3 times the first.
     let rounding = 5e-6;
     for (method, known) in [(Method::Symplectic, 2.9e-2), (Method::Verlet, 1.5e-3), (Method::Rk4, 2.5e-6)] {
-        model.integrator = method;
+        model.integrator = method.into();
         let mut system = begun(&model, 2);
         let start = energy(&system);
         let (mut worst, mut measured) = (0f64, 0f64);

@@ -2,9 +2,10 @@
 
 use pointmass::emit::{Burst, Emitter, Spread, Varied};
 use pointmass::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
+use pointmass::index::Structure;
 use pointmass::scene::{Camera, Files, Group, Item, Light, Material, Run, SceneFile};
 use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
-use pointmass::{Method, Particle, Vec3};
+use pointmass::{Method, Particle, Tuning, Vec3};
 use proptest::array::{uniform3, uniform4};
 use proptest::collection::vec;
 use proptest::num::f32 as kinds;
@@ -269,7 +270,7 @@ pub(crate) fn scene() -> impl Strategy<Value = SceneFile> {
         let number = |end: u16| u32::from(end).checked_rem(scene.particles.len() as u32);
         let spring = |(ends, [rest_length, ks, kd]): ([u16; 2], [f32; 3])| {
             let ends = [number(ends[0])?, number(ends[1])?];
-            Some(Spring { ends, rest_length, ks, kd })
+            Some(Spring::new(ends, rest_length, ks).damped(kd))
         };
         scene.springs = springs.into_iter().filter_map(spring).collect();
         scene.emitters = sources.into_iter().map(|source| emitter(source, count)).collect();
@@ -331,8 +332,24 @@ fn any_emitter() -> impl Strategy<Value = Emitter<String>> {
 
 fn run() -> impl Strategy<Value = Run> {
     let method = select(Method::ALL.to_vec());
-    (0.0f64..1e6, 1e-6f64..10.0, method, any::<u64>(), any::<u32>())
-        .prop_map(|(duration, dt, integrator, seed, capacity)| Run { duration, dt, integrator, seed, capacity })
+    let index = select(Structure::ALL.to_vec());
+    let tuning = (1e-9f32..1.0, 1u32..9, 1u32..1000).prop_map(|(tolerance, newton, iterations)| Tuning {
+        tolerance,
+        newton,
+        iterations,
+        ..Tuning::DEFAULT
+    });
+    (0.0f64..1e6, 1e-6f64..10.0, method, (tuning, index), any::<u64>(), any::<u32>()).prop_map(
+        |(duration, dt, integrator, (tuning, index), seed, capacity)| Run {
+            duration,
+            dt,
+            integrator,
+            tuning,
+            index,
+            seed,
+            capacity,
+        },
+    )
 }
 
 /// A scene of which `.scn` may not be able to say all. Everything in it can be used.

@@ -117,10 +117,7 @@ fn everything() -> SceneFile {
             Particle { mass: 0.0, fixed: true, lifetime: -1.0, material: Some(0), ..still },
             Particle { position: v(1e-3, 0.0, 0.0), mass: 2.0, ..still },
         ],
-        springs: vec![
-            Spring { ends: [2, 0], rest_length: 1.0, ks: 100.0, kd: 2.0 },
-            Spring { ends: [0, 1], rest_length: 0.0, ks: -1.0, kd: 0.0 },
-        ],
+        springs: vec![Spring::new([2, 0], 1.0, 100.0).damped(2.0), Spring::new([0, 1], 0.0, -1.0)],
         emitters,
         forces: vec![
             ForceKind::Gravity(Gravity { acceleration: v(0.0, -9.8, 0.0) }),

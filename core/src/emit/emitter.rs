@@ -69,6 +69,9 @@ pub struct Emitter<M> {
     /// Coefficient of linear drag \[kg/s\].
     #[cfg_attr(feature = "serde", serde(default))]
     pub drag: Varied,
+    /// Electric charge \[C\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub charge: Varied,
     /// Share of the normal speed kept in a hit.
     #[cfg_attr(feature = "serde", serde(default = "half"))]
     pub elasticity: Varied,
@@ -130,6 +133,7 @@ impl<M> Emitter<M> {
             mass: Varied::exactly(1.0),
             fixed: false,
             drag: Varied::exactly(0.0),
+            charge: Varied::exactly(0.0),
             elasticity: Varied::exactly(0.5),
             lifetime: Varied::exactly(0.0),
             material: None,
@@ -201,6 +205,7 @@ impl<M: Surface> Emitter<M> {
             mass: self.mass.pick(|| random.units(3)[0]),
             fixed: self.fixed,
             drag: self.drag.pick(|| random.units(3)[1]),
+            charge: self.charge.pick(|| random.units(7)[0]),
             elasticity: self.elasticity.pick(|| random.units(4)[0]),
             lifetime: self.lifetime.pick(|| random.units(4)[1]),
             material: self.material,

@@ -14,9 +14,11 @@ pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
 pub use sink::Sink;
-pub use spring::{Spring, Springs};
+pub(crate) use spring::is_broken;
+pub use spring::{Drive, Held, Spring, Springs};
 
-use crate::index::BarnesHut;
+use crate::index::{Arrange, BarnesHut, SpatialIndex};
+use crate::math::max;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -35,6 +37,21 @@ pub trait Force: Sync {
         Needs::default()
     }
 
+    /// Adds how the force on each particle changes as they move: (∂f/∂x) δx + (∂f/∂v) δv \[N\], for methods that solve for
+    /// the state at a step's end. All rows at once.
+    ///
+    /// It has to be symmetric and must not push what is displaced any farther (negative semidefinite), so parts that do
+    /// are left out. A force that leaves it out altogether is taken as constant over the step, as an explicit method would.
+    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+        let _ = (state, change, total);
+    }
+
+    /// Adds the diagonal of −(`weights[0]` ∂f/∂x + `weights[1]` ∂f/∂v), by row: what the solver is preconditioned with. Any
+    /// numbers of zero and more will do; good ones save iterations.
+    fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
+        let _ = (state, weights, total);
+    }
+
     /// Potential energy \[J\]; zero for forces that have none. For reports: in double precision, and so with the
     /// feature `std` only, since a chip without such hardware would carry its emulation about for nothing.
     #[cfg(feature = "std")]
@@ -42,6 +59,49 @@ pub trait Force: Sync {
         let _ = state;
         0.0
     }
+
+    /// Power \[W\] that it brings into kinetic and its own potential energy taken together: below zero for what slows
+    /// things down, zero for a force that is the slope of its energy.
+    #[cfg(feature = "std")]
+    fn power(&self, state: &State<'_>) -> f64 {
+        let _ = state;
+        0.0
+    }
+
+    /// What it is called in reports.
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "force"
+    }
+
+    /// Visits every part with its name, energy and power.
+    #[cfg(feature = "std")]
+    fn account(&self, state: &State<'_>, visit: &mut dyn FnMut(Entry)) {
+        visit(Entry { name: self.name(), energy: self.energy(state), power: self.power(state) });
+    }
+}
+
+/// A force in the accounts.
+#[cfg(feature = "std")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name.
+    pub name: &'static str,
+    /// Its potential energy \[J\].
+    pub energy: f64,
+    /// The power \[W\] that it brings into the system.
+    pub power: f64,
+}
+
+/// A small change of the particles: δx = `position` × `along`, δv = `velocity` × `along`.
+#[derive(Clone, Copy, Debug)]
+pub struct Change<'a> {
+    /// A vector a row.
+    pub along: &'a [Vec3],
+    /// How far positions go along it.
+    pub position: f32,
+    /// How far velocities go along it.
+    pub velocity: f32,
 }
 
 /// Sorts points with weights into memory; none if there is too little.
@@ -53,24 +113,32 @@ pub struct Needs {
     /// [`State::tree`], and what makes it: [`BarnesHut::grow`]. A function, so that a program with no force that names it
     /// does not carry it about.
     pub tree: Option<Grow>,
+    /// The radius within which [`State::near`] is asked for neighbours \[m\]; zero: it is not.
+    pub reach: f32,
 }
 
 impl Needs {
     /// What two forces need.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        Self { tree: self.tree.or(other.tree) }
+        Self { tree: self.tree.or(other.tree), reach: max(self.reach, other.reach) }
     }
 
-    /// Vectors for each particle that it takes to work it out.
+    /// Vectors for each particle that the tree takes.
     #[must_use]
-    pub const fn columns(self) -> usize {
+    pub const fn tree_columns(self) -> usize {
         if self.tree.is_some() { BarnesHut::COLUMNS } else { 0 }
+    }
+
+    /// Vectors for each particle that it takes to work it all out, neighbours by `index`.
+    #[must_use]
+    pub fn columns(self, index: &dyn Arrange) -> usize {
+        self.tree_columns() + if self.reach > 0.0 { index.columns() } else { 0 }
     }
 }
 
 /// The particles as a force sees them: one entry a row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct State<'a> {
     /// The instant.
     pub time: Time,
@@ -82,88 +150,108 @@ pub struct State<'a> {
     pub mass: &'a [f32],
     /// Coefficients of linear drag \[kg/s\].
     pub drag: &'a [f32],
+    /// Charges \[C\].
+    pub charge: &'a [f32],
     /// The springs between them.
     pub springs: Springs<'a>,
+    /// Them in an index, while a step is made, if a force asks for neighbours and the scene has one.
+    pub near: Option<&'a dyn SpatialIndex>,
     /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
     pub tree: Option<&'a BarnesHut<'a>>,
 }
 
 impl Force for () {
     fn add_to(&self, _: &State<'_>, _: Range<usize>, _: &mut [Vec3]) {}
+    #[cfg(feature = "std")]
+    fn account(&self, _: &State<'_>, _: &mut dyn FnMut(Entry)) {}
+}
+
+/// What has parts is their sum.
+macro_rules! sum_of {
+    ($this:ident => $parts:expr) => {
+        fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+            let $this = self;
+            for part in $parts {
+                part.add_to(state, rows.clone(), total);
+            }
+        }
+        fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+            let $this = self;
+            for part in $parts {
+                part.add_jacobian(state, change, total);
+            }
+        }
+        fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
+            let $this = self;
+            for part in $parts {
+                part.add_stiffness(state, weights, total);
+            }
+        }
+        fn needs(&self) -> Needs {
+            let $this = self;
+            let mut needs = Needs::default();
+            for part in $parts {
+                needs = needs.and(part.needs());
+            }
+            needs
+        }
+        #[cfg(feature = "std")]
+        fn energy(&self, state: &State<'_>) -> f64 {
+            let $this = self;
+            let mut sum = 0.0;
+            for part in $parts {
+                sum += part.energy(state);
+            }
+            sum
+        }
+        #[cfg(feature = "std")]
+        fn power(&self, state: &State<'_>) -> f64 {
+            let $this = self;
+            let mut sum = 0.0;
+            for part in $parts {
+                sum += part.power(state);
+            }
+            sum
+        }
+        #[cfg(feature = "std")]
+        fn account(&self, state: &State<'_>, visit: &mut dyn FnMut(Entry)) {
+            let $this = self;
+            for part in $parts {
+                part.account(state, visit);
+            }
+        }
+    };
 }
 
 impl<T: Force + ?Sized> Force for &T {
-    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        (**self).add_to(state, rows, total);
-    }
-    fn needs(&self) -> Needs {
-        (**self).needs()
-    }
-    #[cfg(feature = "std")]
-    fn energy(&self, state: &State<'_>) -> f64 {
-        (**self).energy(state)
-    }
+    sum_of!(this => [*this]);
 }
 
 impl<T: Force> Force for [T] {
-    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        for force in self {
-            force.add_to(state, rows.clone(), total);
-        }
-    }
-    fn needs(&self) -> Needs {
-        self.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()))
-    }
-    #[cfg(feature = "std")]
-    fn energy(&self, state: &State<'_>) -> f64 {
-        self.iter().map(|force| force.energy(state)).sum()
-    }
+    sum_of!(this => this);
 }
 
-/// Everything that holds a slice is what the slice is.
-macro_rules! lists {
-    ($($(#[$when:meta])* [$($generics:tt)*] $list:ty;)+) => {$(
-        $(#[$when])*
-        impl<$($generics)*> Force for $list {
-            fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-                self.as_slice().add_to(state, rows, total);
-            }
-            fn needs(&self) -> Needs {
-                self.as_slice().needs()
-            }
-            #[cfg(feature = "std")]
-            fn energy(&self, state: &State<'_>) -> f64 {
-                self.as_slice().energy(state)
-            }
-        }
-    )+};
+impl<T: Force, const N: usize> Force for [T; N] {
+    sum_of!(this => this);
 }
-lists! {
-    [T: Force, const N: usize] [T; N];
-    [T: Force, const N: usize] heapless::Vec<T, N>;
-    #[cfg(feature = "alloc")]
-    [T: Force] alloc::vec::Vec<T>;
+
+impl<T: Force, const N: usize> Force for heapless::Vec<T, N> {
+    sum_of!(this => this);
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Force> Force for alloc::vec::Vec<T> {
+    sum_of!(this => this);
 }
 
 macro_rules! tuples {
     ($($name:ident)+) => {
         impl<$($name: Force),+> Force for ($($name,)+) {
-            fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+            sum_of!(this => {
                 #[allow(non_snake_case)]
-                let ($($name,)+) = self;
-                $($name.add_to(state, rows.clone(), total);)+
-            }
-            fn needs(&self) -> Needs {
-                #[allow(non_snake_case)]
-                let ($($name,)+) = self;
-                Needs::default()$(.and($name.needs()))+
-            }
-            #[cfg(feature = "std")]
-            fn energy(&self, state: &State<'_>) -> f64 {
-                #[allow(non_snake_case)]
-                let ($($name,)+) = self;
-                0.0 $(+ $name.energy(state))+
-            }
+                let ($($name,)+) = this;
+                [$($name as &dyn Force),+]
+            });
         }
     };
 }

@@ -52,7 +52,7 @@ impl Force for MutualGravity {
     }
 
     fn needs(&self) -> Needs {
-        Needs { tree: (self.theta > 0.0).then_some(BarnesHut::grow) }
+        Needs { tree: (self.theta > 0.0).then_some(BarnesHut::grow), ..Needs::default() }
     }
 
     #[cfg(feature = "std")]

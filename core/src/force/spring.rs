@@ -1,14 +1,15 @@
 //! Damped springs between particles of the scene's start.
 
-use super::{Force, State};
-use crate::math::length;
+use super::{Change, Force, State};
+use crate::math::{length, max, sin_cos_turns};
+use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
 
 /// A damped spring: on its first end acts k (d − rest) + kd (v₂ − v₁)·d̂ toward the second, and the opposite on that.
 ///
 /// It damps along itself only. A spring whose ends coincide has no direction and does nothing; one that has lost an
-/// end does nothing either.
+/// end, or is broken, does nothing either.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -22,6 +23,83 @@ pub struct Spring {
     /// Damping kd \[N s/m\].
     #[cfg_attr(feature = "serde", serde(default))]
     pub kd: f32,
+    /// What changes its rest length over time, as a muscle does.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub drive: Option<Drive>,
+    /// It breaks, for ever, where a step ends with it so many times as long as at rest.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub breaks_at: Option<f32>,
+}
+
+/// A rest length that swings: rest × (1 + amplitude sin 2π (frequency t + phase)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Drive {
+    /// As a share of the rest length.
+    pub amplitude: f32,
+    /// Swings per second \[Hz\].
+    pub frequency: f32,
+    /// Where it begins, in turns: a quarter is the longest.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub phase: f32,
+}
+
+impl Drive {
+    /// Sine and cosine of its angle. The phase is counted in whole numbers, so it does not fade as time goes on.
+    fn angle(&self, time: Time) -> (f32, f32) {
+        sin_cos_turns(time.turns(self.frequency) + self.phase)
+    }
+}
+
+impl Spring {
+    /// A spring that does not damp, swing or break.
+    #[must_use]
+    pub const fn new(ends: [u32; 2], rest_length: f32, ks: f32) -> Self {
+        Self { ends, rest_length, ks, kd: 0.0, drive: None, breaks_at: None }
+    }
+
+    /// The same with a damping \[N s/m\].
+    #[must_use]
+    pub const fn damped(self, kd: f32) -> Self {
+        Self { kd, ..self }
+    }
+
+    /// Its rest length at an instant \[m\].
+    #[must_use]
+    pub fn rest(&self, time: Time) -> f32 {
+        self.drive.map_or(self.rest_length, |drive| self.rest_length * (1.0 + drive.amplitude * drive.angle(time).0))
+    }
+
+    /// How fast its rest length grows at an instant \[m/s\].
+    #[cfg(feature = "std")]
+    fn lengthening(&self, time: Time) -> f64 {
+        self.drive.map_or(0.0, |drive| {
+            let turning = f64::from(drive.frequency) * core::f64::consts::TAU;
+            f64::from(self.rest_length) * f64::from(drive.amplitude) * turning * f64::from(drive.angle(time).1)
+        })
+    }
+
+    /// Whether it holds, as number `number` of the scene's list, but is stretched beyond what it bears.
+    pub(crate) fn is_overstretched(&self, number: usize, state: &State<'_>) -> bool {
+        let (Some(ratio), table) = (self.breaks_at, state.springs) else { return false };
+        let rows = table.row(self.ends[0]).zip(table.row(self.ends[1])).filter(|_| !table.is_broken(number));
+        rows.is_some_and(|(a, b)| length(state.position[b] - state.position[a]) > ratio * self.rest(state.time))
+    }
+
+    /// Stiffness along it and across it \[N/m\] at a length. A spring that is pressed would push sideways; that is left out,
+    /// so that no mode is unstable (Choi and Ko, "Stable but Responsive Cloth", SIGGRAPH 2002).
+    fn stiffness(&self, d: f32, time: Time) -> [f32; 2] {
+        [max(self.ks, 0.0), max(self.ks * (1.0 - self.rest(time) / d), 0.0)]
+    }
+}
+
+/// Marks a broken spring in the lists of its ends.
+const BROKEN: u32 = 1 << 31;
+
+/// Whether an entry in a list of springs is that of a broken one.
+pub(crate) const fn is_broken(entry: u32) -> bool {
+    entry & BROKEN != 0
 }
 
 /// The scene's springs and where their ends are now.
@@ -37,16 +115,32 @@ pub struct Springs<'a> {
     pub(crate) incident: &'a [u32],
 }
 
+/// A spring that holds, where it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<'a> {
+    /// Its place in the scene's list.
+    pub number: usize,
+    /// Itself.
+    pub spring: &'a Spring,
+    /// The rows of its ends.
+    pub rows: [usize; 2],
+}
+
 impl<'a> Springs<'a> {
-    /// The springs at the particle in `row`, each with the number of its other end.
+    /// Where the list of a particle's springs lies, by its number.
+    fn list(last_spring: &[u32], number: u32) -> Range<usize> {
+        let n = number as usize;
+        let first = n.checked_sub(1).map_or(Some(0), |before| last_spring.get(before).copied());
+        let last = last_spring.get(n).copied();
+        first.zip(last).map_or(0..0, |(first, last)| first as usize..last as usize)
+    }
+
+    /// The springs that hold at the particle in `row`, each with the number of its other end.
     fn at(&self, row: usize) -> impl Iterator<Item = (&'a Spring, u32)> {
         let Self { springs, incident, last_spring, .. } = *self;
         let number = self.serial.get(row).copied().filter(|&number| self.row(number) == Some(row));
-        let range = number.and_then(|n| {
-            let first = if n == 0 { 0 } else { *last_spring.get(n as usize - 1)? };
-            Some(first as usize..*last_spring.get(n as usize)? as usize)
-        });
-        let list = range.and_then(|range| incident.get(range)).unwrap_or_default();
+        let list = number.and_then(|number| incident.get(Self::list(last_spring, number))).unwrap_or_default();
+        // A broken spring's number is beyond them all.
         list.iter().filter_map(move |&i| springs.get(i as usize)).map(move |spring| {
             let [a, b] = spring.ends;
             (spring, if Some(a) == number { b } else { a })
@@ -54,19 +148,37 @@ impl<'a> Springs<'a> {
     }
 
     /// The row of the particle that was number `number` at the start, if it lives.
-    fn row(&self, number: u32) -> Option<usize> {
+    #[must_use]
+    pub fn row(&self, number: u32) -> Option<usize> {
         // The start was put in first, so its slots are its numbers; a slot given again has another serial, and beyond
         // those that found room there are none.
         let row = *self.row_of.get(number as usize)? as usize;
         (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
     }
 
-    /// The rows of both ends of every spring that still has them.
-    pub fn ends(&self) -> impl Iterator<Item = [usize; 2]> {
-        self.springs.iter().filter_map(|spring| Some([self.row(spring.ends[0])?, self.row(spring.ends[1])?]))
+    /// Whether the spring of this number in the scene's list is broken.
+    #[must_use]
+    pub fn is_broken(&self, number: usize) -> bool {
+        let Some(spring) = self.springs.get(number) else { return false };
+        let list = self.incident.get(Self::list(self.last_spring, spring.ends[0])).unwrap_or_default();
+        list.contains(&(number as u32 | BROKEN))
     }
 
-    /// How many springs the particle in `row` holds whose other end lives.
+    /// The springs that hold.
+    pub fn held(&self) -> impl Iterator<Item = Held<'a>> {
+        let this = *self;
+        this.springs.iter().enumerate().filter_map(move |(number, spring)| {
+            let rows = [this.row(spring.ends[0])?, this.row(spring.ends[1])?];
+            (!this.is_broken(number)).then_some(Held { number, spring, rows })
+        })
+    }
+
+    /// The rows of both ends of every spring that holds.
+    pub fn ends(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.held().map(|held| held.rows)
+    }
+
+    /// How many springs hold the particle in `row`.
     pub(crate) fn held_by(&self, row: usize) -> u64 {
         let other_row = |(_, other)| self.row(other).filter(|&other| other != row);
         self.at(row).filter_map(other_row).count() as u64
@@ -87,7 +199,7 @@ impl Force for Springs<'_> {
                 if d > 0.0 {
                     let along = toward / d;
                     let closing = (state.velocity[other] - state.velocity[row]).dot(along);
-                    let pull = spring.ks * (d - spring.rest_length) + spring.kd * closing;
+                    let pull = spring.ks * (d - spring.rest(state.time)) + spring.kd * closing;
                     // An end that is not finite goes at the end of the step, and goes alone.
                     *total += if pull.abs() < f32::INFINITY { along * pull } else { Vec3::ZERO };
                 }
@@ -95,16 +207,103 @@ impl Force for Springs<'_> {
         }
     }
 
+    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+        for (row, total) in total.iter_mut().enumerate() {
+            for (spring, other) in self.at(row) {
+                let Some(other) = self.row(other) else { continue };
+                let toward = state.position[other] - state.position[row];
+                let d = length(toward);
+                if d > 0.0 {
+                    let along = toward / d;
+                    let [ks, across] = spring.stiffness(d, state.time);
+                    let apart = change.along[other] - change.along[row];
+                    let axial = (ks - across) * change.position + max(spring.kd, 0.0) * change.velocity;
+                    *total += along * (axial * apart.dot(along)) + apart * (across * change.position);
+                }
+            }
+        }
+    }
+
+    fn add_stiffness(&self, state: &State<'_>, [position, velocity]: [f32; 2], total: &mut [Vec3]) {
+        for (row, total) in total.iter_mut().enumerate() {
+            for (spring, other) in self.at(row) {
+                let Some(other) = self.row(other) else { continue };
+                let toward = state.position[other] - state.position[row];
+                let d = length(toward);
+                if d > 0.0 {
+                    let along = toward / d;
+                    let [ks, across] = spring.stiffness(d, state.time);
+                    let axial = (ks - across) * position + max(spring.kd, 0.0) * velocity;
+                    *total += along * along * axial + Vec3::splat(across * position);
+                }
+            }
+        }
+    }
+
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
-        let ends = |s: &Spring| Some((self.row(s.ends[0])?, self.row(s.ends[1])?));
-        let stored = |s: &Spring| {
-            let (a, b) = ends(s)?;
-            let d = (state.position[a] - state.position[b]).to_array().map(f64::from);
-            let stretch = libm::sqrt(d.iter().map(|d| d * d).sum()) - f64::from(s.rest_length);
-            Some(0.5 * f64::from(s.ks) * stretch * stretch)
+        let stored = |held: Held<'_>| {
+            let stretch = held.pose(state).0 - f64::from(held.spring.rest(state.time));
+            0.5 * f64::from(held.spring.ks) * stretch * stretch
         };
-        self.springs.iter().filter_map(stored).sum()
+        self.held().map(stored).sum()
+    }
+
+    /// What damping takes, and what drives give.
+    #[cfg(feature = "std")]
+    fn power(&self, state: &State<'_>) -> f64 {
+        self.damping(state) + self.driving(state)
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "springs"
+    }
+
+    #[cfg(feature = "std")]
+    fn account(&self, state: &State<'_>, visit: &mut dyn FnMut(super::Entry)) {
+        visit(super::Entry { name: "springs", energy: self.energy(state), power: 0.0 });
+        visit(super::Entry { name: "spring damping", energy: 0.0, power: self.damping(state) });
+        visit(super::Entry { name: "spring drives", energy: 0.0, power: self.driving(state) });
+    }
+}
+
+#[cfg(feature = "std")]
+impl Springs<'_> {
+    fn damping(&self, state: &State<'_>) -> f64 {
+        self.held().map(|held| -f64::from(held.spring.kd) * held.pose(state).1 * held.pose(state).1).sum()
+    }
+
+    /// The power by which rest lengths change: −k (d − rest) rest'.
+    fn driving(&self, state: &State<'_>) -> f64 {
+        let given = |held: Held<'_>| {
+            let Held { spring, .. } = held;
+            let stretch = held.pose(state).0 - f64::from(spring.rest(state.time));
+            -f64::from(spring.ks) * stretch * spring.lengthening(state.time)
+        };
+        self.held().filter(|held| held.spring.drive.is_some()).map(given).sum()
+    }
+}
+
+#[cfg(feature = "std")]
+impl Held<'_> {
+    /// Its length \[m\] and how fast that grows \[m/s\].
+    fn pose(&self, state: &State<'_>) -> (f64, f64) {
+        let [a, b] = self.rows;
+        let f = |v: Vec3| v.to_array().map(f64::from);
+        let (d, v) = ([f(state.position[a]), f(state.position[b])], [f(state.velocity[a]), f(state.velocity[b])]);
+        let apart: [f64; 3] = core::array::from_fn(|i| d[1][i] - d[0][i]);
+        let length = libm::sqrt(apart.iter().map(|x| x * x).sum());
+        let opening: f64 = apart.iter().zip(v[0].iter().zip(v[1])).map(|(x, (a, b))| x * (b - a)).sum();
+        (length, if length > 0.0 { opening / length } else { 0.0 })
+    }
+}
+
+/// Marks a spring as broken in the lists of both ends.
+pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], incident: &mut [u32]) {
+    for end in spring.ends {
+        let list = incident.get_mut(Springs::list(last_spring, end)).unwrap_or_default();
+        list.iter_mut().filter(|entry| **entry == number as u32).for_each(|entry| *entry |= BROKEN);
     }
 }
 

@@ -26,6 +26,7 @@
 //! Whatever works through all points (`counts`, `neighbours`, `pairs`, `all_nearest`) is several times faster than as many
 //! single queries, since near points share their way through the structure.
 
+mod arrange;
 mod barnes_hut;
 mod brute;
 mod bsp;
@@ -41,6 +42,7 @@ mod sorted;
 mod structure;
 mod tree;
 
+pub use arrange::{Arrange, InGrid, InKd};
 #[cfg(feature = "std")]
 pub use barnes_hut::FieldError;
 pub use barnes_hut::{BarnesHut, Opening};

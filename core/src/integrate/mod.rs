@@ -1,15 +1,26 @@
 //! Newton's second law, stepped through time: one file a method.
 
+mod adaptive;
+mod embedded;
 mod euler;
+mod implicit;
 mod midpoint;
+mod named;
 mod rk4;
 mod verlet;
 
+pub use adaptive::Adaptive;
+pub use embedded::Embedded;
 pub use euler::{Euler, Symplectic};
-pub use midpoint::Midpoint;
+pub use implicit::Implicit;
+pub use midpoint::{LectureMidpoint, Midpoint};
+pub use named::{Method, Tuned, Tuning, UnknownMethod};
 pub use rk4::Rk4;
 pub use verlet::Verlet;
 
+use crate::force::{Change, Force, State};
+use crate::math::{length, max};
+use crate::report::Effort;
 pub(crate) use crate::rows::{add_scaled, advance_by};
 use crate::time::Time;
 use glam::Vec3;
@@ -20,6 +31,44 @@ pub trait Dynamics {
     ///
     /// All slices are equally long. Costs one evaluation of all forces.
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]);
+
+    /// Calls `then` with the forces about a state, to be asked how they change near it.
+    fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>));
+
+    /// Says that a method which divides the step has come so far: for those who watch.
+    fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
+        let _ = (time, position, velocity);
+    }
+}
+
+/// The forces about a state.
+pub struct Linear<'a> {
+    /// All of them.
+    pub forces: &'a dyn Force,
+    /// The state.
+    pub state: State<'a>,
+    /// Inverse masses \[1/kg\], by row; zero for what is fixed.
+    pub inverse_mass: &'a [f32],
+}
+
+impl Linear<'_> {
+    /// The force on every particle \[N\].
+    pub fn force(&self, total: &mut [Vec3]) {
+        total.fill(Vec3::ZERO);
+        self.forces.add_to(&self.state, 0..total.len(), total);
+    }
+
+    /// How it changes with the state \[N\]: [`Force::add_jacobian`].
+    pub fn jacobian(&self, change: &Change<'_>, total: &mut [Vec3]) {
+        total.fill(Vec3::ZERO);
+        self.forces.add_jacobian(&self.state, change, total);
+    }
+
+    /// The diagonal of that, its sign turned round: [`Force::add_stiffness`].
+    pub fn stiffness(&self, weights: [f32; 2], total: &mut [Vec3]) {
+        total.fill(Vec3::ZERO);
+        self.forces.add_stiffness(&self.state, weights, total);
+    }
 }
 
 /// A method to solve the equations of motion. It keeps no state of its own.
@@ -47,6 +96,11 @@ pub struct Motion<'a> {
     pub start: [&'a [Vec3]; 2],
     /// Columns to work with.
     pub work: Work<'a>,
+    /// The step that a method which chooses its own would begin with; zero: it has to find one. The system keeps it from
+    /// step to step, and drops it where something was hit, was born or died.
+    pub hint: &'a mut Time,
+    /// What the method counts.
+    pub effort: &'a mut Effort,
 }
 
 /// Columns of vectors to work with, one for each particle.
@@ -61,12 +115,25 @@ impl<'a> Work<'a> {
     /// The first `N` columns; what they hold is left over from earlier use. Columns that do not exist are empty.
     #[must_use]
     pub fn take<const N: usize>(self) -> [&'a mut [Vec3]; N] {
+        self.split().0
+    }
+
+    /// The first `N` columns and the others, for a method that another is built on.
+    #[must_use]
+    pub fn split<const N: usize>(self) -> ([&'a mut [Vec3]; N], Self) {
         let Self { mut memory, stride, len } = self;
-        core::array::from_fn(|_| {
+        let columns = core::array::from_fn(|_| {
             let (column, rest) = core::mem::take(&mut memory).split_at_mut_checked(stride).unwrap_or_default();
             memory = rest;
             column.get_mut(..len).unwrap_or_default()
-        })
+        });
+        (columns, Self { memory, stride, len })
+    }
+
+    /// The same columns, lent on.
+    #[must_use]
+    pub fn again(&mut self) -> Work<'_> {
+        Work { memory: self.memory, stride: self.stride, len: self.len }
     }
 }
 
@@ -82,71 +149,16 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
 }
 
-/// Declares the methods that have a name.
-macro_rules! methods {
-    ($($(#[$doc:meta])* $method:ident = $name:literal,)+) => {
-        /// An integrator by its name, as files and the command line say it.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-        pub enum Method {
-            $($(#[$doc])* #[cfg_attr(feature = "serde", serde(rename = $name))] $method,)+
+/// The largest difference of two states \[m\]: of positions, and of velocities times the step. One that is beyond all
+/// numbers differs infinitely, but what is undefined in both is so whatever the step, and is left out.
+fn difference([xa, va]: [&[Vec3]; 2], [xb, vb]: [&[Vec3]; 2], h: f32) -> f32 {
+    let mut most = 0.0;
+    for ((xa, va), (xb, vb)) in xa.iter().zip(va).zip(xb.iter().zip(vb)) {
+        let gap = max(length(*xa - *xb), h * length(*va - *vb));
+        let lost = (xa.is_nan() || va.is_nan()) && (xb.is_nan() || vb.is_nan());
+        if !(gap <= most || lost) {
+            most = if gap < f32::INFINITY { gap } else { f32::INFINITY };
         }
-
-        impl Method {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$method),+];
-
-            /// Its name.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$method => $name,)+ }
-            }
-
-            /// The integrator itself.
-            #[must_use]
-            pub const fn integrator(self) -> &'static dyn Integrator {
-                match self { $(Self::$method => &$method,)+ }
-            }
-        }
-    };
-}
-
-methods! {
-    /// Explicit Euler.
-    Euler = "euler",
-    /// Symplectic Euler.
-    Symplectic = "symplectic",
-    /// The midpoint method.
-    Midpoint = "midpoint",
-    /// Velocity Verlet.
-    Verlet = "verlet",
-    /// The classical Runge-Kutta method of fourth order.
-    Rk4 = "rk4",
-}
-
-impl core::fmt::Display for Method {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.name())
     }
-}
-
-/// There is no integrator of that name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnknownMethod;
-
-impl core::fmt::Display for UnknownMethod {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("unknown integrator; there are")?;
-        Method::ALL.iter().try_for_each(|method| write!(f, " {method}"))
-    }
-}
-
-impl core::error::Error for UnknownMethod {}
-
-impl core::str::FromStr for Method {
-    type Err = UnknownMethod;
-    fn from_str(name: &str) -> Result<Self, UnknownMethod> {
-        Self::ALL.iter().copied().find(|method| method.name() == name).ok_or(UnknownMethod)
-    }
+    most
 }

@@ -123,10 +123,16 @@ impl SceneFile {
             let message = format!("has to be from zero to {MAX_RATE:e}, not {}", emitter.rate);
             return Err(SceneError::value(format!("{at}.rate"), message));
         }
-        let Emitter { speed, mass, drag, elasticity, lifetime, .. } = emitter;
-        for (name, Varied { mean, variance }) in
-            [("speed", speed), ("mass", mass), ("drag", drag), ("elasticity", elasticity), ("lifetime", lifetime)]
-        {
+        let Emitter { speed, mass, drag, charge, elasticity, lifetime, .. } = emitter;
+        let varied = [
+            ("speed", speed),
+            ("mass", mass),
+            ("drag", drag),
+            ("charge", charge),
+            ("elasticity", elasticity),
+            ("lifetime", lifetime),
+        ];
+        for (name, Varied { mean, variance }) in varied {
             finite(&format!("{at}.{name}"), &[*mean, *variance])?;
         }
         if !emitter.fixed && !(mass.mean - mass.variance.abs() > 3e-39) {

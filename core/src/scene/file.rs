@@ -2,7 +2,8 @@
 
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
-use crate::integrate::Method;
+use crate::index::Structure;
+use crate::integrate::{Method, Tuning};
 use crate::particles::Particle;
 use crate::shape::Shape;
 use alloc::string::String;
@@ -68,6 +69,10 @@ pub struct Run {
     pub dt: f64,
     /// The method.
     pub integrator: Method,
+    /// What adaptive and implicit methods are set to.
+    pub tuning: Tuning,
+    /// How forces find the neighbours of a particle.
+    pub index: Structure,
     /// The seed of all randomness.
     pub seed: u64,
     /// Particles alive at once.
@@ -235,7 +240,15 @@ impl Default for SceneFile {
 
 impl Default for Run {
     fn default() -> Self {
-        Self { duration: 10.0, dt: 1.0 / 60.0, integrator: Method::Rk4, seed: 1, capacity: 65_536 }
+        Self {
+            duration: 10.0,
+            dt: 1.0 / 60.0,
+            integrator: Method::Rk4,
+            tuning: Tuning::DEFAULT,
+            index: Structure::Grid,
+            seed: 1,
+            capacity: 65_536,
+        }
     }
 }
 

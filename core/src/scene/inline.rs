@@ -103,6 +103,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             colliders: &self.colliders,
             sinks: &self.forces.3,
             integrator: &Rk4,
+            index: &(),
         }
     }
 }
@@ -139,7 +140,7 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
             }
             Command::Spring { ends, rest_length, ks, kd } => {
                 let [a, b] = ends.map(|end| u32::try_from(end.value).unwrap_or(u32::MAX));
-                let spring = Spring { ends: [a, b], rest_length, ks, kd };
+                let spring = Spring { kd, ..Spring::new([a, b], rest_length, ks) };
                 self.scene.springs.push(spring).map_err(|_| "too many springs for this array")
             }
             Command::Gravity(acceleration) => {

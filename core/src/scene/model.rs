@@ -4,7 +4,8 @@ use super::Scene;
 use super::{Files, Material, SceneError, SceneFile, beside};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
-use crate::integrate::Method;
+use crate::index::Structure;
+use crate::integrate::Tuned;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, MeshBuf, Placed, Shape};
 use crate::storage::Size;
@@ -30,7 +31,9 @@ pub struct Model {
     /// What is drawn.
     pub scenery: Vec<Solid>,
     /// The method.
-    pub integrator: Method,
+    pub integrator: Tuned,
+    /// How forces find neighbours.
+    pub index: Structure,
 }
 
 /// A piece of scenery where it stands.
@@ -87,7 +90,8 @@ impl Model {
             colliders: colliders.collect::<Result<_, _>>()?,
             forces: (file.forces.clone(), sinks),
             scenery,
-            integrator: file.run.integrator,
+            integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
+            index: file.run.index,
         })
     }
 
@@ -101,7 +105,8 @@ impl Model {
             forces: &self.forces,
             colliders: &self.colliders,
             sinks: &self.forces.1,
-            integrator: self.integrator.integrator(),
+            integrator: &self.integrator,
+            index: &self.index,
         }
     }
 
@@ -155,7 +160,8 @@ fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<
 
 fn with_shape(emitter: &Emitter<String>, shape: Shape<Arc<MeshBuf>>, file: &SceneFile) -> Emitter<Arc<MeshBuf>> {
     let Emitter { rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } = *emitter;
-    let Emitter { mass, fixed, drag, elasticity, lifetime, material, color: own, color_variance, .. } = *emitter;
+    let Emitter { mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_variance, .. } =
+        *emitter;
     let color = color(file, own, material);
     Emitter {
         shape,
@@ -171,6 +177,7 @@ fn with_shape(emitter: &Emitter<String>, shape: Shape<Arc<MeshBuf>>, file: &Scen
         mass,
         fixed,
         drag,
+        charge,
         elasticity,
         lifetime,
         material,

@@ -187,7 +187,7 @@ impl Reader<'_> {
                 self.scene.sinks.push(Sink { shape, intensity, ca, la, qa });
             }
             Command::Spring { ends, rest_length, ks, kd } => {
-                scope.springs.push((ends, Spring { ends: [0; 2], rest_length, ks, kd }));
+                scope.springs.push((ends, Spring { kd, ..Spring::new([0; 2], rest_length, ks) }));
             }
             Command::Gravity(acceleration) => self.gravity = Some(Gravity { acceleration }),
             Command::Scenery(piece) => {

@@ -2,6 +2,7 @@
 
 use crate::emit::Emit;
 use crate::force::{Force, Spring};
+use crate::index::Arrange;
 use crate::integrate::{Integrator, Symplectic};
 use crate::particles::Particle;
 use crate::shape::Collider;
@@ -29,6 +30,8 @@ pub struct Scene<'a> {
     pub sinks: &'a dyn Collider,
     /// How they are moved.
     pub integrator: &'a dyn Integrator,
+    /// How forces find the neighbours of a particle: `()` by looking at all others.
+    pub index: &'a dyn Arrange,
 }
 
 impl core::fmt::Debug for Scene<'_> {
@@ -47,6 +50,7 @@ impl Scene<'_> {
         colliders: &(),
         sinks: &(),
         integrator: &Symplectic,
+        index: &(),
     };
 
     /// Vectors that a step needs to work with for each particle.
@@ -54,7 +58,7 @@ impl Scene<'_> {
     pub fn columns(&self) -> usize {
         let start = if self.needs_start() { 2 } else { 0 };
         // Newborns need one column for their acceleration, whatever the method.
-        self.integrator.columns().max(1).saturating_add(start + self.forces.needs().columns())
+        self.integrator.columns().max(1).saturating_add(start + self.forces.needs().columns(self.index))
     }
 
     /// The least memory it runs in; `particles` is what it begins with.

@@ -1,7 +1,7 @@
 //! From the declared scene to a `.scn` text.
 
 use super::{Item, Light, Material, Run, SceneFile};
-use crate::emit::{Emitter, Spread};
+use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{ForceKind, MutualGravity, Sink};
 use crate::particles::Particle;
 use crate::shape::Shape;
@@ -21,6 +21,9 @@ pub fn write_scn(scene: &SceneFile) -> (String, Vec<String>) {
     writer.scenery(scene);
     writer.forces(scene);
     scene.particles.iter().for_each(|particle| writer.particle(particle));
+    if scene.springs.iter().any(|spring| spring.drive.is_some() || spring.breaks_at.is_some()) {
+        writer.warn("springs: in .scn they neither swing nor break; that is left out");
+    }
     for spring in &scene.springs {
         let [a, b] = spring.ends;
         let numbers = Numbers(&[spring.rest_length, spring.ks, spring.kd]);
@@ -71,11 +74,14 @@ impl Writer {
             self.warn("about: kept as a comment");
         }
         if scene.run != Run::default() {
-            let Run { duration, dt, integrator, seed, capacity } = &scene.run;
+            let Run { duration, dt, integrator, tuning, index, seed, capacity } = &scene.run;
             self.line(format_args!(
                 "# run with --duration {duration} --dt {dt} --integrator {integrator} --seed {seed} --capacity {capacity}"
             ));
             self.warn("run: .scn has no settings of a run; they are kept as a comment");
+            if (*tuning, *index) != (Run::default().tuning, Run::default().index) {
+                self.warn("run: its tuning and its index are left out");
+            }
         }
     }
 
@@ -201,9 +207,13 @@ impl Writer {
     }
 
     fn particle(&mut self, particle: &Particle) {
-        let Particle { position, velocity, mass, fixed, drag, elasticity, lifetime, material, color } = particle;
+        let Particle { position, velocity, mass, fixed, drag, charge, elasticity, lifetime, material, color } =
+            particle;
         if color.is_some() {
             self.warn("particles: .scn has no colours of single particles; they are left out");
+        }
+        if *charge != 0.0 {
+            self.warn("particles: .scn has no charges; they are left out");
         }
         let place = [position.to_array(), velocity.to_array()];
         let (place, rest) = (Numbers(place.as_flattened()), Numbers(&[*drag, *elasticity, *lifetime]));
@@ -230,6 +240,9 @@ impl Writer {
         }
         if emitter.direction.is_some() || emitter.velocity != Vec3::ZERO {
             self.warn(format!("{at}: .scn has neither a direction nor a velocity of sources; they are left out"));
+        }
+        if emitter.charge != Varied::default() {
+            self.warn(format!("{at}: .scn has no charges; they are left out"));
         }
         if emitter.color.is_some() || emitter.color_variance != [0; 4] {
             self.warn(format!("{at}: .scn has no colours of sources; they are left out"));
