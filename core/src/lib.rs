@@ -56,6 +56,8 @@ mod hash;
 pub mod index;
 pub mod integrate;
 mod lanes;
+#[cfg(feature = "std")]
+mod ledger;
 pub mod math;
 #[cfg(feature = "std")]
 mod measure;
@@ -71,6 +73,7 @@ mod storage;
 mod system;
 mod time;
 mod view;
+mod weave;
 
 pub use emit::{Emit, Emitter, Spread, Varied};
 pub use force::{AllPairs, Drag, Drive, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
@@ -80,6 +83,8 @@ pub use integrate::{
     Adaptive, Embedded, Euler, Implicit, Integrator, LectureMidpoint, Method, Midpoint, Rk4, Symplectic, Tuned, Tuning,
     Verlet,
 };
+#[cfg(feature = "std")]
+pub use ledger::{Books, Ledger};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
 pub use observe::{Impact, Observer, Phase};
@@ -92,6 +97,9 @@ pub use storage::Heap;
 pub use storage::{Columns, Inline, Size, Slices, Storage};
 pub use system::System;
 pub use time::Time;
+#[cfg(feature = "alloc")]
+pub use weave::mesh_springs;
+pub use weave::{Sheet, Thread, Threads};
 
 /// The README's example has to compile and run.
 #[cfg(doctest)]

@@ -1,6 +1,6 @@
 //! Energy, momentum and angular momentum, in double precision: for reports, not for the step.
 
-use crate::force::Force;
+use crate::force::{Entry, Force};
 use crate::scene::Scene;
 use crate::storage::Storage;
 use crate::system::System;
@@ -17,7 +17,7 @@ pub struct Measures {
     pub angular_momentum: [f64; 3],
 }
 
-/// Energy \[J\].
+/// Energy \[J\], of all particles together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Energy {
@@ -51,5 +51,16 @@ impl Measures {
         }
         sum.energy.potential = scene.forces.energy(&state) + state.springs.energy(&state);
         sum
+    }
+
+    /// Energy and power of every force by its name, that of the springs last.
+    pub fn by_force<B: Storage>(system: &System<B>, scene: &Scene<'_>) -> std::vec::Vec<Entry> {
+        let state = system.state(scene);
+        let mut entries = std::vec::Vec::new();
+        scene.forces.account(&state, &mut |entry| entries.push(entry));
+        if !scene.springs.is_empty() {
+            state.springs.account(&state, &mut |entry| entries.push(entry));
+        }
+        entries
     }
 }

@@ -113,7 +113,7 @@ impl Stages<'_> {
             let ev = a1[i] * (-5.0 / 72.0) + a2[i] * (1.0 / 12.0) + a3[i] * (1.0 / 9.0) - a4[i] * (1.0 / 8.0);
             let gap = hh * max(length(ex), length(ev));
             // What is undefined from the beginning is so whatever the step.
-            if !(gap <= most) && !(v0[i].is_nan() || a1[i].is_nan()) {
+            if !(gap <= most || v0[i].is_nan() || a1[i].is_nan()) {
                 most = if gap < f32::INFINITY { gap } else { f32::INFINITY };
             }
         }

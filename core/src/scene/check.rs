@@ -39,7 +39,16 @@ impl SceneFile {
         }
         for (i, spring) in self.springs.iter().enumerate() {
             let at = format!("springs[{i}]");
-            finite(&at, &[spring.rest_length, spring.ks, spring.kd])?;
+            finite(&at, &[spring.rest_length, spring.ks, spring.kd, spring.breaks_at.unwrap_or(2.0)])?;
+            if let Some(drive) = spring.drive {
+                finite(&format!("{at}.drive"), &[drive.amplitude, drive.frequency, drive.phase])?;
+            }
+            if !spring.breaks_at.is_none_or(|ratio| ratio > 1.0) {
+                return Err(SceneError::value(
+                    format!("{at}.breaks_at"),
+                    "has to be above one: it is a length over that at rest",
+                ));
+            }
             if let Some(end) = spring.ends.iter().find(|&&end| end as usize >= self.particles.len()) {
                 let count = self.particles.len();
                 return Err(SceneError::value(
@@ -48,6 +57,7 @@ impl SceneFile {
                 ));
             }
         }
+        self.check_fabrics()?;
         for (i, emitter) in self.emitters.iter().enumerate() {
             self.check_emitter(&format!("emitters[{i}]"), emitter)?;
         }
@@ -104,10 +114,39 @@ impl SceneFile {
                 format!("has to be zero seconds or more, not {}", run.duration),
             ));
         }
+        let tuning = &run.tuning;
+        for (name, value) in
+            [("tolerance", tuning.tolerance), ("smallest", tuning.smallest), ("residual", tuning.residual)]
+        {
+            if !(value > 0.0 && value < f32::INFINITY) {
+                return Err(SceneError::value(
+                    format!("run.tuning.{name}"),
+                    format!("has to be above zero, not {value}"),
+                ));
+            }
+        }
+        if tuning.inner.chooses_steps() {
+            return Err(SceneError::value(
+                "run.tuning.inner",
+                "has to be a method that takes steps as they come, such as rk4",
+            ));
+        }
+        for (name, value, most) in [
+            ("attempts", tuning.attempts, 1 << 20),
+            ("newton", tuning.newton, 64),
+            ("iterations", tuning.iterations, 100_000),
+        ] {
+            if !(1..=most).contains(&value) {
+                return Err(SceneError::value(
+                    format!("run.tuning.{name}"),
+                    format!("has to be from 1 to {most}, not {value}"),
+                ));
+            }
+        }
         Ok(())
     }
 
-    fn check_material(&self, at: &str, material: Option<u16>) -> Checked {
+    pub(super) fn check_material(&self, at: &str, material: Option<u16>) -> Checked {
         match material {
             Some(number) if usize::from(number) >= self.materials.len() => {
                 let count = self.materials.len();

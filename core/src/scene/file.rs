@@ -1,5 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
+use super::Fabric;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
@@ -28,6 +29,9 @@ pub struct SceneFile {
     /// Springs between them.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub springs: Vec<Spring>,
+    /// Sheets and meshes of springs, whose particles and springs follow those above.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub fabrics: Vec<Fabric>,
     /// What brings further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub emitters: Vec<Emitter<String>>,
@@ -218,6 +222,7 @@ impl SceneFile {
             run: Run::default(),
             particles: Vec::new(),
             springs: Vec::new(),
+            fabrics: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),
             sinks: Vec::new(),

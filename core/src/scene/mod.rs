@@ -9,6 +9,8 @@ mod check;
 #[cfg(feature = "alloc")]
 mod error;
 #[cfg(feature = "alloc")]
+mod fabric;
+#[cfg(feature = "alloc")]
 mod file;
 mod inline;
 #[cfg(feature = "json")]
@@ -24,6 +26,8 @@ mod write;
 
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
+#[cfg(feature = "alloc")]
+pub use fabric::{Fabric, Form};
 #[cfg(feature = "alloc")]
 pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};

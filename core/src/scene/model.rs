@@ -1,7 +1,7 @@
 //! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
 
 use super::Scene;
-use super::{Files, Material, SceneError, SceneFile, beside};
+use super::{Files, Form, Material, SceneError, SceneFile, beside};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
@@ -55,6 +55,7 @@ impl Model {
     pub fn load(file: &SceneFile, path: &str, files: &mut dyn Files) -> Result<Self, SceneError> {
         file.check().map_err(|error| error.in_file(path))?;
         let mut meshes = Meshes { loaded: BTreeMap::new(), path, files };
+        let (particles, springs) = start(file, &mut meshes)?;
         let mut emitters = Vec::with_capacity(file.emitters.len());
         for (i, emitter) in file.emitters.iter().enumerate() {
             let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
@@ -80,12 +81,8 @@ impl Model {
             })
         });
         Ok(Self {
-            particles: file
-                .particles
-                .iter()
-                .map(|p| Particle { color: color(file, p.color, p.material), ..*p })
-                .collect(),
-            springs: file.springs.clone(),
+            particles,
+            springs,
             emitters,
             colliders: colliders.collect::<Result<_, _>>()?,
             forces: (file.forces.clone(), sinks),
@@ -134,16 +131,41 @@ struct Meshes<'a> {
 
 impl Meshes<'_> {
     fn shape(&mut self, at: &str, shape: &Shape<String>) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
-        shape.with_mesh(|name| {
-            if let Some(mesh) = self.loaded.get(name) {
-                return Ok(mesh.clone());
-            }
-            let mesh = self.files.mesh(&beside(self.path, name));
-            let mesh = Arc::new(mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?);
-            self.loaded.insert(name.to_string(), mesh.clone());
-            Ok(mesh)
-        })
+        shape.with_mesh(|name| self.load(at, name))
     }
+
+    fn load(&mut self, at: &str, name: &str) -> Result<Arc<MeshBuf>, SceneError> {
+        if let Some(mesh) = self.loaded.get(name) {
+            return Ok(mesh.clone());
+        }
+        let mesh = self.files.mesh(&beside(self.path, name));
+        let mesh = Arc::new(mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?);
+        self.loaded.insert(name.to_string(), mesh.clone());
+        Ok(mesh)
+    }
+}
+
+/// The particles and springs that a scene begins with: its own, then those of its fabrics.
+fn start(file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<(Vec<Particle>, Vec<Spring>), SceneError> {
+    let (mut particles, mut springs) = (file.particles.clone(), file.springs.clone());
+    for (i, fabric) in file.fabrics.iter().enumerate() {
+        let at = format!("fabrics[{i}].form");
+        let mesh = match &fabric.form {
+            Form::Mesh(name) => Some(meshes.load(&at, name)?),
+            Form::Sheet(_) => None,
+        };
+        let (woven, threads) = fabric.weave(mesh.as_deref(), particles.len() as u32);
+        if let Some(particle) = woven.iter().find(|particle| !particle.is_sound()) {
+            let message = format!("its particles of {} kg are too light", particle.mass);
+            return Err(SceneError::value(format!("fabrics[{i}].mass"), message).in_file(meshes.path));
+        }
+        particles.extend(woven);
+        springs.extend(threads);
+    }
+    for particle in &mut particles {
+        particle.color = color(file, particle.color, particle.material);
+    }
+    Ok((particles, springs))
 }
 
 /// The product of the transforms of all groups around.

@@ -1,0 +1,151 @@
+//! Spring meshes in scene files, and what they are woven into.
+
+use super::{SceneError, SceneFile};
+use crate::force::Spring;
+use crate::particles::{Color, Particle};
+use crate::shape::MeshBuf;
+use crate::weave::{Sheet, Threads, mesh_springs};
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use glam::Vec3;
+
+/// Particles joined by springs into a sheet, or into the form of a mesh. They follow the scene's own particles, in order.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Fabric {
+    /// Its form.
+    pub form: Form,
+    /// Its mass \[kg\], the same for every particle.
+    pub mass: f32,
+    /// Its springs, at rest in this form.
+    pub threads: Threads,
+    /// Springs break where a step ends with them so many times as long as at rest.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub breaks_at: Option<f32>,
+    /// The particles that never move, by their number in this fabric from 0: along a sheet's first side first.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub fixed: Vec<u32>,
+    /// How it moves to begin with \[m/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub velocity: Vec3,
+    /// Coefficient of linear drag \[kg/s\] of each particle.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub drag: f32,
+    /// The share of the normal speed that particles keep when they hit something.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub elasticity: f32,
+    /// Number of the material in the scene, if it has one.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub material: Option<u16>,
+    /// Its colour; without one, that of its material.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub color: Option<Color>,
+}
+
+/// The form of a fabric.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Form {
+    /// A rectangle of cells.
+    Sheet(Sheet),
+    /// A triangle mesh by its file, relative to the scene's.
+    Mesh(String),
+}
+
+/// As many particles as a scene may weave.
+const MOST: u64 = 1 << 26;
+
+impl Fabric {
+    /// Its particles and springs, the first particle having number `first` in the scene's start; `mesh` is that of its form.
+    pub(super) fn weave(&self, mesh: Option<&MeshBuf>, first: u32) -> (Vec<Particle>, Vec<Spring>) {
+        let (positions, springs): (Vec<Vec3>, Vec<Spring>) = match (&self.form, mesh) {
+            (Form::Sheet(sheet), _) => (sheet.positions().collect(), sheet.springs(&self.threads, first).collect()),
+            (Form::Mesh(_), Some(mesh)) => {
+                (mesh.vertices().to_vec(), mesh_springs(mesh.vertices(), mesh.triangles(), &self.threads, first))
+            }
+            (Form::Mesh(_), None) => (Vec::new(), Vec::new()),
+        };
+        let mass = self.mass / positions.len().max(1) as f32;
+        let like = Particle {
+            mass,
+            velocity: self.velocity,
+            drag: self.drag,
+            elasticity: self.elasticity,
+            material: self.material,
+            color: self.color,
+            ..Particle::REST
+        };
+        let mut particles: Vec<_> = positions.into_iter().map(|position| Particle { position, ..like }).collect();
+        for &number in &self.fixed {
+            if let Some(particle) = particles.get_mut(number as usize) {
+                particle.fixed = true;
+            }
+        }
+        (particles, springs.into_iter().map(|spring| Spring { breaks_at: self.breaks_at, ..spring }).collect())
+    }
+
+    /// The particles of a sheet; those of a mesh are known once it is read.
+    fn count(&self) -> Option<u64> {
+        match &self.form {
+            Form::Sheet(sheet) => Some(sheet.cells.iter().map(|&n| u64::from(n) + 1).product()),
+            Form::Mesh(_) => None,
+        }
+    }
+}
+
+impl SceneFile {
+    pub(super) fn check_fabrics(&self) -> Result<(), SceneError> {
+        let mut count = self.particles.len() as u64;
+        for (i, fabric) in self.fabrics.iter().enumerate() {
+            let at = format!("fabrics[{i}]");
+            let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
+            let Threads { structural, shear, bend } = fabric.threads;
+            let threads = [structural, shear, bend].into_iter().flatten();
+            if threads
+                .clone()
+                .any(|thread| !(thread.ks >= 0.0 && thread.kd >= 0.0 && (thread.ks + thread.kd).is_finite()))
+            {
+                return refuse("threads", "ks and kd have to be finite, and zero or more");
+            }
+            if threads.count() == 0 {
+                return refuse(
+                    "threads",
+                    "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}",
+                );
+            }
+            let numbers = [fabric.mass, fabric.drag, fabric.elasticity, fabric.breaks_at.unwrap_or(2.0)];
+            if numbers.iter().any(|x| !x.is_finite()) || !fabric.velocity.is_finite() {
+                return refuse("mass", "all numbers of a fabric have to be finite");
+            }
+            if !(fabric.mass > 0.0) {
+                return refuse("mass", "has to be above zero");
+            }
+            if !fabric.breaks_at.is_none_or(|ratio| ratio > 1.0) {
+                return refuse("breaks_at", "has to be above one: it is a length over that at rest");
+            }
+            if let Form::Sheet(sheet) = &fabric.form {
+                if ![sheet.corner, sheet.sides[0], sheet.sides[1]].iter().all(|v| v.is_finite()) {
+                    return refuse("form", "corner and sides have to be finite");
+                }
+            }
+            count += fabric.count().unwrap_or(0);
+            if count > MOST {
+                return refuse("form", &format!("makes {count} particles; a scene may begin with {MOST}"));
+            }
+            if let Some(number) =
+                fabric.fixed.iter().find(|&&n| fabric.count().is_some_and(|count| u64::from(n) >= count))
+            {
+                return refuse(
+                    "fixed",
+                    &format!("particle {number} is out of range; there are {}, from 0", fabric.count().unwrap_or(0)),
+                );
+            }
+            self.check_material(&at, fabric.material)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,153 @@
+//! Spring meshes: particles joined into cloth, along its threads, across its cells, and against bending.
+
+use crate::force::Spring;
+use crate::math::length;
+use crate::particles::Particle;
+use glam::Vec3;
+
+/// What one kind of a mesh's springs is like.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Thread {
+    /// Stiffness \[N/m\].
+    pub ks: f32,
+    /// Damping \[N s/m\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub kd: f32,
+}
+
+/// A mesh's springs by kind; a kind that is none has no springs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Threads {
+    /// Along the edges: against stretching.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub structural: Option<Thread>,
+    /// Across the cells of a sheet, both ways: against shearing.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub shear: Option<Thread>,
+    /// Over two cells of a sheet, or between the far corners of two triangles with a common edge: against bending.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub bend: Option<Thread>,
+}
+
+/// A rectangular sheet of cells. It needs no heap: particles and springs come one by one.
+///
+/// ```
+/// use pointmass::{Sheet, Thread, Threads, Vec3};
+///
+/// let threads = Threads { structural: Some(Thread { ks: 100.0, kd: 0.1 }), ..Threads::default() };
+/// let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [2, 3] };
+/// assert_eq!((sheet.positions().count(), sheet.springs(&threads, 0).count()), (3 * 4, 2 * 4 + 3 * 3));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sheet {
+    /// The corner where its first particle is \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub corner: Vec3,
+    /// From there to the next corner, along which numbers grow first, and to that on the other side \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[[f32; 3]; 2]"))]
+    pub sides: [Vec3; 2],
+    /// How many cells there are along each.
+    pub cells: [u32; 2],
+}
+
+impl Sheet {
+    /// The number of the particle at a crossing: `along` the first side, `across` along the second.
+    #[must_use]
+    pub const fn number(&self, along: u32, across: u32) -> u32 {
+        across * (self.cells[0] + 1) + along
+    }
+
+    /// Where its particles are, by number.
+    pub fn positions(&self) -> impl Iterator<Item = Vec3> {
+        let Self { corner, sides: [u, v], cells } = *self;
+        let part = |i: u32, n: u32| if n == 0 { 0.0 } else { i as f32 / n as f32 };
+        (0..=cells[1]).flat_map(move |across| {
+            (0..=cells[0]).map(move |along| corner + u * part(along, cells[0]) + v * part(across, cells[1]))
+        })
+    }
+
+    /// Its particles by number, each `like` the given one but in its place.
+    pub fn particles(&self, like: Particle) -> impl Iterator<Item = Particle> {
+        self.positions().map(move |position| Particle { position, ..like })
+    }
+
+    /// Its springs, of which the particle with number 0 is `first` in the scene's start.
+    pub fn springs(&self, threads: &Threads, first: u32) -> impl Iterator<Item = Spring> {
+        let sheet = *self;
+        let Threads { structural, shear, bend } = *threads;
+        // How far a spring goes along and across, and what it is made of. Those that run backward start one cell later.
+        let kinds = [
+            ([1, 0], structural),
+            ([0, 1], structural),
+            ([1, 1], shear),
+            ([-1, 1], shear),
+            ([2, 0], bend),
+            ([0, 2], bend),
+        ];
+        kinds.into_iter().filter_map(|(way, thread)| Some((way, thread?))).flat_map(move |(way, thread)| {
+            (0..=sheet.cells[1]).flat_map(move |across| {
+                (0..=sheet.cells[0]).filter_map(move |along| sheet.spring([along, across], way, thread, first))
+            })
+        })
+    }
+
+    fn spring(&self, from: [u32; 2], way: [i32; 2], thread: Thread, first: u32) -> Option<Spring> {
+        let [u, v] = [0, 1].map(|i| from[i].checked_add_signed(way[i]).filter(|&to| to <= self.cells[i]));
+        let ends = [self.number(from[0], from[1]), self.number(u?, v?)].map(|number| first + number);
+        let part = |i: usize| self.sides[i] * (way[i] as f32 / self.cells[i] as f32);
+        // A side that is not gone along may have no cells.
+        let step = (0..2).filter(|&i| way[i] != 0).map(part).fold(Vec3::ZERO, |sum, part| sum + part);
+        Some(Spring::new(ends, length(step), thread.ks).damped(thread.kd))
+    }
+
+    /// Two triangles for each cell, turned the same way.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        let sheet = *self;
+        (0..sheet.cells[1]).flat_map(move |v| {
+            (0..sheet.cells[0]).flat_map(move |u| {
+                let [a, b] = [sheet.number(u, v), sheet.number(u + 1, v)];
+                let [c, d] = [sheet.number(u, v + 1), sheet.number(u + 1, v + 1)];
+                [[a, b, d], [a, d, c]]
+            })
+        })
+    }
+}
+
+/// The springs of a triangle mesh, of which vertex 0 is particle `first` in the scene's start: one along every edge, and
+/// where two triangles share it one between their far corners. Triangles have no cells, so there are none across.
+#[cfg(feature = "alloc")]
+#[must_use]
+pub fn mesh_springs(
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    threads: &Threads,
+    first: u32,
+) -> alloc::vec::Vec<Spring> {
+    use alloc::collections::BTreeMap;
+    // Each edge once, with the corners that lie opposite.
+    let mut edges: BTreeMap<[u32; 2], alloc::vec::Vec<u32>> = BTreeMap::new();
+    for &[a, b, c] in triangles {
+        for [from, to, far] in [[a, b, c], [b, c, a], [c, a, b]] {
+            if from != to {
+                edges.entry([from.min(to), from.max(to)]).or_default().push(far);
+            }
+        }
+    }
+    let spring = |[a, b]: [u32; 2], thread: Thread| {
+        let ends = vertices.get(a as usize).zip(vertices.get(b as usize))?;
+        Some(Spring::new([first + a, first + b], length(*ends.1 - *ends.0), thread.ks).damped(thread.kd))
+    };
+    let along =
+        threads.structural.into_iter().flat_map(|thread| edges.keys().filter_map(move |&edge| spring(edge, thread)));
+    let over = threads.bend.into_iter().flat_map(|thread| {
+        let pairs = edges.values().filter_map(|far| <[u32; 2]>::try_from(far.as_slice()).ok());
+        pairs.filter(|[a, b]| a != b).filter_map(move |pair| spring(pair, thread))
+    });
+    along.chain(over).collect()
+}
