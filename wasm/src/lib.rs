@@ -55,7 +55,7 @@ impl World {
             read_scn("scene", text, &mut files)?
         };
         let model = Model::load(&file, "scene", &mut files)?;
-        let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(file.particles.len() as u32));
+        let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(model.particles.len() as u32));
         let system = System::with(Heap::new(model.size(capacity as usize)));
         let mut world = Self { model, system, seed: seed.unwrap_or(file.run.seed), warnings };
         world.restart()?;

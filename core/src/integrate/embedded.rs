@@ -1,7 +1,7 @@
 //! An embedded Runge-Kutta pair.
 
 use super::{Dynamics, Integrator, Motion, advance_by};
-use crate::math::{cbrt, clamp, length, max};
+use crate::math::{cbrt, clamp, largest, max};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -111,7 +111,7 @@ impl Stages<'_> {
         for i in 0..x.len() {
             let ex = a1[i] * (1.0 / 72.0) + a2[i] * (1.0 / 24.0) - a3[i] * (1.0 / 18.0);
             let ev = a1[i] * (-5.0 / 72.0) + a2[i] * (1.0 / 12.0) + a3[i] * (1.0 / 9.0) - a4[i] * (1.0 / 8.0);
-            let gap = hh * max(length(ex), length(ev));
+            let gap = hh * max(largest(ex), largest(ev));
             // What is undefined from the beginning is so whatever the step.
             if !(gap <= most || v0[i].is_nan() || a1[i].is_nan()) {
                 most = if gap < f32::INFINITY { gap } else { f32::INFINITY };

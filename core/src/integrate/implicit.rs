@@ -70,6 +70,7 @@ struct Solver<'a> {
     p: &'a mut [Vec3],
     q: &'a mut [Vec3],
     correction: &'a mut [Vec3],
+    /// Zero where nothing is solved for.
     inverse_diagonal: &'a mut [Vec3],
 }
 
@@ -86,7 +87,7 @@ impl Solver<'_> {
         system.stiffness([h * h, h], self.inverse_diagonal);
         for (i, &w) in system.inverse_mass.iter().enumerate() {
             let mass = 1.0 / w;
-            let free = w > 0.0 && self.r[i].is_finite();
+            let free = w > 0.0 && w < f32::INFINITY && self.r[i].is_finite();
             self.r[i] = if free { self.r[i] * h + (v0[i] - v[i]) * mass } else { Vec3::ZERO };
             self.inverse_diagonal[i] = if free { (self.inverse_diagonal[i] + mass).recip() } else { Vec3::ZERO };
         }
@@ -115,6 +116,14 @@ impl Solver<'_> {
             self.precondition(left / before);
             iterations += 1;
         }
+        for ((correction, inverse), &w) in
+            self.correction.iter_mut().zip(&*self.inverse_diagonal).zip(system.inverse_mass)
+        {
+            // What was kept out of the system because it is not finite goes at the end of the step.
+            if *inverse == Vec3::ZERO && w != 0.0 {
+                *correction = Vec3::NAN;
+            }
+        }
         effort.solved(iterations, if first > 0.0 { crate::math::sqrt(left / first) } else { 0.0 }, left > enough);
     }
 
@@ -137,8 +146,10 @@ impl Solver<'_> {
     fn apply(&mut self, system: &Linear<'_>) {
         let h = self.h;
         system.jacobian(&Change { along: self.p, position: h * h, velocity: h }, self.q);
-        for ((q, p), &w) in self.q.iter_mut().zip(&*self.p).zip(system.inverse_mass) {
-            *q = if w > 0.0 { *p / w - *q } else { Vec3::ZERO };
+        for (((q, p), &w), inverse) in
+            self.q.iter_mut().zip(&*self.p).zip(system.inverse_mass).zip(&*self.inverse_diagonal)
+        {
+            *q = if *inverse == Vec3::ZERO { Vec3::ZERO } else { *p / w - *q };
         }
     }
 }

@@ -19,7 +19,7 @@ pub use rk4::Rk4;
 pub use verlet::Verlet;
 
 use crate::force::{Change, Force, State};
-use crate::math::{length, max};
+use crate::math::{largest, max};
 use crate::report::Effort;
 pub(crate) use crate::rows::{add_scaled, advance_by};
 use crate::time::Time;
@@ -149,13 +149,15 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
 }
 
-/// The largest difference of two states \[m\]: of positions, and of velocities times the step. One that is beyond all
-/// numbers differs infinitely, but what is undefined in both is so whatever the step, and is left out.
+/// The largest difference of two states \[m\]: of positions, and of velocities times the step, as far as it is more than
+/// rounding. One that is beyond all numbers differs infinitely, but what is undefined in both is so whatever the step, and
+/// is left out.
 fn difference([xa, va]: [&[Vec3]; 2], [xb, vb]: [&[Vec3]; 2], h: f32) -> f32 {
+    let apart = |a: Vec3, b: Vec3| largest(a - b) - 4.0 * f32::EPSILON * largest(b);
     let mut most = 0.0;
-    for ((xa, va), (xb, vb)) in xa.iter().zip(va).zip(xb.iter().zip(vb)) {
-        let gap = max(length(*xa - *xb), h * length(*va - *vb));
+    for ((&xa, &va), (&xb, &vb)) in xa.iter().zip(va).zip(xb.iter().zip(vb)) {
         let lost = (xa.is_nan() || va.is_nan()) && (xb.is_nan() || vb.is_nan());
+        let gap = max(apart(xa, xb), h * apart(va, vb));
         if !(gap <= most || lost) {
             most = if gap < f32::INFINITY { gap } else { f32::INFINITY };
         }

@@ -127,10 +127,9 @@ impl SceneFile {
             if !fabric.breaks_at.is_none_or(|ratio| ratio > 1.0) {
                 return refuse("breaks_at", "has to be above one: it is a length over that at rest");
             }
-            if let Form::Sheet(sheet) = &fabric.form {
-                if ![sheet.corner, sheet.sides[0], sheet.sides[1]].iter().all(|v| v.is_finite()) {
-                    return refuse("form", "corner and sides have to be finite");
-                }
+            let place = |sheet: &Sheet| [sheet.corner, sheet.sides[0], sheet.sides[1]];
+            if matches!(&fabric.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
+                return refuse("form", "corner and sides have to be finite");
             }
             count += fabric.count().unwrap_or(0);
             if count > MOST {

@@ -1,8 +1,8 @@
 //! From the declared scene to a `.scn` text.
 
-use super::{Item, Light, Material, Run, SceneFile};
+use super::{Form, Item, Light, Material, Run, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
-use crate::force::{ForceKind, MutualGravity, Sink};
+use crate::force::{ForceKind, MutualGravity, Sink, Spring};
 use crate::particles::Particle;
 use crate::shape::Shape;
 use alloc::format;
@@ -20,11 +20,12 @@ pub fn write_scn(scene: &SceneFile) -> (String, Vec<String>) {
     writer.look(scene);
     writer.scenery(scene);
     writer.forces(scene);
-    scene.particles.iter().for_each(|particle| writer.particle(particle));
-    if scene.springs.iter().any(|spring| spring.drive.is_some() || spring.breaks_at.is_some()) {
+    let (particles, springs) = writer.start(scene);
+    particles.iter().for_each(|particle| writer.particle(particle));
+    if springs.iter().any(|spring| spring.drive.is_some() || spring.breaks_at.is_some()) {
         writer.warn("springs: in .scn they neither swing nor break; that is left out");
     }
-    for spring in &scene.springs {
+    for spring in &springs {
         let [a, b] = spring.ends;
         let numbers = Numbers(&[spring.rest_length, spring.ks, spring.kd]);
         writer.line(format_args!("particle_spring {a} {b} {numbers}"));
@@ -83,6 +84,24 @@ impl Writer {
                 self.warn("run: its tuning and its index are left out");
             }
         }
+    }
+
+    /// The particles and springs that it begins with, sheets taken apart.
+    fn start(&mut self, scene: &SceneFile) -> (Vec<Particle>, Vec<Spring>) {
+        let (mut particles, mut springs) = (scene.particles.clone(), scene.springs.clone());
+        for (i, fabric) in scene.fabrics.iter().enumerate() {
+            if let Form::Mesh(name) = &fabric.form {
+                self.warn(format!(
+                    "fabrics[{i}]: .scn has no fabrics, and '{name}' cannot be taken apart; it is left out"
+                ));
+                continue;
+            }
+            self.warn(format!("fabrics[{i}]: .scn has no fabrics; it is written as particles and springs"));
+            let (woven, threads) = fabric.weave(None, particles.len() as u32);
+            particles.extend(woven);
+            springs.extend(threads);
+        }
+        (particles, springs)
     }
 
     fn material(&mut self, material: &Material) {

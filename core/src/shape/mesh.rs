@@ -104,6 +104,18 @@ impl MeshBuf {
         Ok(Self { bounds, vertices, triangles, areas })
     }
 
+    /// The vertices \[m\].
+    #[must_use]
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices
+    }
+
+    /// The triangles, by their corners' places among the vertices.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
     /// The same, borrowed.
     #[must_use]
     pub fn view(&self) -> Mesh<'_> {
