@@ -22,6 +22,7 @@ fn points() -> Vec<Vec3> {
 
 fn index(c: &mut Criterion) {
     let points = points();
+    let moved: Vec<Vec3> = points.iter().map(|point| *point + (*point - 0.5) * (0.1 * RADIUS)).collect();
     let mut counts = vec![0; points.len()];
     let mut found = [Neighbour::default(); 8];
     for structure in Structure::ALL.iter().copied().filter(|&structure| structure != Structure::Brute) {
@@ -54,6 +55,8 @@ fn index(c: &mut Criterion) {
                 })
             });
         });
+        // The last, since it leaves the boxes of trees where the points have gone.
+        group.bench_function("refit", |b| b.iter(|| index.refit(&moved).expect("room for all")));
         group.finish();
     }
 }

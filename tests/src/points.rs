@@ -66,6 +66,18 @@ impl Spread {
     }
 }
 
+/// The settings of a property that is tried on so many sets: a tenth of that in debug builds, and no file of failures.
+#[macro_export]
+macro_rules! config {
+    ($cases:expr) => {
+        ::proptest::test_runner::Config {
+            cases: $crate::often($cases) as u32,
+            failure_persistence: None,
+            ..::proptest::test_runner::Config::default()
+        }
+    };
+}
+
 /// Puts `items` into a random order (Fisher and Yates).
 pub fn shuffle<T>(items: &mut [T], random: &mut Random) {
     for last in (1..items.len()).rev() {

@@ -6,7 +6,7 @@ use pointmass::{
     Varied, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy, emitters};
-use pointmass_tests::{often, started};
+use pointmass_tests::{config, started};
 use proptest::prelude::*;
 
 /// The hash after every tenth of 120 frames.
@@ -160,11 +160,7 @@ fn those_beyond_the_capacity_are_refused_and_counted() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: often(300) as u32,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(config!(300))]
 
     /// However a world is made and stepped, nobody appears or vanishes uncounted, and no number is left unsound.
     #[test]

@@ -1,9 +1,10 @@
 //! No structure at all: every query looks at every point. What the others are held against.
 
 use super::domain::{Domain, Image};
-use super::search::{Partition, Region, Run, Search};
+use super::near::{Region, Run};
+use super::search::{Partition, Search};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -14,20 +15,9 @@ pub struct Brute<'m> {
 }
 
 impl<'m> Brute<'m> {
-    /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
-    #[must_use]
-    pub fn new(memory: &'m mut [u32]) -> Self {
-        Self::within_domain(memory, Domain::OPEN)
-    }
+    constructors!();
 
-    /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
-    /// open; points outside are wrapped in.
-    #[must_use]
-    pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
-        Self::within_domain(memory, Domain::periodic(low, sides))
-    }
-
-    fn within_domain(memory: &'m mut [u32], domain: Domain) -> Self {
+    fn in_domain(memory: &'m mut [u32], domain: Domain) -> Self {
         let capacity = Sorted::capacity_of(memory.len());
         Self { sorted: Sorted::new(memory, capacity, domain).0 }
     }

@@ -1,8 +1,11 @@
 //! The binary space partition: planes of any orientation, chosen from the data.
 
+use super::domain::around;
+use super::frames::Frames;
 use super::kd::{halve, longest};
 use super::sorted::Entry;
-use super::tree::{CHILDREN, Frames, Split, Tree};
+use super::split::{CHILDREN, Split};
+use super::tree::Tree;
 use crate::math::sqrt;
 use glam::{Mat3, Vec3};
 
@@ -40,8 +43,8 @@ impl Split for Planes {
         if entries.len() >= if cell.is_none() { SAMPLE } else { FEWEST } {
             let sample = || entries.iter().step_by(entries.len() / SAMPLE).map(|entry| Vec3::from_array(entry.x));
             let axes = principal_axes(sample);
-            let now = frames.bounds(frame, sample());
-            if surface(bounds_along(axes, sample())) < GAIN * surface(now) {
+            let (now, turned) = (frames.bounds(frame, sample()), axes.transpose());
+            if surface(around(sample().map(|point| turned * point))) < GAIN * surface(now) {
                 frame = frames.add(axes).unwrap_or(frame);
             }
         }
@@ -66,15 +69,6 @@ impl Split for Planes {
             let _ = children.push((entries.len(), cell));
         }
     }
-}
-
-/// The box around some points along some axes.
-fn bounds_along(axes: Mat3, points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
-    let turned = axes.transpose();
-    points.fold([Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY)], |[low, high], point| {
-        let point = turned * point;
-        [crate::math::low(point, low), crate::math::high(point, high)]
-    })
 }
 
 /// Half of a box's surface.

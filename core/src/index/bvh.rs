@@ -1,8 +1,10 @@
 //! The bounding-volume hierarchy: every node is cut where the boxes of both parts become small.
 
+use super::frames::Frames;
 use super::kd::longest;
 use super::sorted::Entry;
-use super::tree::{CHILDREN, Frames, Split, Tree, partition};
+use super::split::{CHILDREN, Split, partition};
+use super::tree::Tree;
 use crate::math;
 use glam::Vec3;
 

@@ -1,6 +1,6 @@
 //! How points are placed in an index: wrapped into a periodic domain, scaled where squares would leave an `f32`.
 
-use crate::math::{floor, largest, max, min};
+use crate::math::{self, floor, largest, max, min};
 use glam::Vec3;
 
 /// A domain: all of space, or a box whose opposite faces are one and the same.
@@ -121,4 +121,12 @@ impl Domain {
             }
         }
     }
+}
+
+/// The box around some points; inside out if there are none.
+#[inline(always)]
+pub(super) fn around(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+    points.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], point| {
+        [math::low(point, low), math::high(point, high)]
+    })
 }

@@ -1,9 +1,11 @@
 //! Cells of one size in a bounded box.
 
+use super::cells::{self, sort_by_cell};
 use super::domain::{Domain, Image};
-use super::search::{Partition, Region, Run, Search, widened};
-use super::sorted::{LANES, Sorted};
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers};
+use super::near::{Region, Run, widened};
+use super::search::{Partition, Search};
+use super::sorted::Sorted;
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
@@ -87,26 +89,10 @@ impl Layout {
 const GROWTH: f32 = 1.25;
 
 impl<'m> Grid<'m> {
-    /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
-    #[must_use]
-    pub fn new(memory: &'m mut [u32]) -> Self {
-        Self::within_domain(memory, Domain::OPEN)
-    }
+    constructors!();
 
-    /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
-    /// open; points outside are wrapped in.
-    #[must_use]
-    pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
-        Self::within_domain(memory, Domain::periodic(low, sides))
-    }
-
-    pub(super) const fn words(points: usize) -> usize {
-        8 * points + 4 * LANES + 4
-    }
-
-    fn within_domain(memory: &'m mut [u32], domain: Domain) -> Self {
-        let capacity = memory.len().saturating_sub(Self::words(0)) / 8;
-        let (sorted, starts) = Sorted::new(memory, capacity, domain);
+    fn in_domain(memory: &'m mut [u32], domain: Domain) -> Self {
+        let (sorted, starts) = cells::divide(memory, domain);
         Self { sorted, starts, reach: 0.0, layout: Layout::default(), enlarged: 0 }
     }
 
@@ -124,34 +110,6 @@ impl<'m> Grid<'m> {
     }
 }
 
-/// Sorts the points by cell: counts what each gets, then deals them out. `starts` has two entries more than cells.
-pub(super) fn sort_by_cell(
-    sorted: &mut Sorted<'_>,
-    starts: &mut [u32],
-    points: &[Vec3],
-    cell_of: impl Fn(Vec3) -> usize,
-) {
-    let domain = sorted.domain;
-    let sound = || points.iter().enumerate().filter(|(_, point)| point.is_finite());
-    starts.fill(0);
-    let (_, cells) = sorted.rows_and_scratch();
-    for ((_, point), cell) in sound().zip(cells) {
-        *cell = cell_of(domain.place(*point)) as u32;
-        starts[*cell as usize + 2] += 1;
-    }
-    let mut sum = 0;
-    for start in starts.iter_mut() {
-        sum += *start;
-        *start = sum;
-    }
-    // The next free slot of a cell is kept one further on, where in the end the following cell's start has to be.
-    for (i, (row, point)) in sound().enumerate() {
-        let next = &mut starts[sorted.scratch(i) as usize + 1];
-        sorted.put(*next as usize, domain.place(*point), row as u32);
-        *next += 1;
-    }
-}
-
 impl Partition for Grid<'_> {
     const BOXED: bool = false;
 
@@ -159,6 +117,7 @@ impl Partition for Grid<'_> {
         &self.sorted
     }
 
+    #[inline(always)]
     fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
         for cell in self.starts[..self.layout.count() + 1].windows(2) {
             if cell[0] < cell[1] {

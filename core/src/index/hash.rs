@@ -1,10 +1,12 @@
 //! Cells of one size in all of space, found by hashing.
 
+use super::cells::{self, sort_by_cell};
 use super::domain::{Domain, Image};
-use super::grid::{Layout, sort_by_cell};
-use super::search::{Partition, Region, Run, Search, widened};
-use super::sorted::{LANES, Sorted};
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers};
+use super::grid::Layout;
+use super::near::{Region, Run, widened};
+use super::search::{Partition, Search};
+use super::sorted::Sorted;
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
 use crate::math::{floor, largest, max, min};
 use core::ops::Range;
 use glam::Vec3;
@@ -36,26 +38,10 @@ struct Buckets {
 const ROWS: usize = 128;
 
 impl<'m> Hash<'m> {
-    /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
-    #[must_use]
-    pub fn new(memory: &'m mut [u32]) -> Self {
-        Self::within_domain(memory, Domain::OPEN)
-    }
+    constructors!();
 
-    /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
-    /// open; points outside are wrapped in.
-    #[must_use]
-    pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
-        Self::within_domain(memory, Domain::periodic(low, sides))
-    }
-
-    pub(super) const fn words(points: usize) -> usize {
-        8 * points + 4 * LANES + 4
-    }
-
-    fn within_domain(memory: &'m mut [u32], domain: Domain) -> Self {
-        let capacity = memory.len().saturating_sub(Self::words(0)) / 8;
-        let (sorted, starts) = Sorted::new(memory, capacity, domain);
+    fn in_domain(memory: &'m mut [u32], domain: Domain) -> Self {
+        let (sorted, starts) = cells::divide(memory, domain);
         Self { sorted, starts, reach: 0.0, buckets: Buckets::default() }
     }
 }

@@ -1,7 +1,9 @@
 //! The kd-tree: every node is halved across its longest side.
 
+use super::frames::Frames;
 use super::sorted::{Entry, LANES};
-use super::tree::{CHILDREN, Frames, Split, Tree, partition};
+use super::split::{CHILDREN, Split, partition};
+use super::tree::Tree;
 use glam::Vec3;
 
 /// A kd-tree (Bentley 1975), balanced: good for every spread of points and every radius, and best for the nearest.

@@ -31,15 +31,20 @@ mod barnes_hut;
 mod brute;
 mod bsp;
 mod bvh;
+mod cells;
 mod domain;
+mod frames;
 mod grid;
 mod hash;
 mod kd;
+mod near;
 mod nearest;
 mod octree;
 mod search;
 mod sorted;
+mod split;
 mod structure;
+mod sums;
 mod tree;
 
 pub use arrange::{Arrange, InGrid, InKd};
@@ -55,6 +60,7 @@ pub use kd::Kd;
 pub use nearest::Neighbour;
 pub use octree::{Octree, Quadtree};
 pub use structure::{AnyIndex, Structure, UnknownStructure};
+pub use tree::Tree;
 
 use glam::Vec3;
 
@@ -162,6 +168,25 @@ impl core::fmt::Display for TooSmall {
 }
 
 impl core::error::Error for TooSmall {}
+
+/// Makes an index in open space or in a periodic box, by its `in_domain`.
+macro_rules! constructors {
+    () => {
+        /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
+        #[must_use]
+        pub fn new(memory: &'m mut [u32]) -> Self {
+            Self::in_domain(memory, Domain::OPEN)
+        }
+
+        /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero
+        /// are open; points outside are wrapped in.
+        #[must_use]
+        pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
+            Self::in_domain(memory, Domain::periodic(low, sides))
+        }
+    };
+}
+use constructors;
 
 /// Answers a trait's queries by a partition.
 macro_rules! answers {

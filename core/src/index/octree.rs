@@ -1,7 +1,9 @@
 //! The octree, and for planar data the quadtree: every cube is cut into halves along all of its axes.
 
+use super::frames::Frames;
 use super::sorted::Entry;
-use super::tree::{CHILDREN, Frames, Split, Tree, partition};
+use super::split::{CHILDREN, Split, partition};
+use super::tree::Tree;
 use crate::math::max;
 use glam::Vec3;
 

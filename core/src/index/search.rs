@@ -1,13 +1,13 @@
 //! The queries, written once: a structure only says where points may be.
 
-use super::domain::{Domain, Image};
+use super::domain::{Domain, Image, around};
+use super::near::{Near, Region, Run, chunks};
 use super::nearest::Nearest;
-use super::sorted::{Found, LANES, Probe, Sorted, Tally};
+use super::sorted::{Found, Probe, Sorted, Tally};
 use super::{Cost, Neighbour};
-use crate::math::{self, high as high_of, max, min, sqrt};
+use crate::math::{self, max, min, sqrt};
 use core::ops::Range;
 use glam::Vec3;
-use wide::f32x8;
 
 /// Space divided: what a structure adds to what all share.
 pub(super) trait Partition {
@@ -44,186 +44,6 @@ pub(super) trait Partition {
             true
         });
         Cost { visits, tests, found: 0 }
-    }
-}
-
-/// A box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Region {
-    pub(super) low: Vec3,
-    pub(super) high: Vec3,
-    /// A frame, and the box around the same in it.
-    pub(super) home: (u32, [Vec3; 2]),
-}
-
-impl Region {
-    pub(super) fn point(at: Vec3) -> Self {
-        Self::new([at, at])
-    }
-
-    pub(super) fn new([low, high]: [Vec3; 2]) -> Self {
-        Self { low, high, home: (0, [low, high]) }
-    }
-
-    /// The square of the distance to the farthest corner of a box.
-    fn farthest_square(&self, low: Vec3, high: Vec3) -> f32 {
-        let side = high_of((high - self.low).abs(), (self.high - low).abs());
-        side.dot(side)
-    }
-
-    /// The square of the distance to an image of another box: at most that of any of the points inside, as they are
-    /// rounded, since rounding keeps order.
-    #[inline(always)]
-    pub(super) fn square_to(&self, low: Vec3, high: Vec3, moved: Vec3) -> f32 {
-        let gap = |axis: usize| {
-            let above = low[axis] - self.high[axis] + moved[axis];
-            let below = self.low[axis] - high[axis] - moved[axis];
-            let gap = if above > below { above } else { below };
-            if gap > 0.0 { gap } else { 0.0 }
-        };
-        let [x, y, z] = [gap(0), gap(1), gap(2)];
-        x * x + y * y + z * z
-    }
-}
-
-/// How far along an axis from `low` or `high` points may be that are within a radius by their squares: rounding may
-/// bring in some that are a little farther, underflow all that are closer than 4e-23.
-#[inline(always)]
-pub(super) fn widened(radius: f32, low: f32, high: f32) -> f32 {
-    radius + 1e-6 * max(radius, max(low.abs(), high.abs())) + 1e-22
-}
-
-/// Slots that may hold something, and the box around their points.
-#[derive(Clone, Debug)]
-pub(super) struct Run {
-    pub(super) slots: Range<usize>,
-    pub(super) low: Vec3,
-    pub(super) high: Vec3,
-    /// The frame of the box; zero is that of the coordinates.
-    pub(super) frame: u32,
-}
-
-/// How many points share one way through the structure at most.
-const GROUP: usize = 64;
-/// How many runs they remember; if there are more, each point goes its own way.
-const RUNS: usize = 128;
-
-/// What is near a group of points.
-struct Near {
-    group: Range<usize>,
-    /// The square within which all is known; negative if nothing is.
-    square: f32,
-    len: usize,
-    full: bool,
-    /// Whether all runs have one image and one frame.
-    alike: bool,
-    /// The frame of the group, and its points in it.
-    home: u32,
-    turned: [Vec3; GROUP],
-    slots: [[u32; 2]; RUNS],
-    /// The image and the frame in which its box is.
-    views: [(Image, u32); RUNS],
-    low: [[f32; RUNS + LANES]; 3],
-    high: [[f32; RUNS + LANES]; 3],
-}
-
-impl Near {
-    fn new() -> Self {
-        Self {
-            group: 0..0,
-            square: -1.0,
-            len: 0,
-            full: false,
-            alike: true,
-            home: 0,
-            turned: [Vec3::ZERO; GROUP],
-            slots: [[0; 2]; RUNS],
-            views: [(Image::Itself, 0); RUNS],
-            low: [[0.0; RUNS + LANES]; 3],
-            high: [[0.0; RUNS + LANES]; 3],
-        }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, run: Run, image: Image) -> bool {
-        if self.len == RUNS {
-            self.full = true;
-            return false;
-        }
-        let at = self.len;
-        self.slots[at] = [run.slots.start as u32, run.slots.end as u32];
-        self.views[at] = (image, run.frame);
-        self.alike &= self.views[at] == self.views[0];
-        for axis in 0..3 {
-            // Points are moved against the image when they are held against the box; the slack is more than what
-            // rounding may take from them.
-            let slack = math::largest(image.moved()) * 1e-6;
-            self.low[axis][at] = run.low[axis] - slack;
-            self.high[axis][at] = run.high[axis] + slack;
-        }
-        self.len += 1;
-        true
-    }
-
-    /// Visits what of it is within a distance of a point, with the square of the distance to its box.
-    #[inline(always)]
-    fn each<P: Partition>(
-        &self,
-        partition: &P,
-        boxed: bool,
-        (slot, center): (usize, Vec3),
-        square: f32,
-        mut visit: impl FnMut(f32, Range<usize>, Image),
-    ) {
-        let mut go = |at: usize, square: f32| {
-            let [start, end] = self.slots[at];
-            visit(square, start as usize..end as usize, self.views[at].0);
-        };
-        if !boxed {
-            return (0..self.len).for_each(|at| go(at, 0.0));
-        }
-        let mut start = 0;
-        while start < self.len {
-            // All that is seen alike at once.
-            let view = self.views[start];
-            let mut end = self.len;
-            if !self.alike {
-                end = (start..self.len).find(|&at| self.views[at] != view).unwrap_or(end);
-            }
-            let center = if view.0 == Image::Itself { center } else { center - view.0.moved() };
-            let center = match view {
-                _ if !P::TURNS => center,
-                (Image::Itself, frame) if frame == self.home && frame != 0 => self.turned[slot - self.group.start],
-                (_, frame) => partition.turn(frame, center),
-            };
-            let center = center.to_array().map(f32x8::splat);
-            for first in (start..end).step_by(LANES) {
-                let squares = self.squares(first, center);
-                let mut hits = squares.simd_le(f32x8::splat(square)).to_bitmask();
-                hits &= (1u32 << (end - first).min(LANES)) - 1;
-                let squares = squares.to_array();
-                while hits != 0 {
-                    let lane = hits.trailing_zeros() as usize;
-                    go(first + lane, squares[lane]);
-                    hits &= hits - 1;
-                }
-            }
-            start = end;
-        }
-    }
-
-    /// The squares of the distances from a point to eight boxes.
-    #[inline(always)]
-    fn squares(&self, first: usize, center: [f32x8; 3]) -> f32x8 {
-        let gap = |axis: usize| {
-            let side = |column: &[[f32; RUNS + LANES]; 3]| {
-                f32x8::new(*column[axis][first..].first_chunk().unwrap_or(&[0.0; LANES]))
-            };
-            let (above, below) = (side(&self.low) - center[axis], center[axis] - side(&self.high));
-            above.fast_max(below).fast_max(f32x8::ZERO)
-        };
-        let [x, y, z] = [gap(0), gap(1), gap(2)];
-        x * x + y * y + z * z
     }
 }
 
@@ -334,10 +154,9 @@ impl<P: Partition> Search<'_, P> {
             for (turned, slot) in near.turned.iter_mut().zip(group.clone()) {
                 *turned = self.0.turn(frame, sorted.point(slot));
             }
-            region.home = (frame, bounds(&near.turned[..group.len()]));
+            region.home = (frame, around(near.turned[..group.len()].iter().copied()));
         }
-        (near.group, near.home, near.square) = (group.clone(), frame, reach.square);
-        (near.len, near.full, near.alike) = (0, false, true);
+        near.begin(group.clone(), frame, reach.square);
         self.runs(&region, reach, |run, image| run.slots.end <= from || near.push(run, image))
     }
 
@@ -394,7 +213,7 @@ impl<P: Partition> Search<'_, P> {
         found: &mut [Neighbour],
         visit: &mut dyn FnMut(u32, &[Neighbour]),
     ) -> Cost {
-        let Some(reach) = self.reach(radius) else { return Cost::default() };
+        let Some(reach) = self.reach(radius).filter(|_| !found.is_empty()) else { return Cost::default() };
         let (sorted, mut cost, mut near) = (self.0.sorted(), Cost::default(), Near::new());
         let mut stride = self.0.stride();
         self.0.groups(&mut |slots, frame| {
@@ -508,7 +327,7 @@ impl Sweep for Counts<'_> {
     #[inline(always)]
     fn end(&mut self, slot: usize) {
         // It has found itself as well.
-        let others = self.tally.total() - 1;
+        let others = self.tally.total().saturating_sub(1);
         self.total += u64::from(others);
         if let Some(count) = self.counts.get_mut(self.sorted.order()[slot] as usize) {
             *count = others;
@@ -546,17 +365,4 @@ impl<const BOTH: bool> Sweep for Lists<'_, BOTH> {
 #[inline(always)]
 fn without(run: Range<usize>, slots: &Range<usize>) -> [Range<usize>; 2] {
     [run.start..run.end.min(slots.start).max(run.start), run.start.max(slots.end).min(run.end)..run.end]
-}
-
-/// The box around some points.
-fn bounds(points: &[Vec3]) -> [Vec3; 2] {
-    points.iter().fold([Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY)], |[low, high], point| {
-        [math::low(*point, low), math::high(*point, high)]
-    })
-}
-
-/// A run in pieces of at most `GROUP`.
-fn chunks(slots: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    let end = slots.end;
-    slots.step_by(GROUP).map(move |start| start..(start + GROUP).min(end))
 }

@@ -1,13 +1,15 @@
 //! The sorted copy of the points that every structure answers from, and the loops over it.
 
-use super::domain::{Domain, Image};
+use super::domain::{Domain, Image, around};
 use super::nearest::Nearest;
-use crate::math;
 use core::ops::Range;
 use glam::Vec3;
 use wide::{f32x8, i32x8};
 
 pub(super) use crate::lanes::LANES;
+
+/// Rows that can be told apart: they are words, and the last one stands for none.
+const ROWS: usize = u32::MAX as usize;
 
 /// A point while it is being sorted.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -36,7 +38,7 @@ pub(super) struct Sorted<'m> {
 impl<'m> Sorted<'m> {
     /// Words for so many points.
     pub(super) const fn words(points: usize) -> usize {
-        7 * points + 4 * LANES
+        points.saturating_mul(7).saturating_add(4 * LANES)
     }
 
     /// Points for which there is room in so many words.
@@ -69,17 +71,25 @@ impl<'m> Sorted<'m> {
 
     /// Sees how many points are finite and where they are; an error if there are too many.
     pub(super) fn survey(&mut self, points: &[Vec3]) -> Result<(), super::TooSmall> {
-        self.domain.fit(points);
-        let (mut len, mut low, mut high) = (0, Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
-        for point in points.iter().filter(|point| point.is_finite()) {
-            let point = self.domain.place(*point);
-            (low, high) = (math::low(point, low), math::high(point, high));
-            len += 1;
+        (self.len, self.rows, self.low, self.high) = (0, 0, Vec3::ZERO, Vec3::ZERO);
+        let room = self.capacity().min(ROWS);
+        if points.len() > ROWS {
+            return Err(super::TooSmall { points: points.len(), room });
         }
-        let room = self.capacity();
-        (self.len, self.rows) = if len > room { (0, 0) } else { (len, points.len()) };
-        (self.low, self.high) = if self.len > 0 { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) };
-        if len > room { Err(super::TooSmall { points: len, room }) } else { Ok(()) }
+        self.domain.fit(points);
+        let (domain, mut len) = (self.domain, 0);
+        let [low, high] = around(points.iter().filter(|point| point.is_finite()).map(|point| {
+            len += 1;
+            domain.place(*point)
+        }));
+        if len > room {
+            return Err(super::TooSmall { points: len, room });
+        }
+        (self.len, self.rows) = (len, points.len());
+        if len > 0 {
+            (self.low, self.high) = (low, high);
+        }
+        Ok(())
     }
 
     /// Takes the finite points in as entries.
@@ -109,21 +119,22 @@ impl<'m> Sorted<'m> {
     pub(super) fn follow(&mut self, points: &[Vec3]) -> bool {
         let mut next = self.domain;
         next.fit(points);
-        if points.len() != self.rows || next != self.domain {
+        let sound = || points.iter().filter(|point| point.is_finite());
+        if points.len() != self.rows || next != self.domain || sound().count() != self.len {
             return false;
         }
-        let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
-        for slot in 0..self.len {
+        let mut sound = true;
+        let [low, high] = around((0..self.len).map(|slot| {
             let point = points[self.work[slot] as usize];
-            if !point.is_finite() {
-                return false;
-            }
+            sound &= point.is_finite();
             let point = self.domain.place(point);
-            (low, high) = (math::low(point, low), math::high(point, high));
             self.set(slot, point);
+            point
+        }));
+        if self.len > 0 {
+            (self.low, self.high) = (low, high);
         }
-        (self.low, self.high) = if self.len > 0 { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) };
-        self.len == points.iter().filter(|point| point.is_finite()).count()
+        sound
     }
 
     /// Puts a point into a slot.

@@ -1,5 +1,6 @@
 //! The structures by name.
 
+use super::cells;
 use super::sorted::Sorted;
 use super::{Brute, Bsp, Bvh, Cost, Grid, Hash, Kd, Neighbour, Octree, Quadtree, SpatialIndex, Stats, TooSmall};
 use glam::Vec3;
@@ -25,7 +26,7 @@ macro_rules! structures {
                 match self { $(Self::$structure => $name,)+ }
             }
 
-            /// Words of memory, four bytes each, that it takes for so many points.
+            /// Words of memory, four bytes each, that it takes for so many points; `usize::MAX` where it takes more.
             #[must_use]
             pub const fn words(self, points: usize) -> usize {
                 match self { $(Self::$structure => $words(points),)+ }
@@ -65,9 +66,9 @@ structures! {
     /// No structure: every point is looked at.
     Brute = "brute", Sorted::words;
     /// Cells of one size in a bounded box.
-    Grid = "grid", Grid::words;
+    Grid = "grid", cells::words;
     /// Cells of one size in all of space.
-    Hash = "hash", Hash::words;
+    Hash = "hash", cells::words;
     /// Squares cut into quarters, for planar data.
     Quadtree = "quadtree", Quadtree::words;
     /// Cubes cut into eighths.

@@ -4,14 +4,16 @@
 //! interest, so that a walk needs neither pointers nor a stack. The trees differ in how they split, and only there.
 
 use super::domain::{Domain, Image};
+use super::frames::Frames;
+use super::near::{Region, Run};
 use super::nearest::Nearest;
-use super::search::{Partition, Region, Run, Search};
-use super::sorted::{Entry, LANES, Probe, Sorted};
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers};
+use super::search::{Partition, Search};
+use super::sorted::{LANES, Probe, Sorted};
+use super::split::{CHILDREN, Split, bounds};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
 use crate::math;
 use core::ops::{ControlFlow, Range};
-use glam::{Mat3, Vec3};
-use wide::f32x4;
+use glam::Vec3;
 
 /// A node: what of the points it holds, and where.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -41,107 +43,11 @@ impl Node {
     }
 }
 
-/// At most so many children has a node.
-pub(super) const CHILDREN: usize = 8;
-
-/// How a tree divides points among a node's children.
-pub trait Split: Default {
-    /// Points in a leaf, at most.
-    const LEAF: usize;
-    /// Bytes of nodes for every point; the leaves become larger if that is not enough.
-    const BYTES: usize;
-    /// Whether boxes may be turned against the axes.
-    const TURNS: bool = false;
-    /// What is handed down from node to node.
-    type Cell: Copy;
-
-    /// The root's.
-    fn root(&mut self, low: Vec3, high: Vec3) -> Self::Cell;
-
-    /// The frame in which a node has its box; it may choose one for the node's entries.
-    fn frame(&self, cell: &mut Self::Cell, entries: &[Entry], frames: &mut Frames<'_>) -> u32 {
-        let _ = (cell, entries, frames);
-        0
-    }
-
-    /// Sorts the entries of a node with more points than a leaf has by the child they go to, and appends for each child
-    /// that gets some where it ends, and its cell. With less than two children the node stays a leaf.
-    fn split(
-        &self,
-        cell: Self::Cell,
-        bounds: [Vec3; 2],
-        entries: &mut [Entry],
-        frames: &Frames<'_>,
-        children: &mut heapless::Vec<(usize, Self::Cell), CHILDREN>,
-    );
-}
-
-/// Right-handed frames, by their axes. The first, number zero, is that of the coordinates.
-#[derive(Debug, Default)]
-pub struct Frames<'m> {
-    axes: &'m mut [[f32; 9]],
-    len: usize,
-    /// More than a turned coordinate of any point is wrong by.
-    slack: f32,
-}
-
-impl Frames<'_> {
-    /// Adds one, and returns its number, if there is room.
-    pub(super) fn add(&mut self, axes: Mat3) -> Option<u32> {
-        *self.axes.get_mut(self.len)? = axes.to_cols_array();
-        self.len += 1;
-        Some(self.len as u32)
-    }
-
-    /// The axes of a frame, unless it is that of the coordinates.
-    #[inline(always)]
-    fn axes(&self, frame: u32) -> Option<[Vec3; 3]> {
-        let &[a, b, c, d, e, f, g, h, i] = self.axes.get((frame as usize).checked_sub(1)?)?;
-        Some([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i)])
-    }
-
-    /// A frame's axis.
-    pub(super) fn axis(&self, frame: u32, axis: usize) -> Vec3 {
-        self.axes(frame).unwrap_or(Vec3::AXES)[axis]
-    }
-
-    /// A point's coordinates in a frame.
-    #[inline(always)]
-    pub(super) fn turn(&self, frame: u32, point: Vec3) -> Vec3 {
-        self.axes(frame).map_or(point, |[x, y, z]| Vec3::new(x.dot(point), y.dot(point), z.dot(point)))
-    }
-
-    /// A box in a frame that holds what a region holds, moved.
-    fn turn_region(&self, frame: u32, region: &Region, moved: Vec3) -> [Vec3; 2] {
-        let slack = ERROR * (math::largest(region.low) + math::largest(region.high) + math::largest(moved));
-        let (home, [low, high]) = region.home;
-        let (center, half) = if frame == home {
-            ((low + high) * 0.5 + self.turn(frame, moved), (high - low) * 0.5)
-        } else {
-            let half = (region.high - region.low) * 0.5;
-            let reach = |axis: usize| self.axis(frame, axis).abs().dot(half);
-            let center = self.turn(frame, (region.low + region.high) * 0.5 + moved);
-            (center, Vec3::new(reach(0), reach(1), reach(2)))
-        };
-        [center - half - slack, center + half + slack]
-    }
-
-    /// The box around some points in a frame.
-    pub(super) fn bounds(&self, frame: u32, points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
-        let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
-        for point in points {
-            let point = self.turn(frame, point);
-            (low, high) = (math::low(point, low), math::high(point, high));
-        }
-        [low - self.slack, high + self.slack]
-    }
-}
-
-/// A turned coordinate is wrong by less than this times the largest coordinate: three products, two sums, and axes that
-/// are unit vectors within some units in the last place.
-const ERROR: f32 = 4e-6;
-
-/// A tree over points.
+/// A tree over points: [`Kd`](super::Kd), [`Bsp`](super::Bsp), [`Octree`](super::Octree), [`Quadtree`](super::Quadtree)
+/// and [`Bvh`](super::Bvh), which differ in how they split a node, `S`, and in nothing else.
+///
+/// The reach to build with makes no difference to it. If the memory has room for all points but not for all nodes, leaves
+/// are larger, which [`Stats::crowded`] counts. Refitting keeps the nodes and draws their boxes anew.
 #[derive(Debug)]
 pub struct Tree<'m, S> {
     sorted: Sorted<'m>,
@@ -163,21 +69,10 @@ const DEEPEST: u32 = 64;
 const WAITING: usize = 256;
 
 impl<'m, S: Split> Tree<'m, S> {
-    /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
-    #[must_use]
-    pub fn new(memory: &'m mut [u32]) -> Self {
-        Self::in_domain(memory, Domain::OPEN)
-    }
-
-    /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero are
-    /// open; points outside are wrapped in.
-    #[must_use]
-    pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
-        Self::in_domain(memory, Domain::periodic(low, sides))
-    }
+    constructors!();
 
     pub(super) const fn words(points: usize) -> usize {
-        (7 + S::BYTES / 4) * points + 4 * LANES + 4 * NODE
+        points.saturating_mul(7 + S::BYTES / 4).saturating_add(4 * LANES + 4 * NODE)
     }
 
     fn in_domain(memory: &'m mut [u32], domain: Domain) -> Self {
@@ -187,7 +82,7 @@ impl<'m, S: Split> Tree<'m, S> {
         let (frames, rest) = rest.split_at_mut(if S::TURNS { rest.len() / 144 * 9 } else { 0 });
         let nodes = rest.len() / if S::TURNS { NODE + 1 } else { NODE };
         let (nodes, rest) = rest.split_at_mut(nodes * NODE);
-        let frames = Frames { axes: bytemuck::cast_slice_mut(frames), len: 0, slack: 0.0 };
+        let frames = Frames::new(frames);
         let turned = if S::TURNS { rest } else { &mut [] };
         let nodes = bytemuck::cast_slice_mut(nodes);
         Self { sorted, nodes, turned, frames, len: 0, depth: 0, fullest: 0, crowded: 0, split: S::default() }
@@ -199,7 +94,7 @@ impl<'m, S: Split> Tree<'m, S> {
         if len == 0 {
             return;
         }
-        self.frames.slack = ERROR * math::max(math::largest(self.sorted.low), math::largest(self.sorted.high));
+        self.frames.hold(self.sorted.low, self.sorted.high);
         // Nodes are dealt out as if leaves were five eighths full. If that is not enough, larger leaves everywhere are
         // better than a huge one where they ran out.
         let room = self.nodes.len() - 1;
@@ -214,7 +109,8 @@ impl<'m, S: Split> Tree<'m, S> {
     /// Makes the nodes with leaves of a given size. False if they are too many; of one leaf there are never too many.
     fn grow_to(&mut self, leaf: usize, room: usize) -> bool {
         let len = self.sorted.len;
-        (self.len, self.depth, self.fullest, self.crowded, self.frames.len) = (0, 0, 0, 0, 0);
+        (self.len, self.depth, self.fullest, self.crowded) = (0, 0, 0, 0);
+        self.frames.clear();
         let root = self.split.root(self.sorted.low, self.sorted.high);
         let mut waiting = heapless::Vec::<_, WAITING>::new();
         let _ = waiting.push((0..len, 0u32, root));
@@ -300,14 +196,14 @@ impl<'m, S: Split> Tree<'m, S> {
 
     /// Draws the boxes anew around where the points are now.
     fn redraw(&mut self) {
-        self.frames.slack = ERROR * math::max(math::largest(self.sorted.low), math::largest(self.sorted.high));
+        self.frames.hold(self.sorted.low, self.sorted.high);
         for i in (0..self.len).rev() {
             let frame = self.frame(i);
             let same = |child: usize| self.frame(child) == frame;
             let [low, high] = if self.is_leaf(i) && frame == 0 {
                 self.sorted.bounds(self.slots(i))
             } else if !self.is_leaf(i) && self.children(i).all(same) {
-                let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+                let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
                 for child in self.children(i) {
                     low = math::low(self.nodes[child].low(), low);
                     high = math::high(self.nodes[child].high(), high);
@@ -468,34 +364,10 @@ impl<S: Split> SpatialIndex for Tree<'_, S> {
     fn stats(&self) -> Stats {
         let stats = self.sorted.stats();
         let node = if S::TURNS { NODE + 1 } else { NODE };
-        let bytes = stats.bytes + 4 * node * (self.len + 1) + 36 * self.frames.len;
+        let bytes = stats.bytes + 4 * node * (self.len + 1) + 36 * self.frames.len();
         let (nodes, depth, fullest, crowded) = (self.len, self.depth, self.fullest, self.crowded);
         Stats { nodes, depth, fullest, crowded, bytes, ..stats }
     }
 
     answers!();
-}
-
-/// The box around some entries.
-fn bounds(entries: &[Entry]) -> [Vec3; 2] {
-    let (mut low, mut high) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
-    for entry in entries {
-        // The row goes along as a fourth number that means nothing.
-        let x = bytemuck::cast::<Entry, f32x4>(*entry);
-        (low, high) = (x.fast_min(low), x.fast_max(high));
-    }
-    [low, high].map(|x| Vec3::from_slice(&x.to_array()))
-}
-
-/// Brings the entries that are `below` before the others, and returns how many they are.
-#[inline(always)]
-pub(super) fn partition(entries: &mut [Entry], below: impl Fn(&Entry) -> bool) -> usize {
-    let mut n = 0;
-    for i in 0..entries.len() {
-        // Both are written whether they change places or not: no branch to mispredict.
-        let lower = below(&entries[i]);
-        entries.swap(i, n);
-        n += usize::from(lower);
-    }
-    n
 }

@@ -1,0 +1,86 @@
+//! Memory, and structures by their names.
+
+use crate::INF;
+use crate::expected::{Expected, centers, compare};
+use pointmass::Vec3;
+use pointmass::index::{SpatialIndex, Structure, TooSmall};
+use pointmass_tests::fields::used;
+use pointmass_tests::points::{Oracle, Spread};
+
+#[test]
+fn an_index_that_was_not_built_is_empty() {
+    let (oracle, points) = (Oracle::new(&[]), Spread::Cube.points(10, 0));
+    for &structure in Structure::ALL {
+        let mut memory = used(structure.words(10));
+        let mut index = structure.index(&mut memory);
+        compare(&index, &oracle, &[0.0, 1.0, INF], &centers(&points, 0), &structure);
+        index.refit(&points).expect("the memory is made for so many");
+        compare(&index, &Oracle::new(&points), &[0.3], &centers(&points, 0), &structure);
+    }
+}
+
+/// Whatever the memory: it is too small and the index is empty, or every answer is right.
+#[test]
+fn memory_is_enough_or_said_to_be_too_small() {
+    let mut points = Spread::Cube.points(24, 3);
+    points[7] = Vec3::NAN;
+    points.extend([points[3]; 6]);
+    let (sound, centers) = (points.len() - 1, [points[0], Vec3::ZERO]);
+    let [none, all] = [&[][..], &points].map(Oracle::new);
+    let [none, all] = [&none, &all].map(|oracle| [0.2, INF].map(|radius| Expected::new(oracle, radius, &centers)));
+    for &structure in Structure::ALL {
+        let mut least = 0;
+        for words in 0..structure.words(points.len()) + 20 {
+            let mut memory = used(words);
+            let mut index = structure.index(&mut memory);
+            for reach in [0.2, 0.0] {
+                let what = format!("{structure} in {words} words, reach {reach}");
+                match index.build(&points, reach) {
+                    Ok(()) => {
+                        all.iter().for_each(|expected| expected.compare(&index, &what));
+                        assert!(index.stats().bytes <= 4 * words, "{what}: {:?}", index.stats());
+                    }
+                    Err(TooSmall { points: wanted, room }) => {
+                        assert_eq!(wanted, sound, "{what}");
+                        assert!(
+                            room < wanted && room >= least && words < structure.words(points.len()),
+                            "{what}: {room}"
+                        );
+                        least = room;
+                        none.iter().for_each(|expected| expected.compare(&index, &what));
+                        assert_eq!(index.build(&points[..room], reach), Ok(()), "{what}: {room} points");
+                        assert_eq!(index.refit(&points), Err(TooSmall { points: wanted, room }), "{what}");
+                        none.iter().for_each(|expected| expected.compare(&index, &what));
+                    }
+                }
+            }
+        }
+        // The next point takes a few words, not many.
+        assert!(least >= sound / 2, "{structure}: room for {least} at the most");
+    }
+}
+
+#[test]
+fn the_more_memory_the_more_points() {
+    for &structure in Structure::ALL {
+        assert_eq!([usize::MAX, usize::MAX / 4].map(|n| structure.words(n)), [usize::MAX; 2], "{structure}");
+        for n in [0, 1, 2, 3, 7, 8, 9, 63, 64, 65, 100] {
+            let words = structure.words(n);
+            assert!(words <= structure.words(n + 1), "{structure}");
+            let points = Spread::Clusters.points(n, 9);
+            let mut memory = used(words);
+            assert_eq!(structure.index(&mut memory).build(&points, 0.1), Ok(()), "{structure} of {n}");
+        }
+    }
+}
+
+#[test]
+fn structures_go_by_their_names() {
+    for &structure in Structure::ALL {
+        assert_eq!(structure.to_string().parse(), Ok(structure));
+        assert_eq!(structure.index(&mut []).stats().points, 0, "{structure}");
+        assert_eq!(structure.index(&mut []).build(&[], 1.0), Ok(()), "{structure}");
+    }
+    let unknown = "kdtree".parse::<Structure>().expect_err("there is none").to_string();
+    assert!(Structure::ALL.iter().all(|structure| unknown.contains(structure.name())), "{unknown}");
+}
