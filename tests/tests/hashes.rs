@@ -4,6 +4,8 @@
 mod expected;
 #[path = "../firmware/src/indices.rs"]
 mod indices;
+#[path = "../firmware/src/motion.rs"]
+mod motion;
 #[path = "../firmware/src/scenes.rs"]
 mod scenes;
 
@@ -15,6 +17,11 @@ fn every_scene_has_its_hash() {
 #[test]
 fn every_index_has_its_hash() {
     as_expected("tests/indices.txt", indices::EXPECTED, |out| indices::run(&mut indices::Memory::new(), out));
+}
+
+#[test]
+fn every_method_has_its_hash() {
+    as_expected("tests/motion.txt", motion::EXPECTED, |out| motion::run(&mut motion::Memory::new(), out));
 }
 
 fn as_expected(file: &str, list: &'static str, run: impl FnOnce(&mut dyn FnMut(&str, u64))) {

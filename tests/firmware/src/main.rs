@@ -1,5 +1,5 @@
 //! Runs the hash scenes on a microcontroller and compares them with `tests/hashes.txt`; where there is memory enough, the
-//! indices as well, with `tests/indices.txt`.
+//! indices and the methods of motion as well, with `tests/indices.txt` and `tests/motion.txt`.
 //!
 //! Prints a line `name hash` each over semihosting, in the format of those files, and exits with 0 if all are as
 //! expected, else with 1.
@@ -14,6 +14,8 @@ use cortex_m as _;
 mod expected;
 #[cfg(roomy)]
 mod indices;
+#[cfg(roomy)]
+mod motion;
 mod scenes;
 
 use semihosting::{println, process};
@@ -23,6 +25,8 @@ use static_cell::ConstStaticCell;
 static SCENES: ConstStaticCell<scenes::Memory> = ConstStaticCell::new(scenes::Memory::new());
 #[cfg(roomy)]
 static INDICES: ConstStaticCell<indices::Memory> = ConstStaticCell::new(indices::Memory::new());
+#[cfg(roomy)]
+static MOTION: ConstStaticCell<motion::Memory> = ConstStaticCell::new(motion::Memory::new());
 
 #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
 #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -32,6 +36,7 @@ fn main() -> ! {
     #[cfg(roomy)]
     {
         right &= as_expected(indices::EXPECTED, |out| indices::run(INDICES.take(), out));
+        right &= as_expected(motion::EXPECTED, |out| motion::run(MOTION.take(), out));
     }
     process::exit(i32::from(!right))
 }
