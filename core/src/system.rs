@@ -90,6 +90,7 @@ impl<B: Storage> System<B> {
     /// If there is no room; that is counted.
     pub fn spawn(&mut self, particle: &Particle) -> Result<Id, Full> {
         let now = self.status.time;
+        self.status.hint = Time::ZERO;
         let given = self.view().spawn(particle, now);
         match given {
             Ok(_) => self.status.totals.born += 1,
@@ -103,6 +104,7 @@ impl<B: Storage> System<B> {
         let Some(row) = self.row(id) else { return false };
         let mut report = Report::default();
         report.died.chance = 1;
+        self.status.hint = Time::ZERO;
         self.view().remove(row, scene.springs, &mut report);
         self.status.totals += report;
         true

@@ -1,8 +1,12 @@
 //! Springs: closed forms, and what becomes of them when their ends die.
 
 use core::f64::consts::PI;
-use pointmass::{Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Spring, System, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, point, run, started};
+use pointmass::force::Drive;
+use pointmass::{
+    Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Sheet, Spring, System, Thread, Threads,
+    Time, Vec3, mesh_springs,
+};
+use pointmass_tests::{Random, f64s, gap, icosahedron, point, run, started};
 
 fn at(x: f32) -> Particle {
     Particle { position: Vec3::X * x, ..Particle::REST }
@@ -282,4 +286,87 @@ fn the_order_of_the_springs_is_a_matter_of_rounding() {
     }
     assert_ne!(swapped, springs);
     assert_eq!(end(&swapped), one);
+}
+
+#[test]
+fn a_driven_spring_follows_its_drive_for_ever() {
+    // So stiff and damped that its length is its rest length; after a day and a half the phase is as right as at once.
+    let drive = Some(Drive { amplitude: 0.25, frequency: 1.0, phase: 0.25 });
+    let spring = Spring { drive, ..Spring::new([0, 1], 2.0, 1e4).damped(200.0) };
+    for seconds in [0.0, 0.125, 0.5, 1e5, 131_072.25] {
+        let time = Time::from_seconds_f64(seconds);
+        let expected = 2.0 * (1.0 + 0.25 * (std::f64::consts::TAU * (seconds.fract() + 0.25)).sin());
+        assert!((f64::from(spring.rest(time)) - expected).abs() < 1e-6, "{seconds}");
+    }
+    let start = [Particle { fixed: true, ..Particle::REST }, at(2.5)];
+    let scene = Scene { start: &start, springs: &[spring], integrator: &Method::Rk4, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    run(&mut system, &scene, 1e-3, 5000);
+    let length = system.particles().position[1].x;
+    assert!((length - 2.5).abs() < 0.01, "{length}");
+}
+
+#[test]
+fn a_spring_breaks_once_and_for_ever() {
+    let weak = Spring { breaks_at: Some(1.5), ..Spring::new([0, 1], 1.0, 100.0) };
+    let strong = Spring { breaks_at: Some(3.0), ..Spring::new([1, 2], 1.0, 100.0) };
+    let start = [at(0.0), at(1.0), Particle { velocity: Vec3::X * 8.0, ..at(2.0) }];
+    let scene = Scene { start: &start, springs: &[weak, strong], integrator: &Method::Rk4, ..Scene::EMPTY };
+    let mut system = started(&scene, 3, 0);
+    let mut breaks = vec![];
+    for frame in 1..=600 {
+        if system.step(&scene, Time::frame(frame, 600) - system.time()).broken > 0 {
+            breaks.push(frame);
+        }
+        let p = system.particles();
+        let stretched = p.position[1].x - p.position[0].x > 1.5;
+        assert!(!stretched || !breaks.is_empty(), "{frame}");
+    }
+    assert_eq!((breaks.len(), system.totals().broken, system.totals().caps.springs), (1, 1, 0));
+    let springs = system.state(&scene).springs;
+    assert_eq!([0, 1].map(|number| springs.is_broken(number)), [true, false]);
+    assert_eq!(springs.ends().collect::<Vec<_>>(), [[1, 2]]);
+    // Its end is free now: it goes on as it went.
+    let v = system.particles().velocity[0];
+    system.step(&scene, Time::SECOND);
+    assert_eq!(system.particles().velocity[0], v);
+    // The fingerprint sees it, and a new start mends it.
+    let (hash, time) = (system.hash(), system.time());
+    system.start(&scene, 0).expect("it fits");
+    assert!(!system.state(&scene).springs.is_broken(0) && hash != system.hash() && time > Time::ZERO);
+}
+
+#[test]
+fn a_sheet_has_the_springs_it_should() {
+    let thread = Some(Thread { ks: 10.0, kd: 0.1 });
+    let threads = Threads { structural: thread, shear: thread, bend: thread };
+    let sheet = Sheet { corner: Vec3::ONE, sides: [Vec3::X * 2.0, Vec3::Z * 3.0], cells: [4, 6] };
+    let places: Vec<Vec3> = sheet.positions().collect();
+    let springs: Vec<Spring> = sheet.springs(&threads, 100).collect();
+    assert_eq!((places.len(), places[0], places[34]), (35, Vec3::ONE, Vec3::new(3.0, 1.0, 4.0)));
+    let structural = 4 * 7 + 5 * 6;
+    assert_eq!(springs.len(), structural + 2 * 4 * 6 + 3 * 7 + 5 * 5);
+    let mut seen = std::collections::BTreeSet::new();
+    for spring in springs {
+        let [a, b] = spring.ends.map(|end| (end - 100) as usize);
+        assert!((places[a].distance(places[b]) - spring.rest_length).abs() < 1e-6);
+        assert!(spring.rest_length <= 1.0 + 1e-6 && a != b && seen.insert((a.min(b), a.max(b))));
+    }
+    assert_eq!(sheet.triangles().count(), 48);
+    let flat = Sheet { cells: [3, 0], ..sheet };
+    assert_eq!((flat.positions().count(), flat.springs(&threads, 0).count()), (4, 3 + 2));
+}
+
+#[test]
+fn a_mesh_has_a_spring_for_every_edge_and_one_over_it() {
+    let (vertices, triangles) = icosahedron();
+    let threads = Threads { structural: Some(Thread { ks: 5.0, kd: 0.0 }), ..Threads::default() };
+    assert_eq!(mesh_springs(&vertices, &triangles, &threads, 0).len(), 30);
+    let threads = Threads { bend: threads.structural, ..threads };
+    let springs = mesh_springs(&vertices, &triangles, &threads, 7);
+    assert_eq!(springs.len(), 60);
+    for spring in springs {
+        let [a, b] = spring.ends.map(|end| vertices[end as usize - 7]);
+        assert!((a.distance(b) - spring.rest_length).abs() < 1e-6 && spring.rest_length > 0.5);
+    }
 }

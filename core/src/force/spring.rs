@@ -87,11 +87,25 @@ impl Spring {
         rows.is_some_and(|(a, b)| length(state.position[b] - state.position[a]) > ratio * self.rest(state.time))
     }
 
-    /// Stiffness along it and across it \[N/m\] at a length. A spring that is pressed would push sideways; that is left out,
-    /// so that no mode is unstable (Choi and Ko, "Stable but Responsive Cloth", SIGGRAPH 2002).
-    fn stiffness(&self, d: f32, time: Time) -> [f32; 2] {
-        [max(self.ks, 0.0), max(self.ks * (1.0 - self.rest(time) / d), 0.0)]
+    /// How its force changes with its ends, positions and velocities weighed. A spring that is pressed would push sideways;
+    /// that is left out, so that no mode is unstable (Choi and Ko, "Stable but Responsive Cloth", SIGGRAPH 2002).
+    fn bend(&self, a: usize, b: usize, state: &State<'_>, [position, velocity]: [f32; 2]) -> Option<Bend> {
+        let toward = state.position[b] - state.position[a];
+        let d = length(toward);
+        if !(d > 0.0 && d < f32::INFINITY) {
+            return None;
+        }
+        let across = max(self.ks * (1.0 - self.rest(state.time) / d), 0.0);
+        let axial = (max(self.ks, 0.0) - across) * position + max(self.kd, 0.0) * velocity;
+        Some(Bend { along: toward / d, axial, across: across * position })
     }
+}
+
+/// A spring's stiffness and damping about a pose: more `axial` than `across`, which acts in all directions.
+struct Bend {
+    along: Vec3,
+    axial: f32,
+    across: f32,
 }
 
 /// Marks a broken spring in the lists of its ends.
@@ -169,7 +183,8 @@ impl<'a> Springs<'a> {
         let this = *self;
         this.springs.iter().enumerate().filter_map(move |(number, spring)| {
             let rows = [this.row(spring.ends[0])?, this.row(spring.ends[1])?];
-            (!this.is_broken(number)).then_some(Held { number, spring, rows })
+            let broken = spring.breaks_at.is_some() && this.is_broken(number);
+            (!broken && rows[0] != rows[1]).then_some(Held { number, spring, rows })
         })
     }
 
@@ -208,35 +223,21 @@ impl Force for Springs<'_> {
     }
 
     fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
-        for (row, total) in total.iter_mut().enumerate() {
-            for (spring, other) in self.at(row) {
-                let Some(other) = self.row(other) else { continue };
-                let toward = state.position[other] - state.position[row];
-                let d = length(toward);
-                if d > 0.0 {
-                    let along = toward / d;
-                    let [ks, across] = spring.stiffness(d, state.time);
-                    let apart = change.along[other] - change.along[row];
-                    let axial = (ks - across) * change.position + max(spring.kd, 0.0) * change.velocity;
-                    *total += along * (axial * apart.dot(along)) + apart * (across * change.position);
-                }
-            }
+        for Held { spring, rows: [a, b], .. } in self.held() {
+            let Some(bend) = spring.bend(a, b, state, [change.position, change.velocity]) else { continue };
+            let apart = change.along[b] - change.along[a];
+            let pull = bend.along * (bend.axial * apart.dot(bend.along)) + apart * bend.across;
+            total[a] += pull;
+            total[b] -= pull;
         }
     }
 
-    fn add_stiffness(&self, state: &State<'_>, [position, velocity]: [f32; 2], total: &mut [Vec3]) {
-        for (row, total) in total.iter_mut().enumerate() {
-            for (spring, other) in self.at(row) {
-                let Some(other) = self.row(other) else { continue };
-                let toward = state.position[other] - state.position[row];
-                let d = length(toward);
-                if d > 0.0 {
-                    let along = toward / d;
-                    let [ks, across] = spring.stiffness(d, state.time);
-                    let axial = (ks - across) * position + max(spring.kd, 0.0) * velocity;
-                    *total += along * along * axial + Vec3::splat(across * position);
-                }
-            }
+    fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
+        for Held { spring, rows: [a, b], .. } in self.held() {
+            let Some(bend) = spring.bend(a, b, state, weights) else { continue };
+            let diagonal = bend.along * bend.along * bend.axial + Vec3::splat(bend.across);
+            total[a] += diagonal;
+            total[b] += diagonal;
         }
     }
 

@@ -1,6 +1,6 @@
 //! Step doubling.
 
-use super::{Dynamics, Integrator, Motion, Work, difference};
+use super::{Dynamics, Integrator, Motion, Work, cut, difference};
 use crate::report::Effort;
 use crate::time::Time;
 use glam::Vec3;
@@ -54,7 +54,7 @@ impl<I: Integrator> Integrator for Adaptive<I> {
             if now >= end {
                 break;
             }
-            let taken = h.min(end - now);
+            let taken = cut(h, end - now);
             let error = self.double([&mut *x, &mut *v], &mut marks, [now, taken], &mut work, world, effort);
             let fine = error <= self.tolerance;
             if fine || taken <= self.smallest {
@@ -62,7 +62,7 @@ impl<I: Integrator> Integrator for Adaptive<I> {
                 effort.capped += u64::from(!fine);
                 now = now + taken;
                 world.reached(now, x, v);
-                if taken == h && error * 40.0 < self.tolerance {
+                if taken >= h && error * 40.0 < self.tolerance {
                     h = h + h;
                 }
             } else {

@@ -1,6 +1,6 @@
 //! An embedded Runge-Kutta pair.
 
-use super::{Dynamics, Integrator, Motion, advance_by};
+use super::{Dynamics, Integrator, Motion, advance_by, cut};
 use crate::math::{cbrt, clamp, largest, max};
 use crate::time::Time;
 use glam::Vec3;
@@ -47,7 +47,7 @@ impl Integrator for Embedded {
         while now < end {
             tries += 1;
             let last = tries >= self.attempts;
-            let taken = if last { end - now } else { h.min(end - now) };
+            let taken = if last { end - now } else { cut(h, end - now) };
             x0.copy_from_slice(x);
             v0.copy_from_slice(v);
             let stages = Stages { x0, v0, a1, a2: &mut *a2, a3: &mut *a3, a4: &mut *a4 };

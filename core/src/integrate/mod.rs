@@ -149,6 +149,11 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
 }
 
+/// A step of `h`, or all that is `left` where that is not noticeably more: no step is made of rounding.
+fn cut(h: Time, left: Time) -> Time {
+    if left - h <= Time::from_ticks(h.ticks() >> 8) { left } else { h }
+}
+
 /// The largest difference of two states \[m\]: of positions, and of velocities times the step, as far as it is more than
 /// rounding. One that is beyond all numbers differs infinitely, but what is undefined in both is so whatever the step, and
 /// is left out.
