@@ -1,7 +1,8 @@
 //! The command line, parsed and nothing more.
 
 use crate::compare::{Distribution, Workload};
-use crate::formats::{PointsFormat, RecordFormat, SceneFormat, StudyFormat, extension};
+use crate::formats::{PlotFormat, PointsFormat, RecordFormat, SceneFormat, StudyFormat, extension};
+use crate::substeps::Substeps;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::Method;
 use pointmass::index::Structure;
@@ -18,6 +19,7 @@ Examples:
   pointmass render scenes/fountain.json --out fountain.gif
   pointmass run scenes/rope.scn --duration 10 --dt 0.001 --out rope.csv
   pointmass run scenes/fountain.json --report json | jq .died
+  pointmass check scenes/rope.scn --dt 1/30
   pointmass convert lab.scn lab.json
   pointmass compare --distribution uniform,plummer --n 1e3,1e4,1e5 --out study.html"
 )]
@@ -36,6 +38,8 @@ pub enum Command {
     Render(Render),
     /// Translate a scene between .scn and .json
     Convert(Convert),
+    /// Say which steps a scene stands with every integrator, what limits them and what to change
+    Check(Check),
     /// Measure which spatial partition suits which points and queries
     Compare(Compare),
     /// Print the JSON Schema of .json scenes
@@ -62,6 +66,14 @@ pub struct World {
     /// How many particles may live at once, what finds no room is refused and counted; by default what the scene says
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=500_000_000))]
     pub capacity: Option<u32>,
+    /// Divide every step into N sub-steps, or `auto`: into as few as springs and drag need to be stable and --tolerance
+    /// asks, at most 1024
+    #[arg(long, value_name = "N|auto", default_value = "1", value_parser = substeps)]
+    pub substeps: Substeps,
+    /// With --substeps auto, how far a step may end, in metres and at any particle, from where half as many sub-steps
+    /// would take it; by default 1e-4 of the radius of what is there at the start
+    #[arg(long, value_name = "M", value_parser = tolerance)]
+    pub tolerance: Option<f64>,
 }
 
 /// Arguments of `run`.
@@ -121,6 +133,25 @@ pub struct Convert {
     /// The scene to write: .scn or .json
     #[arg(value_parser = scene_format)]
     pub to: (PathBuf, SceneFormat),
+}
+
+/// Arguments of `check`.
+#[derive(Debug, ClapArgs)]
+pub struct Check {
+    /// The scene: .json or .scn
+    pub scene: PathBuf,
+    /// The step in seconds that is judged, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
+    #[arg(long, value_name = "S", value_parser = step)]
+    pub dt: Option<f64>,
+    /// The method that is advised on, any that `run` knows; by default what the scene says, rk4 for .scn
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<Method>,
+    /// Draw where methods are stable, and where the scene's oscillations lie: FILE.svg, or .html for a page with the report
+    #[arg(long, value_name = "FILE", value_parser = plotted)]
+    pub plot: Option<(PathBuf, PlotFormat)>,
+    /// How to say it on standard output
+    #[arg(long, value_enum, default_value_t = Report::Text)]
+    pub report: Report,
 }
 
 /// Arguments of `compare`.
@@ -231,6 +262,25 @@ fn step(text: &str) -> Result<f64, String> {
     if value >= 1e-9 { Ok(value) } else { Err("expected a step of at least 1e-9 s".into()) }
 }
 
+fn substeps(text: &str) -> Result<Substeps, String> {
+    match text.trim() {
+        "auto" => Ok(Substeps::Auto),
+        text => match text.parse() {
+            Ok(n) if (1..=1_000_000).contains(&n) => Ok(Substeps::Fixed(n)),
+            _ => Err("expected a whole number from 1 to 1000000, or auto".into()),
+        },
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("expected a positive, finite number of metres".into())
+    }
+}
+
 fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("expected a number, found '{text}'"))
 }
@@ -253,6 +303,10 @@ fn pointed(text: &str) -> Result<(PathBuf, PointsFormat), String> {
 
 fn studied(text: &str) -> Result<(PathBuf, StudyFormat), String> {
     ending(text, StudyFormat::of, ".html, .svg, .csv or .json")
+}
+
+fn plotted(text: &str) -> Result<(PathBuf, PlotFormat), String> {
+    ending(text, PlotFormat::of, ".svg or .html")
 }
 
 fn scene_format(text: &str) -> Result<(PathBuf, SceneFormat), String> {

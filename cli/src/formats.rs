@@ -50,6 +50,15 @@ pub enum StudyFormat {
     Svg,
 }
 
+/// A format of plots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlotFormat {
+    /// A page with what there is to say.
+    Html,
+    /// The picture alone.
+    Svg,
+}
+
 impl SceneFormat {
     /// By the end of the file's name.
     #[must_use]
@@ -97,6 +106,18 @@ impl StudyFormat {
         match extension(path).as_str() {
             "csv" => Some(Self::Csv),
             "json" => Some(Self::Json),
+            "html" => Some(Self::Html),
+            "svg" => Some(Self::Svg),
+            _ => None,
+        }
+    }
+}
+
+impl PlotFormat {
+    /// By the end of the file's name.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        match extension(path).as_str() {
             "html" => Some(Self::Html),
             "svg" => Some(Self::Svg),
             _ => None,

@@ -1,10 +1,11 @@
 //! The library behind the `pointmass` binary.
 //!
-//! `args` parses, one module a command does the work: `run`, `render`, `convert`, `compare`. They share `load` (scenes and meshes
-//! from disk), `world` (a scene in motion), `clock` (when steps end), `record` (state to files) and `draw` (state to
+//! `args` parses, one module a command does the work: `run`, `render`, `convert`, `check`, `compare`. They share `load` (scenes and meshes
+//! from disk), `world` (a scene in motion), `clock` (when steps end), `substeps` (how they are divided), `record` (state to files) and `draw` (state to
 //! pictures).
 
 pub mod args;
+pub mod check;
 pub mod clock;
 pub mod compare;
 pub mod convert;
@@ -18,6 +19,7 @@ pub mod render;
 pub mod report;
 pub mod run;
 mod stage;
+pub mod substeps;
 pub mod whole;
 pub mod world;
 

@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use pointmass_cli::args::{Args, Command};
-use pointmass_cli::{compare, convert, render, run};
+use pointmass_cli::{check, compare, convert, render, run};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -11,6 +11,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(args),
         Command::Render(args) => render::render(args),
         Command::Convert(args) => convert::convert(args),
+        Command::Check(args) => check::check(args),
         Command::Compare(args) => compare::compare(args),
         Command::Schema => pointmass_cli::print(&pointmass::scene::schema()),
     };

@@ -19,6 +19,8 @@ pub fn render(args: &args::Render) -> Outcome {
     // Between two pictures lie equal steps, none longer than the step of the run.
     let substeps = ((frame_time / world.dt - 1e-6).ceil() as u64).max(1);
 
+    world.warn_of_steps(frame_time / substeps as f64, world.duration);
+
     let renderer = Renderer::new(&stage(&world.file, &world.model, args.show_sources), args.size.0, args.size.1);
     let mut cast = Cast::new(&world.file, &world.model);
     let mut progress = Progress::new(frames * substeps);

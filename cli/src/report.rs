@@ -1,6 +1,7 @@
 //! What a run came to, for people and for programs.
 
 use crate::clock::nanoseconds;
+use crate::substeps::{MOST, Told};
 use crate::world::World;
 use pointmass::{Caps, Died, Energy, Measures};
 use serde::Serialize;
@@ -21,6 +22,8 @@ pub struct Summary {
     pub steps: u64,
     /// The instant reached \[s\].
     pub time: f64,
+    /// How steps were divided.
+    pub substeps: Told,
     /// Particles put in at the beginning.
     pub initial: u64,
     /// Particles born.
@@ -73,6 +76,7 @@ impl Summary {
             seed: world.system.seed(),
             steps: effort.steps,
             time: nanoseconds(world.system.time().seconds_f64()),
+            substeps: world.pace.told(),
             initial: totals.initial,
             born: totals.born,
             live: world.system.len() as u64,
@@ -108,17 +112,12 @@ impl Summary {
             ("scene", self.scene.clone()),
             ("run", format!("{} steps of {:.6} s by {}, seed {}", self.steps, self.dt, self.integrator, self.seed)),
             ("time", format!("{} s", self.time)),
-            (
-                "particles",
-                format!(
-                    "{} at first + {} born = {} live + {} died",
-                    self.initial,
-                    self.born,
-                    self.live,
-                    self.died.total()
-                ),
-            ),
         ];
+        rows.extend(substeps(&self.substeps, self.steps).map(|told| ("sub-steps", told)));
+        rows.push((
+            "particles",
+            format!("{} at first + {} born = {} live + {} died", self.initial, self.born, self.live, self.died.total()),
+        ));
         let died = [
             ("of age", self.died.lifetime),
             ("at sinks", self.died.sink),
@@ -151,6 +150,29 @@ impl Summary {
         }
         text
     }
+}
+
+/// How steps were divided, if they were.
+fn substeps(told: &Told, steps: u64) -> Option<String> {
+    let Told { least, most, total, beyond, tolerance, .. } = *told;
+    if most <= 1 {
+        return None;
+    }
+    let mean = total as f64 / steps as f64;
+    let mut text = if least == most {
+        format!("{most} a step")
+    } else {
+        format!("{least} to {most} a step, {mean:.1} on average")
+    };
+    if let Some(tolerance) = tolerance {
+        text.push_str(&format!(", chosen to end within {tolerance:.1e} m"));
+    }
+    if beyond > 0 {
+        text.push_str(&format!(
+            "; {beyond} steps may be farther off: {MOST} is the most, and after hits more may not help"
+        ));
+    }
+    Some(text)
 }
 
 /// Adds a row with those counts that are not zero, if there are any.

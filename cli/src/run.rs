@@ -19,6 +19,7 @@ pub fn run(args: &args::Run) -> Outcome {
         Some(steps) => Clock::steps_of(steps, world.dt),
         None => Clock::new(world.duration, world.dt),
     };
+    world.warn_of_steps(world.dt, clock.end(clock.steps()).seconds_f64());
     let mut recorders =
         args.out.iter().map(|(path, format)| Recorder::create(path, *format)).collect::<Outcome<Vec<_>>>()?;
     let mut record = |step: u64, world: &World| {

@@ -83,6 +83,11 @@ impl Cast {
     }
 }
 
+/// How large a scene is \[m\]: the radius of all that stays put and of the particles that it begins with.
+pub(crate) fn size(file: &SceneFile, model: &Model) -> f64 {
+    f64::from(bounds(file, model).radius())
+}
+
 /// A box around all that stays put, for a camera that nobody placed.
 fn bounds(file: &SceneFile, model: &Model) -> Aabb {
     let corners = |shape: &Shape<Arc<MeshBuf>>, to_world: &Affine| {

@@ -1,10 +1,17 @@
 //! A scene in motion: the system, the scene it steps through, and the settings of the run.
 
 use crate::args;
+use crate::check::Bounds;
 use crate::load::{self, Disk};
-use crate::{Failure, Outcome};
+use crate::stage::size;
+use crate::substeps::{Pace, Substeps};
+use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
+use pointmass::stability::Limit;
 use pointmass::{Heap, Method, Report, System, Time};
+
+/// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
+const TOLERANCE: f64 = 1e-4;
 
 /// A scene made ready and the system it is done to.
 #[derive(Debug)]
@@ -19,6 +26,8 @@ pub struct World {
     pub duration: f64,
     /// The step \[s\].
     pub dt: f64,
+    /// How steps are divided.
+    pub pace: Pace,
 }
 
 impl World {
@@ -33,14 +42,23 @@ impl World {
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
         let particles = file.particles.len();
-        let capacity = args.capacity.map_or(particles.max(file.run.capacity as usize), |capacity| capacity as usize);
+        let capacity = match args.capacity {
+            Some(capacity) => capacity as usize,
+            // Where nobody is born, more room would lie empty, and be copied about by sub-steps.
+            None if file.emitters.is_empty() && args.substeps == Substeps::Auto => particles,
+            None => particles.max(file.run.capacity as usize),
+        };
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
         let memory = Heap::try_new(model.size(capacity)).map_err(|_| {
             Failure::new(format!("there is no memory for {capacity} particles; lower --capacity (or the scene's)"))
         })?;
         let mut system = System::with(memory);
         system.start(&model.scene(), seed).map_err(|unfit| Failure::new(unfit.to_string()))?;
-        Ok(Self { file, model, system, duration, dt })
+        let method = model.integrator.method;
+        let limit = if method.chooses_steps() { Limit::Unconditional } else { Bounds::of(&model).largest_step(method) };
+        let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
+        let pace = Pace::new(args.substeps, limit, tolerance);
+        Ok(Self { file, model, system, duration, dt, pace })
     }
 
     /// The method of the run.
@@ -49,9 +67,15 @@ impl World {
         self.model.integrator.method
     }
 
+    /// Warns of steps \[s\] that are going to explode in a run of some duration \[s\], unless they are divided as need be.
+    pub fn warn_of_steps(&self, step: f64, duration: f64) {
+        if let Substeps::Fixed(n) = self.pace.substeps() {
+            warn(&Bounds::of(&self.model).warnings(self.integrator(), step / f64::from(n), duration));
+        }
+    }
+
     /// Steps to the instant `end`.
     pub fn step_to(&mut self, end: Time) -> Report {
-        let dt = end - self.system.time();
-        self.system.step(&self.model.scene(), dt)
+        self.pace.step(&mut self.system, &self.model.scene(), end)
     }
 }

@@ -14,10 +14,10 @@ use glam::Vec3;
 const MAX_BOUNCES: u32 = 8;
 
 /// How far a path's chords may stray from it \[m\], unless that takes more than `MAX_CHORDS` of them.
-const CHORD_ERROR: f32 = 1e-4;
+pub(crate) const CHORD_ERROR: f32 = 1e-4;
 
 /// How many chords a path is followed along at the most.
-const MAX_CHORDS: u32 = 8;
+pub(crate) const MAX_CHORDS: u32 = 8;
 
 /// How many times a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;

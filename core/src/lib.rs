@@ -34,7 +34,7 @@
 //! # Map
 //! `system` holds the state and `view` the step; `emit` creates, `force` and `integrate` move, `collide` and `shape` collide, `retire`
 //! deletes, `measure` and `report` tell what happened; `storage` owns the memory; `scene` (feature `alloc`) reads and
-//! writes scene files.
+//! writes scene files; `stability` (feature `std`) says which steps a method stands.
 //!
 //! # Features
 //! `alloc`: storage on the heap, declared scenes. `serde`: the domain types as data. `json`: scenes as JSON. `schema`: their
@@ -69,6 +69,8 @@ pub mod rng;
 mod rows;
 pub mod scene;
 pub mod shape;
+#[cfg(feature = "std")]
+pub mod stability;
 mod storage;
 mod system;
 mod time;

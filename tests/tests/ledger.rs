@@ -1,10 +1,6 @@
 //! The ledger closes: what is left over is the method's own error.
 
-use pointmass::shape::Plane;
-use pointmass::{
-    Books, Drag, Force, Gravity, Heap, Integrator, Ledger, Method, MutualGravity, Particle, Rk4, Scene, Size, Spring,
-    System, Time, Vec3, Verlet,
-};
+use pointmass::{Books, Heap, Ledger, Method, Scene, Size, System, Time};
 use pointmass_tests::busy::{SIZE, busy};
 
 /// The books after a second in steps of `h`.

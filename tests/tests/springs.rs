@@ -309,8 +309,8 @@ fn a_driven_spring_follows_its_drive_for_ever() {
 #[test]
 fn a_spring_breaks_once_and_for_ever() {
     let weak = Spring { breaks_at: Some(1.5), ..Spring::new([0, 1], 1.0, 100.0) };
-    let strong = Spring { breaks_at: Some(3.0), ..Spring::new([1, 2], 1.0, 100.0) };
-    let start = [at(0.0), at(1.0), Particle { velocity: Vec3::X * 8.0, ..at(2.0) }];
+    let strong = Spring { breaks_at: Some(9.0), ..Spring::new([1, 2], 1.0, 100.0) };
+    let start = [at(0.0), at(1.0), Particle { velocity: Vec3::X * 24.0, ..at(2.0) }];
     let scene = Scene { start: &start, springs: &[weak, strong], integrator: &Method::Rk4, ..Scene::EMPTY };
     let mut system = started(&scene, 3, 0);
     let mut breaks = vec![];

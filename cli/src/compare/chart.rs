@@ -20,7 +20,7 @@ const BAR: u32 = 22;
 const AROUND_BARS: u32 = 44;
 
 /// Colours that those who see few of them can tell apart (Okabe and Ito, "Color Universal Design", 2008), and some more.
-const PALETTE: [RGBColor; 14] = [
+pub(crate) const PALETTE: [RGBColor; 14] = [
     RGBColor(85, 85, 85),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -36,10 +36,10 @@ const PALETTE: [RGBColor; 14] = [
     RGBColor(68, 170, 153),
     RGBColor(120, 28, 129),
 ];
-const INK: RGBColor = RGBColor(34, 34, 34);
-const FAINT: RGBColor = RGBColor(225, 225, 225);
+pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
+pub(crate) const FAINT: RGBColor = RGBColor(225, 225, 225);
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// A chart of its own.
 pub(crate) struct Chart<'a> {
@@ -174,7 +174,7 @@ pub(crate) fn all(study: &Study) -> Outcome<String> {
     Ok(picture)
 }
 
-fn undrawn(error: impl std::fmt::Display) -> Failure {
+pub(crate) fn undrawn(error: impl std::fmt::Display) -> Failure {
     Failure::new(format!("a chart cannot be drawn: {error}"))
 }
 

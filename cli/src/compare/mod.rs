@@ -6,12 +6,12 @@
 
 mod advice;
 mod bench;
-mod chart;
+pub(crate) mod chart;
 mod contender;
 mod distribution;
 mod machine;
 mod measure;
-mod page;
+pub(crate) mod page;
 #[cfg(feature = "peers")]
 mod peer;
 pub mod points;

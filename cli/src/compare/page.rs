@@ -9,7 +9,7 @@ use super::{stopwatch, study, verify};
 use crate::Outcome;
 use std::fmt::Write;
 
-const STYLE: &str = "\
+pub(crate) const STYLE: &str = "\
 body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:72rem;margin:2rem auto;padding:0 1.5rem}
 h1{font-size:1.7rem;line-height:1.25}h2{margin-top:2.4rem;border-bottom:1px solid #ccc}h3{margin:1.6rem 0 .4rem}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.6rem 0;font-size:.9rem}
@@ -55,7 +55,7 @@ pub(crate) fn html(study: &Study) -> Outcome<String> {
 struct Page(String);
 
 /// Text as it may stand in HTML.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

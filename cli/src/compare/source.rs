@@ -95,6 +95,8 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         integrator: None,
         seed: args.seed,
         capacity: None,
+        substeps: crate::substeps::Substeps::Fixed(1),
+        tolerance: None,
     };
     let mut world = World::load(&settings)?;
     let clock = Clock::new(world.duration, world.dt);

@@ -17,7 +17,7 @@ const fn bad<'a>(text: &'a str, error: &'a str) -> Bad<'a> {
 /// Every command refuses the scene `name`, says `error` first, and leaves the folder as it was.
 #[track_caller]
 fn refused(folder: &Folder, name: &str, error: &str) {
-    refused_by(folder, name, error, &["run", "render", "convert"]);
+    refused_by(folder, name, error, &["run", "render", "convert", "check"]);
 }
 
 #[track_caller]
@@ -28,6 +28,7 @@ fn refused_by(folder: &Folder, name: &str, error: &str, commands: &[&str]) {
         let rest = match *command {
             "run" => "--steps 1 --out old.csv --out o.jsonl --out o.ply --out o.xyz",
             "render" => "--duration 0 --size 8x8 --out o.gif",
+            "check" => "--plot o.svg",
             _ if name.ends_with("json") => "o.scn",
             _ => "o.json",
         };

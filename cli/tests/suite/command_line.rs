@@ -5,18 +5,19 @@ use crate::tool::{Folder, number};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-const WORLD: [&str; 5] = ["--duration", "--dt", "--integrator", "--seed", "--capacity"];
+const WORLD: [&str; 7] = ["--duration", "--dt", "--integrator", "--seed", "--capacity", "--substeps", "--tolerance"];
 
 #[test]
 fn help_names_every_flag() {
     let folder = Folder::new();
     let run = ["--steps", "--every", "--out", "--report", "text", "json", ".csv", ".jsonl", ".ply", ".xyz", "rk4"];
     let render = ["--out", "--size", "--fps", ".gif", ".png"];
-    let cases: [(&str, Vec<&str>); 4] = [
-        ("", vec!["run", "render", "convert", "--help", "--version"]),
+    let cases: [(&str, Vec<&str>); 5] = [
+        ("", vec!["run", "render", "convert", "check", "--help", "--version"]),
         ("run", [&WORLD[..], &run].concat()),
         ("render", [&WORLD[..], &render].concat()),
         ("convert", vec![".scn", ".json"]),
+        ("check", vec!["--dt", "--integrator", "--plot", ".svg", ".html", "--report", "text", "json"]),
     ];
     for (command, words) in cases {
         for args in [format!("{command} --help"), format!("{command} -h"), format!("help {command}")] {
@@ -60,6 +61,22 @@ fn usage_errors_exit_with_2() {
         "run a.scn --capacity -1",
         "run a.scn --capacity 1e6",
         "run a.scn --report xml",
+        "run a.scn --substeps 0",
+        "run a.scn --substeps -1",
+        "run a.scn --substeps 1.5",
+        "run a.scn --substeps many",
+        "run a.scn --substeps auto --tolerance 0",
+        "run a.scn --substeps auto --tolerance nan",
+        "run a.scn --substeps auto --tolerance=-1",
+        "check",
+        "check a.scn b.scn",
+        "check a.scn --dt 0",
+        "check a.scn --dt nan",
+        "check a.scn --dt=-1",
+        "check a.scn --integrator leapfrog",
+        "check a.scn --plot o.png",
+        "check a.scn --plot o",
+        "check a.scn --report xml",
         "run a.scn --out o.txt",
         "run a.scn --out o",
         "run a.scn --out .csv",
@@ -90,10 +107,11 @@ fn the_json_report_has_exactly_its_fields() {
     let report = folder.report("busy.scn --steps 60 --seed 9 --dt 0.01 --integrator verlet");
     let fields = |value: &Value| value.as_object().expect("an object").keys().cloned().collect::<BTreeSet<_>>();
     let expected = |names: &str| names.split(' ').map(str::to_string).collect::<BTreeSet<_>>();
-    let all = "scene integrator dt seed steps time initial born live died refused hits caps energy momentum \
+    let all = "scene integrator dt seed steps time substeps initial born live died refused hits caps energy momentum \
                angular_momentum hash seconds ns_per_particle_step";
     assert_eq!(fields(&report), expected(all));
     assert_eq!(fields(&report["died"]), expected("lifetime sink density chance nonfinite"));
+    assert_eq!(fields(&report["substeps"]), expected("auto least most total beyond tolerance"));
     assert_eq!(fields(&report["energy"]), expected("kinetic potential"));
     assert!(report["caps"].as_object().is_some_and(|caps| caps.values().all(Value::is_u64)), "{report}");
     for vector in ["momentum", "angular_momentum"] {

@@ -1,6 +1,7 @@
 //! The program from outside: its command line, its files, the course's scenes; and the formats it reads and writes.
 
 mod bad_input;
+mod check;
 mod command_line;
 mod compare;
 mod conversion;

@@ -1,0 +1,140 @@
+//! What to change.
+
+use super::report::{Check, Stand};
+use super::words::{plain, time, typed};
+use pointmass::Spring;
+use pointmass::scene::Model;
+use pointmass::stability::Limit;
+
+/// Steps that an orbit should have at least, and parts of a sink's time.
+const ORBIT: f64 = 50.0;
+const PULL: f64 = 10.0;
+
+/// What to change, the most urgent first; or that nothing has to be.
+pub(crate) fn advise(check: &Check, model: &Model) -> Vec<String> {
+    let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
+    let mut advice = Vec::new();
+    match stand.every_pose.and(stand.drag) {
+        _ if stand.chooses_steps => advice.push(format!("{} chooses its own steps", stand.method)),
+        limit if limit.admits(check.dt) => advice.push(fine(check, limit)),
+        Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
+        _ => advice.push(never(check, model, stand)),
+    }
+    advice.extend(damping(check, model));
+    advice.extend(taut(check, stand));
+    advice.extend(world(check));
+    advice
+}
+
+fn fine(check: &Check, limit: Limit) -> String {
+    let (step, method) = (time(check.dt), &check.integrator);
+    match limit {
+        Limit::Step(limit) => {
+            let part = plain(100.0 * check.dt / limit);
+            let text = format!("steps of {step} by {method} are stable: {part} % of the largest that is in every pose");
+            match check.dt > 0.5 * limit {
+                true => format!("{text}; stable is not accurate, --substeps auto takes care of both"),
+                false => text,
+            }
+        }
+        _ => format!("neither springs nor drag limit the step: {step} by {method} is as stable as any other"),
+    }
+}
+
+fn too_long(check: &Check, stand: &Stand, limit: f64) -> Vec<String> {
+    let parts = (check.dt / limit).ceil();
+    let step = time(check.dt);
+    let mut advice = vec![
+        match stand.at_rest.and(stand.drag).admits(check.dt) {
+            true => format!("steps of {step} by {} are not stable in every pose: they may explode", stand.method),
+            false => format!("steps of {step} by {} explode", stand.method),
+        },
+        format!(
+            "take --dt {} or less, or --substeps {parts} to keep the step, or --substeps auto for accuracy as well",
+            typed(limit)
+        ),
+    ];
+    let others: Vec<_> = check.methods.iter().filter(|other| other.stable && other.growth_across <= 0.0).collect();
+    if !others.is_empty() {
+        let names = others.iter().map(|other| other.method.as_str()).collect::<Vec<_>>().join(", ");
+        advice.push(format!("or another --integrator that stands this step: {names}"));
+    }
+    advice
+}
+
+/// Of a method without any stable step, or of a scene that drives itself.
+fn never(check: &Check, model: &Model, stand: &Stand) -> String {
+    let drives = |spring: &&Spring| spring.ks < 0.0 || spring.kd < 0.0;
+    if let Some(i) = model.springs.iter().position(|spring| drives(&spring)) {
+        return format!("springs[{i}] has a stiffness or damping below zero: it adds energy, and no step is stable");
+    }
+    if check.dragged.is_none() && stand.growth_across <= 0.0 {
+        return "drag below zero adds energy, and no step is stable".into();
+    }
+    let grows = time(1.0 / stand.growth_across);
+    format!(
+        "{} makes what nothing damps grow at any step, at this one e-fold in {grows} or more; take symplectic, verlet or \
+         rk4, or give springs[{}] and its like a kd",
+        stand.method,
+        model.springs.iter().position(|spring| spring.kd == 0.0).unwrap_or(0)
+    )
+}
+
+/// Damping beyond the critical costs steps and does not calm any faster.
+fn damping(check: &Check, model: &Model) -> Option<String> {
+    let part = check.stiffest.as_ref()?;
+    let ratio = 0.5 * part.mode.damping / part.mode.omega2.sqrt();
+    if !(ratio > 1.5 && ratio.is_finite()) {
+        return None;
+    }
+    let i: usize = part.place.trim_start_matches("springs[").trim_end_matches(']').parse().ok()?;
+    let kd = f64::from(model.springs.get(i)?.kd) / ratio;
+    Some(format!(
+        "{} is damped {} times as much as stops it fastest; with kd {} it would calm sooner and stand longer steps",
+        part.place,
+        plain(ratio),
+        plain(kd)
+    ))
+}
+
+fn taut(check: &Check, stand: &Stand) -> Option<String> {
+    let is_worth_saying = stand.growth_across > 0.0 && stand.every_pose.admits(check.dt) && !stand.chooses_steps;
+    is_worth_saying.then(|| {
+        format!(
+            "under tension, springs also swing across themselves, which only drag damps: {} makes that grow, at this step up \
+             to e-fold in {}",
+            stand.method,
+            time(1.0 / stand.growth_across)
+        )
+    })
+}
+
+fn world(check: &Check) -> Vec<String> {
+    let mut advice = Vec::new();
+    if let Some(followed) = check.followed.as_ref().filter(|followed| check.dt > followed.step) {
+        advice.push(format!(
+            "steps longer than {} bend too much for their hits to be found within 0.1 mm",
+            time(followed.step)
+        ));
+    }
+    if let Some(pair) = check.pair.as_ref().filter(|pair| check.dt * ORBIT > pair.period) {
+        let [a, b] = pair.particles;
+        advice.push(format!(
+            "particles {a} and {b} would circle each other in {}: take --dt {} or less for {ORBIT} steps a round",
+            time(pair.period),
+            typed(pair.period / ORBIT)
+        ));
+    }
+    for sink in check.sinks.iter().filter(|sink| check.dt * sink.rate * PULL > std::f64::consts::TAU) {
+        advice.push(match sink.rate.is_finite() {
+            true => format!(
+                "near {}, the pull changes within {}: take --dt {} or less",
+                sink.place,
+                time(1.0 / sink.rate),
+                typed(std::f64::consts::TAU / (PULL * sink.rate))
+            ),
+            false => format!("{} pulls without bound at its surface: give it a ca above zero", sink.place),
+        });
+    }
+    advice
+}

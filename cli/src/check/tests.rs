@@ -1,0 +1,187 @@
+//! What is predicted, held against the engine itself.
+
+use super::modes::{How, Spectrum};
+use pointmass::scene::{Model, SceneFile};
+use pointmass::stability::Limit;
+use pointmass::{Drag, ForceKind, Heap, Method, Particle, Spring, System, Time, Vec3};
+
+/// Particles and springs without gravity, made ready.
+fn model(particles: Vec<Particle>, springs: Vec<Spring>) -> Model {
+    let file = SceneFile { particles, springs, forces: vec![ForceKind::Drag(Drag {})], ..SceneFile::new() };
+    Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene")
+}
+
+/// A row of particles a metre apart, the first fixed, with these masses, stiffnesses, dampings and drag.
+fn row(masses: &[f32], ks: &[f32], kd: &[f32], drag: f32) -> Model {
+    let place = |i: usize| Vec3::X * i as f32;
+    let particle = |(i, &mass): (usize, &f32)| Particle {
+        position: place(i),
+        mass,
+        fixed: i == 0,
+        // Only some are braked, so that drag does not go with mass.
+        drag: if i % 2 == 0 { drag } else { 0.0 },
+        ..Particle::REST
+    };
+    let spring = |i: usize| Spring { kd: kd[i], ..Spring::new([i as u32, i as u32 + 1], 1.0, ks[i]) };
+    let springs = (0..masses.len() - 1).map(spring).collect();
+    model(masses.iter().enumerate().map(particle).collect(), springs)
+}
+
+/// Whether a small push along the springs grows when the engine steps by `h` \[s\].
+fn grows(model: &Model, method: Method, h: f64) -> bool {
+    const STEPS: usize = 4000;
+    let mut model = model.clone();
+    model.integrator = method.into();
+    let mut noise = 0.4f32;
+    let mut some = || {
+        noise = (noise * 997.0 + 0.618).fract();
+        1e-3 * (noise - 0.5)
+    };
+    let springs = model.springs.clone();
+    for spring in springs {
+        let [a, b] = spring.ends.map(|end| end as usize);
+        let along = (model.particles[b].position - model.particles[a].position).normalize();
+        model.particles[b].position += along * some();
+    }
+    let mut system = System::with(Heap::new(model.size(model.particles.len())));
+    system.start(&model.scene(), 1).expect("room");
+    let fastest = |system: &System<Heap>| system.particles().velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
+    let mut first = 0.0f32;
+    for step in 1..=STEPS {
+        system.step(&model.scene(), Time::from_seconds_f64(h));
+        if step <= 8 {
+            first = first.max(fastest(&system));
+        }
+        if system.totals().died.nonfinite > 0 || (step > 8 && fastest(&system) > 100.0 * first) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Predicted limits are the engine's, within 2 %.
+#[track_caller]
+fn holds(model: &Model, expected: How, methods: &[Method]) {
+    let spectrum = Spectrum::of(&model.particles, &model.springs, true).expect("springs");
+    assert_eq!(spectrum.how, expected);
+    for &method in methods {
+        match spectrum.largest_step(method) {
+            Limit::Step(step) => {
+                assert!(!grows(model, method, 0.98 * step), "{method} grows at 0.98 of {step}");
+                assert!(grows(model, method, 1.02 * step), "{method} does not grow at 1.02 of {step}");
+            }
+            other => panic!("{method}: {other:?}"),
+        }
+    }
+}
+
+/// Those that take steps as they come, and have a longest; and those of them that need no damping.
+const ALL: [Method; 6] =
+    [Method::Euler, Method::Symplectic, Method::Midpoint, Method::LectureMidpoint, Method::Verlet, Method::Rk4];
+const LASTING: [Method; 3] = [Method::Symplectic, Method::Verlet, Method::Rk4];
+
+#[test]
+fn an_undamped_chain() {
+    let chain = row(&[0.1; 12], &[100.0; 11], &[0.0; 11], 0.0);
+    holds(&chain, How::Independent, &LASTING);
+    // Fixed at both ends it is known: ω = 2 √(k/m) sin(jπ/22).
+    let mut chain = row(&[0.1; 12], &[100.0; 11], &[0.0; 11], 0.0);
+    chain.particles[11].fixed = true;
+    let spectrum = Spectrum::of(&chain.particles, &chain.springs, true).expect("springs");
+    let mut found: Vec<f64> = spectrum.modes.iter().map(|mode| mode.omega2.sqrt()).collect();
+    found.sort_by(f64::total_cmp);
+    for (j, omega) in (1..).zip(&found) {
+        let known = 2.0 * 1000f64.sqrt() * (f64::from(j) * std::f64::consts::PI / 22.0).sin();
+        assert!((omega / known - 1.0).abs() < 1e-6, "{j}: {omega}, not {known}");
+    }
+    assert_eq!(found.len(), 10);
+    let Limit::Step(step) = spectrum.largest_step(Method::Verlet) else { panic!() };
+    assert!((step - 0.031_948_0).abs() < 1e-7, "{step}");
+    assert_eq!(spectrum.largest_step(Method::Euler), Limit::Never);
+}
+
+#[test]
+fn a_chain_damped_as_it_is_stiff() {
+    for kd in [1.5, 12.0] {
+        let masses = [1.0, 0.5, 2.0, 1.0, 0.7, 1.0];
+        holds(&row(&masses, &[50.0; 5], &[kd; 5], 0.0), How::Independent, &ALL);
+    }
+}
+
+#[test]
+fn a_chain_damped_unequally() {
+    let masses = [1.0, 0.5, 2.0, 1.0, 0.7, 1.0];
+    let chain = row(&masses, &[50.0, 80.0, 20.0, 50.0, 100.0], &[4.0, 1.0, 8.0, 6.0, 2.0], 1.0);
+    holds(&chain, How::Coupled, &ALL);
+    let loose = row(&masses, &[50.0, 80.0, 20.0, 50.0, 100.0], &[0.4, 0.0, 0.1, 0.0, 0.2], 0.5);
+    holds(&loose, How::Coupled, &LASTING);
+}
+
+#[test]
+fn a_frame_in_space() {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(1.0, 1.0, 0.5)];
+    let particle = |(i, &position)| Particle { position, mass: 1.0 + i as f32, ..Particle::REST };
+    let ends = (0..5u32).flat_map(|b| (0..b).map(move |a| [a, b]));
+    let spring = |ends: [u32; 2]| {
+        let rest_length = (corners[ends[0] as usize] - corners[ends[1] as usize]).length();
+        Spring { kd: 10.0, ..Spring::new(ends, rest_length, 200.0) }
+    };
+    let frame = model(corners.iter().enumerate().map(particle).collect(), ends.map(spring).collect());
+    holds(&frame, How::Independent, &ALL);
+}
+
+#[test]
+fn what_is_too_large_is_taken_at_its_extreme() {
+    let n = 320;
+    let long = row(&vec![1.0; n], &vec![100.0; n - 1], &vec![20.0; n - 1], 0.0);
+    let spectrum = Spectrum::of(&long.particles, &long.springs, true).expect("springs");
+    assert_eq!(spectrum.how, How::Extreme);
+    // ω² tends to 4 k/m: damping ratio 2, the fastest rate 20 (2 + √3).
+    let fast = 20.0 * (2.0 + 3f64.sqrt());
+    for (method, known) in [
+        (Method::Euler, 2.0 / fast),
+        (Method::Symplectic, 0.1 * (5f64.sqrt() - 2.0)),
+        (Method::Rk4, 2.785_293_563 / fast),
+    ] {
+        let Limit::Step(step) = spectrum.largest_step(method) else { panic!("{method}") };
+        assert!((step / known - 1.0).abs() < 2e-3, "{method}: {step}, not {known}");
+    }
+}
+
+#[test]
+fn springs_that_hold_nothing_have_no_modes() {
+    let none = |particles: &[Particle], springs: &[Spring]| Spectrum::of(particles, springs, true).is_none();
+    let spring = Spring { kd: 1.0, ..Spring::new([0, 1], 1.0, 1.0) };
+    let fixed = Particle { fixed: true, ..Particle::REST };
+    assert!(none(&[Particle::REST], &[]));
+    assert!(none(&[fixed, Particle { position: Vec3::X, ..fixed }], &[spring]));
+    // Two in one place have no direction.
+    assert!(none(&[Particle::REST; 2], &[spring]));
+}
+
+#[test]
+fn the_course_s_scenes() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes/course");
+    if !folder.is_dir() {
+        println!("skipped: the course's scenes are not at {}", folder.display());
+        return;
+    }
+    for (name, known) in [
+        ("rope", [26.97, 26.97, 23.74, 37.55]),
+        ("swirl", [50.4, 50.4, 50.2, 70.2]),
+        ("tetra", [26.8, 26.8, 23.6, 37.3]),
+    ] {
+        let path = folder.join(format!("{name}.scn"));
+        let mut file = crate::load::scene(&path).expect("a scene");
+        file.forces = vec![ForceKind::Drag(Drag {})];
+        file.particles.iter_mut().for_each(|particle| particle.velocity = Vec3::ZERO);
+        let model = Model::load(&file, &path.to_string_lossy(), &mut crate::load::Disk).expect("a sound scene");
+        let spectrum = Spectrum::of(&model.particles, &model.springs, true).expect("springs");
+        for (method, known) in [Method::Euler, Method::Midpoint, Method::Symplectic, Method::Rk4].into_iter().zip(known)
+        {
+            let Limit::Step(step) = spectrum.largest_step(method) else { panic!("{name} {method}") };
+            assert!((step * 1e3 / known - 1.0).abs() < 2e-3, "{name} {method}: {step}, not {known} ms");
+        }
+        holds(&model, How::Independent, &ALL);
+    }
+}

@@ -1,0 +1,105 @@
+//! What other than springs and drag has a time of its own: collisions, orbits, the pull of sinks.
+
+use super::wide;
+use nalgebra::Vector3;
+use pointmass::scene::Model;
+use pointmass::stability::longest_followed_step;
+use pointmass::{ForceKind, Sink};
+use serde::Serialize;
+
+/// Particles that are looked at for the quickest pair.
+const MOST: usize = 4096;
+
+/// How long paths may be to be followed with full accuracy to what they hit.
+#[derive(Debug, Serialize)]
+pub(crate) struct Followed {
+    /// Acceleration \[m/s²\] of the scene's gravity.
+    pub(crate) acceleration: f64,
+    /// The longest step \[s\].
+    pub(crate) step: f64,
+}
+
+/// Two particles that attract each other.
+#[derive(Debug, Serialize)]
+pub(crate) struct Pair {
+    /// Their places in the start.
+    pub(crate) particles: [usize; 2],
+    /// How far apart they are \[m\].
+    pub(crate) distance: f64,
+    /// √(G (m₁ + m₂) / d³) \[1/s\], with softening.
+    pub(crate) rate: f64,
+    /// The time of an orbit \[s\].
+    pub(crate) period: f64,
+}
+
+/// A sink whose pull changes from place to place.
+#[derive(Debug, Serialize)]
+pub(crate) struct Pull {
+    /// Its place in the file.
+    pub(crate) place: String,
+    /// The steepest change of its pull with distance \[N/m\].
+    pub(crate) gradient: f64,
+    /// The lightest mass that it may pull \[kg\].
+    pub(crate) mass: f64,
+    /// √(gradient / mass) \[1/s\].
+    pub(crate) rate: f64,
+}
+
+/// None where nothing is hit or nothing falls.
+pub(crate) fn followed(model: &Model) -> Option<Followed> {
+    let gravity = model.forces.0.iter().filter_map(|force| match force {
+        ForceKind::Gravity(gravity) => Some(gravity.acceleration),
+        _ => None,
+    });
+    let acceleration = gravity.fold(Vector3::zeros(), |sum, g| sum + wide(g)).norm();
+    let is_hit = !model.colliders.is_empty() || !model.forces.1.is_empty();
+    (is_hit && acceleration > 0.0).then(|| Followed { acceleration, step: longest_followed_step(acceleration) })
+}
+
+/// Of the first few thousand particles.
+pub(crate) fn fastest_pair(model: &Model) -> Option<Pair> {
+    let gravity = model.forces.0.iter().find_map(|force| match force {
+        ForceKind::MutualGravity(gravity) => Some(gravity),
+        _ => None,
+    })?;
+    let softening = f64::from(gravity.softening).powi(2);
+    let particles = &model.particles[..model.particles.len().min(MOST)];
+    let mut fastest: Option<Pair> = None;
+    for (j, b) in particles.iter().enumerate() {
+        for (i, a) in particles[..j].iter().enumerate() {
+            let distance = (wide(a.position) - wide(b.position)).norm();
+            // What is fixed pulls and is not pulled.
+            let pulling = [(a, b), (b, a)].into_iter().filter(|(_, pulled)| !pulled.fixed);
+            let mass: f64 = pulling.map(|(by, _)| f64::from(by.mass)).sum();
+            let cube = (distance * distance + softening).powf(1.5);
+            let rate = (f64::from(gravity.constant) * mass / cube).sqrt();
+            if rate.is_finite() && rate > fastest.as_ref().map_or(0.0, |pair| pair.rate) {
+                fastest = Some(Pair { particles: [i, j], distance, rate, period: std::f64::consts::TAU / rate });
+            }
+        }
+    }
+    fastest
+}
+
+pub(crate) fn pulls(model: &Model) -> Vec<Pull> {
+    let start = model.particles.iter().filter(|particle| !particle.fixed).map(|particle| f64::from(particle.mass));
+    let births = model.emitters.iter().filter(|emitter| !emitter.fixed);
+    let births = births.map(|emitter| f64::from(emitter.mass.mean) - f64::from(emitter.mass.variance.abs()));
+    let mass = start.chain(births).fold(f64::INFINITY, f64::min);
+    let pull = |(i, sink): (usize, &Sink<_>)| {
+        let gradient = steepest(sink);
+        let rate = (gradient / mass).sqrt();
+        (rate > 0.0).then(|| Pull { place: format!("sinks[{i}]"), gradient, mass, rate })
+    };
+    model.forces.1.iter().enumerate().filter_map(pull).collect()
+}
+
+/// The largest |df/dd| of f = I / (c + b d + a d²), d ≥ 0: at the surface or where the second derivative is zero, at
+/// 6 a d = √(12 a c − 3 b²) − 3 b. Infinite where f is.
+fn steepest<M>(sink: &Sink<M>) -> f64 {
+    let [intensity, c, b, a] = [sink.intensity, sink.ca, sink.la, sink.qa].map(|x| f64::from(x).abs());
+    let slope = |d: f64| intensity * (b + 2.0 * a * d) / (c + (b + a * d) * d).powi(2);
+    let bend = ((12.0 * a * c - 3.0 * b * b).max(0.0).sqrt() - 3.0 * b) / (6.0 * a);
+    let steepest = slope(0.0).max(if bend > 0.0 { slope(bend) } else { 0.0 });
+    if steepest.is_nan() { f64::INFINITY } else { steepest }
+}

@@ -1,0 +1,241 @@
+//! `check`, the warnings of `run`, and sub-steps.
+
+use crate::course;
+use crate::scenes::{BUSY, ONE, SOURCE};
+use crate::tool::{Folder, number};
+use serde_json::Value;
+use std::fs;
+
+/// A rope of nine metres between particles of 1 kg, the first fixed, lying flat.
+fn rope(kd: f32) -> String {
+    let particle = |i: u32| format!("particle {i} 0 0  0 0 0  1 {} 0 0 0 -1\n", u32::from(i == 0));
+    let spring = |i: u32| format!("particle_spring {i} {} 1 100 {kd}\n", i + 1);
+    let parts = (0..10).map(particle).chain((0..9).map(spring)).collect::<String>();
+    format!("particle_gravity 0 -9.80665 0\n{parts}")
+}
+
+/// What `check` says of a method, in milliseconds.
+fn steps(check: &Value, column: &str, methods: &[&str]) -> Vec<f64> {
+    let of = |name: &&str| {
+        let all = check["methods"].as_array().expect("methods");
+        let one = all.iter().find(|one| one["method"] == **name).expect("the method");
+        one[column]["step"].as_f64().unwrap_or_else(|| panic!("{name}: {one}")) * 1e3
+    };
+    methods.iter().map(of).collect()
+}
+
+fn check(folder: &Folder, args: &str) -> Value {
+    folder.run(&format!("check {args} --report json")).fine().report()
+}
+
+#[test]
+fn the_course_s_springs_have_their_known_limits() {
+    let folder = Folder::new();
+    if course::copy_into(&folder, ".").is_none() {
+        return;
+    }
+    let methods = ["euler", "midpoint", "symplectic", "rk4"];
+    for (scene, known) in [
+        ("rope", [26.97, 26.97, 23.74, 37.55]),
+        ("swirl", [50.4, 50.4, 50.2, 70.2]),
+        ("tetra", [26.8, 26.8, 23.6, 37.3]),
+    ] {
+        let check = check(&folder, &format!("{scene}.scn"));
+        for (found, known) in steps(&check, "at_rest", &methods).into_iter().zip(known) {
+            assert!((found / known - 1.0).abs() < 2e-3, "{scene}: {found}, not {known}");
+        }
+        let all = methods.iter().zip(steps(&check, "every_pose", &methods));
+        for ((method, pose), rest) in all.zip(steps(&check, "at_rest", &methods)) {
+            assert!(pose <= rest, "{scene} {method}: {pose} {rest}");
+        }
+    }
+    let rope = check(&folder, "rope.scn --dt 1/30 --integrator midpoint");
+    for (found, known) in steps(&rope, "every_pose", &methods).into_iter().zip([26.79, 26.79, 23.61, 37.32]) {
+        assert!((found - known).abs() < 0.005, "{found}, not {known}");
+    }
+    let text = folder.run("check rope.scn --dt 1/30 --integrator midpoint").fine().stdout;
+    for word in ["springs[1]", "between particles 1", "ks 100", "--substeps 2", "--dt 0.0267", "26.97 ms", "grow"] {
+        assert!(text.contains(word), "no {word}:\n{text}");
+    }
+}
+
+#[test]
+fn every_scene_of_the_course_is_checked() {
+    let folder = Folder::new();
+    for scene in course::copy_into(&folder, ".").iter().flatten() {
+        let check = check(&folder, &format!("{scene}.scn"));
+        assert_eq!(check["methods"].as_array().map(Vec::len), Some(pointmass::Method::ALL.len()), "{check}");
+        assert!(check["advice"].as_array().is_some_and(|advice| !advice.is_empty()), "{check}");
+    }
+}
+
+#[test]
+fn what_is_no_spring_is_told_as_well() {
+    let folder = Folder::with("busy.scn", BUSY);
+    folder.write("source.scn", SOURCE);
+    let text = folder.run("check busy.scn").fine().stdout;
+    for word in ["drag", "hits", "sink", "springs[0]", "emitters"] {
+        assert!(text.contains(word), "no {word}:\n{text}");
+    }
+    let text = folder.run("check source.scn --dt 0.5").fine().stdout;
+    assert!(text.contains("neither springs nor drag") && !text.contains("NaN"), "{text}");
+    let braked = "particle_gravity 0 -9.8 0\nparticle 0 0 0 0 0 0 2 0 50 0 0 -1\nbox -1 0 -9 0 1 -8 1\n";
+    folder.write("braked.scn", braked);
+    let report = check(&folder, "braked.scn --dt 0.1 --integrator symplectic");
+    // 2 m/k, and 8 chords of a tenth of a millimetre.
+    assert!((steps(&report, "drag", &["symplectic"])[0] - 80.0).abs() < 1e-6, "{report}");
+    assert!((number(&report, "followed/step") - 0.0723).abs() < 1e-4, "{report}");
+    assert_eq!(folder.run("run braked.scn --dt 0.1 --integrator symplectic").warnings().len(), 1);
+    let pair = r#"{"run": {"duration": 10}, "forces": [{"mutual_gravity": {"constant": 1}}],
+        "particles": [{"mass": 2}, {"mass": 2, "position": [1, 0, 0]}]}"#;
+    folder.write("pair.json", pair);
+    let report = check(&folder, "pair.json --dt 0.1");
+    assert!((number(&report, "pair/period") - std::f64::consts::PI).abs() < 1e-6, "{report}");
+    assert!(report["advice"].to_string().contains("--dt 0.0628"), "{report}");
+}
+
+#[test]
+fn odd_scenes_are_checked_too() {
+    let folder = Folder::new();
+    let two = "particle 0 0 0 0 0 0 1 0 0 0 0 -1 particle 1 0 0 0 0 0 1 0 0 0 0 -1\n";
+    let held = "particle 0 0 0 0 0 0 1 1 0 0 0 -1 particle 1 0 0 0 0 0 1 1 0 0 0 -1\n";
+    let same = "particle 0 0 0 0 0 0 1 0 0 0 0 -1 particle 0 0 0 0 0 0 1 0 0 0 0 -1\n";
+    for text in [
+        String::new(),
+        ONE.into(),
+        format!("{two}particle_spring 0 1 1 0 0"),
+        format!("{two}particle_spring 0 1 1 -5 0"),
+        format!("{two}particle_spring 0 1 1 5 -1"),
+        format!("{two}particle_spring 0 0 1 5 1"),
+        format!("{two}particle_spring 0 1 1 1e38 1e38"),
+        format!("{two}particle_spring 0 1 1 1e-38 0"),
+        format!("{held}particle_spring 0 1 1 5 1"),
+        format!("{same}particle_spring 0 1 1 5 1"),
+        "particle 0 0 0 0 0 0 1e-38 0 1e38 0 0 -1".into(),
+        "particle 0 0 0 0 0 0 1 0 -1 0 0 -1".into(),
+        "particle_sink 1 0 0 0 sphere 0 0 0 1 particle 3 0 0 0 0 0 1 0 0 0 0 -1".into(),
+        "particle_sink -1 1 -5 1 sphere 0 0 0 1".into(),
+    ] {
+        folder.write("a.scn", &text);
+        for name in ["euler", "verlet", "rk4"] {
+            let args = format!("check a.scn --integrator {name} --dt 0.01 --plot o.html");
+            let answer = folder.run(&args);
+            assert!(answer.code == 0 && answer.stderr.lines().all(|line| line.starts_with("warning: ")), "{answer:?}");
+            assert!(!answer.stdout.contains("NaN") && !folder.read("o.html").contains("NaN"), "{text}: {answer:?}");
+            folder.run(&format!("run a.scn --integrator {name} --substeps auto --steps 3")).warnings();
+        }
+    }
+}
+
+#[test]
+fn plots_are_whole() {
+    let folder = Folder::with("rope.scn", rope(20.0));
+    folder.run("check rope.scn --plot o.svg").fine();
+    folder.run("check rope.scn --plot o.html --dt 0.1 --integrator verlet").fine();
+    let (picture, page) = (folder.read("o.svg"), folder.read("o.html"));
+    assert!(picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"), "{picture}");
+    for word in ["midpoint", "symplectic", "implicit", "rk4: stable", "<circle"] {
+        assert!(picture.contains(word), "no {word}");
+    }
+    assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n") && page.contains("verlet: grows"));
+    assert!(!page.contains("<script") && !page.contains("href") && !page.contains("src="));
+    let before = folder.names();
+    folder.run("check rope.scn --plot no/o.svg").error();
+    fs::create_dir(folder.path("folder.svg")).expect("a folder");
+    folder.run("check rope.scn --plot folder.svg").error();
+    folder.run("check no.scn --plot p.svg").error();
+    assert_eq!(
+        folder.names(),
+        [&before[..], &["folder.svg".into()]]
+            .concat()
+            .into_iter()
+            .collect::<std::collections::BTreeSet<_>>()
+            .into_iter()
+            .collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn steps_beyond_the_bound_are_warned_of() {
+    let folder = Folder::with("rope.scn", rope(20.0));
+    let said = folder.run("run rope.scn --dt 1/30 --integrator symplectic --steps 2");
+    let warnings = said.warnings();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    for word in ["33.33 ms", "23.61 ms", "springs[1]", "--substeps auto"] {
+        assert!(warnings[0].contains(word), "no {word}: {warnings:?}");
+    }
+    for fine in [
+        "run rope.scn --dt 1/30 --integrator symplectic --steps 2 --substeps 2",
+        "run rope.scn --dt 1/30 --integrator symplectic --steps 2 --substeps auto",
+        "run rope.scn --dt 1/30 --integrator rk4 --steps 2",
+    ] {
+        folder.run(fine).fine();
+    }
+    // Without damping explicit Euler has no step at all; a short run shows nothing of it.
+    folder.write("loose.scn", rope(0.0));
+    assert!(folder.run("run loose.scn --dt 0.001 --integrator euler --steps 20000").warnings()[0].contains("e-fold"));
+    folder.run("run loose.scn --dt 0.001 --integrator euler --steps 20").fine();
+    let picture = folder.run("render rope.scn --dt 1/20 --duration 0.1 --integrator rk4 --size 8x8 --out o.png");
+    assert_eq!(picture.warnings().len(), 1);
+    folder.run("render rope.scn --dt 1/20 --duration 0.1 --substeps auto --size 8x8 --out o.png").fine();
+}
+
+#[test]
+fn substeps_are_what_shorter_steps_are() {
+    let folder = Folder::with("busy.scn", BUSY);
+    // Without emitters, whose newborn fly on from the beginning of a step.
+    let text: String = BUSY.lines().filter(|line| !line.contains("source")).map(|line| format!("{line}\n")).collect();
+    folder.write("quiet.scn", text);
+    let [long, short] = ["--dt 1/64 --steps 64 --substeps 4", "--dt 1/256 --steps 256"]
+        .map(|args| folder.hash(&format!("quiet.scn {args}")));
+    assert_eq!(long, short);
+    assert_eq!(folder.hash("busy.scn --steps 60 --substeps 1"), folder.hash("busy.scn --steps 60"));
+    let report = folder.report("busy.scn --dt 1/30 --steps 60 --substeps auto");
+    assert_eq!(report["substeps"]["auto"], true);
+    let [least, most, total] = ["least", "most", "total"].map(|field| number(&report, &format!("substeps/{field}")));
+    assert!(
+        2.0 <= least && least <= most && most <= 1024.0 && (60.0 * least..=60.0 * most).contains(&total),
+        "{report}"
+    );
+    let same = folder.report("busy.scn --dt 1/30 --steps 60 --substeps auto");
+    assert_eq!(report["hash"], same["hash"]);
+    let finer = folder.report("busy.scn --dt 1/30 --steps 60 --substeps auto --tolerance 1e-5");
+    assert!(number(&finer, "substeps/total") > total, "{finer}");
+    let text = folder.run("run busy.scn --dt 1/30 --steps 60 --substeps auto").fine().stdout;
+    assert!(text.contains("sub-steps") && text.contains("on average"), "{text}");
+}
+
+/// Where every particle is at the end of a recording.
+fn ends(table: &str) -> Vec<[f64; 3]> {
+    let rows: Vec<Vec<f64>> =
+        table.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().expect("a number")).collect()).collect();
+    let last = rows.last().expect("a row")[0];
+    rows.iter().filter(|row| row[0] == last).map(|row| [row[3], row[4], row[5]]).collect()
+}
+
+#[test]
+fn automatic_substeps_tame_every_spring_of_the_course() {
+    let folder = Folder::new();
+    if course::copy_into(&folder, ".").is_none() {
+        return;
+    }
+    let step = if cfg!(debug_assertions) { "0.0005" } else { "0.0001" };
+    for (scene, length) in [("rope", 20.0), ("swirl", 20.0), ("tetra", 1.6)] {
+        let run = |args: &str| {
+            let report = folder.report(&format!("{scene}.scn --every 1000000 --out o.csv {args}"));
+            assert_eq!(number(&report, "died/nonfinite"), 0.0, "{report}");
+            (ends(&folder.read("o.csv")), report)
+        };
+        let (known, _) = run(&format!("--dt {step} --duration 10 --integrator rk4"));
+        for method in pointmass::Method::ALL {
+            let (found, report) = run(&format!("--dt 1/30 --duration 10 --integrator {method} --substeps auto"));
+            assert_eq!(number(&report, "substeps/beyond"), 0.0, "{report}");
+            for (known, found) in known.iter().zip(&found) {
+                let error = (0..3).map(|i| (known[i] - found[i]).powi(2)).sum::<f64>().sqrt();
+                assert!(error < 0.01 * length, "{scene} {method}: {error}");
+            }
+            let (found, _) = run(&format!("--dt 1/30 --duration 60 --integrator {method} --substeps auto"));
+            assert!(found.iter().flatten().all(|x| x.abs() < 50.0), "{scene} {method} explodes: {found:?}");
+        }
+    }
+}
