@@ -57,7 +57,8 @@ pub struct World {
     /// The step in seconds, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
     #[arg(long, value_name = "S", value_parser = step)]
     pub dt: Option<f64>,
-    /// The method: euler, symplectic, midpoint, verlet or rk4; by default what the scene says, rk4 for .scn
+    /// The method: euler, symplectic, midpoint, lecture_midpoint, verlet, rk4, adaptive, embedded or implicit; by default
+    /// what the scene says, rk4 for .scn
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<Method>,
     /// The seed of all randomness; by default what the scene says, else 1
@@ -91,6 +92,9 @@ pub struct Run {
     /// Record into FILE: .csv, .jsonl, .xyz, or .ply for one file a record; may be given several times
     #[arg(long, value_name = "FILE", value_parser = recorded)]
     pub out: Vec<(PathBuf, RecordFormat)>,
+    /// Keep account of energy and say where it went
+    #[arg(long)]
+    pub ledger: bool,
     /// How to say on standard output what happened
     #[arg(long, value_enum, default_value_t = Report::Text)]
     pub report: Report,

@@ -3,7 +3,7 @@
 use crate::clock::nanoseconds;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
-use pointmass::{Caps, Died, Energy, Measures};
+use pointmass::{Books, Caps, Died, Energy, Measures};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -38,6 +38,13 @@ pub struct Summary {
     pub hits: u64,
     /// Times that a bound cut work short.
     pub caps: Caps,
+    /// Springs that broke.
+    pub broken: u64,
+    /// What the method did.
+    pub effort: pointmass::Effort,
+    /// Where energy went, if account of it was kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ledger: Option<Books>,
     /// Energy at the end \[J\].
     pub energy: Energy,
     /// Momentum at the end \[kg m/s\].
@@ -84,6 +91,9 @@ impl Summary {
             refused: totals.refused,
             hits: totals.hits,
             caps: totals.caps,
+            broken: totals.broken,
+            effort: totals.effort,
+            ledger: None,
             energy: measures.energy,
             momentum: measures.momentum,
             angular_momentum: measures.angular_momentum,
@@ -129,6 +139,7 @@ impl Summary {
         let Caps { bounces, chords, springs, unfit } = self.caps;
         push_counts(&mut rows, "refused", &[("found no room; raise --capacity", self.refused)]);
         push_counts(&mut rows, "hits", &[("", self.hits)]);
+        push_counts(&mut rows, "broken", &[("springs", self.broken)]);
         let caps = [
             ("paths with too many bounces", bounces),
             ("paths with too many chords", chords),
@@ -136,8 +147,10 @@ impl Summary {
             ("steps that did not fit", unfit),
         ];
         push_counts(&mut rows, "bounds met", &caps);
+        rows.push(("effort", method_effort(&self.effort)));
         let Energy { kinetic, potential } = self.energy;
         rows.push(("energy", format!("{kinetic:.6} J kinetic, {potential:.6} J potential")));
+        rows.extend(self.ledger.iter().flat_map(accounts));
         rows.push(("momentum", vector(self.momentum, "kg m/s")));
         rows.push(("angular", vector(self.angular_momentum, "kg m²/s")));
         rows.push(("hash", self.hash.clone()));
@@ -150,6 +163,43 @@ impl Summary {
         }
         text
     }
+}
+
+/// What the method did.
+fn method_effort(effort: &pointmass::Effort) -> String {
+    let pointmass::Effort { evaluations, accepted, rejected, solves, iterations, residual, capped } = *effort;
+    let mut text = format!("{evaluations} evaluations of all forces");
+    if accepted > 0 {
+        text.push_str(&format!(", {accepted} inner steps and {rejected} that erred too much"));
+    }
+    if solves > 0 {
+        let mean = iterations as f64 / solves as f64;
+        text.push_str(&format!(", {mean:.1} iterations for each of {solves} solutions, residual {residual:.1e}"));
+    }
+    if capped > 0 {
+        text.push_str(&format!("; cut short {capped} times"));
+    }
+    text
+}
+
+/// The books, a row an entry; what is nothing is left out.
+fn accounts(books: &Books) -> Vec<(&'static str, String)> {
+    let Books { opening, emission, restitution, breaking, deletion, outside, remainder, closing, .. } = *books;
+    let mut entries = vec![("at first", opening), ("born", emission)];
+    entries.extend(books.work.iter().copied());
+    entries.extend([
+        ("lost in hits", restitution),
+        ("springs that broke", breaking),
+        ("died", deletion),
+        ("from outside", outside),
+        ("error of the method", remainder),
+    ]);
+    entries.retain(|&(_, joules)| joules != 0.0);
+    entries.push(("at last", closing));
+    let row = |(i, (name, joules)): (usize, (&str, f64))| {
+        (if i == 0 { "ledger" } else { "" }, format!("{joules:>+16.6} J  {name}"))
+    };
+    entries.into_iter().enumerate().map(row).collect()
 }
 
 /// How steps were divided, if they were.

@@ -7,6 +7,7 @@ use crate::record::{Frame, Recorder};
 use crate::report::{Effort, Summary};
 use crate::world::World;
 use crate::{Outcome, print};
+use pointmass::Ledger;
 use std::time::Instant;
 
 /// Runs a scene as the arguments say. Files are written whole, at the end, or not at all.
@@ -30,12 +31,18 @@ pub fn run(args: &args::Run) -> Outcome {
         recorders.iter_mut().try_for_each(|recorder| recorder.record(&frame))
     };
 
+    // Of its own, since stepping borrows the world.
+    let model = world.model.clone();
+    let mut ledger = args.ledger.then(|| Ledger::new(&world.system, &model.scene()));
     let mut effort = Effort::default();
     let mut progress = Progress::new(clock.steps());
     record(0, &world)?;
     for step in 1..=clock.steps() {
         let begun = Instant::now();
-        world.step_to(clock.end(step));
+        match &mut ledger {
+            Some(ledger) => world.step_observed(clock.end(step), ledger),
+            None => world.step_to(clock.end(step)),
+        };
         effort.seconds += begun.elapsed().as_secs_f64();
         effort.steps = step;
         effort.particle_steps += world.system.len() as u64;
@@ -46,7 +53,8 @@ pub fn run(args: &args::Run) -> Outcome {
     }
     progress.finish();
 
-    let summary = Summary::of(&args.world.scene, &world, effort);
+    let mut summary = Summary::of(&args.world.scene, &world, effort);
+    summary.ledger = ledger.map(|ledger| ledger.books().clone());
     Recorder::finish(recorders)?;
     match args.report {
         Report::Text => print(&summary.text()),

@@ -1,7 +1,7 @@
 //! Steps divided into sub-steps: into a given number, or into as many as accuracy takes.
 
 use pointmass::stability::Limit;
-use pointmass::{Heap, Report, Scene, System, Time};
+use pointmass::{Heap, Observer, Report, Scene, System, Time};
 use serde::Serialize;
 
 /// How many sub-steps a step may have at the most when their number is chosen here.
@@ -68,11 +68,22 @@ impl Pace {
         self.told
     }
 
-    /// Steps a system to the instant `end`.
-    pub fn step(&mut self, system: &mut System<Heap>, scene: &Scene<'_>, end: Time) -> Report {
-        let (report, n, is_enough) = match self.substeps {
-            Substeps::Fixed(n) => (divided(system, scene, end, n), n, true),
-            Substeps::Auto => self.step_within_tolerance(system, scene, end),
+    /// Steps a system to the instant `end`, while somebody may watch.
+    pub fn step(
+        &mut self,
+        system: &mut System<Heap>,
+        scene: &Scene<'_>,
+        end: Time,
+        observer: Option<&mut dyn Observer>,
+    ) -> Report {
+        let (report, n, is_enough) = match (self.substeps, observer) {
+            (Substeps::Fixed(n), observer) => (divided(system, scene, end, n, observer.unwrap_or(&mut ())), n, true),
+            (Substeps::Auto, None) => self.step_within_tolerance(system, scene, end),
+            // Only the way that is kept shall be seen: it is found first, and gone again.
+            (Substeps::Auto, Some(observer)) => {
+                let (_, n, is_enough) = self.step_within_tolerance(&mut system.clone(), scene, end);
+                (divided(system, scene, end, n, observer), n, is_enough)
+            }
         };
         let told = &mut self.told;
         told.least = if told.total == 0 { n } else { told.least.min(n) };
@@ -96,11 +107,11 @@ impl Pace {
         let first = self.stable(dt).max(self.first).min(MOST / 2);
         let (mut n, mut error) = (first, f32::INFINITY);
         let mut coarse = system.clone();
-        divided(&mut coarse, scene, end, n);
+        divided(&mut coarse, scene, end, n, &mut ());
         loop {
             n *= 2;
             let mut fine = system.clone();
-            let report = divided(&mut fine, scene, end, n);
+            let report = divided(&mut fine, scene, end, n, &mut ());
             let before = error;
             error = distance(&coarse, &fine, dt, self.tolerance);
             let is_enough = error <= 1.0;
@@ -124,14 +135,14 @@ impl Pace {
 }
 
 /// Steps to `end` in `n` equal parts, up to the clock's tick.
-fn divided(system: &mut System<Heap>, scene: &Scene<'_>, end: Time, n: u32) -> Report {
+fn divided(system: &mut System<Heap>, scene: &Scene<'_>, end: Time, n: u32, observer: &mut dyn Observer) -> Report {
     let begin = system.time();
     let ticks = u128::from((end - begin).ticks());
     let mut report = Report::NOTHING;
     for i in 1..=u128::from(n) {
         // A part of a span that fits in 64 bits fits in them.
         let part = Time::from_ticks((ticks * i / u128::from(n)) as u64);
-        report += system.step(scene, begin + part - system.time());
+        report += system.step_observed(scene, begin + part - system.time(), observer);
     }
     report
 }

@@ -8,7 +8,7 @@ use crate::substeps::{Pace, Substeps};
 use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::Limit;
-use pointmass::{Heap, Method, Report, System, Time};
+use pointmass::{Heap, Method, Observer, Report, System, Time};
 
 /// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
 const TOLERANCE: f64 = 1e-4;
@@ -41,14 +41,14 @@ impl World {
         run.integrator = args.integrator.unwrap_or(run.integrator);
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
-        let particles = file.particles.len();
+        let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
+        let particles = model.particles.len();
         let capacity = match args.capacity {
             Some(capacity) => capacity as usize,
             // Where nobody is born, more room would lie empty, and be copied about by sub-steps.
             None if file.emitters.is_empty() && args.substeps == Substeps::Auto => particles,
             None => particles.max(file.run.capacity as usize),
         };
-        let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
         let memory = Heap::try_new(model.size(capacity)).map_err(|_| {
             Failure::new(format!("there is no memory for {capacity} particles; lower --capacity (or the scene's)"))
         })?;
@@ -76,6 +76,11 @@ impl World {
 
     /// Steps to the instant `end`.
     pub fn step_to(&mut self, end: Time) -> Report {
-        self.pace.step(&mut self.system, &self.model.scene(), end)
+        self.pace.step(&mut self.system, &self.model.scene(), end, None)
+    }
+
+    /// Steps to the instant `end` while somebody watches.
+    pub fn step_observed(&mut self, end: Time, observer: &mut dyn Observer) -> Report {
+        self.pace.step(&mut self.system, &self.model.scene(), end, Some(observer))
     }
 }
