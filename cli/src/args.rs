@@ -72,7 +72,8 @@ pub struct World {
     #[arg(long, value_name = "N|auto", default_value = "1", value_parser = substeps)]
     pub substeps: Substeps,
     /// With --substeps auto, how far a step may end, in metres and at any particle, from where half as many sub-steps
-    /// would take it; by default 1e-4 of the radius of what is there at the start
+    /// would take it; by default 1e-4 of the radius of what is there at the start. With adaptive and embedded, how far an
+    /// inner step may err; by default what the scene says, 1e-4
     #[arg(long, value_name = "M", value_parser = tolerance)]
     pub tolerance: Option<f64>,
 }

@@ -3,6 +3,7 @@
 use crate::clock::nanoseconds;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
+use pointmass::force::Entry;
 use pointmass::{Books, Caps, Died, Energy, Measures};
 use serde::Serialize;
 use std::fmt::Write;
@@ -47,6 +48,8 @@ pub struct Summary {
     pub ledger: Option<Books>,
     /// Energy at the end \[J\].
     pub energy: Energy,
+    /// Energy and power of every force at the end.
+    pub forces: Vec<Entry>,
     /// Momentum at the end \[kg m/s\].
     pub momentum: [f64; 3],
     /// Angular momentum about the origin at the end \[kg m²/s\].
@@ -95,6 +98,7 @@ impl Summary {
             effort: totals.effort,
             ledger: None,
             energy: measures.energy,
+            forces: Measures::by_force(&world.system, &world.model.scene()),
             momentum: measures.momentum,
             angular_momentum: measures.angular_momentum,
             hash: format!("{:016x}", world.system.hash()),
@@ -149,7 +153,7 @@ impl Summary {
         push_counts(&mut rows, "bounds met", &caps);
         rows.push(("effort", method_effort(&self.effort)));
         let Energy { kinetic, potential } = self.energy;
-        rows.push(("energy", format!("{kinetic:.6} J kinetic, {potential:.6} J potential")));
+        rows.push(("energy", format!("{kinetic:.6} J kinetic, {potential:.6} J potential{}", parts(&self.forces))));
         rows.extend(self.ledger.iter().flat_map(accounts));
         rows.push(("momentum", vector(self.momentum, "kg m/s")));
         rows.push(("angular", vector(self.angular_momentum, "kg m²/s")));
@@ -200,6 +204,16 @@ fn accounts(books: &Books) -> Vec<(&'static str, String)> {
         (if i == 0 { "ledger" } else { "" }, format!("{joules:>+16.6} J  {name}"))
     };
     entries.into_iter().enumerate().map(row).collect()
+}
+
+/// What the potential energy consists of, if it is more than one force's.
+fn parts(forces: &[Entry]) -> String {
+    let parts: Vec<_> = forces.iter().filter(|entry| entry.energy != 0.0).collect();
+    if parts.len() < 2 {
+        return String::new();
+    }
+    let told: Vec<_> = parts.iter().map(|entry| format!("{} {:.6}", entry.name, entry.energy)).collect();
+    format!(" ({})", told.join(", "))
 }
 
 /// How steps were divided, if they were.

@@ -39,6 +39,9 @@ impl World {
         let mut file = load::scene(&args.scene)?;
         let run = &mut file.run;
         run.integrator = args.integrator.unwrap_or(run.integrator);
+        if let Some(tolerance) = args.tolerance.filter(|_| run.integrator.chooses_steps()) {
+            run.tuning.tolerance = tolerance as f32;
+        }
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;

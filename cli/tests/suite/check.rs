@@ -54,9 +54,12 @@ fn the_course_s_springs_have_their_known_limits() {
         assert!((found - known).abs() < 0.005, "{found}, not {known}");
     }
     let text = folder.run("check rope.scn --dt 1/30 --integrator midpoint").fine().stdout;
-    for word in ["springs[1]", "between particles 1", "ks 100", "--substeps 2", "--dt 0.0267", "26.97 ms", "grow"] {
+    for word in ["springs[1]", "between particles 1", "ks 100", "--substeps 2", "--dt 0.0267", "26.97 ms"] {
         assert!(text.contains(word), "no {word}:\n{text}");
     }
+    // Where the step is stable, taut springs still grow across by some methods.
+    let text = folder.run("check rope.scn --dt 1/60 --integrator midpoint").fine().stdout;
+    assert!(text.contains("taut springs grow"), "{text}");
 }
 
 #[test]

@@ -107,8 +107,8 @@ fn the_json_report_has_exactly_its_fields() {
     let report = folder.report("busy.scn --steps 60 --seed 9 --dt 0.01 --integrator verlet");
     let fields = |value: &Value| value.as_object().expect("an object").keys().cloned().collect::<BTreeSet<_>>();
     let expected = |names: &str| names.split(' ').map(str::to_string).collect::<BTreeSet<_>>();
-    let all = "scene integrator dt seed steps time substeps initial born live died refused hits caps energy momentum \
-               angular_momentum hash seconds ns_per_particle_step";
+    let all = "scene integrator dt seed steps time substeps initial born live died refused hits broken caps effort energy forces \
+               momentum angular_momentum hash seconds ns_per_particle_step";
     assert_eq!(fields(&report), expected(all));
     assert_eq!(fields(&report["died"]), expected("lifetime sink density chance nonfinite"));
     assert_eq!(fields(&report["substeps"]), expected("auto least most total beyond tolerance"));

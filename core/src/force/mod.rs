@@ -84,6 +84,7 @@ pub trait Force: Sync {
 /// A force in the accounts.
 #[cfg(feature = "std")]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Entry {
     /// Its name.
     pub name: &'static str,
