@@ -78,7 +78,10 @@ mod view;
 mod weave;
 
 pub use emit::{Emit, Emitter, Spread, Varied};
-pub use force::{AllPairs, Drag, Drive, Force, ForceKind, Gravity, MutualGravity, Sink, Spring};
+pub use force::{
+    AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, PowerLaw, Pressure,
+    QuadraticDrag, Radial, Sink, Spring, Viscosity, Wind,
+};
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;
 pub use integrate::{

@@ -177,7 +177,8 @@ impl<'a> Columns<'a> {
         let Columns { position, velocity, mass, drag, charge, serial, row_of, last_spring, incident, .. } =
             self.living(status.len);
         let springs = Springs { springs, start: status.start, serial, row_of, last_spring, incident };
-        State { time: status.time, position, velocity, mass, drag, charge, springs, tree: None, near: None }
+        let (time, mass_tree, charge_tree, near) = (status.time, None, None, None);
+        State { time, position, velocity, mass, drag, charge, springs, mass_tree, charge_tree, near }
     }
 
     /// The columns by row, cut to the rows in use.

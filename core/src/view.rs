@@ -308,10 +308,15 @@ impl Field<'_> {
         self.evaluations += u64::from(len > 0);
         let (mass, drag, charge, springs) = (&self.mass[..len], &self.drag[..len], &self.charge[..len], self.springs);
         // No more memory than these particles call for: more would make other nodes, and so other bits.
-        let words = (3 * self.needs.tree_columns() * len).min(self.tree.len());
-        let grow = self.needs.tree.filter(|_| len >= BarnesHut::FEWEST);
-        let tree = grow.and_then(|grow| grow(&mut self.tree[..words], position, mass));
-        let state = State { time, position, velocity, mass, drag, charge, springs, tree: tree.as_ref(), near: None };
+        let words = 3 * BarnesHut::COLUMNS * len;
+        let first = if self.needs.mass_tree.is_some() { words.min(self.tree.len()) } else { 0 };
+        let (of_mass, of_charge) = self.tree.split_at_mut(first);
+        let second = words.min(of_charge.len());
+        let [mass_tree, charge_tree] =
+            [(self.needs.mass_tree, of_mass, mass), (self.needs.charge_tree, &mut of_charge[..second], charge)]
+                .map(|(grow, memory, weights)| grow.filter(|_| len >= BarnesHut::FEWEST)?(memory, position, weights));
+        let (mass_tree, charge_tree) = (mass_tree.as_ref(), charge_tree.as_ref());
+        let state = State { time, position, velocity, mass, drag, charge, springs, mass_tree, charge_tree, near: None };
         if self.needs.reach > 0.0 {
             let words = (3 * self.scene.index.columns() * len).min(self.near.len());
             let then = &mut |near: Option<&dyn SpatialIndex>| then(State { near, ..state });
@@ -347,7 +352,8 @@ impl Dynamics for Field<'_> {
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
         let len = position.len();
         let (mass, drag, charge, springs) = (&self.mass[..len], &self.drag[..len], &self.charge[..len], self.springs);
-        let state = State { time, position, velocity, mass, drag, charge, springs, tree: None, near: None };
+        let (mass_tree, charge_tree, near) = (None, None, None);
+        let state = State { time, position, velocity, mass, drag, charge, springs, mass_tree, charge_tree, near };
         self.observer.after(Phase::Advance, &state);
     }
 }

@@ -248,7 +248,14 @@ fn emitter((shape, rate, newborn, material, speed, cutoff): Source, materials: u
 
 fn sink() -> impl Strategy<Value = Sink<String>> {
     let shape = prop_oneof![6 => common_shape(), 1 => circle()];
-    (shape, uniform4(number())).prop_map(|(shape, [intensity, ca, la, qa])| Sink { shape, intensity, ca, la, qa })
+    (shape, uniform4(number())).prop_map(|(shape, [intensity, ca, la, qa])| Sink {
+        shape,
+        intensity,
+        ca,
+        la,
+        qa,
+        softening: 0.0,
+    })
 }
 
 fn springs() -> impl Strategy<Value = Vec<([u16; 2], [f32; 3])>> {
@@ -367,7 +374,7 @@ pub(crate) fn any_scene() -> impl Strategy<Value = SceneFile> {
         for (shape, group) in items {
             let group = group.checked_rem(scene.groups.len() as u32);
             scene.scenery.insert(0, Item { shape: shape.clone(), material: None, group });
-            scene.sinks.push(Sink { shape, intensity: softness, ca: 1.0, la: glow, qa: 0.0 });
+            scene.sinks.push(Sink { shape, intensity: softness, ca: 1.0, la: glow, qa: 0.0, softening: glow });
         }
         if let Some(first) = scene.particles.first_mut() {
             first.color = Some(color);

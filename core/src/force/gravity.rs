@@ -31,4 +31,9 @@ impl Force for Gravity {
         let height = |x: &Vec3| x.to_array().iter().zip(g).map(|(&x, g)| f64::from(x) * g).sum::<f64>();
         -state.position.iter().zip(state.mass).map(|(x, &m)| f64::from(m) * height(x)).sum::<f64>()
     }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "gravity"
+    }
 }

@@ -1,45 +1,56 @@
 //! The forces that a file can name.
 
-use super::{Drag, Force, Gravity, MutualGravity, Needs, State};
-use core::ops::Range;
-use glam::Vec3;
+use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
+#[cfg(feature = "alloc")]
+use super::{FlowKind, Pressure, Wind};
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
 
-/// A force that acts on all particles, as files name it.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum ForceKind {
-    /// Uniform gravity.
-    Gravity(Gravity),
-    /// Linear drag with each particle's own coefficient.
-    Drag(Drag),
-    /// Every two particles attract each other.
-    MutualGravity(MutualGravity),
+/// Declares the forces that have a name.
+macro_rules! kinds {
+    ($($(#[doc = $doc:literal])* $kind:ident = $name:literal, $force:ty $(, if $feature:literal)?;)+) => {
+        /// A force that acts on all particles, as files name it.
+        #[derive(Clone, Debug, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        pub enum ForceKind {
+            $($(#[doc = $doc])* $(#[cfg(feature = $feature)])? #[cfg_attr(feature = "serde", serde(rename = $name))] $kind($force),)+
+        }
+
+        impl ForceKind {
+            /// The name that files give it.
+            #[must_use]
+            pub const fn kind(&self) -> &'static str {
+                match self { $($(#[cfg(feature = $feature)])? Self::$kind(_) => $name,)+ }
+            }
+
+            /// The force itself.
+            pub(super) fn get(&self) -> &dyn Force {
+                match self { $($(#[cfg(feature = $feature)])? Self::$kind(force) => force,)+ }
+            }
+        }
+    };
 }
 
-impl Force for ForceKind {
-    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        match self {
-            Self::Gravity(force) => force.add_to(state, rows, total),
-            Self::Drag(force) => force.add_to(state, rows, total),
-            Self::MutualGravity(force) => force.add_to(state, rows, total),
-        }
-    }
-
-    fn needs(&self) -> Needs {
-        match self {
-            Self::Gravity(force) => force.needs(),
-            Self::Drag(force) => force.needs(),
-            Self::MutualGravity(force) => force.needs(),
-        }
-    }
-
-    #[cfg(feature = "std")]
-    fn energy(&self, state: &State<'_>) -> f64 {
-        match self {
-            Self::Gravity(force) => force.energy(state),
-            Self::Drag(force) => force.energy(state),
-            Self::MutualGravity(force) => force.energy(state),
-        }
-    }
+kinds! {
+    /// Uniform gravity.
+    Gravity = "gravity", Gravity;
+    /// Linear drag with each particle's own coefficient.
+    Drag = "drag", Drag;
+    /// Every two particles attract each other.
+    MutualGravity = "mutual_gravity", MutualGravity;
+    /// Drag that grows with the square of the speed.
+    QuadraticDrag = "quadratic_drag", QuadraticDrag;
+    /// Charges attract and repel each other.
+    Coulomb = "coulomb", Coulomb;
+    /// Air that moves, and drags along.
+    Wind = "wind", Wind<Vec<FlowKind>>, if "alloc";
+    /// Neighbours attract each other, and repel each other where they are close.
+    LennardJones = "lennard_jones", Radial<LennardJones>;
+    /// Neighbours act on each other by a power of their distance.
+    PowerLaw = "power_law", Radial<PowerLaw>;
+    /// Neighbours drag each other along.
+    Viscosity = "viscosity", Viscosity;
+    /// Gas in a closed mesh of particles.
+    Pressure = "pressure", Pressure<Vec<[u32; 3]>>, if "alloc";
 }

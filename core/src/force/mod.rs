@@ -1,21 +1,39 @@
 //! What pulls and pushes particles: one file a force.
 
 mod all_pairs;
+mod charge;
+mod curl;
 mod drag;
+mod flow;
 mod gravity;
+mod inverse_square;
 mod kind;
 mod mutual;
+mod near;
+mod pressure;
+mod quadratic;
+mod radial;
 mod sink;
 pub(crate) mod spring;
+mod viscosity;
+mod wind;
 
 pub use all_pairs::AllPairs;
+pub use charge::Coulomb;
+pub use curl::Curl;
 pub use drag::Drag;
+pub use flow::{Flow, FlowKind, Gusts, Uniform, Vortex};
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
+pub use pressure::Pressure;
+pub use quadratic::QuadraticDrag;
+pub use radial::{LennardJones, Pair, PowerLaw, Radial, RadialLaw, Weight};
 pub use sink::Sink;
 pub(crate) use spring::is_broken;
 pub use spring::{Drive, Held, Spring, Springs};
+pub use viscosity::Viscosity;
+pub use wind::Wind;
 
 use crate::index::{Arrange, BarnesHut, SpatialIndex};
 use crate::math::max;
@@ -111,9 +129,11 @@ pub type Grow = for<'m> fn(&'m mut [u32], &[Vec3], &[f32]) -> Option<BarnesHut<'
 /// What forces have to find in the state, beyond the particles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
-    /// [`State::tree`], and what makes it: [`BarnesHut::grow`]. A function, so that a program with no force that names it
-    /// does not carry it about.
-    pub tree: Option<Grow>,
+    /// [`State::mass_tree`], and what makes it: [`BarnesHut::grow`]. A function, so that a program with no force that names
+    /// it does not carry it about.
+    pub mass_tree: Option<Grow>,
+    /// [`State::charge_tree`], and what makes it.
+    pub charge_tree: Option<Grow>,
     /// The radius within which [`State::near`] is asked for neighbours \[m\]; zero: it is not.
     pub reach: f32,
 }
@@ -122,13 +142,17 @@ impl Needs {
     /// What two forces need.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        Self { tree: self.tree.or(other.tree), reach: max(self.reach, other.reach) }
+        Self {
+            mass_tree: self.mass_tree.or(other.mass_tree),
+            charge_tree: self.charge_tree.or(other.charge_tree),
+            reach: max(self.reach, other.reach),
+        }
     }
 
-    /// Vectors for each particle that the tree takes.
+    /// Vectors for each particle that the trees take.
     #[must_use]
     pub const fn tree_columns(self) -> usize {
-        if self.tree.is_some() { BarnesHut::COLUMNS } else { 0 }
+        BarnesHut::COLUMNS * (self.mass_tree.is_some() as usize + self.charge_tree.is_some() as usize)
     }
 
     /// Vectors for each particle that it takes to work it all out, neighbours by `index`.
@@ -158,7 +182,9 @@ pub struct State<'a> {
     /// Them in an index, while a step is made, if a force asks for neighbours and the scene has one.
     pub near: Option<&'a dyn SpatialIndex>,
     /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
-    pub tree: Option<&'a BarnesHut<'a>>,
+    pub mass_tree: Option<&'a BarnesHut<'a>>,
+    /// Their charges in a tree, likewise.
+    pub charge_tree: Option<&'a BarnesHut<'a>>,
 }
 
 impl Force for () {
@@ -224,8 +250,54 @@ macro_rules! sum_of {
     };
 }
 
+/// What stands for another force is that force.
+macro_rules! same_as {
+    ($this:ident => $force:expr) => {
+        fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+            let $this = self;
+            $force.add_to(state, rows, total);
+        }
+        fn needs(&self) -> Needs {
+            let $this = self;
+            $force.needs()
+        }
+        fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+            let $this = self;
+            $force.add_jacobian(state, change, total);
+        }
+        fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
+            let $this = self;
+            $force.add_stiffness(state, weights, total);
+        }
+        #[cfg(feature = "std")]
+        fn energy(&self, state: &State<'_>) -> f64 {
+            let $this = self;
+            $force.energy(state)
+        }
+        #[cfg(feature = "std")]
+        fn power(&self, state: &State<'_>) -> f64 {
+            let $this = self;
+            $force.power(state)
+        }
+        #[cfg(feature = "std")]
+        fn name(&self) -> &'static str {
+            let $this = self;
+            $force.name()
+        }
+        #[cfg(feature = "std")]
+        fn account(&self, state: &State<'_>, visit: &mut dyn FnMut(Entry)) {
+            let $this = self;
+            $force.account(state, visit);
+        }
+    };
+}
+
 impl<T: Force + ?Sized> Force for &T {
-    sum_of!(this => [*this]);
+    same_as!(this => **this);
+}
+
+impl Force for ForceKind {
+    same_as!(this => this.get());
 }
 
 impl<T: Force> Force for [T] {

@@ -1,5 +1,8 @@
 //! Newton's law of gravitation between all particles, far groups as one if so wished.
 
+use super::inverse_square::field;
+#[cfg(feature = "std")]
+use super::inverse_square::potential;
 use super::{AllPairs, Force, Needs, State};
 use crate::index::{BarnesHut, Opening};
 use core::ops::Range;
@@ -26,10 +29,6 @@ impl MutualGravity {
     /// Newton's law between all pairs, as [`AllPairs::NEWTON`].
     pub const NEWTON: Self =
         Self { constant: AllPairs::NEWTON.constant, softening: 0.0, theta: 0.0, quadrupole: false };
-
-    const fn all_pairs(&self) -> AllPairs {
-        AllPairs { constant: self.constant, softening: self.softening }
-    }
 }
 
 impl Default for MutualGravity {
@@ -40,11 +39,8 @@ impl Default for MutualGravity {
 
 impl Force for MutualGravity {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        let Some(tree) = state.tree.filter(|_| self.theta > 0.0) else {
-            return self.all_pairs().add_to(state, rows, total);
-        };
         let law = Opening { theta: self.theta, softening: self.softening, quadrupole: self.quadrupole };
-        tree.field(law, rows.clone(), &mut |row, field| {
+        field(law, state.mass_tree, (state.position, state.mass), rows.clone(), &mut |row, field| {
             if let Some(total) = total.get_mut(row - rows.start) {
                 *total += field * (self.constant * state.mass[row]);
             }
@@ -52,11 +48,16 @@ impl Force for MutualGravity {
     }
 
     fn needs(&self) -> Needs {
-        Needs { tree: (self.theta > 0.0).then_some(BarnesHut::grow), ..Needs::default() }
+        Needs { mass_tree: (self.theta > 0.0).then_some(BarnesHut::grow), ..Needs::default() }
     }
 
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
-        self.all_pairs().energy(state)
+        -f64::from(self.constant) * potential(state.position, state.mass, self.softening)
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "mutual gravity"
     }
 }

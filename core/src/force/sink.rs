@@ -1,13 +1,17 @@
 //! A sink: it pulls, and what touches it is gone.
 
 use super::{Force, State};
-use crate::math::length;
+use crate::math::sqrt;
 use crate::shape::{Aabb, Collider, Hit, Segment, Shape, Surface};
 use core::ops::Range;
 use glam::Vec3;
 
-/// A surface that pulls every particle toward its nearest point with intensity / (ca + la d + qa d²), d being the
-/// distance, whatever the particle's mass, and that removes the particles that touch it.
+/// A surface that pulls every particle toward its nearest point, whatever the particle's mass, and that removes the
+/// particles that touch it: f = intensity / (ca + la D + qa D²) d⃗ / D, d⃗ being the way to that point and D² = d² + s² with
+/// the softening s.
+///
+/// It is left out of [`Force::add_jacobian`]: the pull grows toward the surface, which drives apart what is
+/// displaced along it, and what it does to the side depends on how the surface is curved.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -22,15 +26,19 @@ pub struct Sink<M> {
     pub la: f32,
     /// Quadratic term \[1/m²\].
     pub qa: f32,
+    /// Softening length s \[m\]: within it the pull falls to zero at the surface, where it has no direction. Zero: it jumps
+    /// there.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub softening: f32,
 }
 
 impl<M: Surface + Sync> Force for Sink<M> {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         for (total, &x) in total.iter_mut().zip(&state.position[rows]) {
             let toward = self.shape.nearest(x) - x;
-            let d = length(toward);
+            let d = sqrt(toward.dot(toward) + self.softening * self.softening);
             let resistance = self.ca + d * (self.la + d * self.qa);
-            // On the surface the pull has no direction.
+            // On the surface, if it is not softened, the pull has no direction.
             if d > 0.0 && resistance != 0.0 {
                 *total += toward * (self.intensity / (resistance * d));
             }
@@ -40,8 +48,13 @@ impl<M: Surface + Sync> Force for Sink<M> {
     /// Zero at the surface.
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
-        let distance = |x: &Vec3| f64::from(length(self.shape.nearest(*x) - *x));
-        state.position.iter().map(|x| self.work_from_surface(distance(x))).sum()
+        let square = |x: &Vec3| (self.shape.nearest(*x) - *x).to_array().map(|d| f64::from(d).powi(2)).iter().sum();
+        state.position.iter().map(|x| self.potential(square(x))).sum()
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "sinks"
     }
 }
 
@@ -57,6 +70,12 @@ impl<M: Collider> Collider for Sink<M> {
 
 #[cfg(feature = "std")]
 impl<M> Sink<M> {
+    /// The potential \[J\] at a squared distance. Softened, it is the pull's integral over D, since D dD = d dd.
+    fn potential(&self, square: f64) -> f64 {
+        let s = f64::from(self.softening).abs();
+        self.work_from_surface(libm::sqrt(square + s * s)) - self.work_from_surface(s)
+    }
+
     /// ∫₀ᵈ intensity / (ca + la s + qa s²) ds \[J\], in closed form.
     fn work_from_surface(&self, d: f64) -> f64 {
         let [c, b, a] = [self.ca, self.la, self.qa].map(f64::from);
@@ -90,11 +109,17 @@ mod tests {
     fn the_potential_is_the_integral_of_the_pull() {
         for (ca, la, qa) in [(1.0, 0.5, 0.25), (1.0, 0.0, 0.0), (2.0, 0.5, 0.0), (1.0, 3.0, 0.5), (1.0, 2.0, 1.0)] {
             let shape = Shape::<Mesh<'_>>::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
-            let sink = Sink { shape, intensity: 10.0, ca, la, qa };
-            let n = 100_000;
-            let pull = |s: f64| 10.0 / (f64::from(ca) + f64::from(la) * s + f64::from(qa) * s * s);
-            let sum: f64 = (0..n).map(|i| pull((f64::from(i) + 0.5) * 3.0 / f64::from(n)) * 3.0 / f64::from(n)).sum();
-            assert!((sink.work_from_surface(3.0) - sum).abs() < 1e-8, "{ca} {la} {qa}");
+            for softening in [0.0f32, 0.25, 2.0] {
+                let sink = Sink { shape: shape.clone(), intensity: 10.0, ca, la, qa, softening };
+                let n = 100_000;
+                let pull = |x: f64| {
+                    let d = libm::hypot(x, f64::from(softening));
+                    10.0 / (f64::from(ca) + f64::from(la) * d + f64::from(qa) * d * d) * x / d
+                };
+                let width = 3.0 / f64::from(n);
+                let sum: f64 = (0..n).map(|i| pull((f64::from(i) + 0.5) * width) * width).sum();
+                assert!((sink.potential(9.0) - sum).abs() < 1e-8, "{ca} {la} {qa}, {softening}");
+            }
         }
     }
 }

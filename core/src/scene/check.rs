@@ -1,8 +1,8 @@
 //! What a declared scene may say: every number finite, every reference to something that is there.
 
+use super::check_force::check_force;
 use super::{Group, Light, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
-use crate::force::ForceKind;
 use crate::math::unit;
 use crate::shape::{Affine, Shape};
 use alloc::format;
@@ -10,7 +10,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
 
-type Checked = Result<(), SceneError>;
+pub(super) type Checked = Result<(), SceneError>;
 
 /// How many births a second there may be: rates are kept as fixed-point numbers.
 const MAX_RATE: f32 = 4e9;
@@ -63,21 +63,15 @@ impl SceneFile {
         }
         for (i, sink) in self.sinks.iter().enumerate() {
             finite(&format!("sinks[{i}]"), &[sink.intensity, sink.ca, sink.la, sink.qa])?;
+            zero_or_more(&format!("sinks[{i}].softening"), sink.softening)?;
             check_shape(&format!("sinks[{i}].shape"), &sink.shape)?;
         }
         for (i, force) in self.forces.iter().enumerate() {
-            let at = format!("forces[{i}]");
-            match force {
-                ForceKind::Gravity(g) => finite(&at, &g.acceleration.to_array())?,
-                ForceKind::Drag(_) => {}
-                ForceKind::MutualGravity(m) => {
-                    finite(&at, &[m.constant, m.softening, m.theta])?;
-                    if m.theta < 0.0 {
-                        let message = format!("has to be zero or more, not {}", m.theta);
-                        return Err(SceneError::value(format!("{at}.theta"), message));
-                    }
-                }
-            }
+            check_force(&format!("forces[{i}]"), force)?;
+        }
+        // How many particles fabrics bring is known when their meshes have been read.
+        if self.fabrics.is_empty() {
+            self.check_corners(self.particles.len())?;
         }
         self.check_scenery()?;
         self.check_look()
@@ -273,7 +267,7 @@ impl Group {
     }
 }
 
-fn finite(at: &str, numbers: &[f32]) -> Checked {
+pub(super) fn finite(at: &str, numbers: &[f32]) -> Checked {
     match numbers.iter().find(|x| !x.is_finite()) {
         Some(x) => {
             Err(SceneError::value(at, format!("has to be finite and within the range of a 32-bit float, not {x}")))
@@ -282,7 +276,19 @@ fn finite(at: &str, numbers: &[f32]) -> Checked {
     }
 }
 
-fn check_direction(at: &str, direction: Vec3) -> Checked {
+/// A number from zero on.
+pub(super) fn zero_or_more(at: &str, number: f32) -> Checked {
+    finite(at, &[number])?;
+    if number >= 0.0 { Ok(()) } else { Err(SceneError::value(at, format!("has to be zero or more, not {number}"))) }
+}
+
+/// A number above zero.
+pub(super) fn above_zero(at: &str, number: f32) -> Checked {
+    finite(at, &[number])?;
+    if number > 0.0 { Ok(()) } else { Err(SceneError::value(at, format!("has to be above zero, not {number}"))) }
+}
+
+pub(super) fn check_direction(at: &str, direction: Vec3) -> Checked {
     finite(at, &direction.to_array())?;
     if unit(direction) == Vec3::ZERO { Err(SceneError::value(at, "has to have a direction")) } else { Ok(()) }
 }

@@ -7,6 +7,8 @@
 #[cfg(feature = "alloc")]
 mod check;
 #[cfg(feature = "alloc")]
+mod check_force;
+#[cfg(feature = "alloc")]
 mod error;
 #[cfg(feature = "alloc")]
 mod fabric;

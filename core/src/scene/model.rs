@@ -56,6 +56,7 @@ impl Model {
         file.check().map_err(|error| error.in_file(path))?;
         let mut meshes = Meshes { loaded: BTreeMap::new(), path, files };
         let (particles, springs) = start(file, &mut meshes)?;
+        file.check_corners(particles.len()).map_err(|error| error.in_file(path))?;
         let mut emitters = Vec::with_capacity(file.emitters.len());
         for (i, emitter) in file.emitters.iter().enumerate() {
             let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
@@ -64,8 +65,8 @@ impl Model {
         let mut sinks = Vec::with_capacity(file.sinks.len());
         for (i, sink) in file.sinks.iter().enumerate() {
             let shape = meshes.shape(&format!("sinks[{i}].shape"), &sink.shape)?;
-            let Sink { intensity, ca, la, qa, .. } = *sink;
-            sinks.push(Sink { shape, intensity, ca, la, qa });
+            let Sink { intensity, ca, la, qa, softening, .. } = *sink;
+            sinks.push(Sink { shape, intensity, ca, la, qa, softening });
         }
         let mut scenery = Vec::with_capacity(file.scenery.len());
         for (i, item) in file.scenery.iter().enumerate() {

@@ -182,9 +182,9 @@ impl Reader<'_> {
                 self.scene.particles.push(particle);
             }
             Command::Source(source) => self.source(scope, place, name, source)?,
-            Command::Sink(Sink { shape, intensity, ca, la, qa }) => {
+            Command::Sink(Sink { shape, intensity, ca, la, qa, softening }) => {
                 let shape = self.shape(scope, place, name, &shape)?;
-                self.scene.sinks.push(Sink { shape, intensity, ca, la, qa });
+                self.scene.sinks.push(Sink { shape, intensity, ca, la, qa, softening });
             }
             Command::Spring { ends, rest_length, ks, kd } => {
                 scope.springs.push((ends, Spring { kd, ..Spring::new([0; 2], rest_length, ks) }));

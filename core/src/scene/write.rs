@@ -202,11 +202,13 @@ impl Writer {
                 ForceKind::MutualGravity(_) => {
                     self.warn("forces: .scn has mutual gravity with G = 6.67428e-11 and no softening only");
                 }
+                other => self.warn(format!("forces: .scn does not have '{}'; it is left out", other.kind())),
             }
-            order.push(match force {
-                ForceKind::Gravity(_) => 0,
-                ForceKind::Drag(_) => 1,
-                ForceKind::MutualGravity(_) => 2,
+            order.extend(match force {
+                ForceKind::Gravity(_) => Some(0),
+                ForceKind::Drag(_) => Some(1),
+                ForceKind::MutualGravity(_) => Some(2),
+                _ => None,
             });
         }
         if !order.is_sorted_by(|a, b| a < b) {
@@ -274,6 +276,9 @@ impl Writer {
     }
 
     fn sink(&mut self, index: usize, sink: &Sink<String>) {
+        if sink.softening != 0.0 {
+            self.warn(format!("sinks[{index}].softening: .scn has none; it is left out"));
+        }
         if let Some(shape) = self.shape(&format!("sinks[{index}]"), &sink.shape, false) {
             let numbers = Numbers(&[sink.intensity, sink.ca, sink.la, sink.qa]);
             self.line(format_args!("particle_sink {numbers} {shape}"));

@@ -81,7 +81,7 @@ fn a_force_that_needs_a_tree_needs_columns() {
         assert_eq!(scene(&far).columns(), scene(&near).columns() + 5);
         assert_eq!(scene(&far).size().columns, scene(&far).columns());
     }
-    assert!(MutualGravity { theta: f32::NAN, ..UNIT }.needs().tree.is_none());
+    assert!(MutualGravity { theta: f32::NAN, ..UNIT }.needs().mass_tree.is_none());
 }
 
 #[test]

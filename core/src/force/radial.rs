@@ -1,0 +1,325 @@
+//! Forces between neighbours, along the line that joins them.
+
+use super::near::neighbours;
+#[cfg(feature = "std")]
+use super::near::sum_of_pairs;
+use super::{Change, Force, Needs, State};
+use crate::math::{max, sqrt};
+use core::ops::Range;
+use glam::Vec3;
+
+/// How two particles act on each other along the line that joins them.
+///
+/// It has to treat the two alike: with both exchanged it gives the same, bit by bit, so that action and reaction cancel.
+pub trait RadialLaw: Sync {
+    /// The distance beyond which they do not act on each other \[m\].
+    fn reach(&self) -> f32;
+
+    /// The force that draws them together over their distance \[N/m\], below zero if it pushes them apart: the force on
+    /// one is this times the way to the other. `square` is the distance squared \[m²\], above zero.
+    fn pull(&self, square: f32, pair: &Pair) -> f32;
+
+    /// How fast the force that draws them together grows with their distance \[N/m\], for implicit methods. Zero leaves
+    /// it out.
+    fn stiffness(&self, square: f32, pair: &Pair) -> f32 {
+        let _ = (square, pair);
+        0.0
+    }
+
+    /// The potential energy \[J\] of the two, zero beyond the reach: its slope by the distance is the force.
+    #[cfg(feature = "std")]
+    fn energy(&self, square: f64, pair: &Pair) -> f64 {
+        let _ = (square, pair);
+        0.0
+    }
+
+    /// What it is called in reports.
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "neighbours"
+    }
+}
+
+/// What two particles are, apart from where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Their masses \[kg\].
+    pub mass: [f32; 2],
+    /// Their charges \[C\].
+    pub charge: [f32; 2],
+}
+
+impl Pair {
+    #[inline(always)]
+    fn of(state: &State<'_>, rows: [usize; 2]) -> Self {
+        Self { mass: rows.map(|row| state.mass[row]), charge: rows.map(|row| state.charge[row]) }
+    }
+}
+
+/// All particles within a law's reach of each other act on each other by it.
+///
+/// Neighbours are found by the scene's index, or without one by looking at all. Two that coincide, or are so close that
+/// the force is beyond an `f32`, do not act on each other. Ways are straight: through the sides of a periodic box nothing
+/// acts.
+///
+/// ```
+/// use pointmass::force::{Pair, Radial, RadialLaw};
+///
+/// /// Balls of 1 m that push each other apart with 100 N per metre that they overlap.
+/// struct Soft;
+/// impl RadialLaw for Soft {
+///     fn reach(&self) -> f32 {
+///         1.0
+///     }
+///     fn pull(&self, square: f32, _: &Pair) -> f32 {
+///         let d = pointmass::math::sqrt(square);
+///         100.0 * (d - 1.0) / d
+///     }
+/// }
+/// let scene = pointmass::Scene { forces: &Radial(Soft), ..pointmass::Scene::EMPTY };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Radial<L>(pub L);
+
+impl<L: RadialLaw> Radial<L> {
+    /// Stiffness along the line and across it \[N/m\]. Parts that would drive apart what is displaced are left out, as of
+    /// springs.
+    fn stiffness(&self, square: f32, pair: &Pair) -> [f32; 2] {
+        [max(self.0.stiffness(square, pair), 0.0), max(self.0.pull(square, pair), 0.0)]
+    }
+}
+
+impl<L: RadialLaw> Force for Radial<L> {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        add_up(state, self.0.reach(), rows, total, |row, other| {
+            let toward = state.position[other] - state.position[row];
+            let square = toward.dot(toward);
+            if square > 0.0 { toward * self.0.pull(square, &Pair::of(state, [row, other])) } else { Vec3::ZERO }
+        });
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { reach: max(self.0.reach(), 0.0), ..Needs::default() }
+    }
+
+    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+        let all = 0..total.len();
+        add_up(state, self.0.reach(), all, total, |row, other| {
+            let toward = state.position[other] - state.position[row];
+            let square = toward.dot(toward);
+            if !(square > 0.0) {
+                return Vec3::ZERO;
+            }
+            let [along, across] = self.stiffness(square, &Pair::of(state, [row, other]));
+            let apart = change.along[other] - change.along[row];
+            let axial = toward * (toward.dot(apart) / square);
+            (axial * (along - across) + apart * across) * change.position
+        });
+    }
+
+    fn add_stiffness(&self, state: &State<'_>, [position, _]: [f32; 2], total: &mut [Vec3]) {
+        let all = 0..total.len();
+        add_up(state, self.0.reach(), all, total, |row, other| {
+            let toward = state.position[other] - state.position[row];
+            let square = toward.dot(toward);
+            if !(square > 0.0) {
+                return Vec3::ZERO;
+            }
+            let [along, across] = self.stiffness(square, &Pair::of(state, [row, other]));
+            (toward * toward * ((along - across) / square) + Vec3::splat(across)) * position
+        });
+    }
+
+    #[cfg(feature = "std")]
+    fn energy(&self, state: &State<'_>) -> f64 {
+        sum_of_pairs(state, self.0.reach(), |row, other| {
+            let wide = |row: usize| state.position[row].to_array().map(f64::from);
+            let square = wide(row).iter().zip(wide(other)).map(|(a, b)| (a - b) * (a - b)).sum();
+            if square > 0.0 { self.0.energy(square, &Pair::of(state, [row, other])) } else { 0.0 }
+        })
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+}
+
+/// Adds to each of `rows` the sum of something over its neighbours; what is not finite is left out, so that it harms
+/// nobody else.
+#[inline(always)]
+pub(super) fn add_up(
+    state: &State<'_>,
+    reach: f32,
+    rows: Range<usize>,
+    total: &mut [Vec3],
+    term: impl Fn(usize, usize) -> Vec3,
+) {
+    let first = rows.start;
+    neighbours(state, reach, rows, &mut |row, others| {
+        let mut sum = Vec3::ZERO;
+        for &other in others {
+            let term = term(row, other as usize);
+            if term.is_finite() {
+                sum += term;
+            }
+        }
+        if let Some(total) = total.get_mut(row - first) {
+            *total += sum;
+        }
+    });
+}
+
+impl<L: RadialLaw + ?Sized> RadialLaw for &L {
+    fn reach(&self) -> f32 {
+        (**self).reach()
+    }
+    fn pull(&self, square: f32, pair: &Pair) -> f32 {
+        (**self).pull(square, pair)
+    }
+    fn stiffness(&self, square: f32, pair: &Pair) -> f32 {
+        (**self).stiffness(square, pair)
+    }
+    #[cfg(feature = "std")]
+    fn energy(&self, square: f64, pair: &Pair) -> f64 {
+        (**self).energy(square, pair)
+    }
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+}
+
+/// Atoms without charge (Lennard-Jones 1924): energy 4 ε ((σ/d)¹² − (σ/d)⁶), shifted to zero at the cutoff. They rest
+/// 2^{1/6} σ = 1.1225 σ apart, where it takes ε to part them.
+///
+/// At the cutoff the force jumps to zero, by 0.039 ε/σ where that is 2.5 σ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LennardJones {
+    /// Depth of the well ε \[J\].
+    pub epsilon: f32,
+    /// The distance σ at which they neither lost nor gained energy \[m\].
+    pub sigma: f32,
+    /// Beyond this distance nothing acts \[m\]; 2.5 σ is usual.
+    pub cutoff: f32,
+}
+
+impl RadialLaw for LennardJones {
+    fn reach(&self) -> f32 {
+        self.cutoff
+    }
+
+    fn pull(&self, square: f32, _: &Pair) -> f32 {
+        let s2 = self.sigma * self.sigma / square;
+        let s6 = s2 * s2 * s2;
+        24.0 * self.epsilon * s6 * (1.0 - 2.0 * s6) / square
+    }
+
+    fn stiffness(&self, square: f32, _: &Pair) -> f32 {
+        let s2 = self.sigma * self.sigma / square;
+        let s6 = s2 * s2 * s2;
+        24.0 * self.epsilon * s6 * (26.0 * s6 - 7.0) / square
+    }
+
+    #[cfg(feature = "std")]
+    fn energy(&self, square: f64, _: &Pair) -> f64 {
+        let at = |square: f64| {
+            let s6 = (f64::from(self.sigma).powi(2) / square).powi(3);
+            4.0 * f64::from(self.epsilon) * s6 * (s6 - 1.0)
+        };
+        at(square) - at(f64::from(self.cutoff).powi(2))
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "Lennard-Jones"
+    }
+}
+
+/// Neighbours attract each other with c w₁ w₂ / Dⁿ, D² = d² + s², s being the softening: f = c w₁ w₂ d⃗ / Dⁿ⁺¹. Its
+/// energy is zero at its reach, where the force jumps to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PowerLaw {
+    /// The strength c: the force \[N\] at a distance of 1 m between weights of 1; below zero it repels.
+    pub strength: f32,
+    /// The exponent n, from 0, the same force at any distance, to 12.
+    pub exponent: u8,
+    /// Softening length s \[m\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub softening: f32,
+    /// Beyond this distance nothing acts \[m\].
+    pub reach: f32,
+    /// What the weights w are.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub weight: Weight,
+}
+
+/// What a force between two particles is proportional to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Weight {
+    /// Nothing: all particles count alike.
+    #[default]
+    One,
+    /// Both masses \[kg\].
+    Mass,
+    /// Both charges \[C\]. Where the strength is above zero, equal signs attract each other.
+    Charge,
+}
+
+impl PowerLaw {
+    /// c w₁ w₂.
+    #[inline(always)]
+    fn strength(&self, pair: &Pair) -> f32 {
+        let [a, b] = match self.weight {
+            Weight::One => return self.strength,
+            Weight::Mass => pair.mass,
+            Weight::Charge => pair.charge,
+        };
+        self.strength * (a * b)
+    }
+
+    /// 1 / D² and 1 / Dⁿ⁺¹.
+    #[inline(always)]
+    fn inverse(&self, square: f32) -> [f32; 2] {
+        let inverse_square = 1.0 / (square + self.softening * self.softening);
+        let inverse = sqrt(inverse_square);
+        [inverse_square, (0..self.exponent).fold(inverse, |power, _| power * inverse)]
+    }
+}
+
+impl RadialLaw for PowerLaw {
+    fn reach(&self) -> f32 {
+        self.reach
+    }
+
+    fn pull(&self, square: f32, pair: &Pair) -> f32 {
+        self.strength(pair) * self.inverse(square)[1]
+    }
+
+    fn stiffness(&self, square: f32, pair: &Pair) -> f32 {
+        let [inverse_square, power] = self.inverse(square);
+        self.strength(pair) * power * (1.0 - f32::from(self.exponent + 1) * square * inverse_square)
+    }
+
+    #[cfg(feature = "std")]
+    fn energy(&self, square: f64, pair: &Pair) -> f64 {
+        let softened = |square: f64| libm::sqrt(square + f64::from(self.softening).powi(2));
+        let (d, end) = (softened(square), softened(f64::from(self.reach).powi(2)));
+        let n = i32::from(self.exponent);
+        let work = if n == 1 { libm::log(d / end) } else { (d.powi(1 - n) - end.powi(1 - n)) / f64::from(1 - n) };
+        f64::from(self.strength(pair)) * work
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "power law"
+    }
+}

@@ -1,0 +1,106 @@
+//! What a declared scene may say of its forces.
+
+use super::check::{Checked, above_zero, check_direction, finite, zero_or_more};
+use super::{SceneError, SceneFile};
+use crate::force::{FlowKind, ForceKind, PowerLaw};
+use alloc::format;
+
+/// The largest exponent of a power law.
+const MAX_EXPONENT: u8 = 12;
+
+/// The longest softening: its square has to be a number.
+const MAX_LENGTH: f32 = 1e18;
+
+impl SceneFile {
+    /// Checks that the corners of closed meshes are among `count` particles of the start.
+    pub(super) fn check_corners(&self, count: usize) -> Checked {
+        for (i, force) in self.forces.iter().enumerate() {
+            let ForceKind::Pressure(pressure) = force else { continue };
+            for (k, corners) in pressure.triangles.iter().enumerate() {
+                if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= count) {
+                    let message = format!("particle {corner} is out of range; there are {count}, from 0");
+                    return Err(SceneError::value(format!("forces[{i}].triangles[{k}]"), message));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Checks the numbers of a force.
+pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
+    let name = |name: &str| format!("{at}.{name}");
+    match force {
+        ForceKind::Gravity(g) => finite(&name("acceleration"), &g.acceleration.to_array()),
+        ForceKind::Drag(_) => Ok(()),
+        ForceKind::MutualGravity(m) => {
+            finite(at, &[m.constant, m.softening]).and_then(|()| zero_or_more(&name("theta"), m.theta))
+        }
+        ForceKind::QuadraticDrag(d) => zero_or_more(&name("coefficient"), d.coefficient),
+        ForceKind::Coulomb(c) => finite(&name("constant"), &[c.constant])
+            .and_then(|()| length(&name("softening"), c.softening))
+            .and_then(|()| zero_or_more(&name("theta"), c.theta)),
+        ForceKind::Wind(wind) => {
+            zero_or_more(&name("coefficient"), wind.coefficient.unwrap_or(0.0))?;
+            let mut flows = wind.field.iter().enumerate();
+            flows.try_for_each(|(i, flow)| check_flow(&name(&format!("field[{i}]")), flow))
+        }
+        ForceKind::LennardJones(law) => finite(&name("epsilon"), &[law.0.epsilon])
+            .and_then(|()| above_zero(&name("sigma"), law.0.sigma))
+            .and_then(|()| reach(&name("cutoff"), law.0.cutoff)),
+        ForceKind::PowerLaw(law) => check_power(&name, &law.0),
+        ForceKind::Viscosity(v) => {
+            zero_or_more(&name("coefficient"), v.coefficient)?;
+            reach(&name("reach"), v.reach)
+        }
+        ForceKind::Pressure(pressure) => {
+            zero_or_more(&name("amount"), pressure.amount)?;
+            finite(&name("outside"), &[pressure.outside])
+        }
+    }
+}
+
+fn length(at: &str, length: f32) -> Checked {
+    zero_or_more(at, length)?;
+    if length <= MAX_LENGTH {
+        return Ok(());
+    }
+    Err(SceneError::value(at, format!("has to be {MAX_LENGTH:e} m at most, not {length}")))
+}
+
+fn reach(at: &str, reach: f32) -> Checked {
+    above_zero(at, reach)?;
+    length(at, reach)
+}
+
+fn check_power(name: &dyn Fn(&str) -> alloc::string::String, law: &PowerLaw) -> Checked {
+    finite(&name("strength"), &[law.strength])?;
+    if law.exponent > MAX_EXPONENT {
+        let message = format!("has to be from 0 to {MAX_EXPONENT}, not {}", law.exponent);
+        return Err(SceneError::value(name("exponent"), message));
+    }
+    length(&name("softening"), law.softening)?;
+    reach(&name("reach"), law.reach)
+}
+
+fn check_flow(at: &str, flow: &FlowKind) -> Checked {
+    match flow {
+        FlowKind::Uniform(flow) => finite(&format!("{at}.velocity"), &flow.velocity.to_array()),
+        FlowKind::Gusts(flow) => {
+            finite(&format!("{at}.velocity"), &flow.velocity.to_array())?;
+            finite(&format!("{at}.amplitude"), &[flow.amplitude])?;
+            zero_or_more(&format!("{at}.frequency"), flow.frequency)
+        }
+        FlowKind::Vortex(flow) => {
+            finite(&format!("{at}.center"), &flow.center.to_array())?;
+            check_direction(&format!("{at}.axis"), flow.axis)?;
+            finite(&format!("{at}.speed"), &[flow.speed])?;
+            above_zero(&format!("{at}.core"), flow.core)
+        }
+        FlowKind::Curl(flow) => {
+            finite(&format!("{at}.speed"), &[flow.speed])?;
+            finite(&format!("{at}.drift"), &flow.drift.to_array())?;
+            above_zero(&format!("{at}.scale"), flow.scale)
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Forces between neighbours.
+
+use super::{cloud, forces};
+use pointmass::force::{Pair, Radial, RadialLaw, State, Weight};
+use pointmass::index::{Arrange, SpatialIndex, Structure};
+use pointmass::{
+    Coulomb, Force, LennardJones, Measures, Method, Particle, PowerLaw, Pressure, Scene, Time, Vec3, Viscosity,
+};
+use pointmass_tests::{f64s, gap, run, started};
+
+const ATOMS: Radial<LennardJones> = Radial(LennardJones { epsilon: 1.0, sigma: 0.3, cutoff: 0.75 });
+const SOFT: Radial<PowerLaw> =
+    Radial(PowerLaw { strength: -2.0, exponent: 3, softening: 0.2, reach: 0.6, weight: Weight::Mass });
+const THICK: Viscosity = Viscosity { coefficient: 3.0, reach: 0.5 };
+
+/// Calls `then` with a state whose points are in an index.
+fn indexed(state: State<'_>, structure: Structure, reach: f32, then: impl FnOnce(&State<'_>)) {
+    let mut memory = vec![0; structure.words(state.position.len())];
+    let mut index = structure.index(&mut memory);
+    index.build(state.position, reach).expect("there is room");
+    then(&State { near: Some(&index), ..state });
+}
+
+#[test]
+fn every_structure_gives_the_same_force() {
+    let start = cloud(400);
+    let scene = Scene { start: &start, ..Scene::EMPTY };
+    let system = started(&scene, 400, 0);
+    let state = system.state(&scene);
+    for force in [&SOFT as &dyn Force, &THICK] {
+        let plain = forces(&system, &scene, force);
+        let size = plain.iter().map(|f| f.length()).fold(0.0, f32::max);
+        assert!(size > 1.0, "{size}");
+        for &structure in Structure::ALL {
+            indexed(state, structure, force.needs().reach, |state| {
+                let mut whole = vec![Vec3::ZERO; 400];
+                force.add_to(state, 0..400, &mut whole);
+                for (a, b) in whole.iter().zip(&plain) {
+                    // Some tens of terms in another order.
+                    assert!((*a - *b).length() <= 1e-5 * size, "{structure}: {a} {b}");
+                }
+                // Any division of the rows gives the same bits.
+                for cuts in [&[0, 1, 400][..], &[0, 100, 101, 399, 400]] {
+                    let mut parts = vec![Vec3::ZERO; 400];
+                    for cut in cuts.windows(2) {
+                        force.add_to(state, cut[0]..cut[1], &mut parts[cut[0]..cut[1]]);
+                    }
+                    assert_eq!(parts, whole, "{structure}");
+                }
+                let energies = [force.energy(state), force.energy(&State { near: None, ..*state })];
+                assert!((energies[0] - energies[1]).abs() <= 1e-12 * energies[1].abs());
+            });
+        }
+    }
+    assert_eq!(SOFT.needs().columns(&Structure::Grid), Structure::Grid.columns());
+    assert_eq!(SOFT.needs().columns(&()), 0);
+}
+
+#[test]
+fn runs_by_any_structure_end_nearly_alike() {
+    let start = cloud(300);
+    let force = (SOFT, THICK);
+    let end = |index: &dyn Arrange| {
+        let scene =
+            Scene { start: &start, forces: &force, index, integrator: Method::Verlet.integrator(), ..Scene::EMPTY };
+        let mut system = started(&scene, 320, 0);
+        run(&mut system, &scene, 1e-3, 20);
+        system.particles().position.to_vec()
+    };
+    let plain = end(&());
+    for &structure in Structure::ALL {
+        let off = end(&structure).iter().zip(&plain).map(|(a, b)| (*a - *b).length()).fold(0.0, f32::max);
+        assert!(off < 1e-5, "{structure}: {off}");
+    }
+}
+
+#[test]
+fn two_atoms_rest_and_swing_where_they_should() {
+    let (epsilon, sigma) = (2.0, 0.5);
+    let law = Radial(LennardJones { epsilon, sigma, cutoff: 5.0 });
+    let rest = 2f64.powf(1.0 / 6.0) * f64::from(sigma);
+    let pair = |d: f64| [0.0, d as f32].map(|x| Particle { position: Vec3::X * x, mass: 3.0, ..Particle::REST });
+    let scene = Scene { forces: &law, integrator: Method::Rk4.integrator(), ..Scene::EMPTY };
+    let still = pair(rest);
+    let system = started(&Scene { start: &still, ..scene }, 2, 0);
+    // An ulp of the distance, 6e-8, times the stiffness 57.1 ε / σ², and the roundings of 24 ε / σ.
+    let force = forces(&system, &scene, &law)[0].x;
+    assert!(force.abs() < 1e-4, "{force}");
+    let energy = law.energy(&system.state(&scene));
+    assert!((energy + 2.0 - 8.0 * (0.1f64.powi(6) - 0.1f64.powi(12))).abs() < 1e-6, "{energy}");
+    // ω² = k / μ with k = 72 ε / (2^{1/3} σ²), μ = m / 2. A swing of 1 % shifts it by about 1e-3.
+    let omega = (72.0 * 2.0 / (2f64.cbrt() * 0.25) / 1.5).sqrt();
+    let pushed = pair(rest * 1.002);
+    let scene = Scene { start: &pushed, ..scene };
+    let mut system = started(&scene, 2, 0);
+    let h = 2.0 * core::f64::consts::PI / omega / 500.0;
+    let (mut crossings, mut last) = (vec![], 1.0);
+    for i in 1..=5000u32 {
+        system.step(&scene, Time::from_seconds_f64(h * f64::from(i)) - system.time());
+        let p = system.particles().position;
+        let x = gap(f64s(p[0]), f64s(p[1])) - rest;
+        if x < 0.0 && last >= 0.0 {
+            crossings.push(system.time().seconds_f64() + h * x / (last - x));
+        }
+        last = x;
+    }
+    let period = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
+    assert!((period * omega / (2.0 * core::f64::consts::PI) - 1.0).abs() < 1e-3, "{period}");
+    // Apart from the cutoff nothing is lost, even in a swing far out.
+    let wide = pair(rest * 1.5);
+    let scene = Scene { start: &wide, ..scene };
+    let mut system = started(&scene, 2, 0);
+    let before = Measures::of(&system, &scene).energy.total();
+    run(&mut system, &scene, h / 4.0, 20_000);
+    let after = Measures::of(&system, &scene).energy.total();
+    assert!((after - before).abs() < 1e-4 * before.abs(), "{before} becomes {after}");
+}
+
+#[test]
+fn a_power_law_is_its_formula() {
+    let place = Vec3::new(0.3, 0.4, 0.0);
+    let start = [(Vec3::ZERO, 2.0, 3.0), (place, 5.0, -7.0)].map(|(position, mass, charge)| Particle {
+        position,
+        mass,
+        charge,
+        ..Particle::REST
+    });
+    let scene = Scene { start: &start, ..Scene::EMPTY };
+    let system = started(&scene, 2, 0);
+    for (weight, w) in [(Weight::One, 1.0), (Weight::Mass, 10.0), (Weight::Charge, -21.0)] {
+        for exponent in 0..=12u8 {
+            let law = Radial(PowerLaw { strength: 0.5, exponent, softening: 1.2, reach: 2.0, weight });
+            let d = 0.25f64 + 1.44;
+            let expected = 0.5 * w / d.sqrt().powi(i32::from(exponent) + 1);
+            let [a, b] = forces(&system, &scene, &law)[..] else { panic!("two") };
+            assert!(gap(f64s(a), f64s(place).map(|x| x * expected)) < 1e-5 * expected.abs(), "{exponent}");
+            assert_eq!(a, -b);
+        }
+    }
+    let beyond = Radial(PowerLaw { strength: 1.0, exponent: 2, softening: 0.0, reach: 0.499, weight: Weight::One });
+    assert_eq!(forces(&system, &scene, &beyond), [Vec3::ZERO; 2]);
+}
+
+/// Balls of 1 m that push each other apart as springs do.
+struct Contact;
+
+impl RadialLaw for Contact {
+    fn reach(&self) -> f32 {
+        0.5
+    }
+    fn pull(&self, square: f32, pair: &Pair) -> f32 {
+        let d = square.sqrt();
+        pair.mass[0] * pair.mass[1] * (d - 0.5) / d
+    }
+    fn energy(&self, square: f64, pair: &Pair) -> f64 {
+        0.5 * f64::from(pair.mass[0]) * f64::from(pair.mass[1]) * (square.sqrt() - 0.5).powi(2)
+    }
+}
+
+#[test]
+fn a_users_own_law() {
+    let mut start = cloud(200);
+    start[100].position += Vec3::splat(0.1);
+    let index = Structure::Kd;
+    let scene = Scene {
+        start: &start[..199],
+        forces: &Radial(&Contact),
+        index: &index,
+        integrator: Method::Verlet.integrator(),
+        ..Scene::EMPTY
+    };
+    let mut system = started(&scene, 199, 0);
+    let before = Measures::of(&system, &scene);
+    run(&mut system, &scene, 5e-4, 400);
+    let after = Measures::of(&system, &scene);
+    assert!(before.energy.potential > 1.0);
+    assert!((after.energy.total() / before.energy.total() - 1.0).abs() < 1e-3, "{before:?} {after:?}");
+}
+
+#[test]
+fn neighbours_conserve_momentum() {
+    let start: Vec<Particle> = cloud(200)[..199].to_vec();
+    for force in [&SOFT as &dyn Force, &THICK, &(SOFT, THICK)] {
+        for structure in [Structure::Grid, Structure::Bvh] {
+            let scene = Scene { start: &start, forces: force, index: &structure, ..Scene::EMPTY };
+            let mut system = started(&scene, 199, 0);
+            let before = Measures::of(&system, &scene);
+            run(&mut system, &scene, 1e-3, 200);
+            let after = Measures::of(&system, &scene);
+            let p = system.particles();
+            let size: f64 = (0..199).map(|i| f64::from(p.mass[i] * p.velocity[i].length())).sum();
+            // 200 steps of rounding, as a random walk.
+            let off = gap(before.momentum, after.momentum) / size;
+            assert!(off < 1e-6, "{structure}: {off}");
+        }
+    }
+}
+
+#[test]
+fn viscosity_takes_kinetic_energy_and_never_gives_it() {
+    let start: Vec<Particle> = cloud(200)[..199].to_vec();
+    let scene = Scene { start: &start, forces: &THICK, index: &Structure::Grid, ..Scene::EMPTY };
+    for method in [Method::Rk4, Method::Implicit] {
+        let scene = Scene { integrator: method.integrator(), ..scene };
+        let mut system = started(&scene, 199, 0);
+        let mut last = Measures::of(&system, &scene).energy.kinetic;
+        let first = last;
+        for i in 1..=100u32 {
+            system.step(&scene, Time::from_seconds_f64(1e-3 * f64::from(i)) - system.time());
+            let now = Measures::of(&system, &scene).energy.kinetic;
+            assert!(now <= last, "{method}: {now} after {last}");
+            last = now;
+        }
+        assert!(last < 0.7 * first, "{method}: {first} becomes {last}");
+    }
+}
+
+#[test]
+fn a_shear_layer_decays_as_its_graph_says() {
+    // Two rings of 24, one in the other, that slide along their axis: every particle sees the same neighbours.
+    let n = 24;
+    let on = |radius: f32, speed: f32| {
+        (0..n).map(move |i| {
+            let (s, c) = (core::f32::consts::TAU * i as f32 / n as f32).sin_cos();
+            Particle { position: Vec3::new(c, s, 0.0) * radius, velocity: Vec3::Z * speed, mass: 2.0, ..Particle::REST }
+        })
+    };
+    let start: Vec<Particle> = on(1.0, 1e-3).chain(on(1.2, -1e-3)).collect();
+    let weight = |a: &Particle, b: &Particle| (1.0 - gap(f64s(a.position), f64s(b.position)) / 0.5).max(0.0);
+    // m dv/dt = μ m² Σ W (v₂ − v₁), with v₂ − v₁ = −2 v across and 0 along.
+    let rate = 3.0 * 2.0 * 2.0 * start[n..].iter().map(|other| weight(&start[0], other)).sum::<f64>();
+    let scene = Scene { start: &start, forces: &THICK, integrator: Method::Rk4.integrator(), ..Scene::EMPTY };
+    let mut system = started(&scene, 2 * n, 0);
+    run(&mut system, &scene, 1e-3, 100);
+    let expected = 1e-3 * (-0.1 * rate).exp();
+    assert!(expected < 5e-4, "{rate}");
+    for (i, v) in system.particles().velocity.iter().enumerate() {
+        let along = if i < n { expected } else { -expected };
+        assert!(gap(f64s(*v), [0.0, 0.0, along]) < 2e-6 * expected + 1e-9, "{i}: {v} {along}");
+    }
+}
+
+#[test]
+fn what_is_not_a_number_harms_no_neighbour() {
+    let nan = f32::NAN;
+    let at = |x: f32| Particle { position: Vec3::new(x, 0.1 * x * x, 0.2), charge: 1e-6, ..Particle::REST };
+    let bad = [
+        Particle { position: Vec3::new(nan, 0.0, 0.0), ..at(0.0) },
+        Particle { position: Vec3::new(0.0, f32::INFINITY, 0.0), ..at(0.0) },
+        Particle { velocity: Vec3::splat(nan), ..at(0.05) },
+        Particle { velocity: Vec3::X * f32::INFINITY, ..at(0.05) },
+        Particle { mass: nan, ..at(0.05) },
+        Particle { charge: nan, ..at(0.05) },
+    ];
+    let charged = Radial(PowerLaw { weight: Weight::Charge, ..SOFT.0 });
+    let pressure = Pressure { triangles: [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], amount: 1.0, outside: 0.1 };
+    let forces: [&dyn Force; 6] = [&ATOMS, &SOFT, &charged, &THICK, &Coulomb::VACUUM, &pressure];
+    for (i, force) in forces.into_iter().enumerate() {
+        for bad in bad {
+            let start = [bad, at(0.3), at(0.6), Particle { position: Vec3::Z, ..at(0.0) }];
+            for &method in Method::ALL {
+                for index in [&() as &dyn Arrange, &Structure::Grid] {
+                    let integrator = method.integrator();
+                    let scene = Scene { start: &start, forces: force, index, integrator, ..Scene::EMPTY };
+                    let mut system = started(&scene, 4, 0);
+                    for step in 1..=3 {
+                        system.step(&scene, Time::frame(step, 100) - system.time());
+                    }
+                    assert!(system.len() >= 3, "{i}, {method}: beside {bad:?}");
+                    assert!(system.particles().position.iter().all(|x| x.is_finite()));
+                }
+            }
+        }
+    }
+}
