@@ -1,9 +1,15 @@
 //! The ledger closes: what is left over is the method's own error.
 
-use pointmass::{Books, Heap, Ledger, Method, Scene, Size, System, Time};
+use pointmass::force::{Coulomb, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
+use pointmass::shape::{Cuboid, Plane};
+use pointmass::{
+    Adaptive, Books, Drag, Emitter, Force, Gravity, Heap, Ledger, Measures, Method, MutualGravity, Particle, Rk4,
+    Scene, Sheet, Size, Spring, System, Thread, Threads, Time, Varied, Vec3, Verlet,
+};
 use pointmass_tests::busy::{SIZE, busy};
+use pointmass_tests::{Random, point};
 
-/// The books after a second in steps of `h`.
+/// The books after a second in steps of `h`; they always add up.
 fn books(scene: &Scene<'_>, particles: usize, h: f64) -> Books {
     let mut system = System::with(Heap::new(Size { particles, ..scene.size() }));
     system.start(scene, 1).expect("it fits");
@@ -11,22 +17,163 @@ fn books(scene: &Scene<'_>, particles: usize, h: f64) -> Books {
     for i in 1..=(1.0 / h).round() as u32 {
         system.step_observed(scene, Time::from_seconds_f64(h * f64::from(i)) - system.time(), &mut ledger);
     }
-    ledger.books().clone()
+    let books = ledger.books().clone();
+    let change = books.closing - books.opening;
+    assert!((books.total() - change).abs() <= 1e-9 * (books.turnover() + change.abs()), "{books:?}");
+    let measured = Measures::of(&system, scene).energy.total();
+    assert!((books.closing - measured).abs() <= 1e-12 * measured.abs(), "{books:?} {measured}");
+    books
 }
 
-fn print(books: &Books) {
-    println!("{books:?}");
+/// The remainder as a share of all energy that was there or changed hands.
+fn share(books: &Books) -> f64 {
+    books.remainder.abs() / (books.turnover() + books.opening.abs() + books.closing.abs())
+}
+
+/// Particles at random in a cube of 1 m, with random velocities.
+fn cloud(n: usize) -> Vec<Particle> {
+    let mut random = Random::new(5);
+    let mut vector =
+        |size: f32| Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size));
+    (0..n)
+        .map(|i| Particle {
+            position: vector(0.5),
+            velocity: vector(1.0),
+            mass: 1.0 + i as f32 * 0.1,
+            drag: 0.3,
+            charge: if i % 2 == 0 { 1e-6 } else { -1e-6 },
+            ..Particle::REST
+        })
+        .collect()
+}
+
+fn net() -> (Vec<Particle>, Vec<Spring>) {
+    let thread = Some(Thread { ks: 50.0, kd: 0.5 });
+    let threads = Threads { structural: thread, shear: thread, bend: None };
+    let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [4, 4] };
+    let mut particles: Vec<_> = sheet.particles(Particle { mass: 0.1, drag: 0.05, ..Particle::REST }).collect();
+    particles[0].fixed = true;
+    (particles, sheet.springs(&threads, 0).collect())
+}
+
+/// Checks that RK4's remainder falls with the fourth power of the step, or is rounding.
+fn check_order(name: &str, scene: &Scene<'_>, particles: usize, steps: [f64; 2]) {
+    let [coarse, fine] = steps.map(|h| books(&Scene { integrator: &Rk4, ..*scene }, particles, h));
+    println!("{name}: {:.1e} {:.1e}", share(&coarse), share(&fine));
+    assert!(share(&fine) < 0.1 * share(&coarse) || share(&fine) < 3e-6, "{name}\n{coarse:?}\n{fine:?}");
 }
 
 #[test]
-fn rk() {
+fn what_is_left_is_the_method_s_error_whatever_acts() {
+    let start = cloud(20);
+    let wind = Wind { field: Uniform { velocity: Vec3::X * 3.0 }, coefficient: Some(0.2) };
+    let forces: [(&str, &dyn Force); 8] = [
+        ("gravity", &Gravity::EARTH),
+        ("drag", &(Gravity::EARTH, Drag {})),
+        ("quadratic drag", &(Gravity::EARTH, QuadraticDrag { coefficient: 0.3 })),
+        ("wind", &(Gravity::EARTH, wind)),
+        ("mutual gravity", &MutualGravity { constant: 0.05, softening: 0.2, ..MutualGravity::NEWTON }),
+        ("charge", &Coulomb { softening: 0.2, ..Coulomb::default() }),
+        ("viscosity", &Viscosity { coefficient: 0.2, reach: 10.0 }),
+        ("neighbours", &Radial(LennardJones { epsilon: 1e-3, sigma: 0.05, cutoff: 0.5 })),
+    ];
+    for (name, forces) in forces {
+        let scene = Scene { start: &start, forces, ..Scene::EMPTY };
+        check_order(name, &scene, 20, [1.0 / 60.0, 1.0 / 240.0]);
+    }
+    let (start, springs) = net();
+    let scene = Scene { start: &start, springs: &springs, forces: &(Gravity::EARTH, Drag {}), ..Scene::EMPTY };
+    check_order("net", &scene, start.len(), [1.0 / 60.0, 1.0 / 240.0]);
+    let drive = Some(pointmass::force::Drive { amplitude: 0.3, frequency: 1.5, phase: 0.0 });
+    let driven: Vec<_> = springs.iter().map(|&spring| Spring { drive, ..spring }).collect();
+    let scene = Scene { springs: &driven, ..scene };
+    check_order("driven net", &scene, start.len(), [1.0 / 60.0, 1.0 / 240.0]);
+    assert!(books(&scene, start.len(), 1.0 / 240.0).work("spring drives") > 0.1);
+}
+
+#[test]
+fn every_cause_has_its_entry() {
     busy(|scene| {
-        for h in [1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0] {
-            for method in Method::ALL {
-                let scene = Scene { integrator: method, ..*scene };
-                println!("{method} {h}");
-                print(&books(&scene, SIZE.particles, h));
-            }
-        }
+        let mut books = books(&Scene { integrator: &Rk4, ..*scene }, SIZE.particles, 1.0 / 240.0);
+        assert!(books.emission > 0.0 && books.restitution < 0.0 && books.deletion != 0.0, "{books:?}");
+        assert!(books.work("drag") < 0.0 && books.work("spring damping") < 0.0, "{books:?}");
+        books.work.sort_unstable_by_key(|(name, _)| *name);
+        assert!(books.work.windows(2).all(|pair| pair[0].0 != pair[1].0), "{books:?}");
+        assert!(share(&books) < 2e-3, "{books:?}");
     });
+}
+
+#[test]
+fn what_should_conserve_leaves_rounding() {
+    // Falling by Verlet, and bouncing without loss in a box: half an ulp of each of 240 velocities and places.
+    let start = cloud(20);
+    let elastic: Vec<_> = start.iter().map(|p| Particle { elasticity: 1.0, ..*p }).collect();
+    let inside = Cuboid { min: Vec3::splat(-0.6), max: Vec3::splat(0.6) };
+    for scene in [
+        Scene { start: &start, forces: &Gravity::EARTH, integrator: &Verlet, ..Scene::EMPTY },
+        Scene { start: &elastic, forces: &Gravity::EARTH, colliders: &inside, integrator: &Verlet, ..Scene::EMPTY },
+        Scene { start: &elastic, colliders: &inside, ..Scene::EMPTY },
+    ] {
+        let books = books(&scene, 20, 1.0 / 240.0);
+        assert!(share(&books) < 1e-5 && books.restitution.abs() < 1e-5 * books.opening.abs().max(1.0), "{books:?}");
+    }
+}
+
+#[test]
+fn euler_s_drift_is_the_remainder() {
+    // Per kilogram and second g² h / 2, gained by explicit and lost by symplectic Euler.
+    let start = [Particle { mass: 2.0, velocity: Vec3::ONE, ..Particle::REST }];
+    for (method, sign) in [(Method::Euler, 1.0), (Method::Symplectic, -1.0)] {
+        let scene = Scene { start: &start, forces: &Gravity::EARTH, integrator: &method, ..Scene::EMPTY };
+        let books = books(&scene, 1, 0.01);
+        let expected = sign * 2.0 * 9.80665f64.powi(2) * 0.01 / 2.0;
+        assert!((books.remainder - expected).abs() < 1e-3, "{method}: {} not {expected}", books.remainder);
+    }
+}
+
+#[test]
+fn a_lossy_bounce_is_booked_as_such() {
+    let ball = [Particle { position: Vec3::Y, elasticity: 0.8, ..Particle::REST }];
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let scene =
+        Scene { start: &ball, forces: &Gravity::EARTH, colliders: &ground, integrator: &Verlet, ..Scene::EMPTY };
+    // One impact in the first second, at √(2g): it takes (1 − e²) m g h.
+    let books = books(&scene, 1, 1.0 / 60.0);
+    assert!((books.restitution + 0.36 * 9.80665).abs() < 0.01 && books.remainder.abs() < 0.01, "{books:?}");
+}
+
+#[test]
+fn inner_steps_are_seen() {
+    // Two steps a second of many inner ones: their work cannot be told from the ends.
+    let (start, springs) = net();
+    let integrator = Adaptive { tolerance: 1e-6, ..Adaptive::around(Rk4) };
+    let scene = Scene {
+        start: &start,
+        springs: &springs,
+        forces: &(Gravity::EARTH, Drag {}),
+        integrator: &integrator,
+        ..Scene::EMPTY
+    };
+    let books = books(&scene, start.len(), 0.5);
+    assert!(books.work("drag") < -0.01 && share(&books) < 1e-4, "{books:?}");
+}
+
+#[test]
+fn births_breaks_and_hands_have_theirs() {
+    let start = [Particle::REST, Particle { position: Vec3::X, velocity: Vec3::X * 30.0, ..Particle::REST }];
+    let springs = [Spring { breaks_at: Some(1.5), ..Spring::new([0, 1], 1.0, 100.0) }];
+    let jet = Emitter { speed: Varied::exactly(2.0), ..Emitter::new(point(Vec3::Y * 9.0), 50.0) };
+    let scene = Scene { start: &start, springs: &springs, emitters: &jet, integrator: &Rk4, ..Scene::EMPTY };
+    let books = books(&scene, 100, 1.0 / 240.0);
+    // Fifty births of 1 kg at 2 m/s; the spring holds k (0.5 m)² / 2 and a little more when it breaks.
+    assert!((books.emission - 100.0).abs() < 1e-3, "{books:?}");
+    assert!((-18.0..-12.5).contains(&books.breaking) && share(&books) < 1e-4, "{books:?}");
+
+    let mut system = System::with(Heap::new(Size { particles: 3, ..scene.size() }));
+    let scene = Scene { emitters: &(), springs: &[], ..scene };
+    system.start(&scene, 1).expect("it fits");
+    let mut ledger = Ledger::new(&system, &scene);
+    system.spawn(&Particle { velocity: Vec3::Y * 4.0, ..Particle::REST }).expect("there is room");
+    system.step_observed(&scene, Time::SECOND, &mut ledger);
+    assert_eq!(ledger.books().outside, 8.0);
 }

@@ -1,7 +1,7 @@
 //! Spring meshes in scene files, and what they are woven into.
 
 use super::{SceneError, SceneFile};
-use crate::force::Spring;
+use crate::force::{Pressure, Spring};
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
 use crate::weave::{Sheet, Threads, mesh_springs};
@@ -24,6 +24,9 @@ pub struct Fabric {
     /// Springs break where a step ends with them so many times as long as at rest.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub breaks_at: Option<f32>,
+    /// Gas inside, if it is a closed mesh seen from outside anticlockwise.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub gas: Option<Gas>,
     /// The particles that never move, by their number in this fabric from 0: along a sheet's first side first.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub fixed: Vec<u32>,
@@ -43,6 +46,18 @@ pub struct Fabric {
     /// Its colour; without one, that of its material.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<Color>,
+}
+
+/// Gas in a fabric: see [`Pressure`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Gas {
+    /// How much there is: n R T \[J\], which is pressure times volume.
+    pub amount: f32,
+    /// The pressure outside \[Pa\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub outside: f32,
 }
 
 /// The form of a fabric.
@@ -88,6 +103,13 @@ impl Fabric {
         (particles, springs.into_iter().map(|spring| Spring { breaks_at: self.breaks_at, ..spring }).collect())
     }
 
+    /// The push of its gas.
+    pub(super) fn pressure(&self, mesh: Option<&MeshBuf>, first: u32) -> Option<Pressure<Vec<[u32; 3]>>> {
+        let Gas { amount, outside } = self.gas?;
+        let triangles = mesh?.triangles().iter().map(|corners| corners.map(|corner| first + corner)).collect();
+        Some(Pressure { triangles, amount, outside })
+    }
+
     /// The particles of a sheet; those of a mesh are known once it is read.
     fn count(&self) -> Option<u64> {
         match &self.form {
@@ -126,6 +148,12 @@ impl SceneFile {
             }
             if !fabric.breaks_at.is_none_or(|ratio| ratio > 1.0) {
                 return refuse("breaks_at", "has to be above one: it is a length over that at rest");
+            }
+            if fabric.gas.is_some_and(|gas| !(gas.amount >= 0.0 && (gas.amount + gas.outside).is_finite())) {
+                return refuse("gas", "amount and outside have to be finite, the amount zero or more");
+            }
+            if fabric.gas.is_some() && matches!(fabric.form, Form::Sheet(_)) {
+                return refuse("gas", "a sheet has no inside; only a closed mesh can hold gas");
             }
             let place = |sheet: &Sheet| [sheet.corner, sheet.sides[0], sheet.sides[1]];
             if matches!(&fabric.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {

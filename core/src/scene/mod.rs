@@ -29,7 +29,7 @@ mod write;
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
 #[cfg(feature = "alloc")]
-pub use fabric::{Fabric, Form};
+pub use fabric::{Fabric, Form, Gas};
 #[cfg(feature = "alloc")]
 pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};

@@ -55,8 +55,8 @@ impl Model {
     pub fn load(file: &SceneFile, path: &str, files: &mut dyn Files) -> Result<Self, SceneError> {
         file.check().map_err(|error| error.in_file(path))?;
         let mut meshes = Meshes { loaded: BTreeMap::new(), path, files };
-        let (particles, springs) = start(file, &mut meshes)?;
-        file.check_corners(particles.len()).map_err(|error| error.in_file(path))?;
+        let start = Start::of(file, &mut meshes)?;
+        file.check_corners(start.particles.len()).map_err(|error| error.in_file(path))?;
         let mut emitters = Vec::with_capacity(file.emitters.len());
         for (i, emitter) in file.emitters.iter().enumerate() {
             let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
@@ -82,11 +82,11 @@ impl Model {
             })
         });
         Ok(Self {
-            particles,
-            springs,
+            particles: start.particles,
+            springs: start.springs,
             emitters,
             colliders: colliders.collect::<Result<_, _>>()?,
-            forces: (file.forces.clone(), sinks),
+            forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
             index: file.run.index,
@@ -146,27 +146,45 @@ impl Meshes<'_> {
     }
 }
 
-/// The particles and springs that a scene begins with: its own, then those of its fabrics.
-fn start(file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<(Vec<Particle>, Vec<Spring>), SceneError> {
-    let (mut particles, mut springs) = (file.particles.clone(), file.springs.clone());
-    for (i, fabric) in file.fabrics.iter().enumerate() {
-        let at = format!("fabrics[{i}].form");
-        let mesh = match &fabric.form {
-            Form::Mesh(name) => Some(meshes.load(&at, name)?),
-            Form::Sheet(_) => None,
-        };
-        let (woven, threads) = fabric.weave(mesh.as_deref(), particles.len() as u32);
-        if let Some(particle) = woven.iter().find(|particle| !particle.is_sound()) {
-            let message = format!("its particles of {} kg are too light", particle.mass);
-            return Err(SceneError::value(format!("fabrics[{i}].mass"), message).in_file(meshes.path));
+/// What a scene's own particles and its fabrics come to.
+struct Start {
+    particles: Vec<Particle>,
+    springs: Vec<Spring>,
+    /// That of gas in fabrics.
+    forces: Vec<ForceKind>,
+}
+
+impl Start {
+    fn of(file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<Self, SceneError> {
+        let mut start = Self { particles: file.particles.clone(), springs: file.springs.clone(), forces: Vec::new() };
+        for (i, fabric) in file.fabrics.iter().enumerate() {
+            let mesh = match &fabric.form {
+                Form::Mesh(name) => Some(meshes.load(&format!("fabrics[{i}].form"), name)?),
+                Form::Sheet(_) => None,
+            };
+            let first = start.particles.len() as u32;
+            let (particles, springs) = fabric.weave(mesh.as_deref(), first);
+            let refuse = |field: &str, message: String| {
+                Err(SceneError::value(format!("fabrics[{i}].{field}"), message).in_file(meshes.path))
+            };
+            if let Some(particle) = particles.iter().find(|particle| !particle.is_sound()) {
+                return refuse("mass", format!("particles of {} kg are too light", particle.mass));
+            }
+            if let Some(number) = fabric.fixed.iter().find(|&&number| number as usize >= particles.len()) {
+                return refuse(
+                    "fixed",
+                    format!("particle {number} is out of range; there are {}, from 0", particles.len()),
+                );
+            }
+            start.particles.extend(particles);
+            start.springs.extend(springs);
+            start.forces.extend(fabric.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
         }
-        particles.extend(woven);
-        springs.extend(threads);
+        for particle in &mut start.particles {
+            particle.color = color(file, particle.color, particle.material);
+        }
+        Ok(start)
     }
-    for particle in &mut particles {
-        particle.color = color(file, particle.color, particle.material);
-    }
-    Ok((particles, springs))
 }
 
 /// The product of the transforms of all groups around.

@@ -1,19 +1,38 @@
 //! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
-//! A charged sheet on springs, one that swings and some that break, moved through every force by every method.
+//! A charged sheet on springs, one that swings and some that break, and a balloon, moved through every force by every
+//! method.
 
-use pointmass::force::Drive;
-use pointmass::{Drag, Gravity, Inline, Method, Particle, Scene, Sheet, Spring, System, Thread, Threads, Time, Vec3};
+use pointmass::force::{
+    Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, Viscosity, Vortex, Wind,
+};
+use pointmass::index::InGrid;
+use pointmass::{
+    Drag, Force, Gravity, Inline, Method, Particle, Scene, Sheet, Spring, System, Thread, Threads, Time, Vec3,
+};
 
 /// The hashes in the form of `all` in `expected.rs`.
 pub(crate) const EXPECTED: &str = include_str!("../../motion.txt");
 
 const SHEET: Sheet = Sheet { corner: Vec3::new(-0.5, 0.0, -0.5), sides: [Vec3::X, Vec3::Z], cells: [5, 4] };
-const PARTICLES: usize = 6 * 5;
-const SPRINGS: usize = 5 * 5 + 6 * 4 + 2 * 5 * 4 + 4 * 5 + 6 * 3;
-const COLUMNS: usize = 20;
+/// Particles and springs of the sheet.
+const WOVEN: (usize, usize) = (6 * 5, 5 * 5 + 6 * 4 + 2 * 5 * 4 + 4 * 5 + 6 * 3);
 
-/// Everything that the sheet needs, none of it on the stack.
+/// The balloon is an octahedron: its corners, edges and faces.
+const CORNERS: [Vec3; 6] = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+const EDGES: [[u32; 2]; 12] =
+    [[0, 2], [0, 3], [0, 4], [0, 5], [1, 2], [1, 3], [1, 4], [1, 5], [2, 4], [2, 5], [3, 4], [3, 5]];
+const FACES: [[u32; 3]; 8] = {
+    let a = WOVEN.0 as u32;
+    let [px, nx, py, ny, pz, nz] = [a, a + 1, a + 2, a + 3, a + 4, a + 5];
+    [[px, py, pz], [py, nx, pz], [nx, ny, pz], [ny, px, pz], [py, px, nz], [nx, py, nz], [ny, nx, nz], [px, ny, nz]]
+};
+
+const PARTICLES: usize = WOVEN.0 + CORNERS.len();
+const SPRINGS: usize = WOVEN.1 + EDGES.len();
+const COLUMNS: usize = 24;
+
+/// Everything that they need, none of it on the stack.
 pub(crate) struct Memory {
     start: [Particle; PARTICLES],
     springs: [Spring; SPRINGS],
@@ -34,8 +53,9 @@ impl Memory {
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, springs, system } = memory;
     weave(start, springs);
+    blow(&mut start[WOVEN.0..], &mut springs[WOVEN.1..]);
     for method in Method::ALL {
-        let scene = Scene { start, springs, forces: &(Gravity::EARTH, Drag {}), integrator: method, ..Scene::EMPTY };
+        let scene = Scene { start, springs, forces: &forces(), integrator: method, index: &InGrid, ..Scene::EMPTY };
         if system.start(&scene, 1).is_ok() {
             for frame in 1..=90 {
                 system.step(&scene, Time::frame(frame, 60) - system.time());
@@ -43,6 +63,19 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         }
         out(method.name(), system.hash());
     }
+}
+
+fn forces() -> impl Force {
+    let field = (
+        Gusts { velocity: Vec3::X * 2.0, amplitude: 0.5, frequency: 0.8 },
+        Vortex { center: Vec3::ZERO, axis: Vec3::Y, speed: 1.0, core: 0.4 },
+        Curl { speed: 1.0, scale: 0.7, drift: Vec3::Z, seed: 3 },
+    );
+    let air = (Wind { field, coefficient: Some(0.004) }, QuadraticDrag { coefficient: 0.002 }, Drag {});
+    let near =
+        (Radial(LennardJones { epsilon: 1e-4, sigma: 0.15, cutoff: 0.4 }), Viscosity { coefficient: 5.0, reach: 0.4 });
+    let charge = Coulomb { softening: 0.05, ..Coulomb::default() };
+    (Gravity::EARTH, air, near, charge, Pressure { triangles: FACES, amount: 0.02, outside: 0.5 })
 }
 
 fn weave(start: &mut [Particle], springs: &mut [Spring]) {
@@ -56,5 +89,15 @@ fn weave(start: &mut [Particle], springs: &mut [Spring]) {
     for ((number, place), spring) in (0..).zip(springs.iter_mut()).zip(SHEET.springs(&threads, 0)) {
         let drive = (number == 7).then_some(Drive { amplitude: 0.3, frequency: 1.7, phase: 0.1 });
         *place = Spring { drive, breaks_at: (number % 9 == 0).then_some(1.25), ..spring };
+    }
+}
+
+fn blow(start: &mut [Particle], springs: &mut [Spring]) {
+    let middle = Vec3::new(0.3, 1.0, 0.2);
+    for (place, corner) in start.iter_mut().zip(CORNERS) {
+        *place = Particle { position: middle + corner * 0.2, mass: 0.01, drag: 0.005, ..Particle::REST };
+    }
+    for (place, edge) in springs.iter_mut().zip(EDGES) {
+        *place = Spring::new(edge.map(|corner| WOVEN.0 as u32 + corner), 0.28, 10.0).damped(0.02);
     }
 }
