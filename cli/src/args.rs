@@ -2,11 +2,14 @@
 
 use crate::compare::{Distribution, Workload};
 use crate::formats::{PlotFormat, PointsFormat, RecordFormat, SceneFormat, StudyFormat, extension};
+use crate::lab::Named;
 use crate::substeps::Substeps;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::Method;
 use pointmass::index::Structure;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 /// Particle systems that are exact, bounded and the same everywhere.
 #[derive(Debug, Parser)]
@@ -21,7 +24,9 @@ Examples:
   pointmass run scenes/fountain.json --report json | jq .died
   pointmass check scenes/rope.scn --dt 1/30
   pointmass convert lab.scn lab.json
-  pointmass compare --distribution uniform,plummer --n 1e3,1e4,1e5 --out study.html"
+  pointmass compare --distribution uniform,plummer --n 1e3,1e4,1e5 --out study.html
+  pointmass lab --problems oscillator,kepler --out lab.html
+  pointmass lab scenes/rope.scn --duration 2 --dt 1/60,1/120,1/240,1/480"
 )]
 pub struct Args {
     /// What to do.
@@ -42,6 +47,8 @@ pub enum Command {
     Check(Check),
     /// Measure which spatial partition suits which points and queries
     Compare(Compare),
+    /// Measure how exact the integrators are, and how well they keep energy
+    Lab(Lab),
     /// Print the JSON Schema of .json scenes
     Schema,
 }
@@ -219,21 +226,72 @@ pub struct Compare {
     pub detail: bool,
 }
 
+/// Arguments of `lab`.
+#[derive(Debug, ClapArgs)]
+pub struct Lab {
+    /// A scene instead of the reference problems: .json or .scn
+    #[arg(conflicts_with = "problems")]
+    pub scene: Option<PathBuf>,
+    /// Which reference problems
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "oscillator,pendulum,driven,kepler,stiff,rope"
+    )]
+    pub problems: Vec<Named>,
+    /// Which methods, such as verlet,rk4; or all
+    #[arg(long, value_name = "NAME,...", default_value = "all", value_parser = methods)]
+    pub integrators: Methods,
+    /// The steps in seconds, such as 1/60,1/120,1/240; by default powers of two that suit the problem, or the scene's step
+    /// and its half, down to a sixteenth
+    #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = step)]
+    pub dt: Vec<f64>,
+    /// When errors are taken, in seconds; by default what suits the problem, or what the scene says
+    #[arg(long, value_name = "S", value_parser = span)]
+    pub duration: Option<f64>,
+    /// Write the findings into FILE: .html, a page with charts; .svg, the charts; .csv or .json, all figures; may be
+    /// given several times
+    #[arg(long, value_name = "FILE", value_parser = studied)]
+    pub out: Vec<(PathBuf, StudyFormat)>,
+    /// How to say on standard output what was found
+    #[arg(long, value_enum, default_value_t = Report::Text)]
+    pub report: Report,
+    /// Print the errors of every step
+    #[arg(long)]
+    pub detail: bool,
+}
+
+/// Integrators to try, each once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Methods(pub Vec<Method>);
+
+fn methods(text: &str) -> Result<Methods, String> {
+    chosen(text, Method::ALL).map(Methods)
+}
+
 /// Structures to compare, each once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Structures(pub Vec<Structure>);
 
 fn structures(text: &str) -> Result<Structures, String> {
+    chosen(text, Structure::ALL).map(Structures)
+}
+
+/// Those that a list names, each once, in the order in which they are listed everywhere.
+fn chosen<T>(text: &str, all: &[T]) -> Result<Vec<T>, String>
+where
+    T: Copy + PartialEq + FromStr<Err: Display>,
+{
     let mut chosen = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let named = match name {
-            "all" => Structure::ALL,
-            _ => &[name.parse().map_err(|unknown: pointmass::index::UnknownStructure| format!("{unknown}, or all"))?],
-        };
-        chosen.extend_from_slice(named);
+        match name {
+            "all" => chosen.extend_from_slice(all),
+            _ => chosen.push(name.parse().map_err(|unknown| format!("{unknown}, or all"))?),
+        }
     }
-    // In the order in which they are listed everywhere.
-    Ok(Structures(Structure::ALL.iter().copied().filter(|structure| chosen.contains(structure)).collect()))
+    Ok(all.iter().copied().filter(|one| chosen.contains(one)).collect())
 }
 
 fn count(text: &str) -> Result<usize, String> {
@@ -260,6 +318,11 @@ fn seconds(text: &str) -> Result<f64, String> {
         None => number(text)?,
     };
     if (0.0..longest).contains(&value) { Ok(value) } else { Err("expected seconds, from 0 to 2147483647".into()) }
+}
+
+fn span(text: &str) -> Result<f64, String> {
+    let value = seconds(text)?;
+    if value > 0.0 { Ok(value) } else { Err("expected more than 0 s".into()) }
 }
 
 fn step(text: &str) -> Result<f64, String> {

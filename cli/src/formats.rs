@@ -1,5 +1,7 @@
 //! Formats of files, by the end of their names.
 
+use crate::{Failure, Outcome};
+use serde::Serialize;
 use std::path::Path;
 
 /// A format of scenes.
@@ -37,7 +39,7 @@ pub enum PointsFormat {
     Npy,
 }
 
-/// A format of comparisons.
+/// A format of studies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StudyFormat {
     /// A table, one row a measurement.
@@ -123,6 +125,27 @@ impl PlotFormat {
             _ => None,
         }
     }
+}
+
+/// A table for other programs: a head line, then a line a row.
+///
+/// # Errors
+/// If it cannot be written.
+pub(crate) fn sheet<R: Serialize>(rows: impl IntoIterator<Item = R>) -> Outcome<String> {
+    let fail = |error: &dyn std::fmt::Display| Failure::new(error.to_string());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    rows.into_iter().try_for_each(|row| writer.serialize(row)).map_err(|error| fail(&error))?;
+    let bytes = writer.into_inner().map_err(|error| fail(&error))?;
+    String::from_utf8(bytes).map_err(|error| fail(&error))
+}
+
+/// Everything, for programs, in lines that people can read too.
+///
+/// # Errors
+/// If it cannot be written.
+pub(crate) fn json(value: &impl Serialize) -> Outcome<String> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| Failure::new(error.to_string()))?;
+    Ok(text + "\n")
 }
 
 /// The lower-case end of a file's name.

@@ -1,8 +1,8 @@
 //! The library behind the `pointmass` binary.
 //!
-//! `args` parses, one module a command does the work: `run`, `render`, `convert`, `check`, `compare`. They share `load` (scenes and meshes
-//! from disk), `world` (a scene in motion), `clock` (when steps end), `substeps` (how they are divided), `record` (state to files) and `draw` (state to
-//! pictures).
+//! `args` parses, one module a command does the work: `run`, `render`, `convert`, `check`, `compare`, `lab`. They share
+//! `load` (scenes and meshes from disk), `world` (a scene in motion), `clock` (when steps end), `substeps` (how they are
+//! divided), `record` (state to files), `draw` (state to pictures), and what reports are made of: `plot`, `page`, `words`.
 
 pub mod args;
 pub mod check;
@@ -11,8 +11,11 @@ pub mod compare;
 pub mod convert;
 pub mod draw;
 pub mod formats;
+pub mod lab;
 pub mod load;
 pub mod meshes;
+mod page;
+mod plot;
 mod progress;
 mod record;
 pub mod render;
@@ -21,6 +24,7 @@ pub mod run;
 mod stage;
 pub mod substeps;
 pub mod whole;
+mod words;
 pub mod world;
 
 /// What went wrong, as one line for a person.

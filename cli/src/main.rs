@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use pointmass_cli::args::{Args, Command};
-use pointmass_cli::{check, compare, convert, render, run};
+use pointmass_cli::{check, compare, convert, lab, render, run};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -13,6 +13,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => convert::convert(args),
         Command::Check(args) => check::check(args),
         Command::Compare(args) => compare::compare(args),
+        Command::Lab(args) => lab::lab(args),
         Command::Schema => pointmass_cli::print(&pointmass::scene::schema()),
     };
     match outcome {

@@ -66,6 +66,38 @@ impl Write for WholeFile {
     }
 }
 
+/// The files that a command was asked to write, each in a format.
+#[derive(Debug)]
+pub struct Outs<F>(Vec<(WholeFile, F)>);
+
+impl<F: Copy> Outs<F> {
+    /// Begins all of them, but none in place of what is `read`.
+    ///
+    /// # Errors
+    /// If one of them cannot be written.
+    pub fn create<'a>(outs: &[(PathBuf, F)], read: impl IntoIterator<Item = &'a PathBuf>) -> Outcome<Self> {
+        let read: Vec<_> = read.into_iter().filter_map(|path| path.canonicalize().ok()).collect();
+        let is_read = |path: &Path| path.canonicalize().is_ok_and(|path| read.contains(&path));
+        if let Some((path, _)) = outs.iter().find(|(path, _)| is_read(path)) {
+            let path = path.display();
+            return Err(Failure::new(format!("{path}: is read, so it cannot be written; choose another --out")));
+        }
+        outs.iter().map(|(path, format)| Ok((WholeFile::create(path)?, *format))).collect::<Outcome<_>>().map(Self)
+    }
+
+    /// Writes all of them, and then gives them their names.
+    ///
+    /// # Errors
+    /// If a text cannot be made or a file not be written.
+    pub fn write(mut self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
+        for (file, format) in &mut self.0 {
+            let written = file.write_all(text(*format)?.as_bytes());
+            written.map_err(|error| Failure::io(file.path(), &error))?;
+        }
+        self.0.into_iter().try_for_each(|(file, _)| file.complete())
+    }
+}
+
 /// How passing names begin.
 pub(crate) const PREFIX: &str = ".pointmass-";
 

@@ -9,8 +9,9 @@ use pointmass::{
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, point};
 
-/// The books after a second in steps of `h`; they always add up.
-fn books(scene: &Scene<'_>, particles: usize, h: f64) -> Books {
+/// The books after a second in steps of `h`, and the remainder as a share of all energy that is there or has changed hands.
+/// They always add up.
+fn books(scene: &Scene<'_>, particles: usize, h: f64) -> (Books, f64) {
     let mut system = System::with(Heap::new(Size { particles, ..scene.size() }));
     system.start(scene, 1).expect("it fits");
     let mut ledger = Ledger::new(&system, scene);
@@ -20,14 +21,10 @@ fn books(scene: &Scene<'_>, particles: usize, h: f64) -> Books {
     let books = ledger.books().clone();
     let change = books.closing - books.opening;
     assert!((books.total() - change).abs() <= 1e-9 * (books.turnover() + change.abs()), "{books:?}");
-    let measured = Measures::of(&system, scene).energy.total();
-    assert!((books.closing - measured).abs() <= 1e-12 * measured.abs(), "{books:?} {measured}");
-    books
-}
-
-/// The remainder as a share of all energy that was there or changed hands.
-fn share(books: &Books) -> f64 {
-    books.remainder.abs() / (books.turnover() + books.opening.abs() + books.closing.abs())
+    let energy = Measures::of(&system, scene).energy;
+    assert!((books.closing - energy.total()).abs() <= 1e-12 * energy.total().abs(), "{books:?} {energy:?}");
+    let share = books.remainder.abs() / (books.turnover() + energy.kinetic + energy.potential.abs());
+    (books, share)
 }
 
 /// Particles at random in a cube of 1 m, with random velocities.
@@ -59,8 +56,8 @@ fn net() -> (Vec<Particle>, Vec<Spring>) {
 /// Checks that RK4's remainder falls with the fourth power of the step, or is rounding.
 fn check_order(name: &str, scene: &Scene<'_>, particles: usize, steps: [f64; 2]) {
     let [coarse, fine] = steps.map(|h| books(&Scene { integrator: &Rk4, ..*scene }, particles, h));
-    println!("{name}: {:.1e} {:.1e}", share(&coarse), share(&fine));
-    assert!(share(&fine) < 0.1 * share(&coarse) || share(&fine) < 3e-6, "{name}\n{coarse:?}\n{fine:?}");
+    println!("{name}: {:.1e} {:.1e}", coarse.1, fine.1);
+    assert!(fine.1 < 0.1 * coarse.1 || fine.1 < 3e-6, "{name}\n{coarse:?}\n{fine:?}");
 }
 
 #[test]
@@ -88,34 +85,34 @@ fn what_is_left_is_the_method_s_error_whatever_acts() {
     let driven: Vec<_> = springs.iter().map(|&spring| Spring { drive, ..spring }).collect();
     let scene = Scene { springs: &driven, ..scene };
     check_order("driven net", &scene, start.len(), [1.0 / 60.0, 1.0 / 240.0]);
-    assert!(books(&scene, start.len(), 1.0 / 240.0).work("spring drives") > 0.1);
+    assert!(books(&scene, start.len(), 1.0 / 240.0).0.work("spring drives") > 0.1);
 }
 
 #[test]
 fn every_cause_has_its_entry() {
     busy(|scene| {
-        let mut books = books(&Scene { integrator: &Rk4, ..*scene }, SIZE.particles, 1.0 / 240.0);
+        let (mut books, share) = books(&Scene { integrator: &Rk4, ..*scene }, SIZE.particles, 1.0 / 240.0);
         assert!(books.emission > 0.0 && books.restitution < 0.0 && books.deletion != 0.0, "{books:?}");
         assert!(books.work("drag") < 0.0 && books.work("spring damping") < 0.0, "{books:?}");
         books.work.sort_unstable_by_key(|(name, _)| *name);
         assert!(books.work.windows(2).all(|pair| pair[0].0 != pair[1].0), "{books:?}");
-        assert!(share(&books) < 2e-3, "{books:?}");
+        assert!(share < 2e-3, "{books:?}");
     });
 }
 
 #[test]
 fn what_should_conserve_leaves_rounding() {
-    // Falling by Verlet, and bouncing without loss in a box: half an ulp of each of 240 velocities and places.
+    // Falling by Verlet, and bouncing without loss in a box.
     let start = cloud(20);
     let elastic: Vec<_> = start.iter().map(|p| Particle { elasticity: 1.0, ..*p }).collect();
     let inside = Cuboid { min: Vec3::splat(-0.6), max: Vec3::splat(0.6) };
-    for scene in [
-        Scene { start: &start, forces: &Gravity::EARTH, integrator: &Verlet, ..Scene::EMPTY },
-        Scene { start: &elastic, forces: &Gravity::EARTH, colliders: &inside, integrator: &Verlet, ..Scene::EMPTY },
-        Scene { start: &elastic, colliders: &inside, ..Scene::EMPTY },
-    ] {
-        let books = books(&scene, 20, 1.0 / 240.0);
-        assert!(share(&books) < 1e-5 && books.restitution.abs() < 1e-5 * books.opening.abs().max(1.0), "{books:?}");
+    let falling = Scene { start: &start, forces: &Gravity::EARTH, integrator: &Verlet, ..Scene::EMPTY };
+    let bouncing = Scene { start: &elastic, colliders: &inside, ..falling };
+    let flying = Scene { forces: &(), ..bouncing };
+    // A place of a hit may be off by the 0.1 mm that paths are followed to: that times the weight is no rounding.
+    for (scene, bound) in [(falling, 5e-6), (bouncing, 1e-4), (flying, 5e-6)] {
+        let (books, share) = books(&scene, 20, 1.0 / 240.0);
+        assert!(share < bound && books.restitution.abs() < 1e-6 * books.opening.abs(), "{share} {books:?}");
     }
 }
 
@@ -125,7 +122,7 @@ fn euler_s_drift_is_the_remainder() {
     let start = [Particle { mass: 2.0, velocity: Vec3::ONE, ..Particle::REST }];
     for (method, sign) in [(Method::Euler, 1.0), (Method::Symplectic, -1.0)] {
         let scene = Scene { start: &start, forces: &Gravity::EARTH, integrator: &method, ..Scene::EMPTY };
-        let books = books(&scene, 1, 0.01);
+        let (books, _) = books(&scene, 1, 0.01);
         let expected = sign * 2.0 * 9.80665f64.powi(2) * 0.01 / 2.0;
         assert!((books.remainder - expected).abs() < 1e-3, "{method}: {} not {expected}", books.remainder);
     }
@@ -138,7 +135,7 @@ fn a_lossy_bounce_is_booked_as_such() {
     let scene =
         Scene { start: &ball, forces: &Gravity::EARTH, colliders: &ground, integrator: &Verlet, ..Scene::EMPTY };
     // One impact in the first second, at √(2g): it takes (1 − e²) m g h.
-    let books = books(&scene, 1, 1.0 / 60.0);
+    let (books, _) = books(&scene, 1, 1.0 / 60.0);
     assert!((books.restitution + 0.36 * 9.80665).abs() < 0.01 && books.remainder.abs() < 0.01, "{books:?}");
 }
 
@@ -154,8 +151,8 @@ fn inner_steps_are_seen() {
         integrator: &integrator,
         ..Scene::EMPTY
     };
-    let books = books(&scene, start.len(), 0.5);
-    assert!(books.work("drag") < -0.01 && share(&books) < 1e-4, "{books:?}");
+    let (books, share) = books(&scene, start.len(), 0.5);
+    assert!(books.work("drag") < -0.01 && share < 1e-4, "{books:?}");
 }
 
 #[test]
@@ -164,10 +161,10 @@ fn births_breaks_and_hands_have_theirs() {
     let springs = [Spring { breaks_at: Some(1.5), ..Spring::new([0, 1], 1.0, 100.0) }];
     let jet = Emitter { speed: Varied::exactly(2.0), ..Emitter::new(point(Vec3::Y * 9.0), 50.0) };
     let scene = Scene { start: &start, springs: &springs, emitters: &jet, integrator: &Rk4, ..Scene::EMPTY };
-    let books = books(&scene, 100, 1.0 / 240.0);
+    let (books, share) = books(&scene, 100, 1.0 / 240.0);
     // Fifty births of 1 kg at 2 m/s; the spring holds k (0.5 m)² / 2 and a little more when it breaks.
     assert!((books.emission - 100.0).abs() < 1e-3, "{books:?}");
-    assert!((-18.0..-12.5).contains(&books.breaking) && share(&books) < 1e-4, "{books:?}");
+    assert!((-20.0..-12.5).contains(&books.breaking) && share < 1e-4, "{books:?}");
 
     let mut system = System::with(Heap::new(Size { particles: 3, ..scene.size() }));
     let scene = Scene { emitters: &(), springs: &[], ..scene };

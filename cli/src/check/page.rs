@@ -4,7 +4,7 @@ use super::plot::{Scenery, svg};
 use super::text::{at_rest, facts, verdict};
 use super::words::{limit, time};
 use crate::Outcome;
-use crate::compare::page::{STYLE, escape};
+use crate::page::{STYLE, escape};
 use std::fmt::Write;
 
 /// What the figures mean.

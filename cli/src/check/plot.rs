@@ -6,7 +6,7 @@
 use super::report::Check;
 use super::words::time;
 use crate::Outcome;
-use crate::compare::chart::{Area, FAINT, INK, PALETTE, undrawn};
+use crate::plot::{Area, FAINT, INK, PALETTE, undrawn};
 use nalgebra::Complex;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::{

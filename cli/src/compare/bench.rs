@@ -1,6 +1,5 @@
 //! Where contenders meet: one set of points after the other, first verified, then measured.
 
-use super::advice::thousands;
 use super::contender::{Effort, Entrant, Question};
 use super::measure::{Measured, Plan, measure};
 use super::radius::radius_for;
@@ -10,6 +9,7 @@ use super::study::{Case, Contestant, Figure};
 use super::verify::{EXHAUSTIVE, Expected, SAMPLE};
 use super::workload::Workload;
 use crate::progress::Progress;
+use crate::words::thousands;
 use crate::{Failure, Outcome, args};
 use pointmass::Vec3;
 use pointmass::index::Cost;

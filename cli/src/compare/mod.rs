@@ -6,12 +6,12 @@
 
 mod advice;
 mod bench;
-pub(crate) mod chart;
+mod chart;
 mod contender;
 mod distribution;
 mod machine;
 mod measure;
-pub(crate) mod page;
+mod page;
 #[cfg(feature = "peers")]
 mod peer;
 pub mod points;
@@ -19,7 +19,7 @@ mod radius;
 mod sample;
 mod sheet;
 mod source;
-mod statistics;
+pub(crate) mod statistics;
 mod stopwatch;
 mod study;
 mod table;
@@ -34,13 +34,12 @@ pub use machine::Machine;
 pub use study::{Advice, Case, Contestant, Crossover, Figure, Growth, Study};
 pub use workload::Workload;
 
-use crate::formats::StudyFormat;
-use crate::whole::WholeFile;
+use crate::formats::{StudyFormat, json};
+use crate::whole::Outs;
+use crate::words::{command, digits, thousands};
 use crate::{Failure, Outcome, args, print};
 use bench::Bench;
 use contender::Entrant;
-use std::io::Write;
-use std::path::Path;
 
 /// Compares as the arguments say. Files are written whole, at the end, or not at all.
 ///
@@ -48,25 +47,16 @@ use std::path::Path;
 /// If the points cannot be used, a contender gives a wrong answer, or a file cannot be written.
 pub fn compare(args: &args::Compare) -> Outcome {
     let mut entrants = entrants(args)?;
-    spare_the_points(args)?;
-    let outs = args.out.iter().map(|(path, format)| Ok((WholeFile::create(path)?, *format)));
-    let outs = outs.collect::<Outcome<Vec<_>>>()?;
+    let read = args.points.iter().map(|(path, _)| path).chain(&args.scene);
+    let outs = Outs::create(&args.out, read)?;
     let study = study(args, &mut entrants)?;
-    write(outs, &study)?;
+    outs.write(|format| match format {
+        StudyFormat::Csv => sheet::csv(&study),
+        StudyFormat::Json => json(&study),
+        StudyFormat::Html => page::html(&study),
+        StudyFormat::Svg => chart::all(&study),
+    })?;
     print(&table::text(&study, args.detail))
-}
-
-/// Refuses to write over what is read.
-fn spare_the_points(args: &args::Compare) -> Outcome {
-    let read = args.points.iter().map(|(path, _)| path).chain(&args.scene).filter_map(|path| path.canonicalize().ok());
-    let read: Vec<_> = read.collect();
-    let is_read = |path: &Path| path.canonicalize().is_ok_and(|path| read.contains(&path));
-    match args.out.iter().find(|(path, _)| is_read(path)) {
-        Some((path, _)) => {
-            Err(Failure::new(format!("{}: is read, so it cannot be written; choose another --out", path.display())))
-        }
-        None => Ok(()),
-    }
 }
 
 /// Those who take part, in the order of every table.
@@ -124,9 +114,9 @@ fn queries(args: &args::Compare) -> Vec<Workload> {
 fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
     let mut notes = Vec::new();
     for case in cases {
-        let (name, n, found) = (&case.points, advice::thousands(case.n), case.neighbours);
+        let (name, n, found) = (&case.points, thousands(case.n), case.neighbours);
         if let Some(wanted) = wanted.filter(|wanted| (found - wanted).abs() > 0.2 * wanted) {
-            let [wanted, found] = [wanted, found].map(advice::digits);
+            let [wanted, found] = [wanted, found].map(digits);
             notes.push(format!(
                 "{name}, {n} points: there is no radius with {wanted} others within it on average; {found} is the closest"
             ));
@@ -149,32 +139,4 @@ fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
         );
     }
     notes
-}
-
-/// What was typed, as a shell takes it.
-fn command(args: impl Iterator<Item = String>) -> String {
-    let plain =
-        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || "-_=.,/:+%@".contains(c));
-    let quoted =
-        args.skip(1).map(|word| if plain(&word) { word } else { format!("'{}'", word.replace('\'', r"'\''")) });
-    std::iter::once("pointmass".to_string()).chain(quoted).collect::<Vec<_>>().join(" ")
-}
-
-/// Writes all files, and then gives them their names.
-fn write(mut outs: Vec<(WholeFile, StudyFormat)>, study: &Study) -> Outcome {
-    for (file, format) in &mut outs {
-        let text = match format {
-            StudyFormat::Csv => sheet::csv(study)?,
-            StudyFormat::Json => {
-                let mut text = serde_json::to_string_pretty(study).map_err(|error| Failure::new(error.to_string()))?;
-                text.push('\n');
-                text
-            }
-            StudyFormat::Html => page::html(study)?,
-            StudyFormat::Svg => chart::all(study)?,
-        };
-        let written = file.write_all(text.as_bytes());
-        written.map_err(|error| Failure::io(file.path(), &error))?;
-    }
-    outs.into_iter().try_for_each(|(file, _)| file.complete())
 }

@@ -1,36 +1,22 @@
 //! A comparison as a page that stands alone: no scripts, nothing from the network.
 
-use super::advice::{counted, digits, thousands};
-use super::chart::{Chart, charts};
+use super::chart::charts;
 use super::study::{Case, Contestant, Crossover, Study, series, workloads};
 use super::table::{heading, ratio};
 use super::workload::Workload;
 use super::{stopwatch, study, verify};
 use crate::Outcome;
+use crate::page::{Page, escape};
+use crate::plot::Chart;
+use crate::words::{counted, digits, thousands};
 use std::fmt::Write;
-
-pub(crate) const STYLE: &str = "\
-body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:72rem;margin:2rem auto;padding:0 1.5rem}
-h1{font-size:1.7rem;line-height:1.25}h2{margin-top:2.4rem;border-bottom:1px solid #ccc}h3{margin:1.6rem 0 .4rem}
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.6rem 0;font-size:.9rem}
-th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #e4e4e4;white-space:nowrap}
-th{border-bottom:2px solid #999}th:first-child,td:first-child{text-align:left}
-td.best{background:#e5f3ea;font-weight:600}td small{color:#666;font-weight:400}td.why{text-align:left;white-space:normal}
-.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(28rem,100%),1fr));gap:.5rem;align-items:start}
-.charts svg{width:100%;height:auto;border:1px solid #eee}
-dt{font-weight:600}dd{margin:0 0 .5rem 1.5rem}code{background:#f3f3f3;padding:.1rem .3rem;overflow-wrap:anywhere}
-.wide{overflow-x:auto}@media print{.charts svg{break-inside:avoid}body{margin:0}}";
 
 /// The page.
 ///
 /// # Errors
 /// If a chart cannot be drawn.
 pub(crate) fn html(study: &Study) -> Outcome<String> {
-    let mut page = Page(String::new());
-    let title = "Which spatial partition?";
-    page.raw("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">");
-    page.raw("<meta name=\"viewport\" content=\"width=device-width\">");
-    page.raw(&format!("<title>{title}</title>\n<style>\n{STYLE}\n</style></head>\n<body>\n<h1>{title}</h1>\n"));
+    let mut page = Page::titled("Which spatial partition?");
     page.summary(study);
     page.advice(study);
     let charts = charts(study);
@@ -47,48 +33,10 @@ pub(crate) fn html(study: &Study) -> Outcome<String> {
         }
     }
     page.method(study);
-    page.raw("</body></html>\n");
-    Ok(page.0)
-}
-
-/// HTML in the making. What comes from users passes `escape`.
-struct Page(String);
-
-/// Text as it may stand in HTML.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            c if c.is_control() => escaped.push(char::REPLACEMENT_CHARACTER),
-            c => escaped.push(c),
-        }
-    }
-    escaped
+    Ok(page.done())
 }
 
 impl Page {
-    fn raw(&mut self, html: &str) {
-        self.0.push_str(html);
-    }
-
-    fn tagged(&mut self, tag: &str, text: &str) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "<{tag}>{}</{tag}>", escape(text));
-    }
-
-    fn items(&mut self, items: &[(String, String)]) {
-        self.raw("<dl>\n");
-        for (name, text) in items {
-            let _ = writeln!(self.0, "<dt>{}</dt><dd>{}</dd>", escape(name), escape(text));
-        }
-        self.raw("</dl>\n");
-    }
-
     fn summary(&mut self, study: &Study) {
         let machine = &study.machine;
         let names = study::names(&study.cases).join(", ");
@@ -145,11 +93,6 @@ impl Page {
         if !partly.is_empty() {
             self.tagged("p", &format!("Left out: {}.", partly.join("; ")));
         }
-    }
-
-    fn cell(&mut self, tag: &str, class: &str, text: &str) {
-        let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
-        let _ = write!(self.0, "<{tag}{class}>{}</{tag}>", escape(text));
     }
 
     fn row(&mut self, case: &Case, one: &Contestant, workloads: &[Workload]) {
@@ -227,12 +170,7 @@ impl Page {
     }
 
     fn charts(&mut self, points: &str, charts: &[Chart<'_>]) -> Outcome {
-        self.raw("<div class=\"charts\">\n");
-        for chart in charts.iter().filter(|chart| chart.points == points) {
-            self.raw(&chart.svg()?);
-        }
-        self.raw("</div>\n");
-        Ok(())
+        self.pictures(charts.iter().filter(|chart| chart.of == points))
     }
 
     fn details(&mut self, case: &Case) {

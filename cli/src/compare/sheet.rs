@@ -1,7 +1,8 @@
 //! A comparison as a table for other programs: one row a measurement, units in the head.
 
 use super::study::{Case, Contestant, Figure, Study};
-use crate::{Failure, Outcome};
+use crate::Outcome;
+use crate::formats::sheet;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -35,18 +36,16 @@ struct Row<'a> {
 /// # Errors
 /// If it cannot be written.
 pub(crate) fn csv(study: &Study) -> Outcome<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut write = |row: Row<'_>| writer.serialize(row).map_err(|error| Failure::new(error.to_string()));
+    let mut rows = Vec::new();
     for case in &study.cases {
         for one in &case.contestants {
             match one.figures.is_empty() {
-                true => write(row(case, one, None))?,
-                false => one.figures.iter().try_for_each(|figure| write(row(case, one, Some(figure))))?,
+                true => rows.push(row(case, one, None)),
+                false => rows.extend(one.figures.iter().map(|figure| row(case, one, Some(figure)))),
             }
         }
     }
-    let bytes = writer.into_inner().map_err(|error| Failure::new(error.to_string()))?;
-    String::from_utf8(bytes).map_err(|error| Failure::new(error.to_string()))
+    sheet(rows)
 }
 
 fn row<'a>(case: &'a Case, one: &'a Contestant, figure: Option<&'a Figure>) -> Row<'a> {

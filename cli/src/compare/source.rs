@@ -1,6 +1,5 @@
 //! Where the points come from: made up, a file, or a scene that was run.
 
-use super::advice::thousands;
 use super::distribution::Distribution;
 use super::points;
 use super::sample::sample;
@@ -8,6 +7,7 @@ use crate::args;
 use crate::clock::Clock;
 use crate::meshes::error::excerpt;
 use crate::progress::Progress;
+use crate::words::thousands;
 use crate::world::World;
 use crate::{Failure, Outcome};
 use pointmass::Vec3;

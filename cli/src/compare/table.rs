@@ -1,9 +1,8 @@
 //! A comparison for those who sit at a terminal.
 
-use super::advice::{counted, digits, thousands};
 use super::study::{Case, Study, names, series, workloads};
 use super::workload::Workload;
-use std::fmt::Write;
+use crate::words::{counted, digits, paragraph, say, thousands};
 
 /// The whole answer.
 pub(crate) fn text(study: &Study, detail: bool) -> String {
@@ -19,26 +18,6 @@ pub(crate) fn text(study: &Study, detail: bool) -> String {
     advice(&mut text, study);
     study.notes.iter().for_each(|note| paragraph(&mut text, "note:", note));
     text
-}
-
-/// Writing to a string cannot fail.
-fn say(text: &mut String, line: &str) {
-    let _ = writeln!(text, "{}", line.trim_end());
-}
-
-/// Words in lines that can be read, behind a mark; what follows the first line stands further in.
-fn paragraph(text: &mut String, mark: &str, words: &str) {
-    const WIDTH: usize = 100;
-    let mut line = mark.to_string();
-    for word in words.split_whitespace() {
-        if line.chars().count() + 1 + word.chars().count() > WIDTH {
-            say(text, &line);
-            line = "   ".into();
-        }
-        line.push(' ');
-        line.push_str(word);
-    }
-    say(text, &line);
 }
 
 /// Of what radius, how many neighbours, and how it was verified.

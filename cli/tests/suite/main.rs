@@ -7,6 +7,7 @@ mod compare;
 mod conversion;
 mod course;
 mod fuzz;
+mod lab;
 mod random;
 mod recordings;
 mod robustness;
