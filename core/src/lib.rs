@@ -33,7 +33,7 @@
 //!
 //! # Map
 //! `system` holds the state and `view` the step; `emit` creates, `force` and `integrate` move, `collide` and `shape` collide, `retire`
-//! deletes, `measure` and `report` tell what happened; `storage` owns the memory; `scene` (feature `alloc`) reads and
+//! deletes, `measure`, `ledger`, `stability` and `report` tell what happened and what will; `weave` makes cloth; `storage` owns the memory; `scene` (feature `alloc`) reads and
 //! writes scene files; `stability` (feature `std`) says which steps a method stands.
 //!
 //! # Features

@@ -1,7 +1,7 @@
 //! Scenes: what a system steps through, and the files that say it, our JSON and the course's `.scn`.
 //!
 //! Without a heap, `scn` parses command by command and [`InlineScene`] holds a small scene. With the feature `alloc`,
-//! text → [`SceneFile`] (what the file says, for writing back) → [`Model`] (meshes loaded, colours and transforms
+//! text → `SceneFile` (what the file says, for writing back) → `Model` (meshes loaded, colours and transforms
 //! settled) → [`Scene`] (what a system steps through).
 
 #[cfg(feature = "alloc")]
