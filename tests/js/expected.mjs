@@ -1,21 +1,28 @@
-// Compares what payload.mjs computed with the package's version and with tests/hashes.txt.
+// Compares what payload.mjs computed with the package's version, tests/hashes.txt and tests/worlds.txt.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 
 const read = (path) => readFileSync(new URL(path, import.meta.url), "utf8");
 
 // name -> hash, as in tests/hashes.txt: lines `name hash`, comments after `#`.
-export const hashes = Object.fromEntries(
-  read("../hashes.txt")
-    .split("\n")
-    .map((line) => line.replace(/#.*/, "").trim())
-    .filter(Boolean)
-    .map((line) => line.split(/\s+/)),
-);
+const listed = (path) =>
+  Object.fromEntries(
+    read(path)
+      .split("\n")
+      .map((line) => line.replace(/#.*/, "").trim())
+      .filter(Boolean)
+      .map((line) => line.split(/\s+/)),
+  );
+const hashes = { ...listed("../hashes.txt"), ...listed("../worlds.txt") };
 
-// name -> text of the scenes that the hashes belong to.
+// name -> text of the scenes that the hashes belong to: `NAME.scn`, or `NAME.json` by a method as `NAME/METHOD`.
 export const scenes = Object.fromEntries(
-  Object.keys(hashes).map((name) => [name, read(`../../scenes/${name}.scn`)]),
+  Object.keys(hashes).map((name) => {
+    const [scene, integrator] = name.split("/");
+    if (!integrator) return [name, read(`../../scenes/${scene}.scn`)];
+    const world = JSON.parse(read(`../../scenes/${scene}.json`));
+    return [name, JSON.stringify({ ...world, run: { ...world.run, integrator } })];
+  }),
 );
 
 export function check(result) {

@@ -60,6 +60,33 @@ fn every_scene_runs_for_two_seconds_and_loses_nothing() {
     }
 }
 
+/// Every method and, scene by scene, most forces: what WebAssembly has to give as well.
+#[test]
+fn worlds_have_their_hashes() {
+    let list = include_str!("../worlds.txt").lines().filter(|line| !line.starts_with('#'));
+    let (mut seen, mut right) = (Vec::new(), true);
+    for line in list {
+        let (name, expected) = line.split_once(' ').expect("a name and a hash");
+        let (scene, method) = name.split_once('/').expect("a scene and a method");
+        let path = folder().join(scene).with_extension("json");
+        let mut file = read(&path);
+        file.run.integrator = method.parse().expect("a method");
+        let model = Model::load(&file, &path.to_string_lossy(), &mut Disk).unwrap_or_else(|error| panic!("{error}"));
+        let mut system =
+            System::with(Heap::new(model.size(file.run.capacity.max(model.particles.len() as u32) as usize)));
+        system.start(&model.scene(), file.run.seed).expect("it fits");
+        for frame in 1..=30 {
+            system.step(&model.scene(), Time::from_seconds_f64(f64::from(frame) / 60.0) - system.time());
+        }
+        let hash = format!("{:016x}", system.hash());
+        println!("{name} {hash}");
+        right &= expected == hash;
+        seen.push(file.run.integrator);
+    }
+    assert!(right, "not as in tests/worlds.txt");
+    assert!(pointmass::Method::ALL.iter().all(|method| seen.contains(method)), "a method is missing");
+}
+
 #[test]
 fn every_scene_survives_a_round_trip_through_json() {
     for path in scenes() {
