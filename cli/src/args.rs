@@ -103,6 +103,10 @@ pub struct Run {
     /// Keep account of energy and say where it went
     #[arg(long)]
     pub ledger: bool,
+    /// Hold forces that take far groups as one (by their theta) against the sums over all pairs, at the end and at about a
+    /// thousand particles
+    #[arg(long)]
+    pub group_error: bool,
     /// How to say on standard output what happened
     #[arg(long, value_enum, default_value_t = Report::Text)]
     pub report: Report,

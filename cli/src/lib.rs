@@ -11,6 +11,7 @@ pub mod compare;
 pub mod convert;
 pub mod draw;
 pub mod formats;
+pub mod groups;
 pub mod lab;
 pub mod load;
 pub mod meshes;

@@ -1,6 +1,7 @@
 //! What a run came to, for people and for programs.
 
 use crate::clock::nanoseconds;
+use crate::groups::GroupError;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
 use pointmass::force::Entry;
@@ -43,6 +44,9 @@ pub struct Summary {
     pub broken: u64,
     /// What the method did.
     pub effort: pointmass::Effort,
+    /// How far sums over far groups are from all pairs, if that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group_errors: Option<Vec<GroupError>>,
     /// Where energy went, if account of it was kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ledger: Option<Books>,
@@ -96,6 +100,7 @@ impl Summary {
             caps: totals.caps,
             broken: totals.broken,
             effort: totals.effort,
+            group_errors: None,
             ledger: None,
             energy: measures.energy,
             forces: Measures::by_force(&world.system, &world.model.scene()),
@@ -154,6 +159,7 @@ impl Summary {
         rows.push(("effort", method_effort(&self.effort)));
         let Energy { kinetic, potential } = self.energy;
         rows.push(("energy", format!("{kinetic:.6} J kinetic, {potential:.6} J potential{}", parts(&self.forces))));
+        rows.extend(self.group_errors.iter().map(|errors| ("groups", far(errors))));
         rows.extend(self.ledger.iter().flat_map(accounts));
         rows.push(("momentum", vector(self.momentum, "kg m/s")));
         rows.push(("angular", vector(self.angular_momentum, "kg m²/s")));
@@ -204,6 +210,17 @@ fn accounts(books: &Books) -> Vec<(&'static str, String)> {
         (if i == 0 { "ledger" } else { "" }, format!("{joules:>+16.6} J  {name}"))
     };
     entries.into_iter().enumerate().map(row).collect()
+}
+
+/// How far sums over far groups are from all pairs.
+fn far(errors: &[GroupError]) -> String {
+    let told = errors.iter().map(|error| {
+        let GroupError { force, theta, rms, largest, particles } = error;
+        format!(
+            "{force} at theta {theta} errs by {rms:.1e} (root mean square of {particles}), {largest:.1e} at the most"
+        )
+    });
+    if errors.is_empty() { "no force takes far groups as one".into() } else { told.collect::<Vec<_>>().join("; ") }
 }
 
 /// What the potential energy consists of, if it is more than one force's.

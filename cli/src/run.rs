@@ -2,6 +2,7 @@
 
 use crate::args::{self, Report};
 use crate::clock::Clock;
+use crate::groups;
 use crate::progress::Progress;
 use crate::record::{Frame, Recorder};
 use crate::report::{Effort, Summary};
@@ -54,6 +55,7 @@ pub fn run(args: &args::Run) -> Outcome {
     progress.finish();
 
     let mut summary = Summary::of(&args.world.scene, &world, effort);
+    summary.group_errors = args.group_error.then(|| groups::errors(&world));
     summary.ledger = ledger.map(|ledger| ledger.books().clone());
     Recorder::finish(recorders)?;
     match args.report {

@@ -131,6 +131,29 @@ fn the_json_report_has_exactly_its_fields() {
 }
 
 #[test]
+fn the_error_of_far_groups_is_told_on_request() {
+    let mut random = 1u32;
+    let mut unit = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(random >> 8) / 16_777_216.0
+    };
+    let particles: Vec<_> = (0..300).map(|_| serde_json::json!({"position": [unit(), unit(), unit()]})).collect();
+    let scene = |theta: f64| {
+        let force = serde_json::json!({"mutual_gravity": {"constant": 1e-3, "softening": 0.05, "theta": theta}});
+        serde_json::json!({"forces": [force], "particles": particles}).to_string()
+    };
+    let folder = Folder::with("far.json", scene(0.7));
+    folder.write("all.json", scene(0.0));
+    let report = folder.report("far.json --steps 2 --group-error");
+    let error = &report["group_errors"][0];
+    assert_eq!((&error["force"], &error["particles"]), (&"mutual_gravity".into(), &300.into()), "{report}");
+    let [rms, largest] = ["rms", "largest"].map(|field| error[field].as_f64().expect("a number"));
+    assert!(rms > 1e-6 && rms < 0.05 && largest > rms, "{report}");
+    assert!(folder.report("far.json --steps 2").get("group_errors").is_none());
+    assert_eq!(folder.report("all.json --steps 2 --group-error")["group_errors"], serde_json::json!([]));
+}
+
+#[test]
 fn the_text_report_says_the_same() {
     let folder = Folder::with("busy.scn", BUSY);
     let text = folder.run("run busy.scn --steps 60").fine().stdout;
