@@ -1,9 +1,11 @@
 //! Methods that choose their own steps.
 
+use core::ops::Range;
+use pointmass::force::State;
 use pointmass::integrate::Tuned;
 use pointmass::{
-    Adaptive, Embedded, Euler, Gravity, Heap, Integrator, Method, Midpoint, Particle, Report, Rk4, Scene, Size, Spring,
-    System, Time, Tuning, Vec3,
+    Adaptive, Embedded, Euler, Force, Gravity, Heap, Integrator, Method, Midpoint, Particle, Report, Rk4, Scene, Size,
+    Spring, System, Time, Tuning, Vec3,
 };
 use pointmass_tests::{Law, follow, run, started};
 
@@ -135,4 +137,55 @@ fn far_from_the_origin_rounding_is_no_error() {
     run(&mut system, &scene, 0.1, 50);
     let effort = system.totals().effort;
     assert_eq!((effort.rejected, effort.capped), (0, 0), "{effort:?}");
+}
+
+/// −k x³ along each axis.
+struct Steep(f32);
+
+impl Force for Steep {
+    fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        for (total, &x) in total.iter_mut().zip(&state.position[rows]) {
+            *total -= x * x * x * self.0;
+        }
+    }
+}
+
+#[test]
+fn a_step_that_leads_beyond_all_numbers_is_taken_back() {
+    // A sixtieth of a second is two dozen swings, and so long that the whole step and both halves end in NaN alike.
+    for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+        for integrator in [&Adaptive::around(Rk4) as &dyn Integrator, &Embedded::USUAL] {
+            let start = [Particle { position: axis * 100.0, ..Particle::REST }];
+            let scene = Scene { start: &start, forces: &Steep(1e4), integrator, ..Scene::EMPTY };
+            let (report, system) = one_step(&scene, 1.0 / 60.0);
+            assert_eq!((report.died.nonfinite, report.effort.capped), (0, 0), "{axis}: {:?}", report.effort);
+            assert!(system.particles().position[0].length() < 100.1 && report.effort.accepted > 500, "{axis}");
+        }
+    }
+}
+
+#[test]
+fn what_is_lost_from_the_beginning_costs_nothing() {
+    // One flies beyond all numbers: the others go on in steps that suit them.
+    let start =
+        [Particle { position: Vec3::X, ..Particle::REST }, Particle { velocity: Vec3::Y * 3e38, ..Particle::REST }];
+    for integrator in [&Adaptive::around(Rk4) as &dyn Integrator, &Embedded::USUAL] {
+        let scene = Scene { start: &start, forces: &Gravity::EARTH, integrator, ..Scene::EMPTY };
+        let (report, system) = one_step(&scene, 16.0);
+        assert_eq!((report.died.nonfinite, system.len()), (1, 1));
+        assert!(report.effort.evaluations < 1000, "{:?}", report.effort);
+    }
+}
+
+#[test]
+fn no_step_is_shorter_than_a_tick() {
+    // A blow of ten nanoseconds, whose end no step is short enough for; then nothing.
+    let start = [Particle { position: Vec3::X, ..Particle::REST }];
+    let law = Law(|t: f32, _, _| if t < 1e-8 { 1e22 } else { 0.0 });
+    let integrator = Embedded { smallest: Time::ZERO, ..Embedded::USUAL };
+    let scene = Scene { start: &start, forces: &law, integrator: &integrator, ..Scene::EMPTY };
+    let (report, system) = one_step(&scene, 1.0 / 60.0);
+    assert!(report.effort.evaluations < 5000 && report.effort.capped > 0, "{:?}", report.effort);
+    let v = system.particles().velocity[0].x;
+    assert!((0.9e14..1.1e14).contains(&v), "{v}");
 }

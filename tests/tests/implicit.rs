@@ -1,7 +1,8 @@
 //! Implicit Euler: what is stiff stays finite, comes to rest, and costs what it may.
 
 use pointmass::{
-    Drag, Gravity, Implicit, Measures, Particle, Scene, Sheet, Spring, System, Thread, Threads, Time, Vec3,
+    Coulomb, Drag, Gravity, Implicit, Measures, Particle, QuadraticDrag, Scene, Sheet, Spring, System, Thread, Threads,
+    Time, Vec3,
 };
 use pointmass_tests::{Law, follow, run, started};
 
@@ -100,4 +101,32 @@ fn a_solution_that_is_cut_off_is_counted() {
     assert!(few.capped > 20 && few.iterations <= 90 && few.residual > 1e-2, "{few:?}");
     assert!(many.capped < few.capped && many.residual < few.residual, "{many:?}");
     assert_eq!((few.solves, few.evaluations), (30, 30));
+}
+
+#[test]
+fn one_that_is_driven_very_far_holds_nobody_up() {
+    // Squares of such forces are beyond an f32; the others fall all the same.
+    let charge = |x: f32| Particle { position: Vec3::X * x, charge: 1.0, ..Particle::REST };
+    let fast = Particle { velocity: Vec3::X * 1e18, ..Particle::REST };
+    let still = Particle { position: Vec3::Y, ..Particle::REST };
+    for start in [[charge(0.0), charge(1e-7), still], [fast, fast, still]] {
+        let forces = (Gravity::EARTH, Coulomb::VACUUM, QuadraticDrag { coefficient: 1e-3 });
+        let scene = Scene { start: &start, forces: &forces, integrator: &Implicit::USUAL, ..Scene::EMPTY };
+        let mut system = started(&scene, 3, 0);
+        let report = system.step(&scene, Time::SECOND);
+        let v = system.particles().velocity;
+        assert!((v[2].y + 9.80665).abs() < 0.2, "{v:?}");
+        assert_ne!(v[0].x, start[0].velocity.x);
+        assert_eq!((system.len(), report.effort.capped), (3, 0));
+    }
+}
+
+#[test]
+fn what_cannot_be_solved_is_counted() {
+    let start = [Particle::REST];
+    let integrator = Implicit { residual: f32::NAN, ..Implicit::USUAL };
+    let scene = Scene { start: &start, forces: &Gravity::EARTH, integrator: &integrator, ..Scene::EMPTY };
+    let mut system = started(&scene, 1, 0);
+    let report = system.step(&scene, Time::SECOND);
+    assert_eq!(report.effort.capped, 1, "{:?}", report.effort);
 }

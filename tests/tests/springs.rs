@@ -370,3 +370,48 @@ fn a_mesh_has_a_spring_for_every_edge_and_one_over_it() {
         assert!((a.distance(b) - spring.rest_length).abs() < 1e-6 && spring.rest_length > 0.5);
     }
 }
+
+#[test]
+fn springs_that_broke_are_found_among_many() {
+    // All at one particle, one of them from it to itself.
+    let start: Vec<_> = (0..60).map(|i| at(i as f32)).collect();
+    let springs: Vec<_> = (0..60)
+        .map(|i| Spring {
+            breaks_at: Some(if i % 3 == 0 { 1.5 } else { 9.0 }),
+            ..Spring::new([0, i], 0.5 * i as f32, 1e-3)
+        })
+        .collect();
+    let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let mut system = started(&scene, start.len(), 0);
+    assert_eq!(system.step(&scene, Time::frame(1, 60)).broken, 19);
+    let table = system.state(&scene).springs;
+    assert!((0..60).all(|number| table.is_broken(number) == (number > 0 && number % 3 == 0)));
+    assert_eq!(table.held().count(), 40);
+    assert_eq!(system.step(&scene, Time::frame(1, 60)).broken, 0);
+}
+
+#[test]
+fn springs_that_broke_in_an_earlier_scene_leave_no_trace() {
+    let start = [at(0.0), at(1.0), at(2.0)];
+    let springs = [0, 1].map(|i| Spring { breaks_at: Some(1.5), ..Spring::new([i, i + 1], 0.5, 1.0) });
+    let many = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+    let none = Scene { springs: &[], ..many };
+    let mut used = started(&many, 3, 0);
+    let mut fresh = used.clone();
+    assert_eq!(used.step(&many, Time::frame(1, 60)).broken, 2);
+    for system in [&mut used, &mut fresh] {
+        system.start(&none, 0).expect("it fits");
+    }
+    assert_eq!(used.hash(), fresh.hash());
+}
+
+#[test]
+fn a_sheet_beyond_all_numbers_is_refused() {
+    let most = u32::MAX;
+    let sheet = format!(r#"{{"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [{most}, {most}]}}"#);
+    let fabric = format!(r#"{{"form": {{"sheet": {sheet}}}, "mass": 1, "threads": {{"structural": {{"ks": 1}}}}}}"#);
+    let text = format!(r#"{{"fabrics": [{fabric}, {fabric}]}}"#);
+    let file = pointmass::scene::SceneFile::from_json("a.json", &text).expect("it is well-formed");
+    let error = file.check().expect_err("it is too large").to_string();
+    assert!(error.contains("fabrics[0].form"), "{error}");
+}

@@ -1,7 +1,7 @@
 //! Gas in a closed mesh.
 
 use super::{Change, Force, State};
-use crate::math::{length, sqrt};
+use crate::math::{length, max, sqrt};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -103,7 +103,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Force for Pressure<T> {
             let moved = corners.iter().fold(Vec3::ZERO, |sum, &row| sum + change.along[row]);
             grown += third_of_area(places).dot(moved);
         }
-        let factor = -self.amount / inside.volume * (grown / inside.volume) * change.position;
+        let factor = -max(self.amount, 0.0) / inside.volume * (grown / inside.volume) * change.position;
         if factor.abs() < f32::INFINITY {
             self.add_slope(state, 0..total.len(), factor, total);
         }
@@ -112,7 +112,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Force for Pressure<T> {
     /// As if the six triangles at a corner lay in a plane.
     fn add_stiffness(&self, state: &State<'_>, [position, _]: [f32; 2], total: &mut [Vec3]) {
         let Some(inside) = self.inside(state) else { return };
-        let factor = 6.0 * self.amount / inside.volume / inside.volume * position;
+        let factor = 6.0 * max(self.amount, 0.0) / inside.volume / inside.volume * position;
         for (corners, places) in self.living(state) {
             let share = third_of_area(places);
             for row in corners {

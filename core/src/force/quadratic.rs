@@ -1,11 +1,13 @@
 //! Quadratic drag.
 
 use super::{Change, Force, State};
-use crate::math::length;
+use crate::math::{length, max};
 use core::ops::Range;
 use glam::Vec3;
 
 /// Quadratic drag, as fast bodies have it in air: f = −k |v| v. What falls tends to the speed √(m g / k).
+///
+/// A coefficient below zero drives; it is left out of [`Force::add_jacobian`].
 ///
 /// For a ball k = ½ ρ c A: the density of the air times its coefficient of drag, about 0.5, times its cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +27,7 @@ impl Force for QuadraticDrag {
 
     /// −k (|v| + v vᵀ / |v|) δv: twice as steep along the velocity as across it.
     fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
-        let k = self.coefficient * change.velocity;
+        let k = max(self.coefficient, 0.0) * change.velocity;
         for ((total, &v), &along) in total.iter_mut().zip(state.velocity).zip(change.along) {
             let speed = length(v);
             if speed > 0.0 {
@@ -38,7 +40,7 @@ impl Force for QuadraticDrag {
         for (total, &v) in total.iter_mut().zip(state.velocity) {
             let speed = length(v);
             if speed > 0.0 {
-                *total += (Vec3::splat(speed) + v * v / speed) * (self.coefficient * velocity);
+                *total += (Vec3::splat(speed) + v * v / speed) * (max(self.coefficient, 0.0) * velocity);
             }
         }
     }

@@ -306,7 +306,7 @@ impl RadialLaw for PowerLaw {
 
     fn stiffness(&self, square: f32, pair: &Pair) -> f32 {
         let [inverse_square, power] = self.inverse(square);
-        self.strength(pair) * power * (1.0 - f32::from(self.exponent + 1) * square * inverse_square)
+        self.strength(pair) * power * (1.0 - (f32::from(self.exponent) + 1.0) * square * inverse_square)
     }
 
     #[cfg(feature = "std")]

@@ -116,6 +116,11 @@ pub(crate) const fn is_broken(entry: u32) -> bool {
     entry & BROKEN != 0
 }
 
+/// Where a spring's number stands in a particle's list, which is in the order of the springs, if it does.
+fn place_in(list: &[u32], number: usize) -> usize {
+    list.partition_point(|entry| ((entry & !BROKEN) as usize) < number)
+}
+
 /// The scene's springs and where their ends are now.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs<'a> {
@@ -175,7 +180,7 @@ impl<'a> Springs<'a> {
     pub fn is_broken(&self, number: usize) -> bool {
         let Some(spring) = self.springs.get(number) else { return false };
         let list = self.incident.get(Self::list(self.last_spring, spring.ends[0])).unwrap_or_default();
-        list.contains(&(number as u32 | BROKEN))
+        list.get(place_in(list, number)).is_some_and(|&entry| entry == number as u32 | BROKEN)
     }
 
     /// The springs that hold.
@@ -304,7 +309,9 @@ impl Held<'_> {
 pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], incident: &mut [u32]) {
     for end in spring.ends {
         let list = incident.get_mut(Springs::list(last_spring, end)).unwrap_or_default();
-        list.iter_mut().filter(|entry| **entry == number as u32).for_each(|entry| *entry |= BROKEN);
+        let place = place_in(list, number);
+        // One that joins a particle to itself stands there twice.
+        list.iter_mut().skip(place).take(2).filter(|e| **e == number as u32).for_each(|entry| *entry |= BROKEN);
     }
 }
 
@@ -312,6 +319,8 @@ pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], i
 pub(crate) fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32]) {
     let ends = || springs.iter().enumerate().flat_map(|(i, s)| s.ends.map(|end| (i as u32, end as usize)));
     last.fill(0);
+    // What lies beyond the lists counts in the fingerprint: an earlier scene's broken springs must not.
+    incident.fill(0);
     for (_, end) in ends() {
         if let Some(count) = last.get_mut(end) {
             *count += 1;

@@ -44,17 +44,19 @@ impl Force for Viscosity {
         Needs { reach: max(self.reach, 0.0), ..Needs::default() }
     }
 
-    /// Exact in the velocities; how the weights change with the places is left out.
+    /// Exact in the velocities; how the weights change with the places is left out, and all of a coefficient below zero.
     fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
         let all = 0..if change.velocity == 0.0 { 0 } else { total.len() };
         add_up(state, self.reach, all, total, |row, other| {
-            (change.along[other] - change.along[row]) * (self.weight(state, [row, other]) * change.velocity)
+            (change.along[other] - change.along[row]) * (max(self.weight(state, [row, other]), 0.0) * change.velocity)
         });
     }
 
     fn add_stiffness(&self, state: &State<'_>, [_, velocity]: [f32; 2], total: &mut [Vec3]) {
         let all = 0..total.len();
-        add_up(state, self.reach, all, total, |row, other| Vec3::splat(self.weight(state, [row, other]) * velocity));
+        add_up(state, self.reach, all, total, |row, other| {
+            Vec3::splat(max(self.weight(state, [row, other]), 0.0) * velocity)
+        });
     }
 
     #[cfg(feature = "std")]

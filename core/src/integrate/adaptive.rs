@@ -1,6 +1,6 @@
 //! Step doubling.
 
-use super::{Dynamics, Integrator, Motion, Work, cut, difference};
+use super::{Dynamics, Integrator, Motion, TICK, Work, cut, difference};
 use crate::report::Effort;
 use crate::time::Time;
 use glam::Vec3;
@@ -18,7 +18,7 @@ pub struct Adaptive<I> {
     pub inner: I,
     /// How far the two may differ \[m\].
     pub tolerance: f32,
-    /// The smallest step of h: it is taken whatever its error, and counted.
+    /// The smallest step of h, at least a tick of time: it is taken whatever its error, and counted.
     pub smallest: Time,
     /// How many steps of h may be tried in one step of the system. The rest is taken at once then, and counted.
     pub attempts: u32,
@@ -49,6 +49,7 @@ impl<I: Integrator> Integrator for Adaptive<I> {
         let ([x0, v0, xa, va, xh, vh], mut work) = work.split();
         let mut marks = Marks { from: [x0, v0], whole: [xa, va], half: [xh, vh] };
         let (mut now, end) = (time, time + step);
+        let smallest = self.smallest.max(TICK);
         let mut h = if *hint == Time::ZERO { step } else { *hint };
         for _ in 0..self.attempts {
             if now >= end {
@@ -57,7 +58,7 @@ impl<I: Integrator> Integrator for Adaptive<I> {
             let taken = cut(h, end - now);
             let error = self.double([&mut *x, &mut *v], &mut marks, [now, taken], &mut work, world, effort);
             let fine = error <= self.tolerance;
-            if fine || taken <= self.smallest {
+            if fine || taken <= smallest {
                 effort.accepted += 1;
                 effort.capped += u64::from(!fine);
                 now = now + taken;
@@ -68,7 +69,7 @@ impl<I: Integrator> Integrator for Adaptive<I> {
             } else {
                 effort.rejected += 1;
                 copy(&marks.from, [&mut *x, &mut *v]);
-                h = taken.half().max(self.smallest);
+                h = taken.half().max(smallest);
             }
         }
         if now < end {
@@ -100,7 +101,14 @@ impl<I: Integrator> Adaptive<I> {
         self.inner_step([&mut *x, &mut *v], from, [now, first], work, world, effort);
         copy(&[&mut *x, &mut *v], half.each_mut().map(|mark| &mut **mark));
         self.inner_step([&mut *x, &mut *v], half, [now + first, step - first], work, world, effort);
-        difference([whole[0], whole[1]], [x, v], step.seconds())
+        let apart = |sound: &dyn Fn(usize) -> bool| difference([whole[0], whole[1]], [x, v], step.seconds(), sound);
+        let error = apart(&|_| true);
+        if error < f32::INFINITY {
+            return error;
+        }
+        // What is beyond all numbers from the beginning is so whatever the step, and counts for nothing.
+        world.accelerations(now, from[0], from[1], half[0]);
+        apart(&|row| [&from[0][row], &from[1][row], &half[0][row]].iter().all(|v| v.is_finite()))
     }
 
     fn inner_step(

@@ -1,6 +1,6 @@
 //! An embedded Runge-Kutta pair.
 
-use super::{Dynamics, Integrator, Motion, advance_by, cut};
+use super::{Dynamics, Integrator, Motion, TICK, advance_by, cut};
 use crate::math::{cbrt, clamp, largest, max};
 use crate::time::Time;
 use glam::Vec3;
@@ -15,7 +15,7 @@ use glam::Vec3;
 pub struct Embedded {
     /// The error that a step may make \[m\], in positions, and in velocities times the step.
     pub tolerance: f32,
-    /// The smallest step: it is taken whatever its error, and counted.
+    /// The smallest step, at least a tick of time: it is taken whatever its error, and counted.
     pub smallest: Time,
     /// How many steps may be tried in one step of the system. The rest is taken at once then, and counted.
     pub attempts: u32,
@@ -41,6 +41,7 @@ impl Integrator for Embedded {
         let Motion { position: x, velocity: v, work, hint, effort, .. } = motion;
         let [x0, v0, a1, a2, a3, a4] = work.take();
         let (mut now, end) = (time, time + step);
+        let smallest = self.smallest.max(TICK);
         let mut h = if *hint == Time::ZERO { step } else { *hint };
         world.accelerations(now, x, v, a1);
         let mut tries = 0;
@@ -53,8 +54,8 @@ impl Integrator for Embedded {
             let stages = Stages { x0, v0, a1, a2: &mut *a2, a3: &mut *a3, a4: &mut *a4 };
             let error = stages.advance([&mut *x, &mut *v], now, taken, world);
             let fine = error <= self.tolerance;
-            let proposed = Time::from_seconds(taken.seconds() * growth(error / self.tolerance)).max(self.smallest);
-            if fine || last || taken <= self.smallest {
+            let proposed = Time::from_seconds(taken.seconds() * growth(error / self.tolerance)).max(smallest);
+            if fine || last || taken <= smallest {
                 effort.accepted += 1;
                 effort.capped += u64::from(!fine);
                 now = now + taken;
@@ -111,10 +112,13 @@ impl Stages<'_> {
         for i in 0..x.len() {
             let ex = a1[i] * (1.0 / 72.0) + a2[i] * (1.0 / 24.0) - a3[i] * (1.0 / 18.0);
             let ev = a1[i] * (-5.0 / 72.0) + a2[i] * (1.0 / 12.0) + a3[i] * (1.0 / 9.0) - a4[i] * (1.0 / 8.0);
-            let gap = hh * max(largest(ex), largest(ev));
-            // What is undefined from the beginning is so whatever the step.
-            if !(gap <= most || v0[i].is_nan() || a1[i].is_nan()) {
-                most = if gap < f32::INFINITY { gap } else { f32::INFINITY };
+            // The largest coordinate may overlook one that is not a number.
+            let finite = ex.is_finite() && ev.is_finite();
+            let gap = if finite { hh * max(largest(ex), largest(ev)) } else { f32::INFINITY };
+            // What is beyond all numbers from the beginning is so whatever the step.
+            let sound = x0[i].is_finite() && v0[i].is_finite() && a1[i].is_finite();
+            if sound && !(gap <= most) {
+                most = gap;
             }
         }
         most

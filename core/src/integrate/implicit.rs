@@ -62,6 +62,9 @@ impl Integrator for Implicit {
     }
 }
 
+/// By how much a system is made smaller whose residual has no square: 2⁻⁹⁶.
+const SMALL: f32 = 1.0 / (1u128 << 96) as f32;
+
 /// Solves (M − h ∂f/∂v − h² ∂f/∂x) δv = r for the correction δv.
 struct Solver<'a> {
     limits: &'a Implicit,
@@ -87,9 +90,10 @@ impl Solver<'_> {
         system.stiffness([h * h, h], self.inverse_diagonal);
         for (i, &w) in system.inverse_mass.iter().enumerate() {
             let mass = 1.0 / w;
-            let free = w > 0.0 && w < f32::INFINITY && self.r[i].is_finite();
-            self.r[i] = if free { self.r[i] * h + (v0[i] - v[i]) * mass } else { Vec3::ZERO };
-            self.inverse_diagonal[i] = if free { (self.inverse_diagonal[i] + mass).recip() } else { Vec3::ZERO };
+            let (r, diagonal) = (self.r[i] * h + (v0[i] - v[i]) * mass, self.inverse_diagonal[i] + mass);
+            let free = w > 0.0 && w < f32::INFINITY && r.is_finite() && diagonal.is_finite();
+            self.r[i] = if free { r } else { Vec3::ZERO };
+            self.inverse_diagonal[i] = if free { diagonal.recip() } else { Vec3::ZERO };
         }
     }
 
@@ -98,12 +102,21 @@ impl Solver<'_> {
     fn solve(&mut self, system: &Linear<'_>, effort: &mut Effort) {
         self.correction.fill(Vec3::ZERO);
         self.precondition(0.0);
-        let first = dot(self.r, self.p);
+        let mut first = dot(self.r, self.p);
+        // Where squares are beyond an `f32`, all is solved so many times smaller: one that is driven very far holds nobody
+        // up.
+        let scale = if first < f32::INFINITY { 1.0 } else { SMALL };
+        if scale < 1.0 {
+            self.r.iter_mut().for_each(|r| *r *= scale);
+            self.precondition(0.0);
+            first = dot(self.r, self.p);
+        }
         let enough = first * self.limits.residual * self.limits.residual;
+        // Not a number is not enough, but nothing can be done about it.
+        let solved = |left: f32| left >= 0.0 && left <= enough;
         let mut left = first;
         let mut iterations = 0;
-        // Not a number compares as enough.
-        while left > enough && iterations < self.limits.iterations {
+        while !solved(left) && iterations < self.limits.iterations {
             self.apply(system);
             let curvature = dot(self.p, self.q);
             if !(curvature > 0.0 && curvature < f32::INFINITY) {
@@ -122,9 +135,11 @@ impl Solver<'_> {
             // What was kept out of the system because it is not finite goes at the end of the step.
             if *inverse == Vec3::ZERO && w != 0.0 {
                 *correction = Vec3::NAN;
+            } else if scale < 1.0 {
+                *correction /= scale;
             }
         }
-        effort.solved(iterations, if first > 0.0 { crate::math::sqrt(left / first) } else { 0.0 }, left > enough);
+        effort.solved(iterations, if first > 0.0 { crate::math::sqrt(left / first) } else { 0.0 }, !solved(left));
     }
 
     /// p = z + β p, z being the preconditioned residual.

@@ -149,22 +149,28 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
 }
 
+/// The shortest step that leads on.
+const TICK: Time = Time::from_ticks(1);
+
 /// A step of `h`, or all that is `left` where that is not noticeably more: no step is made of rounding.
 fn cut(h: Time, left: Time) -> Time {
     if left - h <= Time::from_ticks(h.ticks() >> 8) { left } else { h }
 }
 
 /// The largest difference of two states \[m\]: of positions, and of velocities times the step, as far as it is more than
-/// rounding. One that is beyond all numbers differs infinitely, but what is undefined in both is so whatever the step, and
-/// is left out.
-fn difference([xa, va]: [&[Vec3]; 2], [xb, vb]: [&[Vec3]; 2], h: f32) -> f32 {
-    let apart = |a: Vec3, b: Vec3| largest(a - b) - 4.0 * f32::EPSILON * largest(b);
+/// rounding. What flies beyond all numbers in both alike does not differ; what is undefined differs infinitely. Rows that
+/// are not `sound` are left out.
+fn difference([xa, va]: [&[Vec3]; 2], [xb, vb]: [&[Vec3]; 2], h: f32, sound: impl Fn(usize) -> bool) -> f32 {
+    let between = |a: Vec3, b: Vec3| Vec3::select(a.cmpeq(b), Vec3::ZERO, a - b);
+    let apart = |gap: Vec3, b: Vec3| largest(gap) - 4.0 * f32::EPSILON * largest(b);
     let mut most = 0.0;
-    for ((&xa, &va), (&xb, &vb)) in xa.iter().zip(va).zip(xb.iter().zip(vb)) {
-        let lost = (xa.is_nan() || va.is_nan()) && (xb.is_nan() || vb.is_nan());
-        let gap = max(apart(xa, xb), h * apart(va, vb));
-        if !(gap <= most || lost) {
-            most = if gap < f32::INFINITY { gap } else { f32::INFINITY };
+    for (row, ((&xa, &va), (&xb, &vb))) in xa.iter().zip(va).zip(xb.iter().zip(vb)).enumerate() {
+        let (x, v) = (between(xa, xb), between(va, vb));
+        // The largest coordinate may overlook one that is not a number.
+        let finite = x.is_finite() && v.is_finite();
+        let gap = if finite { max(apart(x, xb), h * apart(v, vb)) } else { f32::INFINITY };
+        if !(gap <= most) && sound(row) {
+            most = gap;
         }
     }
     most

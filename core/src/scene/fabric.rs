@@ -113,7 +113,9 @@ impl Fabric {
     /// The particles of a sheet; those of a mesh are known once it is read.
     fn count(&self) -> Option<u64> {
         match &self.form {
-            Form::Sheet(sheet) => Some(sheet.cells.iter().map(|&n| u64::from(n) + 1).product()),
+            Form::Sheet(sheet) => {
+                Some(sheet.cells.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n) + 1)))
+            }
             Form::Mesh(_) => None,
         }
     }
@@ -159,7 +161,7 @@ impl SceneFile {
             if matches!(&fabric.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
                 return refuse("form", "corner and sides have to be finite");
             }
-            count += fabric.count().unwrap_or(0);
+            count = count.saturating_add(fabric.count().unwrap_or(0));
             if count > MOST {
                 return refuse("form", &format!("makes {count} particles; a scene may begin with {MOST}"));
             }

@@ -273,3 +273,13 @@ fn what_is_not_a_number_harms_no_neighbour() {
         }
     }
 }
+
+#[test]
+fn any_exponent_goes() {
+    let law = Radial(PowerLaw { exponent: u8::MAX, ..SOFT.0 });
+    let start = [0.0, 0.4].map(|x| Particle { position: Vec3::X * x, ..Particle::REST });
+    let scene = Scene { start: &start, forces: &law, integrator: &Method::Implicit, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    system.step(&scene, Time::frame(1, 60));
+    assert_eq!(system.len(), 2);
+}

@@ -173,7 +173,13 @@ fn jacobians_are_symmetric_and_drive_nothing_apart() {
     let viscous = Viscosity { coefficient: 2.0, reach: 0.9 };
     let mut driven = start.clone();
     driven[3].drag = -2.0;
-    let all: [&dyn Force; 10] = [
+    // What drives by its sign alone is left out.
+    let vacuum = Pressure { amount: -40.0, ..gas };
+    let stirred = Viscosity { coefficient: -2.0, reach: 0.9 };
+    let all: [&dyn Force; 13] = [
+        &vacuum,
+        &stirred,
+        &QuadraticDrag { coefficient: -0.4 },
         &gas,
         &atoms,
         &power,
