@@ -144,10 +144,14 @@ impl<'a> Ledger<'a> {
         &self.books
     }
 
-    /// What the energy has changed by since the last look.
+    /// What the energy has changed by since the last look. While a particle is beyond all numbers it is not looked at: that
+    /// goes at the end of the step, and takes its energy with it.
     fn change(&mut self, state: &State<'_>) -> f64 {
-        let before = core::mem::replace(&mut self.energy, energy(&self.scene, state));
-        self.energy - before
+        let now = energy(&self.scene, state);
+        if !now.is_finite() {
+            return 0.0;
+        }
+        now - core::mem::replace(&mut self.energy, now)
     }
 
     fn powers(&self, state: &State<'_>) -> Vec<Entry> {
@@ -174,7 +178,8 @@ impl<'a> Ledger<'a> {
             let last = self.powers(state);
             for ((first, half), last) in self.powers.iter().zip(&half).zip(&last) {
                 let work = h / 6.0 * (first.power + 4.0 * half.power + last.power);
-                if first.power != 0.0 || half.power != 0.0 || last.power != 0.0 {
+                let acts = first.power != 0.0 || half.power != 0.0 || last.power != 0.0;
+                if acts && work.is_finite() {
                     self.books.add_work(first.name, work);
                     self.books.remainder -= work;
                 }

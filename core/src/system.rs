@@ -138,7 +138,8 @@ impl<B: Storage> System<B> {
         self.memory.columns().state(scene.springs, &self.status)
     }
 
-    /// A fingerprint of time, counters, and every column in the order of ids: equal on all targets for equal states.
+    /// A fingerprint of time, counters, and every column in the order of ids: equal on all targets for equal states. The
+    /// order of rows and of free slots, which decides how sums round and which ids come next, is not in it.
     pub fn hash(&self) -> u64 {
         let mut hash = Fnv::new();
         let Status { time, seed, taken, emitters, totals, .. } = self.status;

@@ -23,7 +23,7 @@ fn cloth(cells: u32, ks: f32, kd: f32) -> (Vec<Particle>, Vec<Spring>) {
 fn stiff_cloth_stays_finite_and_comes_to_rest() {
     // 64 × 64 particles, and a smaller piece for slow builds. No explicit method bears a sixtieth of a second here: the
     // fastest mode has 90,000 radians a second.
-    let (cells, seconds) = if cfg!(debug_assertions) { (15, 30) } else { (63, 60) };
+    let (cells, seconds, still) = if cfg!(debug_assertions) { (15, 30, 5e-3) } else { (63, 60, 1e-3) };
     let (start, springs) = cloth(cells, 1e6, 10.0);
     let integrator = Implicit { iterations: 100, ..Implicit::USUAL };
     let forces = (Gravity::EARTH, Drag {});
@@ -39,7 +39,7 @@ fn stiff_cloth_stays_finite_and_comes_to_rest() {
     let p = system.particles();
     assert_eq!(p.position.len(), start.len());
     let fastest = p.velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
-    assert!(fastest < 1e-3, "{fastest} m/s after {seconds} s");
+    assert!(fastest < still, "{fastest} m/s after {seconds} s");
     // It hangs by its corners, hardly longer than it lies.
     let lowest = p.position.iter().map(|x| x.y).fold(0.0, f32::min);
     assert!((-1.05..-0.95).contains(&lowest), "{lowest}");

@@ -174,3 +174,19 @@ fn births_breaks_and_hands_have_theirs() {
     system.step_observed(&scene, Time::SECOND, &mut ledger);
     assert_eq!(ledger.books().outside, 8.0);
 }
+
+#[test]
+fn one_beyond_all_numbers_does_not_spoil_the_books() {
+    let start = [Particle::REST, Particle { position: Vec3::X, velocity: Vec3::splat(1e30), ..Particle::REST }];
+    let law = pointmass_tests::Law(|t, x: f32, _| if t > 0.5 && x > 1e20 { f32::INFINITY } else { -x.min(1.0) });
+    let scene = Scene { start: &start, forces: &law, integrator: &Rk4, ..Scene::EMPTY };
+    let mut system = System::with(Heap::new(scene.size()));
+    system.start(&scene, 1).expect("it fits");
+    let mut ledger = Ledger::new(&system, &scene);
+    for _ in 0..60 {
+        system.step_observed(&scene, Time::frame(1, 60), &mut ledger);
+    }
+    assert_eq!(system.totals().died.nonfinite, 1);
+    let books = ledger.books();
+    assert!(books.total().is_finite() && books.deletion < -1e59 && books.closing < 1.0, "{books:?}");
+}

@@ -42,6 +42,15 @@ impl SceneFile {
             finite(&at, &[spring.rest_length, spring.ks, spring.kd, spring.breaks_at.unwrap_or(2.0)])?;
             if let Some(drive) = spring.drive {
                 finite(&format!("{at}.drive"), &[drive.amplitude, drive.frequency, drive.phase])?;
+                if !(drive.amplitude.abs() < 1.0) {
+                    return Err(SceneError::value(
+                        format!("{at}.drive.amplitude"),
+                        format!("has to be within -1 and 1, a share of the rest length, not {}", drive.amplitude),
+                    ));
+                }
+            }
+            if spring.breaks_at.is_some() && !(spring.rest_length > 0.0) {
+                return Err(SceneError::value(format!("{at}.breaks_at"), "needs a rest_length above zero"));
             }
             if !spring.breaks_at.is_none_or(|ratio| ratio > 1.0) {
                 return Err(SceneError::value(

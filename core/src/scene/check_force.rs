@@ -34,7 +34,9 @@ pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
         ForceKind::Gravity(g) => finite(&name("acceleration"), &g.acceleration.to_array()),
         ForceKind::Drag(_) => Ok(()),
         ForceKind::MutualGravity(m) => {
-            finite(at, &[m.constant, m.softening]).and_then(|()| zero_or_more(&name("theta"), m.theta))
+            finite(at, &[m.constant])?;
+            length(&name("softening"), m.softening)?;
+            zero_or_more(&name("theta"), m.theta)
         }
         ForceKind::QuadraticDrag(d) => zero_or_more(&name("coefficient"), d.coefficient),
         ForceKind::Coulomb(c) => finite(&name("constant"), &[c.constant])
