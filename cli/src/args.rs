@@ -346,11 +346,8 @@ fn substeps(text: &str) -> Result<Substeps, String> {
 
 fn tolerance(text: &str) -> Result<f64, String> {
     let value = number(text)?;
-    if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err("expected a positive, finite number of metres".into())
-    }
+    // Integrators keep it as a 32-bit float.
+    if (1e-30..=1e30).contains(&value) { Ok(value) } else { Err("expected metres, from 1e-30 to 1e30".into()) }
 }
 
 fn number(text: &str) -> Result<f64, String> {

@@ -158,7 +158,10 @@ impl Summary {
         push_counts(&mut rows, "bounds met", &caps);
         rows.push(("effort", method_effort(&self.effort)));
         let Energy { kinetic, potential } = self.energy;
-        rows.push(("energy", format!("{kinetic:.6} J kinetic, {potential:.6} J potential{}", parts(&self.forces))));
+        rows.push((
+            "energy",
+            format!("{} J kinetic, {} J potential{}", number(kinetic), number(potential), parts(&self.forces)),
+        ));
         rows.extend(self.group_errors.iter().map(|errors| ("groups", far(errors))));
         rows.extend(self.ledger.iter().flat_map(accounts));
         rows.push(("momentum", vector(self.momentum, "kg m/s")));
@@ -207,7 +210,8 @@ fn accounts(books: &Books) -> Vec<(&'static str, String)> {
     entries.retain(|&(_, joules)| joules != 0.0);
     entries.push(("at last", closing));
     let row = |(i, (name, joules)): (usize, (&str, f64))| {
-        (if i == 0 { "ledger" } else { "" }, format!("{joules:>+16.6} J  {name}"))
+        let sign = if joules > 0.0 { "+" } else { "" };
+        (if i == 0 { "ledger" } else { "" }, format!("{:>16} J  {name}", format!("{sign}{}", number(joules))))
     };
     entries.into_iter().enumerate().map(row).collect()
 }
@@ -229,7 +233,7 @@ fn parts(forces: &[Entry]) -> String {
     if parts.len() < 2 {
         return String::new();
     }
-    let told: Vec<_> = parts.iter().map(|entry| format!("{} {:.6}", entry.name, entry.energy)).collect();
+    let told: Vec<_> = parts.iter().map(|entry| format!("{} {}", entry.name, number(entry.energy))).collect();
     format!(" ({})", told.join(", "))
 }
 
@@ -266,5 +270,10 @@ fn push_counts<'a>(rows: &mut Vec<(&'a str, String)>, name: &'a str, counts: &[(
 }
 
 fn vector([x, y, z]: [f64; 3], unit: &str) -> String {
-    format!("({x:.6}, {y:.6}, {z:.6}) {unit}")
+    format!("({}, {}, {}) {unit}", number(x), number(y), number(z))
+}
+
+/// A number with six decimals, or with an exponent where that would be too long or leave next to nothing.
+fn number(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e9).contains(&x.abs()) { format!("{:.6}", x + 0.0) } else { format!("{x:.6e}") }
 }

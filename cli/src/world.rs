@@ -42,6 +42,10 @@ impl World {
         if let Some(tolerance) = args.tolerance.filter(|_| run.integrator.chooses_steps()) {
             run.tuning.tolerance = tolerance as f32;
         }
+        if args.tolerance.is_some() && !run.integrator.chooses_steps() && args.substeps != Substeps::Auto {
+            let method = run.integrator;
+            warn(&[format!("--tolerance does nothing with {method} in steps that are given: add --substeps auto")]);
+        }
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;

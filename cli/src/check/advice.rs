@@ -1,7 +1,9 @@
 //! What to change.
 
+use super::bounds::place;
 use super::report::{Check, Stand};
 use super::words::{plain, time, typed};
+use crate::words::counted;
 use pointmass::Spring;
 use pointmass::scene::Model;
 use pointmass::stability::Limit;
@@ -37,7 +39,7 @@ fn fine(check: &Check, limit: Limit) -> String {
                 false => text,
             }
         }
-        _ => format!("neither springs nor drag limit the step: {step} by {method} is as stable as any other"),
+        _ => format!("neither springs nor drag limit the step of {method}: {step} or any other"),
     }
 }
 
@@ -66,7 +68,8 @@ fn too_long(check: &Check, stand: &Stand, limit: f64) -> Vec<String> {
 fn never(check: &Check, model: &Model, stand: &Stand) -> String {
     let drives = |spring: &&Spring| spring.ks < 0.0 || spring.kd < 0.0;
     if let Some(i) = model.springs.iter().position(|spring| drives(&spring)) {
-        return format!("springs[{i}] has a stiffness or damping below zero: it adds energy, and no step is stable");
+        let place = place(model, 1, i);
+        return format!("{place} has a stiffness or damping below zero: it adds energy, and no step is stable");
     }
     if check.dragged.is_none() && stand.growth_across <= 0.0 {
         return "drag below zero adds energy, and no step is stable".into();
@@ -74,9 +77,9 @@ fn never(check: &Check, model: &Model, stand: &Stand) -> String {
     let grows = time(1.0 / stand.growth_across);
     format!(
         "{} makes what nothing damps grow at any step, at this one e-fold in {grows} or more; take symplectic, verlet or \
-         rk4, or give springs[{}] and its like a kd",
+         rk4, or give {} and its like a kd",
         stand.method,
-        model.springs.iter().position(|spring| spring.kd == 0.0).unwrap_or(0)
+        place(model, 1, model.springs.iter().position(|spring| spring.kd == 0.0).unwrap_or(0))
     )
 }
 
@@ -87,8 +90,7 @@ fn damping(check: &Check, model: &Model) -> Option<String> {
     if !(ratio > 1.5 && ratio.is_finite()) {
         return None;
     }
-    let i: usize = part.place.trim_start_matches("springs[").trim_end_matches(']').parse().ok()?;
-    let kd = f64::from(model.springs.get(i)?.kd) / ratio;
+    let kd = f64::from(model.springs.get(part.spring?)?.kd) / ratio;
     Some(format!(
         "{} is damped {} times as much as stops it fastest; with kd {} it would calm sooner and stand longer steps",
         part.place,
@@ -111,6 +113,13 @@ fn taut(check: &Check, stand: &Stand) -> Option<String> {
 
 fn world(check: &Check) -> Vec<String> {
     let mut advice = Vec::new();
+    if !check.not_judged.is_empty() {
+        advice.push(format!(
+            "not looked at: {}, which limit the step as well; see whether half of it changes what happens, or take \
+             --substeps auto",
+            check.not_judged.join(", ")
+        ));
+    }
     if let Some(followed) = check.followed.as_ref().filter(|followed| check.dt > followed.step) {
         advice.push(format!(
             "steps longer than {} bend too much for their hits to be found within 0.1 mm",
@@ -125,10 +134,15 @@ fn world(check: &Check) -> Vec<String> {
             typed(pair.period / ORBIT)
         ));
     }
-    for sink in check.sinks.iter().filter(|sink| check.dt * sink.rate * PULL > std::f64::consts::TAU) {
+    let quick = || check.sinks.iter().filter(|sink| check.dt * sink.rate * PULL > std::f64::consts::TAU);
+    if let Some(sink) = quick().reduce(|a, b| if b.rate > a.rate { b } else { a }) {
+        let others = match quick().count() - 1 {
+            0 => String::new(),
+            n => format!(", and no faster near {}", counted(n, "other")),
+        };
         advice.push(match sink.rate.is_finite() {
             true => format!(
-                "near {}, the pull changes within {}: take --dt {} or less",
+                "near {}, the pull changes within {}{others}: take --dt {} or less",
                 sink.place,
                 time(1.0 / sink.rate),
                 typed(std::f64::consts::TAU / (PULL * sink.rate))

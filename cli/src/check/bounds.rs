@@ -20,6 +20,9 @@ pub(crate) struct Bounds {
 pub(crate) struct Part {
     /// Where it stands in the file.
     pub(crate) place: String,
+    /// Its number among all springs, if it is one.
+    #[serde(skip)]
+    pub(crate) spring: Option<usize>,
     /// What it is.
     pub(crate) about: String,
     /// Its oscillation, were it alone.
@@ -28,10 +31,10 @@ pub(crate) struct Part {
 
 impl Bounds {
     pub(crate) fn of(model: &Model) -> Self {
-        let has_drag = has_drag(model);
+        let (particles, has_drag) = in_air(model);
         Self {
-            poses: Poses::of(&model.particles, &model.springs, has_drag),
-            stiffest: stiffest(&model.particles, &model.springs),
+            poses: Poses::of(&particles, &model.springs, has_drag),
+            stiffest: stiffest(model),
             dragged: if has_drag { dragged(model) } else { None },
         }
     }
@@ -87,12 +90,32 @@ impl Bounds {
     }
 }
 
-/// Whether linear drag acts.
-pub(crate) fn has_drag(model: &Model) -> bool {
-    model.forces.0.iter().any(|force| matches!(force, ForceKind::Drag(_)))
+/// What air does to a particle: so many times its own coefficient of drag, and a coefficient for all \[kg/s\].
+fn air(model: &Model) -> [f32; 2] {
+    model.forces.0.iter().fold([0.0, 0.0], |[own, all], force| match force {
+        ForceKind::Drag(_) => [own + 1.0, all],
+        ForceKind::Wind(wind) => wind.coefficient.map_or([own + 1.0, all], |k| [own, all + k]),
+        _ => [own, all],
+    })
 }
 
-fn stiffest(particles: &[Particle], springs: &[Spring]) -> Option<Part> {
+/// The particles with the coefficients by which drag and wind together brake them, and whether these act.
+pub(crate) fn in_air(model: &Model) -> (Vec<Particle>, bool) {
+    let [own, all] = air(model);
+    let braked = |particle: &Particle| Particle { drag: own * particle.drag + all, ..*particle };
+    (model.particles.iter().map(braked).collect(), own != 0.0 || all != 0.0)
+}
+
+/// Where particle (0) or spring (1) number `number` stands in the file: in a list, or in a fabric.
+pub(crate) fn place(model: &Model, kind: usize, number: usize) -> String {
+    match model.fabrics.partition_point(|begin| begin[kind] <= number) {
+        0 => format!("{}[{number}]", ["particles", "springs"][kind]),
+        after => format!("fabrics[{}]", after - 1),
+    }
+}
+
+fn stiffest(model: &Model) -> Option<Part> {
+    let (particles, springs) = (&model.particles, &model.springs);
     let pairs = springs.iter().map(|spring| spring.ends.map(|end| &particles[end as usize]));
     let modes = pairs.zip(springs).map(|(ends, spring)| {
         let inverse: f64 = ends.iter().filter(|end| !end.fixed).map(|end| 1.0 / f64::from(end.mass)).sum();
@@ -107,22 +130,24 @@ fn stiffest(particles: &[Particle], springs: &[Spring]) -> Option<Part> {
         particle => format!("{} kg", particle.mass),
     });
     let about = format!("between particles {a} ({m}) and {b} ({n}): ks {ks}, kd {kd}");
-    Some(Part { place: format!("springs[{i}]"), about, mode })
+    Some(Part { place: place(model, 1, i), spring: Some(i), about, mode })
 }
 
 /// The largest drag over mass of any particle, at the start or of an emitter's births.
 fn dragged(model: &Model) -> Option<Part> {
+    let [own, all] = air(model).map(f64::from);
     let start = model.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed);
-    let start = start.map(|(i, p)| (format!("particles[{i}]"), f64::from(p.drag), f64::from(p.mass)));
+    let start = start.map(|(i, p)| ([0, i], own * f64::from(p.drag) + all, f64::from(p.mass)));
     let births = model.emitters.iter().enumerate().filter(|(_, emitter)| !emitter.fixed);
     let births = births.map(|(i, e)| {
-        let most = f64::from(e.drag.mean) + f64::from(e.drag.variance.abs());
-        (format!("emitters[{i}]"), most, f64::from(e.mass.mean) - f64::from(e.mass.variance.abs()))
+        let most = own * (f64::from(e.drag.mean) + f64::from(e.drag.variance.abs())) + all;
+        ([1, i], most, f64::from(e.mass.mean) - f64::from(e.mass.variance.abs()))
     });
-    let rate = |part: &(String, f64, f64)| part.1 / part.2;
-    let all = start.chain(births).filter(|part| rate(part) > 0.0);
-    let part = all.reduce(|a, b| if rate(&b) > rate(&a) { b } else { a })?;
+    let rate = |part: &([usize; 2], f64, f64)| part.1 / part.2;
+    let braked = start.chain(births).filter(|part| rate(part) > 0.0);
+    let part = braked.reduce(|a, b| if rate(&b) > rate(&a) { b } else { a })?;
     let mode = Mode { omega2: 0.0, damping: rate(&part) };
-    let (place, drag, mass) = part;
-    Some(Part { place, about: format!("of drag {} kg/s and mass {} kg", plain(drag), plain(mass)), mode })
+    let ([kind, i], drag, mass) = part;
+    let place = if kind == 0 { place(model, 0, i) } else { format!("emitters[{i}]") };
+    Some(Part { place, spring: None, about: format!("of drag {} kg/s and mass {} kg", plain(drag), plain(mass)), mode })
 }

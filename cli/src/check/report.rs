@@ -1,9 +1,9 @@
 //! What there is to say about a scene's step.
 
 use super::advice::advise;
-use super::bounds::{Bounds, Part, has_drag};
+use super::bounds::{Bounds, Part, in_air};
 use super::modes::{How, Spectrum};
-use super::world::{Followed, Pair, Pull, fastest_pair, followed, pulls};
+use super::world::{Followed, Pair, Pull, fastest_pair, followed, not_judged, pulls};
 use pointmass::Method;
 use pointmass::scene::{Model, Run};
 use pointmass::stability::Limit;
@@ -37,6 +37,8 @@ pub(crate) struct Check {
     pub(crate) pair: Option<Pair>,
     /// The sinks whose pull changes from place to place.
     pub(crate) sinks: Vec<Pull>,
+    /// Forces that bound the step as well, by a law that is not looked at.
+    pub(crate) not_judged: Vec<&'static str>,
     pub(crate) advice: Vec<String>,
 }
 
@@ -75,7 +77,8 @@ pub(crate) struct Stand {
 impl Check {
     pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Option<Spectrum>) {
         let (dt, bounds) = (run.dt, Bounds::of(model));
-        let spectrum = Spectrum::of(&model.particles, &model.springs, has_drag(model));
+        let (braked, has_drag) = in_air(model);
+        let spectrum = Spectrum::of(&braked, &model.springs, has_drag);
         let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, spectrum.as_ref(), dt)).collect();
         let mut check = Self {
             scene: path.display().to_string(),
@@ -93,6 +96,7 @@ impl Check {
             // An orbit that takes far longer than the run is none.
             pair: fastest_pair(model).filter(|pair| pair.period < 10.0 * run.duration),
             sinks: pulls(model),
+            not_judged: not_judged(model),
             advice: Vec::new(),
         };
         check.advice = advise(&check, model);

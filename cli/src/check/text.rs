@@ -3,6 +3,7 @@
 use super::modes::How;
 use super::report::{Check, Oscillations, Stand};
 use super::words::{limit, plain, time};
+use crate::words::{counted, thousands};
 use pointmass::stability::Limit;
 use std::fmt::Write;
 
@@ -40,7 +41,16 @@ pub(crate) fn facts(check: &Check) -> Vec<(&'static str, String)> {
     let mut facts = vec![
         ("scene", check.scene.clone()),
         ("judged", format!("steps of {} by {integrator}", time(*dt))),
-        ("holds", format!("{particles} particles ({free} free), {springs} springs, {emitters} emitters")),
+        (
+            "holds",
+            format!(
+                "{} ({} free), {}, {}",
+                counted(*particles, "particle"),
+                thousands(*free),
+                counted(*springs, "spring"),
+                counted(*emitters, "emitter")
+            ),
+        ),
     ];
     facts.extend(check.oscillations.as_ref().map(|modes| ("at rest", oscillations(modes))));
     facts.extend(check.stiffest.as_ref().map(|part| ("stiffest", format!("{} {}", part.place, part.about))));

@@ -4,7 +4,7 @@ use super::wide;
 use nalgebra::Vector3;
 use pointmass::scene::Model;
 use pointmass::stability::longest_followed_step;
-use pointmass::{ForceKind, Sink};
+use pointmass::{Force, ForceKind, Sink};
 use serde::Serialize;
 
 /// Particles that are looked at for the quickest pair.
@@ -43,6 +43,17 @@ pub(crate) struct Pull {
     pub(crate) mass: f64,
     /// √(gradient / mass) \[1/s\].
     pub(crate) rate: f64,
+}
+
+/// Forces that may be as stiff as springs, depending on how near particles come or how fast they are.
+pub(crate) fn not_judged(model: &Model) -> Vec<&'static str> {
+    let is_judged = |force: &ForceKind| {
+        matches!(force, ForceKind::Gravity(_) | ForceKind::Drag(_) | ForceKind::Wind(_) | ForceKind::MutualGravity(_))
+    };
+    let mut names: Vec<_> = model.forces.0.iter().filter(|force| !is_judged(force)).map(Force::name).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
 }
 
 /// None where nothing is hit or nothing falls.

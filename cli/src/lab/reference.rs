@@ -71,9 +71,7 @@ fn settled(problem: &Problem, (gap, dt, outturn): (f64, f64, Outturn)) -> Refere
             let places = exact(scene.start, scene.springs, problem.duration);
             ((0..).zip(places).collect(), "the closed form".to_string(), 0.0)
         }
-        None => {
-            (places, format!("RK4 in steps of {dt:.3e} s, which steps of twice that differ from by {gap:.1e} m"), gap)
-        }
+        None => (places, format!("RK4 in steps of {dt:.3e} s (steps twice as long end {gap:.1e} m from there)"), gap),
     };
     let energy = energy.max(f64::MIN_POSITIVE);
     Reference { places, about, error, extent, energy, energy_about }

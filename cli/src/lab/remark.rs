@@ -31,9 +31,6 @@ pub(crate) fn of_row(row: &Row, case: &Case) -> String {
     }
     words.extend(row.energy.as_ref().map(|energy| energy.words(case.energy_duration).to_string()));
     words.extend(of_order(row));
-    if row.steps == Steps::Own {
-        words.push("divides the step as it needs".into());
-    }
     if case.is_twin(row) {
         words.push("as symplectic: no Jacobian".into());
     }
@@ -49,7 +46,9 @@ fn of_order(row: &Row) -> Option<String> {
         Some(order) if is_sure && order < expected - OFF => Some("falls short of its order".into()),
         Some(order) if is_sure && order > expected + OFF => Some("better than its order here".into()),
         Some(_) => None,
-        None if finite().count() > 1 && finite().all(|point| point.is_floor) => Some("exact but for rounding".into()),
+        None if finite().count() > 1 && finite().all(|point| point.is_floor) => {
+            Some("no error clear of rounding".into())
+        }
         None if finite().count() < 2 => None,
         None => Some("no two steps show its order".into()),
     }

@@ -206,6 +206,56 @@ fn json_that_is_wrong() {
 }
 
 #[test]
+fn springs_fabrics_and_forces_that_are_wrong() {
+    let run = |rest: &str| format!(r#"{{"run": {{{rest}}}}}"#);
+    let spring = |rest: &str| {
+        format!(r#"{{"particles": [{{}}, {{}}], "springs": [{{"ends": [0, 1], "rest_length": 1, {rest}}}]}}"#)
+    };
+    let fabric = |form: &str, threads: &str, rest: &str| {
+        format!(r#"{{"fabrics": [{{"form": {form}, "threads": {{{threads}}}, "mass": {rest}}}]}}"#)
+    };
+    let sheet = |cells: &str| {
+        format!(r#"{{"sheet": {{"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": {cells}}}}}"#)
+    };
+    let (two, soft) = (sheet("[2, 2]"), r#""structural": {"ks": 1}"#);
+    let far = two.replace("[1, 0, 0]", "[3e38, 0, 0]").replace("\"corner\": [0", "\"corner\": [3e38");
+    let force = |force: &str| format!(r#"{{"particles": [{{}}], "forces": [{{{force}}}]}}"#);
+    let cases = [
+        (run(r#""dt": 1e30"#), "a.json:run.dt: has to be from 1e-9 s to below 2^31 s, not 1e30 s"),
+        (run(r#""duration": 1e30"#), "a.json:run.duration: has to be from zero to below 2^31 s, not 1e30 s"),
+        (run(r#""tuning": {"inner": "adaptive"}"#), "a.json:run.tuning.inner: has to be a method that takes steps"),
+        (run(r#""tuning": {"tolerance": 0}"#), "a.json:run.tuning.tolerance: has to be above zero, not 0"),
+        (spring(r#""ks": null"#), "a.json:1:81: invalid type: null, expected a number"),
+        (spring(r#""ks": 1e39"#), "a.json:1:81: number out of range: the largest is 3.4e38"),
+        (spring(r#""ks": 1, "breaks_at": 0.5"#), "a.json:springs[0].breaks_at: has to be above one, a length over"),
+        (fabric(&two, "", "1"), "a.json:fabrics[0].threads: has to name structural, shear or bend springs"),
+        (
+            fabric(&two, r#""bend": {"ks": -2}"#, "1"),
+            "a.json:fabrics[0].threads.bend.ks: has to be zero or more, not -2",
+        ),
+        (fabric(&two, soft, "-1"), "a.json:fabrics[0].mass: has to be above zero, not -1"),
+        (fabric(&two, soft, "1e-38"), "a.json:fabrics[0].mass: leaves 1.1"),
+        (fabric(&two, soft, r#"1, "gas": {"amount": 1}"#), "a.json:fabrics[0].gas: a sheet has no inside"),
+        (fabric(&two, soft, r#"1, "fixed": [9]"#), "a.json:fabrics[0].fixed: particle 9 is out of range; there are 9,"),
+        (fabric(&two, soft, r#"1, "breaks_at": 1"#), "a.json:fabrics[0].breaks_at: has to be above one, a length over"),
+        (fabric(&far, soft, "1"), "a.json:fabrics[0].form: reaches beyond the range of a 32-bit float"),
+        (fabric(&sheet("[1000000, 1000000]"), soft, "1"), "a.json:fabrics[0].form: makes 1000002000001 particles; "),
+        (fabric(&sheet("[8000, 8000]"), soft, "1"), "a.json:fabrics[0].form: makes 64016001 particles; "),
+        (fabric(&sheet("[4294967295, 4294967295]"), soft, "1"), "a.json:fabrics[0].form: makes 18446744073709551615 "),
+        (force(r#""mutual_gravity": {"softening": -1}"#), "a.json:forces[0].softening: has to be zero or more, not -1"),
+        (
+            force(r#""mutual_gravity": {"softening": 1e30}"#),
+            "a.json:forces[0].softening: has to be 1e18 m at most, not 1e30",
+        ),
+    ];
+    let folder = Folder::new();
+    for (text, error) in cases {
+        folder.write("a.json", &text);
+        refused_by(&folder, "a.json", error, &["run", "render", "check"]);
+    }
+}
+
+#[test]
 fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
     // A list, where there should be an object with names.
     for text in ["[]", "[null]", r#"{"run": 1}"#, r#"{"particles": {}}"#, r#"{"camera": 1}"#] {

@@ -242,3 +242,51 @@ fn automatic_substeps_tame_every_spring_of_the_course() {
         }
     }
 }
+
+#[test]
+fn wind_brakes_as_drag_does_and_what_is_not_looked_at_is_named() {
+    let folder = Folder::new();
+    let scene = |forces: &str| format!(r#"{{"particles": [{{"drag": 3}}], "forces": [{forces}]}}"#);
+    let (drag, still) = (r#"{"drag": {}}"#, r#"{"wind": {"field": []}}"#);
+    let all = r#"{"wind": {"field": [], "coefficient": 2}}"#;
+    for (forces, rate) in [(drag, 3.0), (still, 3.0), (all, 2.0), (&format!("{drag}, {still}, {all}"), 8.0)] {
+        folder.write("a.json", scene(forces));
+        let check = check(&folder, "a.json");
+        let step = steps(&check, "drag", &["euler"])[0];
+        assert!((step / 2e3 * rate - 1.0).abs() < 1e-6, "{forces}: {step}");
+        assert_eq!(check["not_judged"], Value::Array(Vec::new()), "{forces}");
+    }
+    let near = r#"{"viscosity": {"coefficient": 1, "reach": 1}}"#;
+    folder.write("a.json", scene(&format!("{near}, {near}, {{\"coulomb\": {{}}}}")));
+    let text = folder.run("check a.json").fine().stdout;
+    assert!(text.contains("not looked at: charges, viscosity, ") && text.contains("1 particle (1 free)"), "{text}");
+}
+
+#[test]
+fn springs_of_fabrics_are_found_in_the_file() {
+    let sheet = r#"{"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [2, 2]}}"#;
+    let fabric = |ks: u32| {
+        format!(
+            r#"{{"form": {sheet}, "mass": 9, "drag": {ks}, "threads": {{"structural": {{"ks": {ks}, "kd": {ks}}}}}}}"#
+        )
+    };
+    let folder = Folder::with(
+        "a.json",
+        format!(
+            r#"{{"particles": [{{}}, {{}}], "springs": [{{"ends": [0, 1], "rest_length": 1, "ks": 3}}],
+            "forces": [{{"drag": {{}}}}], "fabrics": [{}, {}]}}"#,
+            fabric(2),
+            fabric(50)
+        ),
+    );
+    let report = check(&folder, "a.json");
+    assert_eq!([&report["stiffest"]["place"], &report["dragged"]["place"]], ["fabrics[1]", "fabrics[1]"]);
+    assert!(report["advice"].to_string().contains("fabrics[1] is damped 5 times"), "{report}");
+}
+
+#[test]
+fn a_tolerance_that_nothing_asks_for_is_told() {
+    let folder = Folder::with("a.scn", ONE);
+    let warnings = |args: &str| folder.run(&format!("run a.scn --steps 1 --tolerance 1e-3 {args}")).warnings().len();
+    assert_eq!(["", "--substeps 4", "--substeps auto", "--integrator embedded"].map(warnings), [1, 1, 0, 0]);
+}

@@ -39,7 +39,9 @@ impl SceneFile {
         }
         for (i, spring) in self.springs.iter().enumerate() {
             let at = format!("springs[{i}]");
-            finite(&at, &[spring.rest_length, spring.ks, spring.kd, spring.breaks_at.unwrap_or(2.0)])?;
+            for (name, number) in [("rest_length", spring.rest_length), ("ks", spring.ks), ("kd", spring.kd)] {
+                finite(&format!("{at}.{name}"), &[number])?;
+            }
             if let Some(drive) = spring.drive {
                 finite(&format!("{at}.drive"), &[drive.amplitude, drive.frequency, drive.phase])?;
                 if !(drive.amplitude.abs() < 1.0) {
@@ -52,12 +54,7 @@ impl SceneFile {
             if spring.breaks_at.is_some() && !(spring.rest_length > 0.0) {
                 return Err(SceneError::value(format!("{at}.breaks_at"), "needs a rest_length above zero"));
             }
-            if !spring.breaks_at.is_none_or(|ratio| ratio > 1.0) {
-                return Err(SceneError::value(
-                    format!("{at}.breaks_at"),
-                    "has to be above one: it is a length over that at rest",
-                ));
-            }
+            check_breaking(&format!("{at}.breaks_at"), spring.breaks_at)?;
             if let Some(end) = spring.ends.iter().find(|&&end| end as usize >= self.particles.len()) {
                 let count = self.particles.len();
                 return Err(SceneError::value(
@@ -109,13 +106,12 @@ impl SceneFile {
         let longest = f64::from(1u32 << 31);
         // Time itself has steps of 0.23 ns.
         if !(run.dt >= 1e-9 && run.dt < longest) {
-            return Err(SceneError::value("run.dt", format!("has to be a nanosecond at least, not {} s", run.dt)));
+            let message = format!("has to be from 1e-9 s to below 2^31 s, not {:?} s", run.dt);
+            return Err(SceneError::value("run.dt", message));
         }
         if !(run.duration >= 0.0 && run.duration < longest) {
-            return Err(SceneError::value(
-                "run.duration",
-                format!("has to be zero seconds or more, not {}", run.duration),
-            ));
+            let message = format!("has to be from zero to below 2^31 s, not {:?} s", run.duration);
+            return Err(SceneError::value("run.duration", message));
         }
         let tuning = &run.tuning;
         for (name, value) in
@@ -131,7 +127,7 @@ impl SceneFile {
         if tuning.inner.chooses_steps() {
             return Err(SceneError::value(
                 "run.tuning.inner",
-                "has to be a method that takes steps as they come, such as rk4",
+                format!("has to be a method that takes steps as they come, such as rk4, not {}", tuning.inner),
             ));
         }
         for (name, value, most) in [
@@ -283,6 +279,16 @@ pub(super) fn finite(at: &str, numbers: &[f32]) -> Checked {
         }
         None => Ok(()),
     }
+}
+
+/// What springs break at.
+pub(super) fn check_breaking(at: &str, ratio: Option<f32>) -> Checked {
+    let Some(ratio) = ratio else { return Ok(()) };
+    finite(at, &[ratio])?;
+    if ratio > 1.0 {
+        return Ok(());
+    }
+    Err(SceneError::value(at, format!("has to be above one, a length over that at rest, not {ratio}")))
 }
 
 /// A number from zero on.

@@ -34,7 +34,7 @@ pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
         ForceKind::Gravity(g) => finite(&name("acceleration"), &g.acceleration.to_array()),
         ForceKind::Drag(_) => Ok(()),
         ForceKind::MutualGravity(m) => {
-            finite(at, &[m.constant])?;
+            finite(&name("constant"), &[m.constant])?;
             length(&name("softening"), m.softening)?;
             zero_or_more(&name("theta"), m.theta)
         }
@@ -67,7 +67,7 @@ fn length(at: &str, length: f32) -> Checked {
     if length <= MAX_LENGTH {
         return Ok(());
     }
-    Err(SceneError::value(at, format!("has to be {MAX_LENGTH:e} m at most, not {length}")))
+    Err(SceneError::value(at, format!("has to be {MAX_LENGTH:e} m at most, not {length:e}")))
 }
 
 fn reach(at: &str, reach: f32) -> Checked {

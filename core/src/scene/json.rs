@@ -1,6 +1,7 @@
 //! The declared scene as JSON.
 
 use super::{SceneError, SceneFile};
+use alloc::format;
 use alloc::string::{String, ToString};
 
 impl SceneFile {
@@ -17,7 +18,7 @@ impl SceneFile {
         serde_json::from_str(text).map_err(|error| {
             let message = error.to_string();
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);
-            SceneError::at(name, error.line(), error.column(), message)
+            SceneError::at(name, error.line(), error.column(), plain(message))
         })
     }
 
@@ -28,6 +29,26 @@ impl SceneFile {
         let text = serde_json::to_string_pretty(self).unwrap_or_default();
         compact_numbers(&text)
     }
+}
+
+/// The parser's message without the names of Rust's types.
+fn plain(message: &str) -> String {
+    if message == "number out of range" {
+        return "number out of range: the largest is 3.4e38".to_string();
+    }
+    for (name, meaning) in [
+        ("f32", "a number"),
+        ("f64", "a number"),
+        ("u8", "a whole number from 0 to 255"),
+        ("u16", "a whole number from 0 to 65535"),
+        ("u32", "a whole number from 0 to 4294967295"),
+        ("u64", "a whole number, zero or more"),
+    ] {
+        if let Some(rest) = message.strip_suffix(name).filter(|rest| rest.ends_with(", expected ")) {
+            return format!("{rest}{meaning}");
+        }
+    }
+    message.to_string()
 }
 
 /// The JSON Schema of scene files, as text.

@@ -34,6 +34,8 @@ pub struct Model {
     pub integrator: Tuned,
     /// How forces find neighbours.
     pub index: Structure,
+    /// Where the particles and springs of each fabric begin among all.
+    pub fabrics: Vec<[usize; 2]>,
 }
 
 /// A piece of scenery where it stands.
@@ -90,6 +92,7 @@ impl Model {
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
             index: file.run.index,
+            fabrics: start.fabrics,
         })
     }
 
@@ -152,11 +155,18 @@ struct Start {
     springs: Vec<Spring>,
     /// That of gas in fabrics.
     forces: Vec<ForceKind>,
+    /// Where they begin.
+    fabrics: Vec<[usize; 2]>,
 }
 
 impl Start {
     fn of(file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<Self, SceneError> {
-        let mut start = Self { particles: file.particles.clone(), springs: file.springs.clone(), forces: Vec::new() };
+        let mut start = Self {
+            particles: file.particles.clone(),
+            springs: file.springs.clone(),
+            forces: Vec::new(),
+            fabrics: Vec::new(),
+        };
         for (i, fabric) in file.fabrics.iter().enumerate() {
             let mesh = match &fabric.form {
                 Form::Mesh(name) => Some(meshes.load(&format!("fabrics[{i}].form"), name)?),
@@ -167,8 +177,11 @@ impl Start {
             let refuse = |field: &str, message: String| {
                 Err(SceneError::value(format!("fabrics[{i}].{field}"), message).in_file(meshes.path))
             };
+            if particles.iter().any(|particle| !particle.position.is_finite()) {
+                return refuse("form", "reaches beyond the range of a 32-bit float".into());
+            }
             if let Some(particle) = particles.iter().find(|particle| !particle.is_sound()) {
-                return refuse("mass", format!("particles of {} kg are too light", particle.mass));
+                return refuse("mass", format!("leaves {:e} kg to each particle, too little", particle.mass));
             }
             if let Some(number) = fabric.fixed.iter().find(|&&number| number as usize >= particles.len()) {
                 return refuse(
@@ -176,6 +189,7 @@ impl Start {
                     format!("particle {number} is out of range; there are {}, from 0", particles.len()),
                 );
             }
+            start.fabrics.push([start.particles.len(), start.springs.len()]);
             start.particles.extend(particles);
             start.springs.extend(springs);
             start.forces.extend(fabric.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
