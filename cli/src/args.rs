@@ -68,6 +68,10 @@ pub struct World {
     /// what the scene says, rk4 for .scn
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<Method>,
+    /// How forces between neighbours find them: brute, grid, hash, quadtree, octree, kd, bsp or bvh; by default what the
+    /// scene says, else grid
+    #[arg(long, value_name = "NAME")]
+    pub index: Option<Structure>,
     /// The seed of all randomness; by default what the scene says, else 1
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

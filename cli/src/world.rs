@@ -46,6 +46,7 @@ impl World {
             let method = run.integrator;
             warn(&[format!("--tolerance does nothing with {method} in steps that are given: add --substeps auto")]);
         }
+        run.index = args.index.unwrap_or(run.index);
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;

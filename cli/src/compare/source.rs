@@ -93,6 +93,7 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         duration: args.at,
         dt: None,
         integrator: None,
+        index: None,
         seed: args.seed,
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),

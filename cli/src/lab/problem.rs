@@ -198,6 +198,7 @@ fn from_file(path: &Path, args: &args::Lab) -> Outcome<Problem> {
         duration: args.duration,
         dt: None,
         integrator: None,
+        index: None,
         seed: None,
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),

@@ -82,6 +82,7 @@ fn usage_errors_exit_with_2() {
         "run a.scn --out .csv",
         "run a.scn --out",
         "render a.scn",
+        "run a.scn --index tree",
         "render a.scn --out o.jpg",
         "render a.scn --out o.gif --size 0x5",
         "render a.scn --out o.gif --size big",
@@ -128,6 +129,25 @@ fn the_json_report_has_exactly_its_fields() {
     let hash = report["hash"].as_str().expect("a hash");
     assert!(hash.len() == 16 && hash.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f')), "{hash}");
     assert!(number(&report, "seconds") >= 0.0 && number(&report, "ns_per_particle_step") >= 0.0);
+}
+
+#[test]
+fn neighbours_are_the_same_in_every_index() {
+    let particles: Vec<_> = (0..125)
+        .map(|i| serde_json::json!({"position": [f64::from(i % 5), f64::from(i / 5 % 5), f64::from(i / 25)]}))
+        .collect();
+    let law = serde_json::json!({"lennard_jones": {"epsilon": 1, "sigma": 0.95, "cutoff": 2.3}});
+    let folder = Folder::with("atoms.json", serde_json::json!({"forces": [law], "particles": particles}).to_string());
+    let energy = |index: &str| {
+        let report = folder.report(&format!("atoms.json --dt 0.002 --steps 50 --integrator verlet --index {index}"));
+        report["energy"]["kinetic"].as_f64().expect("a number")
+    };
+    let brute = energy("brute");
+    assert!(brute > 0.1, "{brute}");
+    for structure in pointmass::index::Structure::ALL {
+        let found = energy(structure.name());
+        assert!((found / brute - 1.0).abs() < 1e-4, "{structure}: {found}, not {brute}");
+    }
 }
 
 #[test]
