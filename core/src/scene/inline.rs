@@ -74,6 +74,8 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
     /// # Errors
     /// If the text is wrong, a list is longer than its array, or it names a mesh or includes a file; the scene is then
     /// what was read so far.
+    // Apart, so that a program which goes on to step has its stack back.
+    #[inline(never)]
     pub fn read<'a>(&mut self, text: &'a str) -> Result<(), InlineError<'a>> {
         self.particles.clear();
         self.springs.clear();
