@@ -222,7 +222,11 @@ fn automatic_substeps_tame_every_spring_of_the_course() {
     if course::copy_into(&folder, ".").is_none() {
         return;
     }
-    let step = if cfg!(debug_assertions) { "0.0005" } else { "0.0001" };
+    // Slow builds leave most of it to fast ones.
+    let (step, methods) = match cfg!(debug_assertions) {
+        true => ("0.0005", &[pointmass::Method::Verlet][..]),
+        false => ("0.0001", pointmass::Method::ALL),
+    };
     for (scene, length) in [("rope", 20.0), ("swirl", 20.0), ("tetra", 1.6)] {
         let run = |args: &str| {
             let report = folder.report(&format!("{scene}.scn --every 1000000 --out o.csv {args}"));
@@ -230,7 +234,7 @@ fn automatic_substeps_tame_every_spring_of_the_course() {
             (ends(&folder.read("o.csv")), report)
         };
         let (known, _) = run(&format!("--dt {step} --duration 10 --integrator rk4"));
-        for method in pointmass::Method::ALL {
+        for method in methods {
             let (found, report) = run(&format!("--dt 1/30 --duration 10 --integrator {method} --substeps auto"));
             assert_eq!(number(&report, "substeps/beyond"), 0.0, "{report}");
             for (known, found) in known.iter().zip(&found) {
