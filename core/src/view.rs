@@ -209,7 +209,7 @@ impl View<'_> {
     /// Breaks the springs that are stretched too far.
     fn snap(&mut self, scene: &Scene<'_>, report: &mut Report) {
         for (number, spring) in scene.springs.iter().enumerate() {
-            if spring.is_overstretched(number, &self.state(scene)) {
+            if spring.breaks_at.is_some() && spring.is_overstretched(number, &self.state(scene)) {
                 let Slices { last_spring, incident, .. } = self.memory.slices();
                 spring::mark_broken(number, spring, last_spring, incident);
                 report.broken += 1;

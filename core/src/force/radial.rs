@@ -83,7 +83,27 @@ impl Pair {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Radial<L>(pub L);
 
+/// The way to a neighbour \[m\], its square, and how stiff the two are along and across it \[N/m\].
+struct Bend {
+    toward: Vec3,
+    square: f32,
+    along: f32,
+    across: f32,
+}
+
 impl<L: RadialLaw> Radial<L> {
+    /// About a pair of neighbours; none if they coincide.
+    #[inline(always)]
+    fn bend(&self, state: &State<'_>, rows: [usize; 2]) -> Option<Bend> {
+        let toward = state.position[rows[1]] - state.position[rows[0]];
+        let square = toward.dot(toward);
+        if !(square > 0.0) {
+            return None;
+        }
+        let [along, across] = self.stiffness(square, &Pair::of(state, rows));
+        Some(Bend { toward, square, along, across })
+    }
+
     /// Stiffness along the line and across it \[N/m\]. Parts that would drive apart what is displaced are left out, as of
     /// springs.
     fn stiffness(&self, square: f32, pair: &Pair) -> [f32; 2] {
@@ -107,12 +127,9 @@ impl<L: RadialLaw> Force for Radial<L> {
     fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
         let all = 0..total.len();
         add_up(state, self.0.reach(), all, total, |row, other| {
-            let toward = state.position[other] - state.position[row];
-            let square = toward.dot(toward);
-            if !(square > 0.0) {
+            let Some(Bend { toward, square, along, across }) = self.bend(state, [row, other]) else {
                 return Vec3::ZERO;
-            }
-            let [along, across] = self.stiffness(square, &Pair::of(state, [row, other]));
+            };
             let apart = change.along[other] - change.along[row];
             let axial = toward * (toward.dot(apart) / square);
             (axial * (along - across) + apart * across) * change.position
@@ -122,12 +139,9 @@ impl<L: RadialLaw> Force for Radial<L> {
     fn add_stiffness(&self, state: &State<'_>, [position, _]: [f32; 2], total: &mut [Vec3]) {
         let all = 0..total.len();
         add_up(state, self.0.reach(), all, total, |row, other| {
-            let toward = state.position[other] - state.position[row];
-            let square = toward.dot(toward);
-            if !(square > 0.0) {
+            let Some(Bend { toward, square, along, across }) = self.bend(state, [row, other]) else {
                 return Vec3::ZERO;
-            }
-            let [along, across] = self.stiffness(square, &Pair::of(state, [row, other]));
+            };
             (toward * toward * ((along - across) / square) + Vec3::splat(across)) * position
         });
     }
