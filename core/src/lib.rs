@@ -77,6 +77,7 @@ mod time;
 mod view;
 mod weave;
 
+pub use collide::Grip;
 pub use emit::{Emit, Emitter, Spread, Varied};
 pub use force::{
     AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, PowerLaw, Pressure,

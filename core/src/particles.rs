@@ -19,6 +19,8 @@ pub struct Particle {
     /// How it moves \[m/s\].
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub velocity: Vec3,
+    /// Its radius \[m\]; zero: a point.
+    pub radius: f32,
     /// Mass \[kg\], above zero; of a fixed particle zero will do.
     pub mass: f32,
     /// It never moves, but still attracts and pulls at its springs.
@@ -44,6 +46,7 @@ impl Particle {
     pub const REST: Self = Self {
         position: Vec3::ZERO,
         velocity: Vec3::ZERO,
+        radius: 0.0,
         mass: 1.0,
         fixed: false,
         drag: 0.0,
@@ -54,11 +57,12 @@ impl Particle {
         color: None,
     };
 
-    /// Whether every number of it can be used: finite, the mass above zero (or fixed and not below zero).
+    /// Whether every number of it can be used: finite, the radius not below zero, the mass above zero (or fixed and not below zero).
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let finite = self.position.is_finite()
             && self.velocity.is_finite()
+            && (0.0..f32::INFINITY).contains(&self.radius)
             && [self.mass, self.drag, self.charge, self.elasticity, self.lifetime].iter().all(|x| x.is_finite());
         // The inverse of a mass below 3e-39 kg overflows.
         let heavy = if self.fixed { self.mass >= 0.0 } else { self.mass > 0.0 && (1.0 / self.mass).is_finite() };

@@ -191,6 +191,8 @@ storage! {
         position: Vec3 = Vec3::ZERO,
         /// How it moves \[m/s\], by row.
         velocity: Vec3 = Vec3::ZERO,
+        /// Radius \[m\], by row; zero: a point.
+        radius: f32 = 0.0,
         /// Mass \[kg\], by row.
         mass: f32 = 0.0,
         /// Inverse mass \[1/kg\], by row; zero pins the particle.
@@ -295,6 +297,6 @@ mod tests {
     #[test]
     fn a_particle_takes_the_bytes_that_the_readme_says() {
         let one = size_of::<Inline<1001, 0, 0, 4>>() - size_of::<Inline<1, 0, 0, 4>>();
-        assert_eq!(one, 1000 * (83 + 4 * 12));
+        assert_eq!(one, 1000 * (87 + 4 * 12));
     }
 }

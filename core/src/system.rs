@@ -187,6 +187,7 @@ impl<'a> Columns<'a> {
         Self {
             position: &self.position[..len],
             velocity: &self.velocity[..len],
+            radius: &self.radius[..len],
             mass: &self.mass[..len],
             inverse_mass: &self.inverse_mass[..len],
             drag: &self.drag[..len],
@@ -209,7 +210,8 @@ impl<'a> Columns<'a> {
         for vector in [self.position[row], self.velocity[row]] {
             vector.to_array().into_iter().for_each(|x| hash.float(x));
         }
-        for x in [self.mass[row], self.inverse_mass[row], self.drag[row], self.charge[row], self.elasticity[row]] {
+        let (mass, inverse, radius) = (self.mass[row], self.inverse_mass[row], self.radius[row]);
+        for x in [radius, mass, inverse, self.drag[row], self.charge[row], self.elasticity[row]] {
             hash.float(x);
         }
         hash.long(self.born[row].ticks());

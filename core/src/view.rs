@@ -238,6 +238,7 @@ impl View<'_> {
         m.serial[row] = serial;
         m.position[row] = particle.position;
         m.velocity[row] = if particle.fixed { Vec3::ZERO } else { particle.velocity };
+        m.radius[row] = particle.radius;
         m.mass[row] = particle.mass;
         m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };
         m.drag[row] = particle.drag;

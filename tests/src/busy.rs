@@ -57,6 +57,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         emitters: &emitters,
         forces: &forces,
         colliders: &(ground, box_),
+        grips: &[],
         sinks: &sink,
         integrator: Method::Rk4.integrator(),
         index: &(),

@@ -261,7 +261,7 @@ fn a_hit_turns_the_normal_speed_alone() {
             let way = random.direction();
             let position = target + way * 3.0 * extent(&solid);
             let velocity = -way * 4.0 * extent(&solid);
-            let Some(hit) = solid.collider.first_hit(&Segment { from: position, to: position + velocity }) else {
+            let Some(hit) = solid.collider.first_hit(&Segment::new(position, position + velocity)) else {
                 panic!("{}: {position} misses {target}", solid.name)
             };
             // Along its normal the depth falls by just as much, unless an edge is near.

@@ -184,7 +184,7 @@ impl Collider for Bowl {
         }
         let p = segment.at(low);
         let normal = Vec3::new(-2.0 * p.x, 1.0, -2.0 * p.z).normalize();
-        Some(Hit { time: low, normal, slack: 1e-6 })
+        Some(Hit::new(low, normal, 1e-6))
     }
 }
 
@@ -217,7 +217,7 @@ fn a_collider() {
 #[derive(Clone)]
 struct Arena {
     vectors: [Vec<Vec3>; 3],
-    numbers: [Vec<f32>; 5],
+    numbers: [Vec<f32>; 6],
     times: [Vec<Time>; 2],
     words: [Vec<u32>; 5],
     colors: Vec<[u8; 4]>,
@@ -246,12 +246,13 @@ impl Arena {
 impl Storage for Arena {
     fn slices(&mut self) -> Slices<'_> {
         let [position, velocity, work] = &mut self.vectors;
-        let [mass, inverse_mass, drag, charge, elasticity] = &mut self.numbers;
+        let [radius, mass, inverse_mass, drag, charge, elasticity] = &mut self.numbers;
         let [born, dies] = &mut self.times;
         let [serial, slot, row_of, last_spring, incident] = &mut self.words;
         Slices {
             position,
             velocity,
+            radius,
             mass,
             inverse_mass,
             drag,
@@ -273,12 +274,13 @@ impl Storage for Arena {
     }
     fn columns(&self) -> Columns<'_> {
         let [position, velocity, work] = &self.vectors;
-        let [mass, inverse_mass, drag, charge, elasticity] = &self.numbers;
+        let [radius, mass, inverse_mass, drag, charge, elasticity] = &self.numbers;
         let [born, dies] = &self.times;
         let [serial, slot, row_of, last_spring, incident] = &self.words;
         Columns {
             position,
             velocity,
+            radius,
             mass,
             inverse_mass,
             drag,
@@ -314,6 +316,7 @@ fn memory() {
         forces: &forces,
         colliders: &floor,
         sinks: &(),
+        grips: &[],
         integrator: &Leapfrog,
         index: &(),
     };

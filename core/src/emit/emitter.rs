@@ -60,6 +60,9 @@ pub struct Emitter<M> {
     /// The share of the emitter's velocity that births take along, usually 0 to 1.
     #[cfg_attr(feature = "serde", serde(default))]
     pub inherit: f32,
+    /// Radius \[m\]; zero: points.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub radius: Varied,
     /// Mass \[kg\].
     #[cfg_attr(feature = "serde", serde(default = "one"))]
     pub mass: Varied,
@@ -130,6 +133,7 @@ impl<M> Emitter<M> {
             spread: Spread::Uniform(0.0),
             velocity: Vec3::ZERO,
             inherit: 0.0,
+            radius: Varied::exactly(0.0),
             mass: Varied::exactly(1.0),
             fixed: false,
             drag: Varied::exactly(0.0),
@@ -202,6 +206,7 @@ impl<M: Surface> Emitter<M> {
         Particle {
             position: spot.point + self.velocity * at.seconds(),
             velocity: self.velocity * self.inherit + direction * self.speed.pick(|| speed),
+            radius: self.radius.pick(|| random.units(7)[1]),
             mass: self.mass.pick(|| random.units(3)[0]),
             fixed: self.fixed,
             drag: self.drag.pick(|| random.units(3)[1]),

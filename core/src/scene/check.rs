@@ -161,9 +161,10 @@ impl SceneFile {
             let message = format!("has to be from zero to {MAX_RATE:e}, not {}", emitter.rate);
             return Err(SceneError::value(format!("{at}.rate"), message));
         }
-        let Emitter { speed, mass, drag, charge, elasticity, lifetime, .. } = emitter;
+        let Emitter { speed, radius, mass, drag, charge, elasticity, lifetime, .. } = emitter;
         let varied = [
             ("speed", speed),
+            ("radius", radius),
             ("mass", mass),
             ("drag", drag),
             ("charge", charge),
@@ -175,6 +176,9 @@ impl SceneFile {
         }
         if !emitter.fixed && !(mass.mean - mass.variance.abs() > 3e-39) {
             return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the variance counted in"));
+        }
+        if !(radius.mean - radius.variance.abs() >= 0.0) {
+            return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the variance counted in"));
         }
         let (Spread::Uniform(cutoff) | Spread::Lecture(cutoff)) = emitter.spread;
         finite(&format!("{at}.spread"), &[cutoff])?;
@@ -233,6 +237,10 @@ impl SceneFile {
             let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
             finite(&format!("materials[{i}]"), colors.as_flattened())?;
             finite(&format!("materials[{i}]"), &[m.shininess, m.refraction, m.size, m.glow])?;
+            if !m.grip.is_sound() {
+                let message = "takes an elasticity from 0 to 1 and coefficients of friction from 0 on";
+                return Err(SceneError::value(format!("materials[{i}].grip"), message));
+            }
         }
         for (i, light) in self.lights.iter().enumerate() {
             let at = format!("lights[{i}]");

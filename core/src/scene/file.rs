@@ -1,6 +1,7 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
 use super::Fabric;
+use crate::collide::Grip;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
@@ -139,6 +140,9 @@ pub struct Material {
     pub size: f32,
     /// How particles are drawn, from 0, a lit ball, to 1, a glow.
     pub glow: f32,
+    /// How it feels to what touches it.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Grip::is_plain"))]
+    pub grip: Grip,
 }
 
 /// A light. Colours are red, green, blue; attenuation is ca, la, qa of 1 / (ca + la d + qa d²).
@@ -270,6 +274,7 @@ impl Default for Material {
             texture: None,
             size: 0.0,
             glow: 0.0,
+            grip: Grip::default(),
         }
     }
 }

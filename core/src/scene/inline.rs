@@ -104,6 +104,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             forces: &self.forces,
             colliders: &self.colliders,
             sinks: &self.forces.3,
+            grips: &[],
             integrator: &Rk4,
             index: &(),
         }

@@ -2,6 +2,7 @@
 
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
+use crate::collide::Grip;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
@@ -28,6 +29,8 @@ pub struct Model {
     pub forces: (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>),
     /// What they bounce off.
     pub colliders: Vec<Placed<Shape<Arc<MeshBuf>>>>,
+    /// How materials feel, by their numbers.
+    pub grips: Vec<Grip>,
     /// What is drawn.
     pub scenery: Vec<Solid>,
     /// The method.
@@ -78,7 +81,8 @@ impl Model {
         }
         let solid = scenery.iter().enumerate().filter(|(_, solid)| !matches!(solid.shape, Shape::Line(_)));
         let colliders = solid.map(|(i, solid)| {
-            Placed::new(solid.shape.clone(), solid.to_world).ok_or_else(|| {
+            let placed = Placed::new(solid.shape.clone(), solid.to_world);
+            placed.map(|placed| placed.made_of(solid.material)).ok_or_else(|| {
                 let message = "its groups together flatten space: there is no inverse";
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
             })
@@ -89,6 +93,7 @@ impl Model {
             emitters,
             colliders: colliders.collect::<Result<_, _>>()?,
             forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks),
+            grips: file.materials.iter().map(|material| material.grip).collect(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
             index: file.run.index,
@@ -106,6 +111,7 @@ impl Model {
             forces: &self.forces,
             colliders: &self.colliders,
             sinks: &self.forces.1,
+            grips: &self.grips,
             integrator: &self.integrator,
             index: &self.index,
         }
@@ -215,8 +221,9 @@ fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<
 
 fn with_shape(emitter: &Emitter<String>, shape: Shape<Arc<MeshBuf>>, file: &SceneFile) -> Emitter<Arc<MeshBuf>> {
     let Emitter { rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } = *emitter;
-    let Emitter { mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_variance, .. } =
-        *emitter;
+    let Emitter {
+        radius, mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_variance, ..
+    } = *emitter;
     let color = color(file, own, material);
     Emitter {
         shape,
@@ -229,6 +236,7 @@ fn with_shape(emitter: &Emitter<String>, shape: Shape<Arc<MeshBuf>>, file: &Scen
         spread,
         velocity,
         inherit,
+        radius,
         mass,
         fixed,
         drag,

@@ -1,5 +1,6 @@
 //! The scene as a system steps through it.
 
+use crate::collide::Grip;
 use crate::emit::Emit;
 use crate::force::{Force, Spring};
 use crate::index::Arrange;
@@ -28,6 +29,8 @@ pub struct Scene<'a> {
     pub colliders: &'a dyn Collider,
     /// What they vanish at.
     pub sinks: &'a dyn Collider,
+    /// How materials feel, by their numbers; those beyond have no friction.
+    pub grips: &'a [Grip],
     /// How they are moved.
     pub integrator: &'a dyn Integrator,
     /// How forces find the neighbours of a particle: `()` by looking at all others.
@@ -49,6 +52,7 @@ impl Scene<'_> {
         forces: &(),
         colliders: &(),
         sinks: &(),
+        grips: &[],
         integrator: &Symplectic,
         index: &(),
     };

@@ -117,6 +117,9 @@ impl Writer {
         if material.size != 0.0 || material.glow != 0.0 {
             self.warn("materials: .scn has neither size nor glow of particles; they are left out");
         }
+        if !material.grip.is_plain() {
+            self.warn("materials: .scn knows no friction and no elasticity of surfaces; they are left out");
+        }
         let numbers = Numbers(colors.as_flattened());
         let rest = Numbers(&[material.shininess, material.refraction]);
         self.line(format_args!("material {numbers} {rest} {texture}"));
@@ -228,10 +231,13 @@ impl Writer {
     }
 
     fn particle(&mut self, particle: &Particle) {
-        let Particle { position, velocity, mass, fixed, drag, charge, elasticity, lifetime, material, color } =
+        let Particle { position, velocity, radius, mass, fixed, drag, charge, elasticity, lifetime, material, color } =
             particle;
         if color.is_some() {
             self.warn("particles: .scn has no colours of single particles; they are left out");
+        }
+        if *radius != 0.0 {
+            self.warn("particles: .scn has no radii; they are left out");
         }
         if *charge != 0.0 {
             self.warn("particles: .scn has no charges; they are left out");
@@ -261,6 +267,9 @@ impl Writer {
         }
         if emitter.direction.is_some() || emitter.velocity != Vec3::ZERO {
             self.warn(format!("{at}: .scn has neither a direction nor a velocity of sources; they are left out"));
+        }
+        if emitter.radius != Varied::default() {
+            self.warn(format!("{at}: .scn has no radii; they are left out"));
         }
         if emitter.charge != Varied::default() {
             self.warn(format!("{at}: .scn has no charges; they are left out"));

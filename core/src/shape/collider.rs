@@ -2,11 +2,13 @@
 
 use super::Aabb;
 use crate::math::{high, largest, low, max};
+use crate::time::Time;
 use glam::Vec3;
 
-/// Something that a moving point can run into.
+/// Something that a moving point or ball can run into.
 ///
-/// A tuple, slice or reference of colliders is a collider: the earliest hit is its hit.
+/// A tuple, slice or reference of colliders is a collider: the earliest hit is its hit, of several at once that of the
+/// collider listed first.
 pub trait Collider: Sync {
     /// Where `segment` first meets it, if it does.
     ///
@@ -20,19 +22,29 @@ pub trait Collider: Sync {
         true
     }
 
+    /// Visits the places of it that are nearest to `center` and within `reach` \[m\] of it at an instant, one for each
+    /// of its faces: what a ball there leans on, or is about to. None by default, which leaves all to `first_hit`.
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let _ = (center, reach, at, visit);
+    }
+
     /// Whether it is known that nothing can ever hit it.
     fn is_empty(&self) -> bool {
         false
     }
 }
 
-/// A straight piece of a particle's path.
+/// A straight piece of a particle's path, travelled at a steady speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// Its beginning \[m\].
     pub from: Vec3,
     /// Its end \[m\].
     pub to: Vec3,
+    /// The radius of the ball that moves along it \[m\]; zero: a point.
+    pub radius: f32,
+    /// The instants of its beginning and its end, which only what moves itself asks for.
+    pub during: [Time; 2],
 }
 
 /// Where a segment meets a surface.
@@ -45,9 +57,46 @@ pub struct Hit {
     /// How far from the computed point the surface may really be \[m\]: a few units in the last place of the
     /// coordinates involved, never an absolute epsilon.
     pub slack: f32,
+    /// How the surface itself moves there \[m/s\].
+    pub velocity: Vec3,
+    /// Number of its material in the scene, if it has one.
+    pub material: Option<u16>,
+    /// Which triangle of a mesh; zero for what has but one part.
+    pub face: u32,
+}
+
+/// A place of a surface near a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The place \[m\].
+    pub point: Vec3,
+    /// Unit vector from there toward the ball's centre.
+    pub normal: Vec3,
+    /// How far the centre is \[m\].
+    pub distance: f32,
+    /// How the surface itself moves there \[m/s\].
+    pub velocity: Vec3,
+    /// Number of its material in the scene, if it has one.
+    pub material: Option<u16>,
+}
+
+impl Hit {
+    /// A hit on something at rest and of no material.
+    #[inline]
+    #[must_use]
+    pub const fn new(time: f32, normal: Vec3, slack: f32) -> Self {
+        Self { time, normal, slack, velocity: Vec3::ZERO, material: None, face: 0 }
+    }
 }
 
 impl Segment {
+    /// The path of a point, at no particular time.
+    #[inline]
+    #[must_use]
+    pub const fn new(from: Vec3, to: Vec3) -> Self {
+        Self { from, to, radius: 0.0, during: [Time::ZERO; 2] }
+    }
+
     /// From one end to the other \[m\].
     #[inline]
     #[must_use]
@@ -62,16 +111,17 @@ impl Segment {
         self.from + self.step() * time
     }
 
-    /// A box around it, with room for rounding.
+    /// A box around all that the point or ball touches, with room for rounding.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        Aabb { min: low(self.from, self.to), max: high(self.from, self.to) }.with_slack()
+        let (min, max) = (low(self.from, self.to), high(self.from, self.to));
+        Aabb { min: min - self.radius, max: max + self.radius }.with_slack()
     }
 
     /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
     #[inline]
     pub(crate) fn slack(&self, size: f32) -> f32 {
-        4.0 * f32::EPSILON * (max(largest(self.from), largest(self.to)) + size)
+        4.0 * f32::EPSILON * (max(largest(self.from), largest(self.to)) + self.radius + size)
     }
 }
 
@@ -94,6 +144,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         (**self).may_touch(bounds)
     }
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        (**self).contacts(center, reach, at, visit);
+    }
     fn is_empty(&self) -> bool {
         (**self).is_empty()
     }
@@ -107,6 +160,10 @@ impl<T: Collider> Collider for [T] {
     }
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.iter().any(|c| c.may_touch(bounds))
+    }
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach };
+        self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts(center, reach, at, visit));
     }
     fn is_empty(&self) -> bool {
         self.iter().all(Collider::is_empty)
@@ -123,6 +180,9 @@ macro_rules! lists {
             }
             fn may_touch(&self, bounds: &Aabb) -> bool {
                 self.as_slice().may_touch(bounds)
+            }
+            fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+                self.as_slice().contacts(center, reach, at, visit);
             }
             fn is_empty(&self) -> bool {
                 self.iter().all(Collider::is_empty)
@@ -151,6 +211,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 $($name.may_touch(bounds))||+
+            }
+            fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.contacts(center, reach, at, visit);)+
             }
             fn is_empty(&self) -> bool {
                 #[allow(non_snake_case)]

@@ -66,11 +66,11 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
     let slack = segment.slack(solid.reach());
     let Some(span) = solid.span(segment.from, step) else {
         // The ends differ but the line just misses: it runs within rounding of the surface.
-        return (starts_inside != ends_inside).then(|| Hit { time: 0.0, normal: -unit(step), slack });
+        return (starts_inside != ends_inside).then(|| Hit::new(0.0, -unit(step), slack));
     };
     // At an apex or a rim the normal may be none, or point along the path: then the way back has to do.
     let facing = |normal: Vec3| if step.dot(normal) < 0.0 { normal } else { -unit(step) };
-    let hit = |time, normal| Some(Hit { time: clamp(time, 0.0, 1.0), normal: facing(normal), slack });
+    let hit = |time, normal| Some(Hit::new(clamp(time, 0.0, 1.0), facing(normal), slack));
     match (starts_inside, ends_inside) {
         (true, _) => hit(span.leave, -span.leave_normal),
         (false, true) => hit(span.enter, span.enter_normal),

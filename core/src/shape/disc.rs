@@ -63,6 +63,6 @@ impl Collider for Disc {
             crossing(normal, normal.dot(segment.from - self.center), normal.dot(segment.to - self.center))?;
         let offset = segment.at(time) - self.center;
         let slack = segment.slack(largest(self.center) + self.radius);
-        (offset.dot(offset) <= self.radius * self.radius).then_some(Hit { time, normal, slack })
+        (offset.dot(offset) <= self.radius * self.radius).then_some(Hit::new(time, normal, slack))
     }
 }

@@ -58,7 +58,7 @@ impl Collider for Line {
         let gap = length(point - self.nearest(point));
         let before = segment.from - self.nearest(segment.from);
         // A path that starts on the line only leaves it.
-        (gap <= touch && gap < length(before)).then(|| Hit { time, normal: unit(before), slack: touch })
+        (gap <= touch && gap < length(before)).then(|| Hit::new(time, unit(before), touch))
     }
 }
 
@@ -94,11 +94,11 @@ mod tests {
 
     #[test]
     fn a_path_through_the_line_touches_it() {
-        let hit = X.first_hit(&Segment { from: Vec3::new(0.3, 1.0, 0.5), to: Vec3::new(0.3, -3.0, -1.5) });
+        let hit = X.first_hit(&Segment::new(Vec3::new(0.3, 1.0, 0.5), Vec3::new(0.3, -3.0, -1.5)));
         assert!((hit.expect("it crosses").time - 0.25).abs() < 1e-6);
-        assert_eq!(X.first_hit(&Segment { from: Vec3::new(0.3, 1.0, 0.01), to: Vec3::new(0.3, -1.0, 0.01) }), None);
-        assert_eq!(X.first_hit(&Segment { from: Vec3::new(1.1, 1.0, 0.0), to: Vec3::new(1.1, -1.0, 0.0) }), None);
-        assert_eq!(X.first_hit(&Segment { from: Vec3::new(0.5, 0.0, 0.0), to: Vec3::new(0.5, 1.0, 0.0) }), None);
+        assert_eq!(X.first_hit(&Segment::new(Vec3::new(0.3, 1.0, 0.01), Vec3::new(0.3, -1.0, 0.01))), None);
+        assert_eq!(X.first_hit(&Segment::new(Vec3::new(1.1, 1.0, 0.0), Vec3::new(1.1, -1.0, 0.0))), None);
+        assert_eq!(X.first_hit(&Segment::new(Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.0))), None);
     }
 
     #[test]

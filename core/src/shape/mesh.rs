@@ -1,7 +1,8 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
-use super::{Aabb, Collider, Hit, Segment, Spot, Surface, Triangle, earlier};
+use super::{Aabb, Collider, Contact, Hit, Segment, Spot, Surface, Triangle, earlier};
 use crate::math::{length, max};
+use crate::time::Time;
 use glam::Vec3;
 
 /// A borrowed triangle mesh, hit from both sides.
@@ -162,7 +163,9 @@ impl Collider for Mesh<'_> {
         if !self.bounds.overlaps(&segment.bounds()) {
             return None;
         }
-        self.faces().fold(None, |best, face| earlier(best, face.first_hit(segment)))
+        self.faces().zip(0..).fold(None, |best, (triangle, face)| {
+            earlier(best, triangle.first_hit(segment).map(|hit| Hit { face, ..hit }))
+        })
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
@@ -198,6 +201,9 @@ macro_rules! through_view {
             }
             fn may_touch(&self, bounds: &Aabb) -> bool {
                 self.view().may_touch(bounds)
+            }
+            fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+                self.view().contacts(center, reach, at, visit);
             }
             fn is_empty(&self) -> bool {
                 self.view().is_empty()
@@ -273,7 +279,7 @@ mod tests {
                 _ => Vec3::ZERO,
             };
             let inside = target * 0.5;
-            let hit = mesh.first_hit(&Segment { from: inside, to: inside + out });
+            let hit = mesh.first_hit(&Segment::new(inside, inside + out));
             assert!(hit.is_some(), "from {inside} towards {out}");
         }
     }

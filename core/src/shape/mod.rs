@@ -17,7 +17,7 @@ mod triangle;
 
 pub use aabb::Aabb;
 pub(crate) use collider::earlier;
-pub use collider::{Collider, Hit, Segment};
+pub use collider::{Collider, Contact, Hit, Segment};
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
@@ -31,6 +31,7 @@ pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
+use crate::time::Time;
 use glam::Vec3;
 
 /// A surface (or a line) in space.
@@ -120,6 +121,9 @@ impl<M: Collider> Collider for Shape<M> {
     }
     fn may_touch(&self, bounds: &Aabb) -> bool {
         each!(self, s => s.may_touch(bounds))
+    }
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        each!(self, s => s.contacts(center, reach, at, visit));
     }
 }
 

@@ -21,6 +21,7 @@ pub struct Placed<C> {
     bounds: Aabb,
     /// To the world and back; none, if it stands where it is.
     maps: Option<(Affine, Affine)>,
+    material: Option<u16>,
 }
 
 impl Affine {
@@ -72,22 +73,31 @@ impl<C: Surface> Placed<C> {
         let bounds = Aabb { min: bounds.min - room, max: bounds.max + room };
         let to_local = to_world.inverse()?;
         let maps = (to_world != Affine::IDENTITY).then_some((to_world, to_local));
-        Some(Self { collider, bounds, maps })
+        Some(Self { collider, bounds, maps, material: None })
+    }
+
+    /// The same, made of the scene's material with this number.
+    #[must_use]
+    pub fn made_of(self, material: Option<u16>) -> Self {
+        Self { material, ..self }
     }
 }
 
 impl<C: Collider> Collider for Placed<C> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let Some((to_world, to_local)) = &self.maps else { return self.collider.first_hit(segment) };
+        let Some((to_world, to_local)) = &self.maps else {
+            return self.collider.first_hit(segment).map(|hit| Hit { material: self.material, ..hit });
+        };
         // Lines stay lines and fractions stay fractions; normals go by the inverse transpose.
-        let local = Segment { from: to_local.point(segment.from), to: to_local.point(segment.to) };
+        let local = Segment { from: to_local.point(segment.from), to: to_local.point(segment.to), ..*segment };
         let hit = self.collider.first_hit(&local)?;
         let columns = to_world.linear;
         let stretch = length(Vec3::new(length(columns.x_axis), length(columns.y_axis), length(columns.z_axis)));
         Some(Hit {
-            time: hit.time,
             normal: unit(to_local.linear.transpose() * hit.normal),
             slack: hit.slack * stretch + segment.slack(crate::math::largest(to_world.shift)),
+            material: self.material,
+            ..hit
         })
     }
 
@@ -111,14 +121,14 @@ mod tests {
         let map = Affine { linear: Mat3::from_diagonal(Vec3::new(2.0, 1.0, 0.5)), shift: Vec3::new(1.0, 0.0, 0.0) };
         let unit_sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
         let placed = Placed::new(unit_sphere, map).expect("it can be undone");
-        let hit = placed.first_hit(&Segment { from: Vec3::new(5.0, 0.0, 0.0), to: Vec3::new(1.0, 0.0, 0.0) });
+        let hit = placed.first_hit(&Segment::new(Vec3::new(5.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0)));
         let hit = hit.expect("it goes in");
         assert!((hit.time - 0.5).abs() < 1e-6 && (hit.normal - Vec3::X).length() < 1e-6);
         // At (1 + √2, √½, 0) the normal is along (x/4, y, 0).
         let p = Vec3::new(core::f32::consts::SQRT_2, core::f32::consts::FRAC_1_SQRT_2, 0.0);
         let normal = unit(Vec3::new(p.x / 4.0, p.y, 0.0));
         let p = p + Vec3::X;
-        let hit = placed.first_hit(&Segment { from: p + normal, to: p - normal }).expect("it goes in");
+        let hit = placed.first_hit(&Segment::new(p + normal, p - normal)).expect("it goes in");
         assert!((hit.time - 0.5).abs() < 1e-6 && (hit.normal - normal).length() < 1e-5);
     }
 

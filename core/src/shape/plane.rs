@@ -41,7 +41,7 @@ impl Collider for Plane {
         // Which side, and when, does not depend on the normal's length.
         let side = |point: Vec3| self.normal.dot(point - self.point);
         let (time, normal) = crossing(self.normal, side(segment.from), side(segment.to))?;
-        Some(Hit { time, normal: unit(normal), slack: segment.slack(largest(self.point)) })
+        Some(Hit::new(time, unit(normal), segment.slack(largest(self.point))))
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {

@@ -63,14 +63,14 @@ proptest! {
     fn a_hit_is_on_the_surface_and_the_way_to_it_is_free(
         from in prop::array::uniform3(-2.0f32..2.0), to in prop::array::uniform3(-2.0f32..2.0)
     ) {
-        let segment = Segment { from: from.into(), to: to.into() };
+        let segment = Segment::new(from.into(), to.into());
         for shape in all() {
             let Some(hit) = shape.first_hit(&segment) else { continue };
             prop_assert!((0.0..=1.0).contains(&hit.time));
             let point = segment.at(hit.time);
             prop_assert!((shape.nearest(point) - point).length() < 1e-5, "{shape:?} {segment:?} {hit:?}");
             prop_assert!(segment.step().dot(hit.normal) < 1e-6);
-            let before = Segment { from: segment.from, to: segment.at(hit.time) + hit.normal * 1e-5 };
+            let before = Segment::new(segment.from, segment.at(hit.time) + hit.normal * 1e-5);
             if hit.time > 1e-3 {
                 let again = shape.first_hit(&before);
                 prop_assert!(again.is_none_or(|h| h.time > 0.999), "{shape:?} {segment:?} {hit:?} {again:?}");
@@ -83,14 +83,14 @@ proptest! {
     fn a_path_cut_in_two_hits_all_the_same(
         from in prop::array::uniform3(-2.0f32..2.0), to in prop::array::uniform3(-2.0f32..2.0), cut in 0.0f32..1.0
     ) {
-        let whole = Segment { from: from.into(), to: to.into() };
+        let whole = Segment::new(from.into(), to.into());
         let middle = whole.at(cut);
         for shape in all() {
             let Some(hit) = shape.first_hit(&whole) else { continue };
             // A graze within rounding may be judged either way.
             if hit.normal.dot(crate::math::unit(whole.step())) > -0.02 { continue }
-            let first = shape.first_hit(&Segment { from: whole.from, to: middle });
-            let second = shape.first_hit(&Segment { from: middle, to: whole.to });
+            let first = shape.first_hit(&Segment::new(whole.from, middle));
+            let second = shape.first_hit(&Segment::new(middle, whole.to));
             prop_assert!(first.is_some() || second.is_some(), "{shape:?} {whole:?} {middle}");
         }
     }
@@ -103,9 +103,9 @@ fn a_particle_on_the_surface_that_leaves_does_not_hit_it() {
             let spot = shape.sample(numbers(i));
             // Set off by the rounding error, as the response does it.
             let from = spot.point + spot.normal * 2e-6;
-            let away = Segment { from, to: from + spot.normal };
+            let away = Segment::new(from, from + spot.normal);
             assert_eq!(shape.first_hit(&away), None, "{shape:?} {spot:?}");
-            let inward = Segment { from, to: from - spot.normal * 0.1 };
+            let inward = Segment::new(from, from - spot.normal * 0.1);
             let hit = shape.first_hit(&inward).expect("a path into the surface hits it");
             assert!(hit.time < 1e-4, "{shape:?} {hit:?}");
         }
@@ -116,7 +116,7 @@ fn a_particle_on_the_surface_that_leaves_does_not_hit_it() {
 fn lists_of_colliders_are_colliders() {
     let near = Plane { point: Vec3::Y, normal: Vec3::Y };
     let far = Plane { point: Vec3::ZERO, normal: Vec3::Y };
-    let down = Segment { from: Vec3::Y * 2.0, to: -Vec3::Y };
+    let down = Segment::new(Vec3::Y * 2.0, -Vec3::Y);
     let hit = |c: &dyn Collider| c.first_hit(&down).map(|h| h.time);
     assert_eq!(hit(&()), None);
     assert_eq!(hit(&(far, near)), hit(&near));

@@ -80,7 +80,7 @@ impl Collider for Triangle {
         // be judged to pass one triangle there and, by its continuation, the other.
         let met = after * after <= slack * slack * normal.dot(normal) && before.abs() > after.abs();
         let (time, normal) = crossing(normal, before, if met { 0.0 } else { after })?;
-        self.is_passed(segment).then(|| Hit { time, normal: unit(normal), slack })
+        self.is_passed(segment).then(|| Hit::new(time, unit(normal), slack))
     }
 }
 

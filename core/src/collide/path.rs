@@ -1,0 +1,124 @@
+//! The path of a particle through a step, and the chords along which its collisions are sought.
+
+use crate::math::{high, length, low, max, sqrt};
+use crate::shape::{Aabb, Segment};
+use crate::time::Time;
+use glam::Vec3;
+
+/// How far a path's chords may stray from it \[m\], unless that takes more than `MAX_CHORDS` of them.
+pub(crate) const CHORD_ERROR: f32 = 1e-4;
+
+/// How many chords a path is followed along at the most.
+pub(crate) const MAX_CHORDS: u32 = 8;
+
+/// The cubic along which a particle moves: positions and velocities at both ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    pub(super) x0: Vec3,
+    pub(super) v0: Vec3,
+    pub(super) x1: Vec3,
+    pub(super) v1: Vec3,
+    /// When it begins and ends.
+    pub(super) during: [Time; 2],
+}
+
+impl Path {
+    /// How long it takes \[s\].
+    pub(super) fn duration(&self) -> f32 {
+        let [start, end] = self.during;
+        (end - start).seconds()
+    }
+
+    /// The instant at a fraction of the time.
+    pub(super) fn instant(&self, s: f32) -> Time {
+        between(self.during, s)
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        [self.x0, self.v0, self.x1, self.v1].iter().all(|v| v.is_finite())
+    }
+
+    /// A box that holds a ball on it: that of its Bézier control points.
+    pub(super) fn hull(&self, radius: f32) -> Aabb {
+        let third = self.duration() * (1.0 / 3.0);
+        let (a, b) = (self.x0 + self.v0 * third, self.x1 - self.v1 * third);
+        let (min, max) = (low(low(self.x0, self.x1), low(a, b)), high(high(self.x0, self.x1), high(a, b)));
+        Aabb { min: min - radius, max: max + radius }.with_slack()
+    }
+
+    /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.
+    pub(super) fn at(&self, s: f32) -> Vec3 {
+        let [c1, c2, c3] = self.coefficients();
+        self.x0 + (c1 + (c2 + c3 * s) * s) * s
+    }
+
+    fn coefficients(&self) -> [Vec3; 3] {
+        let duration = self.duration();
+        let (way, m0, m1) = (self.x1 - self.x0, self.v0 * duration, self.v1 * duration);
+        [m0, way * 3.0 - m0 * 2.0 - m1, m0 + m1 - way * 2.0]
+    }
+
+    /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
+    pub(super) fn chords(&self) -> u32 {
+        let [_, c2, c3] = self.coefficients();
+        let bend = 2.0 * max(length(c2), length(c2 + c3 * 3.0));
+        let ratio = bend / (8.0 * CHORD_ERROR);
+        // The cast rounds down and saturates.
+        if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1) } else { 1 }
+    }
+
+    /// Its pieces, so many, for a ball: each begins where and when the one before ends.
+    pub(super) fn pieces(&self, count: u32, radius: f32) -> impl Iterator<Item = Segment> + use<> {
+        let (path, mut from, mut start) = (*self, self.x0, self.during[0]);
+        (1..=count).map(move |i| {
+            let s = i as f32 / count as f32;
+            let (to, end) = if i == count { (path.x1, path.during[1]) } else { (path.at(s), path.instant(s)) };
+            let piece = Segment { from, to, radius, during: [start, end] };
+            (from, start) = (to, end);
+            piece
+        })
+    }
+}
+
+/// The instant at a fraction of a span.
+pub(super) fn between([start, end]: [Time; 2], s: f32) -> Time {
+    // A span is so short that single precision leaves less than a nanosecond; the cast saturates.
+    let ticks = ((end - start).ticks() as f32 * s) as u64;
+    (start + Time::from_ticks(ticks)).min(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::unit;
+
+    #[test]
+    fn chords_stay_near_the_path() {
+        let (v0, a, h) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(0.0, -9.8, 0.0), 0.05);
+        let during = [Time::ZERO, Time::from_seconds(h)];
+        let path = Path { x0: Vec3::ZERO, v0, x1: (v0 + a * (h / 2.0)) * h, v1: v0 + a * h, during };
+        let n = path.chords();
+        assert!(n > 1 && n < MAX_CHORDS);
+        for i in 0..n {
+            let (s, t) = (i as f32 / n as f32, (i + 1) as f32 / n as f32);
+            let gap = length((path.at(s) + path.at(t)) * 0.5 - path.at((s + t) * 0.5));
+            assert!(gap <= CHORD_ERROR, "{gap}");
+        }
+        assert!((path.at(0.5) - (v0 + a * (h / 4.0)) * (h / 2.0)).length() < 1e-6);
+        let straight = Path { x1: v0, v1: v0, during: [Time::ZERO, Time::from_seconds(1.0)], ..path };
+        assert_eq!(straight.chords(), 1);
+        assert_eq!(unit(straight.at(0.3)), unit(v0));
+    }
+
+    #[test]
+    fn pieces_join_in_space_and_time() {
+        let during = [Time::from_seconds(3.0), Time::from_seconds(3.25)];
+        let path = Path { x0: Vec3::ZERO, v0: Vec3::X, x1: Vec3::ONE, v1: Vec3::Y, during };
+        let (mut place, mut instant) = (path.x0, during[0]);
+        for piece in path.pieces(5, 0.0) {
+            assert_eq!((piece.from, piece.during[0]), (place, instant));
+            (place, instant) = (piece.to, piece.during[1]);
+        }
+        assert_eq!((place, instant), (path.x1, during[1]));
+    }
+}
