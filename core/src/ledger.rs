@@ -221,6 +221,7 @@ fn first<'s>(state: &State<'s>, len: usize) -> State<'s> {
     State {
         position: &state.position[..len],
         velocity: &state.velocity[..len],
+        radius: &state.radius[..len],
         mass: &state.mass[..len],
         drag: &state.drag[..len],
         charge: &state.charge[..len],

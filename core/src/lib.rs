@@ -51,6 +51,7 @@ extern crate std;
 
 mod collide;
 pub mod emit;
+mod events;
 pub mod force;
 mod hash;
 pub mod index;
@@ -77,11 +78,14 @@ mod time;
 mod view;
 mod weave;
 
-pub use collide::Grip;
+#[doc(hidden)]
+pub use collide::Passage;
+pub use collide::{Contacts, Grip, Impulse};
 pub use emit::{Emit, Emitter, Spread, Varied};
+pub use events::{Event, EventKind, Events};
 pub use force::{
-    AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, PowerLaw, Pressure,
-    QuadraticDrag, Radial, Sink, Spring, Viscosity, Wind,
+    AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, Penalty, PowerLaw,
+    Pressure, QuadraticDrag, Radial, Sink, Spring, Viscosity, Wind,
 };
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;
@@ -93,10 +97,10 @@ pub use integrate::{
 pub use ledger::{Books, Ledger};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
-pub use observe::{Impact, Observer, Phase};
+pub use observe::{Impact, Observer, Passing, Phase};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use report::{Caps, Died, Effort, Report};
-pub use retire::Fate;
+pub use retire::{Cause, Fate};
 pub use scene::{Scene, Unfit};
 #[cfg(feature = "alloc")]
 pub use storage::Heap;

@@ -1,6 +1,9 @@
 //! Looking on while a step is made.
 
 use crate::force::State;
+use crate::particles::Id;
+use crate::retire::Cause;
+use crate::time::Time;
 use glam::Vec3;
 
 /// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away.
@@ -10,9 +13,24 @@ pub trait Observer {
         let _ = (phase, state);
     }
 
-    /// A particle met a collider and was answered.
+    /// A particle met a collider or another particle, and was answered.
     fn hit(&mut self, hit: &Impact) {
         let _ = hit;
+    }
+
+    /// A particle was born.
+    fn born(&mut self, birth: &Passing) {
+        let _ = birth;
+    }
+
+    /// A particle dies.
+    fn died(&mut self, death: &Passing, cause: Cause) {
+        let _ = (death, cause);
+    }
+
+    /// So many births up to an instant found no room.
+    fn refused(&mut self, count: u64, time: Time) {
+        let _ = (count, time);
     }
 }
 
@@ -37,17 +55,40 @@ pub enum Phase {
     Delete,
 }
 
-/// A particle's meeting with a collider.
+/// A particle's meeting with a collider or with another particle; that of two particles is told of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// The particle's row.
+    /// The particle.
+    pub id: Id,
+    /// Its row, during this step.
     pub row: usize,
+    /// The particle it met; none: a collider.
+    pub other: Option<Id>,
     /// Its mass \[kg\].
     pub mass: f32,
-    /// The surface's normal on the particle's side.
+    /// Where its middle was \[m\].
+    pub place: Vec3,
+    /// Normal of the other's surface, toward the particle.
     pub normal: Vec3,
+    /// The speed at which the two came together along it \[m/s\].
+    pub closing: f32,
     /// Its velocity before \[m/s\].
     pub before: Vec3,
     /// Its velocity after \[m/s\].
     pub after: Vec3,
+    /// The instant.
+    pub time: Time,
+}
+
+/// A particle that has just been born, or is just about to be removed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passing {
+    /// The particle.
+    pub id: Id,
+    /// Where \[m\].
+    pub place: Vec3,
+    /// Its velocity \[m/s\].
+    pub velocity: Vec3,
+    /// Its birth, or the end of the step in which it died.
+    pub time: Time,
 }

@@ -16,6 +16,8 @@ pub struct Report {
     pub refused: u64,
     /// Times that a particle met a collider.
     pub hits: u64,
+    /// Times that two particles met.
+    pub contacts: u64,
     /// Springs that broke.
     pub broken: u64,
     /// Times that a bound cut work short.
@@ -110,6 +112,7 @@ impl core::ops::AddAssign for Report {
             (&mut self.born, other.born),
             (&mut self.refused, other.refused),
             (&mut self.hits, other.hits),
+            (&mut self.contacts, other.contacts),
             (&mut self.broken, other.broken),
         ] {
             *sum = sum.saturating_add(more);
@@ -137,19 +140,20 @@ impl Report {
         died: Died { lifetime: 0, sink: 0, density: 0, chance: 0, nonfinite: 0 },
         refused: 0,
         hits: 0,
+        contacts: 0,
         broken: 0,
         effort: Effort::NONE,
         caps: Caps { bounces: 0, chords: 0, springs: 0, unfit: 0 },
     };
 
     /// Every counter of what happened, in a fixed order.
-    pub(crate) fn counters(&self) -> [u64; 14] {
-        let Self { initial, born, died, refused, hits, broken, caps, effort: _ } = *self;
+    pub(crate) fn counters(&self) -> [u64; 15] {
+        let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
         let Died { lifetime, sink, density, chance, nonfinite } = died;
         let Caps { bounces, chords, springs, unfit } = caps;
         [
-            initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, broken, bounces, chords, springs,
-            unfit,
+            initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, contacts, broken, bounces,
+            chords, springs, unfit,
         ]
     }
 }

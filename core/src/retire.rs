@@ -1,6 +1,8 @@
 //! Deletion: by age, at sinks, and of what is no longer a number.
 
 use crate::force::Spring;
+use crate::observe::{Observer, Passing};
+use crate::particles::Id;
 use crate::report::Report;
 use crate::storage::Slices;
 use crate::time::Time;
@@ -16,20 +18,40 @@ pub enum Fate {
     Sink,
 }
 
+/// Why a particle died.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+pub enum Cause {
+    /// Of age.
+    Lifetime,
+    /// It touched a sink.
+    Sink,
+    /// A number of its was no longer finite.
+    Nonfinite,
+}
+
 /// Removes what the step has ended: rows that are not finite, that touched a sink, or whose time has come by `now`.
-pub(crate) fn retire(view: &mut View<'_>, springs: &[Spring], now: Time, report: &mut Report) {
+pub(crate) fn retire(
+    view: &mut View<'_>,
+    springs: &[Spring],
+    now: Time,
+    report: &mut Report,
+    observer: &mut dyn Observer,
+) {
     // From the back, so that the row that fills a gap has been looked at already.
     let mut end = view.len();
     while let Some(row) = last_doomed(&view.memory, end, now) {
         let m = &view.memory;
-        let cause = if !(m.position[row].is_finite() && m.velocity[row].is_finite()) {
-            &mut report.died.nonfinite
+        let (cause, counter) = if !(m.position[row].is_finite() && m.velocity[row].is_finite()) {
+            (Cause::Nonfinite, &mut report.died.nonfinite)
         } else if m.fate[row] == Fate::Sink {
-            &mut report.died.sink
+            (Cause::Sink, &mut report.died.sink)
         } else {
-            &mut report.died.lifetime
+            (Cause::Lifetime, &mut report.died.lifetime)
         };
-        *cause += 1;
+        *counter += 1;
+        let id = Id { slot: m.slot[row], serial: m.serial[row] };
+        observer.died(&Passing { id, place: m.position[row], velocity: m.velocity[row], time: now }, cause);
         view.remove(row, springs, report);
         end = row;
     }

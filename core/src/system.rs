@@ -175,11 +175,11 @@ impl<B: Storage> System<B> {
 impl<'a> Columns<'a> {
     /// The living as forces see them.
     pub(crate) fn state(self, springs: &'a [Spring], status: &Status) -> State<'a> {
-        let Columns { position, velocity, mass, drag, charge, serial, row_of, last_spring, incident, .. } =
+        let Columns { position, velocity, radius, mass, drag, charge, serial, row_of, last_spring, incident, .. } =
             self.living(status.len);
         let springs = Springs { springs, start: status.start, serial, row_of, last_spring, incident };
         let (time, mass_tree, charge_tree, near) = (status.time, None, None, None);
-        State { time, position, velocity, mass, drag, charge, springs, mass_tree, charge_tree, near }
+        State { time, position, velocity, radius, mass, drag, charge, springs, mass_tree, charge_tree, near }
     }
 
     /// The columns by row, cut to the rows in use.

@@ -1,6 +1,6 @@
 //! The step itself: every algorithm works on a `View`, a system with its memory at hand.
 
-use crate::collide::collide;
+use crate::collide::Passage;
 use crate::emit::Births;
 use crate::force::{Force, Grow, Needs, Spring, Springs, State, spring};
 use crate::index::{BarnesHut, SpatialIndex};
@@ -97,7 +97,7 @@ impl View<'_> {
     pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
         let end = self.status.time + dt;
         observer.after(Phase::Begin, &self.state(scene));
-        let old = self.create(scene, end, report);
+        let old = self.create(scene, end, report, observer);
         observer.after(Phase::Create, &self.state(scene));
         self.update(scene, old, dt, report, observer);
         self.status.time = end;
@@ -107,12 +107,13 @@ impl View<'_> {
             observer.after(Phase::Snap, &self.state(scene));
         }
         if scene.is_swept() {
-            collide(self, scene, old, [dt, end], report, observer);
+            let (report, observer) = (&mut *report, &mut *observer);
+            scene.contacts.follow(Passage { view: &mut *self, scene, old, dt, end, report, observer });
         }
         observer.after(Phase::Collide, &self.state(scene));
         let before = report.died.total();
-        retire(self, scene.springs, end, report);
-        if report.died.total() > before || report.born + report.hits + report.broken > 0 {
+        retire(self, scene.springs, end, report, observer);
+        if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {
             self.status.hint = Time::ZERO;
         }
         observer.after(Phase::Delete, &self.state(scene));
@@ -124,10 +125,10 @@ impl View<'_> {
     }
 
     /// Lets the emitters emit, and returns how many particles there were before.
-    fn create(&mut self, scene: &Scene<'_>, end: Time, report: &mut Report) -> usize {
+    fn create(&mut self, scene: &Scene<'_>, end: Time, report: &mut Report, observer: &mut dyn Observer) -> usize {
         let (old, now) = (self.status.len, self.status.time);
         let view = View { memory: self.memory.slices(), status: self.status };
-        scene.emitters.emit(now, end, &mut Births { view, report, next: 0 });
+        scene.emitters.emit(now, end, &mut Births { view, report, observer, end, next: 0 });
         old
     }
 
@@ -139,6 +140,7 @@ impl View<'_> {
         let Slices {
             position,
             velocity,
+            radius,
             mass,
             inverse_mass,
             drag,
@@ -171,6 +173,7 @@ impl View<'_> {
         };
         let mut field = Field {
             scene,
+            radius,
             mass,
             inverse_mass,
             drag,
@@ -288,6 +291,7 @@ fn death(born: Time, lifetime: f32) -> Time {
 /// The scene's forces over the masses, from row `first` on.
 struct Field<'a> {
     scene: &'a Scene<'a>,
+    radius: &'a [f32],
     mass: &'a [f32],
     inverse_mass: &'a [f32],
     drag: &'a [f32],
@@ -309,9 +313,10 @@ impl<'a> Field<'a> {
         'a: 's,
     {
         let len = position.len();
-        let (mass, drag, charge, springs) = (&self.mass[..len], &self.drag[..len], &self.charge[..len], self.springs);
+        let (radius, mass) = (&self.radius[..len], &self.mass[..len]);
+        let (drag, charge, springs) = (&self.drag[..len], &self.charge[..len], self.springs);
         let (mass_tree, charge_tree, near) = (None, None, None);
-        State { time, position, velocity, mass, drag, charge, springs, mass_tree, charge_tree, near }
+        State { time, position, velocity, radius, mass, drag, charge, springs, mass_tree, charge_tree, near }
     }
 
     /// Calls `then` with the state as forces see it, trees and index made.

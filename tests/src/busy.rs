@@ -58,6 +58,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         forces: &forces,
         colliders: &(ground, box_),
         grips: &[],
+        contacts: &(),
         sinks: &sink,
         integrator: Method::Rk4.integrator(),
         index: &(),

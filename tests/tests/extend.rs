@@ -317,6 +317,7 @@ fn memory() {
         colliders: &floor,
         sinks: &(),
         grips: &[],
+        contacts: &(),
         integrator: &Leapfrog,
         index: &(),
     };

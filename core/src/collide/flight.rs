@@ -5,6 +5,7 @@ use super::path::{MAX_CHORDS, Path, between};
 use super::slide::Slide;
 use crate::math::{clamp, length, max, unit};
 use crate::observe::{Impact, Observer};
+use crate::particles::Id;
 use crate::report::Report;
 use crate::retire::Fate;
 use crate::scene::Scene;
@@ -18,7 +19,7 @@ const MAX_BOUNCES: u32 = 8;
 const MAX_RETREATS: u32 = 12;
 
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
-const RESTING: f32 = 0.25;
+pub(super) const RESTING: f32 = 0.25;
 
 /// How a path ends.
 pub(super) struct Arrival {
@@ -28,19 +29,20 @@ pub(super) struct Arrival {
 }
 
 /// Where a path meets something.
-struct Meeting {
+pub(super) struct Meeting {
     /// The fraction of the whole path before it.
-    time: f32,
+    pub(super) time: f32,
     /// The chord on which it lies, and where there.
     chord: Segment,
     hit: Hit,
     /// What it meets removes it.
-    is_sink: bool,
+    pub(super) is_sink: bool,
 }
 
 /// What it takes to follow one particle.
 pub(super) struct Flight<'a> {
     pub(super) scene: &'a Scene<'a>,
+    pub(super) id: Id,
     pub(super) row: usize,
     pub(super) radius: f32,
     pub(super) mass: f32,
@@ -50,6 +52,14 @@ pub(super) struct Flight<'a> {
     pub(super) dt: f32,
     pub(super) report: &'a mut Report,
     pub(super) observer: &'a mut dyn Observer,
+}
+
+impl Meeting {
+    /// The end in a sink.
+    pub(super) fn arrival(&self, path: &Path) -> Arrival {
+        let velocity = path.v0 + (path.v1 - path.v0) * self.time;
+        Arrival { position: self.chord.at(self.hit.time), velocity, fate: Fate::Sink }
+    }
 }
 
 impl Flight<'_> {
@@ -76,10 +86,8 @@ impl Flight<'_> {
                 return Arrival { position: path.x1, velocity: path.v1, fate: Fate::Lives };
             };
             if meeting.is_sink {
-                let velocity = path.v0 + (path.v1 - path.v0) * meeting.time;
-                return Arrival { position: meeting.chord.at(meeting.hit.time), velocity, fate: Fate::Sink };
+                return meeting.arrival(&path);
             }
-            self.report.hits += 1;
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;
@@ -87,7 +95,7 @@ impl Flight<'_> {
     }
 
     /// The first hit along the path's chords. A sink wins over a collider in the same place.
-    fn first_meeting(&mut self, path: &Path) -> Option<Meeting> {
+    pub(super) fn first_meeting(&mut self, path: &Path) -> Option<Meeting> {
         let chords = path.chords();
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
@@ -108,13 +116,13 @@ impl Flight<'_> {
 
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
     /// braked by friction, the mean acceleration of the path so far for the time that is left.
-    fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+    pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+        self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
         let feel = on_surface(self.scene.grips, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
-        let duration = path.duration();
-        let acceleration = if duration > 0.0 { (path.v1 - path.v0) / duration } else { Vec3::ZERO };
+        let acceleration = path.acceleration();
         let before = path.v0 + (path.v1 - path.v0) * meeting.time;
         let incoming = (before - surface).dot(normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
@@ -125,18 +133,28 @@ impl Flight<'_> {
         let slip = before - surface - normal * incoming;
         let slip = slip + feel.friction.answer(slip, outgoing - incoming);
         let velocity = surface + slip + normal * outgoing;
-        let (row, mass) = (self.row, self.mass);
-        self.observer.hit(&Impact { row, mass, normal, before, after: velocity });
+        let Self { id, row, mass, .. } = *self;
+        let (place, time, closing) = (meeting.chord.at(meeting.hit.time), during[0], max(-incoming, 0.0));
+        self.observer.hit(&Impact {
+            id,
+            row,
+            other: None,
+            mass,
+            place,
+            normal,
+            closing,
+            before,
+            after: velocity,
+            time,
+        });
         if !rests {
-            let x0 = self.set_off(meeting);
-            let x1 = x0 + (velocity + acceleration * (0.5 * rest)) * rest;
-            return Path { x0, v0: velocity, x1, v1: velocity + acceleration * rest, during };
+            return Path::onward(self.set_off(meeting), velocity, acceleration, during);
         }
         let drive = acceleration + normal * pressing;
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(rest);
         // What was at rest and stays so has not moved at all: falling onto the surface anew each step, it would creep.
         let rested = path.v0 == surface && slip == Vec3::ZERO && end == Vec3::ZERO;
-        let x0 = if rested { path.x0 + surface * (duration - rest) } else { self.set_off(meeting) };
+        let x0 = if rested { path.x0 + surface * (path.duration() - rest) } else { self.set_off(meeting) };
         Path { x0, v0: velocity, x1: x0 + surface * rest + way, v1: surface + end, during }
     }
 

@@ -1,30 +1,26 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
+mod contacts;
 mod flight;
 mod grip;
+mod impulse;
+mod meeting;
 mod path;
+mod queue;
 mod slide;
 
+pub use contacts::{Contacts, Passage};
 pub use grip::Grip;
+pub use impulse::Impulse;
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 
-use crate::observe::Observer;
-use crate::report::Report;
-use crate::scene::Scene;
-use crate::time::Time;
-use crate::view::View;
+use crate::particles::Id;
 use flight::Flight;
 use path::Path;
 
-/// Sends every free particle along its path through the step that ends at `end`; those from row `old` on are newborn.
-pub(crate) fn collide(
-    view: &mut View<'_>,
-    scene: &Scene<'_>,
-    old: usize,
-    [dt, end]: [Time; 2],
-    report: &mut Report,
-    observer: &mut dyn Observer,
-) {
+/// Sends every free particle along its path through the step, past all others.
+fn each_by_itself(passage: Passage<'_, '_>) {
+    let Passage { view, scene, old, dt, end, report, observer } = passage;
     let capacity = view.capacity();
     for row in 0..view.len() {
         let m = &mut view.memory;
@@ -42,7 +38,9 @@ pub(crate) fn collide(
         let (radius, mass, elasticity) = (m.radius[row], m.mass[row], m.elasticity[row]);
         let material = m.material[row].checked_sub(1);
         let (report, observer) = (&mut *report, &mut *observer);
-        let mut flight = Flight { scene, row, radius, mass, elasticity, material, dt: dt.seconds(), report, observer };
+        let id = Id { slot: m.slot[row], serial: m.serial[row] };
+        let mut flight =
+            Flight { scene, id, row, radius, mass, elasticity, material, dt: dt.seconds(), report, observer };
         let end = flight.follow(if row >= old { flight.let_go(path) } else { path });
         (m.position[row], m.velocity[row], m.fate[row]) = (end.position, end.velocity, end.fate);
     }

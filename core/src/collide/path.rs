@@ -58,6 +58,36 @@ impl Path {
         [m0, way * 3.0 - m0 * 2.0 - m1, m0 + m1 - way * 2.0]
     }
 
+    /// Its rest from a fraction of the time on, as a path of its own.
+    pub(super) fn rest(&self, s: f32) -> Self {
+        let duration = self.duration();
+        if !(s > 0.0 && duration > 0.0) {
+            return *self;
+        }
+        let [c1, c2, c3] = self.coefficients();
+        let v0 = (c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s) / duration;
+        Self { x0: self.at(s), v0, during: [self.instant(s), self.during[1]], ..*self }
+    }
+
+    /// How it runs as seen from another during the same time.
+    pub(super) fn seen_from(&self, other: &Self) -> Self {
+        let (x0, v0) = (self.x0 - other.x0, self.v0 - other.v0);
+        Self { x0, v0, x1: self.x1 - other.x1, v1: self.v1 - other.v1, during: self.during }
+    }
+
+    /// The way on from a place and a velocity under a steady acceleration, until it ends.
+    pub(super) fn onward(x0: Vec3, v0: Vec3, acceleration: Vec3, during: [Time; 2]) -> Self {
+        let time = (during[1] - during[0]).seconds();
+        let (x1, v1) = (x0 + (v0 + acceleration * (0.5 * time)) * time, v0 + acceleration * time);
+        Self { x0, v0, x1, v1, during }
+    }
+
+    /// Its mean acceleration \[m/s²\].
+    pub(super) fn acceleration(&self) -> Vec3 {
+        let duration = self.duration();
+        if duration > 0.0 { (self.v1 - self.v0) / duration } else { Vec3::ZERO }
+    }
+
     /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
     pub(super) fn chords(&self) -> u32 {
         let [_, c2, c3] = self.coefficients();

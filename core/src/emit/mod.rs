@@ -9,6 +9,7 @@ mod vary;
 pub use emitter::{Burst, Emitter};
 pub use vary::{Spread, Varied};
 
+use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::rng::Stream;
@@ -39,10 +40,13 @@ pub struct Tally {
 }
 
 /// What emitters give birth into.
-#[derive(Debug)]
+#[allow(missing_debug_implementations)]
 pub struct Births<'a> {
     pub(crate) view: View<'a>,
     pub(crate) report: &'a mut Report,
+    pub(crate) observer: &'a mut dyn Observer,
+    /// When the step ends.
+    pub(crate) end: Time,
     pub(crate) next: usize,
 }
 
@@ -84,11 +88,14 @@ impl Births<'_> {
         tally.serial = serial.wrapping_add(1);
         if self.view.is_full() {
             self.report.refused += 1;
+            self.observer.refused(1, at);
             return Err(Full);
         }
         let particle = make(Stream::new(self.view.seed(), number as u32, serial));
-        self.view.spawn(&particle, at)?;
+        let id = self.view.spawn(&particle, at)?;
         self.report.born += 1;
+        let Particle { position: place, velocity, .. } = particle;
+        self.observer.born(&Passing { id, place, velocity, time: at });
         Ok(())
     }
 
@@ -97,6 +104,9 @@ impl Births<'_> {
         if let Some(tally) = self.view.memory.tallies.get_mut(number) {
             tally.serial = tally.serial.wrapping_add(count as u32);
             self.report.refused = self.report.refused.saturating_add(count);
+            if count > 0 {
+                self.observer.refused(count, self.end);
+            }
         }
     }
 }

@@ -11,6 +11,7 @@ mod inverse_square;
 mod kind;
 mod mutual;
 mod near;
+mod penalty;
 mod pressure;
 mod quadratic;
 mod radial;
@@ -28,6 +29,7 @@ pub use friction::Friction;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
+pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
 pub use radial::{LennardJones, Pair, PowerLaw, Radial, RadialLaw, Weight};
@@ -173,6 +175,8 @@ pub struct State<'a> {
     pub position: &'a [Vec3],
     /// Velocities \[m/s\].
     pub velocity: &'a [Vec3],
+    /// Radii \[m\].
+    pub radius: &'a [f32],
     /// Masses \[kg\].
     pub mass: &'a [f32],
     /// Coefficients of linear drag \[kg/s\].

@@ -105,6 +105,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             colliders: &self.colliders,
             sinks: &self.forces.3,
             grips: &[],
+            contacts: &(),
             integrator: &Rk4,
             index: &(),
         }

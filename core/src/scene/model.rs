@@ -112,6 +112,7 @@ impl Model {
             colliders: &self.colliders,
             sinks: &self.forces.1,
             grips: &self.grips,
+            contacts: &(),
             integrator: &self.integrator,
             index: &self.index,
         }

@@ -1,6 +1,6 @@
 //! The scene as a system steps through it.
 
-use crate::collide::Grip;
+use crate::collide::{Contacts, Grip};
 use crate::emit::Emit;
 use crate::force::{Force, Spring};
 use crate::index::Arrange;
@@ -31,6 +31,8 @@ pub struct Scene<'a> {
     pub sinks: &'a dyn Collider,
     /// How materials feel, by their numbers; those beyond have no friction.
     pub grips: &'a [Grip],
+    /// How those that have a radius answer each other.
+    pub contacts: &'a dyn Contacts,
     /// How they are moved.
     pub integrator: &'a dyn Integrator,
     /// How forces find the neighbours of a particle: `()` by looking at all others.
@@ -53,6 +55,7 @@ impl Scene<'_> {
         colliders: &(),
         sinks: &(),
         grips: &[],
+        contacts: &(),
         integrator: &Symplectic,
         index: &(),
     };
@@ -62,7 +65,8 @@ impl Scene<'_> {
     pub fn columns(&self) -> usize {
         let start = if self.needs_start() { 2 } else { 0 };
         // Newborns need one column for their acceleration, whatever the method.
-        self.integrator.columns().max(1).saturating_add(start + self.forces.needs().columns(self.index))
+        let moving = self.integrator.columns().max(1).saturating_add(self.forces.needs().columns(self.index));
+        moving.max(self.contacts.scratch(self.index)).saturating_add(start + self.contacts.held(self.index))
     }
 
     /// The least memory it runs in; `particles` is what it begins with.
@@ -78,7 +82,7 @@ impl Scene<'_> {
 
     /// Whether paths are to be followed through space.
     pub(crate) fn is_swept(&self) -> bool {
-        !(self.colliders.is_empty() && self.sinks.is_empty())
+        !(self.colliders.is_empty() && self.sinks.is_empty() && self.contacts.is_empty())
     }
 
     pub(crate) fn needs_start(&self) -> bool {

@@ -1,0 +1,375 @@
+//! Particles that meet, answered by impulses in the order in which they meet.
+
+use super::contacts::{Contacts, Passage};
+use super::flight::Flight;
+use super::grip::of_two;
+use super::meeting::{Touch, first_touch};
+use super::path::Path;
+use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WAITS, WALL};
+use crate::index::{Arrange, SpatialIndex};
+use crate::math::{largest, length, max};
+use crate::observe::{Impact, Observer};
+use crate::particles::Id;
+use crate::report::Report;
+use crate::retire::Fate;
+use crate::scene::Scene;
+use crate::storage::{Slices, Storage};
+use crate::time::Time;
+use glam::Vec3;
+
+/// Hard balls: whoever meets, another particle or a collider, is answered by an impulse at that instant, in the order of
+/// time, and goes on from there.
+///
+/// Nothing passes through anything however fast, momentum is exact to rounding, and with elasticities of one so is energy.
+/// A particle that has met 32 times in a step waits where it is for the step's end (counted in `caps.bounces`): that is
+/// what happens in a dense heap, where every touch is a meeting; for heaps use [`Projection`](crate::Projection).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Impulse {}
+
+/// How often a particle may meet something in one step.
+const MAX_TURNS: u32 = 32;
+
+/// Vectors a particle for its clock and for where it was at the step's beginning.
+const COLUMNS: usize = 4;
+
+impl Contacts for Impulse {
+    fn scratch(&self, index: &dyn Arrange) -> usize {
+        COLUMNS + index.columns()
+    }
+
+    #[inline(never)]
+    fn follow(&self, passage: Passage<'_, '_>) {
+        let Passage { view, scene, old, dt, end, report, observer } = passage;
+        let (len, capacity) = (view.len(), view.capacity());
+        let Slices {
+            position,
+            velocity,
+            radius,
+            mass,
+            inverse_mass,
+            elasticity,
+            material,
+            born,
+            fate,
+            slot,
+            serial,
+            work,
+            ..
+        } = view.memory.slices();
+        let (start, scratch) = work.split_at_mut(2 * capacity);
+        let (start_x, start_v) = start.split_at_mut(capacity);
+        let (clocks, scratch) = scratch[scene.contacts.held(scene.index) * capacity..].split_at_mut(3 * len);
+        let (home, scratch) = scratch.split_at_mut(len);
+        let words = scene.index.columns() * len;
+        let index_memory = bytemuck::cast_slice_mut(&mut scratch[..words]);
+        let unit = (dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
+        let mut melee = Melee {
+            scene,
+            dt,
+            end,
+            unit,
+            clocks: Queue::new(bytemuck::cast_slice_mut(clocks)),
+            ends: [&mut position[..len], &mut velocity[..len]],
+            starts: [&mut start_x[..len], &mut start_v[..len]],
+            home: &[],
+            fate: &mut fate[..len],
+            radius: &radius[..len],
+            mass,
+            inverse_mass,
+            elasticity,
+            material,
+            slot,
+            serial,
+            widest: 0.0,
+            leash: 0.0,
+            report,
+            observer,
+        };
+        melee.prepare(&born[..len], old);
+        home.copy_from_slice(melee.starts[0]);
+        let home = &*home;
+        melee.home = home;
+        let reach = 2.0 * melee.widest + melee.leash;
+        scene.index.arrange(index_memory, home, reach, &mut |index| melee.run(index));
+    }
+}
+
+/// A step whose meetings are worked through one after the other.
+struct Melee<'a> {
+    scene: &'a Scene<'a>,
+    dt: Time,
+    end: Time,
+    /// Clocks count in 2 to this power ticks.
+    unit: u32,
+    clocks: Queue<'a>,
+    /// Positions and velocities at the present paths' beginnings and ends.
+    starts: [&'a mut [Vec3]; 2],
+    ends: [&'a mut [Vec3]; 2],
+    /// Positions at the step's beginning, which the index sorts.
+    home: &'a [Vec3],
+    fate: &'a mut [Fate],
+    radius: &'a [f32],
+    mass: &'a [f32],
+    inverse_mass: &'a [f32],
+    elasticity: &'a [f32],
+    material: &'a [u16],
+    slot: &'a [u32],
+    serial: &'a [u32],
+    /// The largest radius.
+    widest: f32,
+    /// Nobody goes farther than this from home, or all are looked at instead of the index.
+    leash: f32,
+    report: &'a mut Report,
+    observer: &'a mut dyn Observer,
+}
+
+impl Melee<'_> {
+    /// Sets the clocks, and finds how far anybody goes.
+    fn prepare(&mut self, born: &[Time], old: usize) {
+        let mut farthest = 0.0;
+        for (row, &born) in born.iter().enumerate() {
+            let start = self.end - (self.end - born).min(self.dt);
+            let since = self.units(start);
+            self.clocks.set(row, Clock { since, until: NEVER, partner: NOBODY, ..Clock::default() });
+            let path = self.path(row);
+            if !path.is_finite() {
+                self.clocks.set(row, Clock { partner: GONE, until: NEVER, ..Clock::default() });
+                continue;
+            }
+            if row >= old {
+                let path = self.flight(row).let_go(path);
+                self.go(row, &path);
+            }
+            let hull = self.path(row).hull(0.0);
+            farthest = max(farthest, length(hull.max - hull.min));
+            self.widest = max(self.widest, self.radius[row]);
+        }
+        self.leash = 2.0 * farthest;
+    }
+
+    /// Works through the meetings. Each particle has a bounded number of them, and so the work is bounded.
+    fn run(&mut self, index: Option<&dyn SpatialIndex>) {
+        let mut near = index;
+        for row in 0..self.home.len() {
+            self.foresee(row, near);
+        }
+        while let Some(row) = self.clocks.first() {
+            let clock = *self.clocks.clock(row);
+            if clock.partner == WALL {
+                self.meet_wall(row, clock.until);
+                self.foresee(row, near);
+                continue;
+            }
+            let other = clock.partner as usize;
+            if self.clocks.clock(other).turns != clock.partner_turns {
+                self.foresee(row, near);
+                continue;
+            }
+            self.meet(row, other, clock.until);
+            if [row, other].into_iter().any(|row| length(self.ends[0][row] - self.home[row]) > self.leash) {
+                // One of them will be where the index has not been asked to look.
+                near = None;
+            }
+            self.foresee(row, near);
+            self.foresee(other, near);
+        }
+    }
+
+    /// Finds out what happens first to a particle on its present path.
+    fn foresee(&mut self, row: usize, near: Option<&dyn SpatialIndex>) {
+        let clock = *self.clocks.clock(row);
+        if self.inverse_mass[row] == 0.0 || [GONE, WAITS].contains(&clock.partner) {
+            self.clocks.set(row, Clock { until: NEVER, ..clock });
+            return;
+        }
+        if clock.turns > MAX_TURNS {
+            self.wait(row);
+            return;
+        }
+        let path = self.path(row);
+        let hull = path.hull(self.radius[row]);
+        let mut next = Clock { until: NEVER, partner: NOBODY, ..clock };
+        if self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull) {
+            if let Some(meeting) = self.flight(row).first_meeting(&path) {
+                (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
+            }
+        }
+        let mut curved = false;
+        let mut consider = |other: usize| {
+            let (until, bent) = self.first_touch(row, other, &path);
+            curved |= bent;
+            // Of several at one instant a wall comes first, then the lowest row: whatever order they are looked at in.
+            let earlier =
+                until < next.until || (until == next.until && next.partner != WALL && (other as u32) < next.partner);
+            if until != NEVER && earlier {
+                (next.until, next.partner) = (until, other as u32);
+                next.partner_turns = self.clocks.clock(other).turns;
+            }
+        };
+        match near {
+            Some(index) => {
+                let (middle, half) = (hull.center(), hull.radius());
+                index.within(middle, half + self.widest + self.leash, &mut |others| {
+                    others.iter().for_each(|&other| consider(other as usize));
+                });
+            }
+            None => (0..self.home.len()).for_each(consider),
+        }
+        self.report.caps.chords += u64::from(curved);
+        self.clocks.set(row, next);
+    }
+
+    /// When a particle on its path touches another.
+    fn first_touch(&self, row: usize, other: usize, path: &Path) -> (u32, bool) {
+        let reach = self.radius[row] + self.radius[other];
+        let (own, its) = (self.clocks.clock(row), self.clocks.clock(other));
+        if other == row || !(reach > 0.0) || its.partner == GONE {
+            return (NEVER, false);
+        }
+        let from = self.instant(own.since.max(its.since));
+        let (path, its) = (from_on(path, from), from_on(&self.path(other), from));
+        let relative = path.seen_from(&its);
+        let slack = self.slack(row, other);
+        let (touch, curved) = first_touch(&relative, reach, slack);
+        (touch.map_or(NEVER, |s| self.units(relative.instant(s))), curved)
+    }
+
+    /// What rounding may do to the distance of two particles.
+    fn slack(&self, row: usize, other: usize) -> f32 {
+        let size = max(largest(self.starts[0][row]), largest(self.starts[0][other]));
+        4.0 * f32::EPSILON * (size + self.radius[row] + self.radius[other])
+    }
+
+    fn meet_wall(&mut self, row: usize, until: u32) {
+        let path = self.path(row);
+        let mut flight = self.flight(row);
+        let Some(meeting) = flight.first_meeting(&path) else { return };
+        let clock = *self.clocks.clock(row);
+        let (turns, since) = (clock.turns + 1, until);
+        if meeting.is_sink {
+            let end = meeting.arrival(&path);
+            (self.ends[0][row], self.ends[1][row], self.fate[row]) = (end.position, end.velocity, end.fate);
+            self.clocks.set(row, Clock { turns, partner: GONE, ..clock });
+            return;
+        }
+        let onward = self.flight(row).rebound(&path, &meeting);
+        self.clocks.set(row, Clock { turns, since, partner: NOBODY, ..clock });
+        self.go(row, &onward);
+    }
+
+    /// Two particles meet.
+    fn meet(&mut self, row: usize, other: usize, until: u32) {
+        let now = self.instant(until);
+        let rows = [row, other];
+        let paths = rows.map(|row| from_on(&self.path(row), now));
+        let waits = rows.map(|row| self.clocks.clock(row).partner == WAITS);
+        let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
+        let offset = paths[0].x0 - paths[1].x0;
+        let normal = Touch::along(offset, velocity);
+        let inverse_mass = rows.map(|row| self.inverse_mass[row]);
+        let material = rows.map(|row| self.material[row].checked_sub(1));
+        let feel = of_two(self.scene.grips, rows.map(|row| self.elasticity[row]), material);
+        let acceleration = paths.map(|path| path.acceleration());
+        let touch = Touch { normal, velocity, acceleration, inverse_mass, feel };
+        let rest = (self.end - now).seconds();
+        let (after, acceleration) = touch.answer(self.dt.seconds(), rest);
+        self.report.contacts += 1;
+        let closing = max((velocity[1] - velocity[0]).dot(normal), 0.0);
+        for i in 0..2 {
+            let (row, clock) = (rows[i], *self.clocks.clock(rows[i]));
+            if inverse_mass[i] == 0.0 {
+                continue;
+            }
+            let normal = if i == 0 { normal } else { -normal };
+            self.observer.hit(&Impact {
+                id: self.id(row),
+                row,
+                other: Some(self.id(rows[1 - i])),
+                mass: self.mass[row],
+                place: paths[i].x0,
+                normal,
+                closing,
+                before: velocity[i],
+                after: after[i],
+                time: now,
+            });
+            self.clocks.set(row, Clock { turns: clock.turns + 1, since: until, ..clock });
+            let onward = Path::onward(paths[i].x0, after[i], acceleration[i], paths[i].during);
+            self.go(row, &onward);
+            // Where one waits and does not get away, the other cannot go on either.
+            let blocked = waits[1 - i] && after[i].dot(normal) < 0.0;
+            if waits[i] || blocked {
+                self.wait(row);
+            }
+        }
+    }
+
+    /// It stays where it is until the step is over, and keeps its velocity.
+    fn wait(&mut self, row: usize) {
+        let clock = *self.clocks.clock(row);
+        if clock.partner != WAITS {
+            self.report.caps.bounces += 1;
+        }
+        self.ends[0][row] = self.starts[0][row];
+        self.ends[1][row] = self.starts[1][row];
+        self.clocks.set(row, Clock { partner: WAITS, until: NEVER, ..clock });
+    }
+
+    /// Takes a new path.
+    fn go(&mut self, row: usize, path: &Path) {
+        (self.starts[0][row], self.starts[1][row]) = (path.x0, path.v0);
+        (self.ends[0][row], self.ends[1][row]) = (path.x1, path.v1);
+    }
+
+    /// The present path.
+    fn path(&self, row: usize) -> Path {
+        let clock = self.clocks.clock(row);
+        let during = [self.instant(clock.since), self.end];
+        let (x0, v0) = (self.starts[0][row], self.starts[1][row]);
+        if clock.partner == WAITS || self.inverse_mass[row] == 0.0 {
+            return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during };
+        }
+        Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during }
+    }
+
+    fn id(&self, row: usize) -> Id {
+        Id { slot: self.slot[row], serial: self.serial[row] }
+    }
+
+    fn flight(&mut self, row: usize) -> Flight<'_> {
+        Flight {
+            scene: self.scene,
+            id: self.id(row),
+            row,
+            radius: self.radius[row],
+            mass: self.mass[row],
+            elasticity: self.elasticity[row],
+            material: self.material[row].checked_sub(1),
+            dt: self.dt.seconds(),
+            report: self.report,
+            observer: self.observer,
+        }
+    }
+
+    /// An instant of the step as clocks show it: never later than it is.
+    fn units(&self, instant: Time) -> u32 {
+        let ticks = (instant + self.dt - self.end).ticks();
+        // Below 2^31, as the unit was chosen.
+        (ticks >> self.unit) as u32
+    }
+
+    fn instant(&self, units: u32) -> Time {
+        (self.end - self.dt + Time::from_ticks(u64::from(units) << self.unit)).min(self.end)
+    }
+}
+
+/// What is left of a path from an instant on.
+fn from_on(path: &Path, instant: Time) -> Path {
+    let [start, end] = path.during;
+    if instant <= start || end <= start {
+        return Path { during: [instant.max(start), end], ..*path };
+    }
+    path.rest((instant - start).seconds() / (end - start).seconds())
+}

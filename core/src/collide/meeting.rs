@@ -1,0 +1,144 @@
+//! When two balls touch, and what that does to them.
+
+use super::flight::RESTING;
+use super::grip::Feel;
+use super::path::{MAX_CHORDS, Path};
+use crate::math::{clamp, length, max, sqrt, unit};
+use glam::Vec3;
+
+/// The fraction of a path, of one ball as seen from the other, at which they come within `reach`, the sum of their radii;
+/// and whether the path is so curved that it took more chords than there are.
+///
+/// Balls that overlap already meet at once if they come closer still. What stays within `slack` of a touch is none.
+pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, bool) {
+    let hull = path.hull(reach);
+    let holds_origin = hull.min.cmple(Vec3::ZERO).all() && hull.max.cmpge(Vec3::ZERO).all();
+    if !holds_origin || !path.is_finite() {
+        return (None, false);
+    }
+    let chords = path.chords();
+    let count = chords.min(MAX_CHORDS);
+    let mut pieces = path.pieces(count, 0.0).zip(0_u8..);
+    let touch = pieces.find_map(|(chord, i)| {
+        let s = along_chord(chord.from, chord.step(), reach, slack)?;
+        Some((f32::from(i) + s) / count as f32)
+    });
+    (touch, chords > MAX_CHORDS)
+}
+
+fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<f32> {
+    let (square, closing) = (step.dot(step), -offset.dot(step));
+    if !(closing > 0.0 && square > 0.0) {
+        return None;
+    }
+    let nearest = clamp(closing / square, 0.0, 1.0);
+    let gap = offset + step * nearest;
+    if !(length(gap) < reach - slack) {
+        return None;
+    }
+    if offset.dot(offset) <= reach * reach {
+        return Some(0.0);
+    }
+    // From the point of nearest approach of the whole line back: no difference of large squares.
+    let middle = closing / square;
+    let closest = offset + step * middle;
+    let half = sqrt(max(reach * reach - closest.dot(closest), 0.0) / square);
+    Some(clamp(middle - half, 0.0, 1.0))
+}
+
+/// Two balls that touch: from the second to the first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) normal: Vec3,
+    pub(super) velocity: [Vec3; 2],
+    pub(super) acceleration: [Vec3; 2],
+    /// Zero for what is fixed; not both.
+    pub(super) inverse_mass: [f32; 2],
+    pub(super) feel: Feel,
+}
+
+impl Touch {
+    /// Along the line of centres `offset`; of balls in one place, against their motion.
+    pub(super) fn along(offset: Vec3, velocity: [Vec3; 2]) -> Vec3 {
+        let normal = unit(offset);
+        if normal == Vec3::ZERO { -unit(velocity[0] - velocity[1]) } else { normal }
+    }
+
+    /// Velocities and accelerations after it: the impulse turns the approach round and scales it by the elasticity, and
+    /// brakes the slip by Coulomb's law, as if the balls could not spin. What would bounce for less than a part of the
+    /// step stays in touch, and presses on as one for the `rest` of the step.
+    ///
+    /// Both get the same impulse, so that momentum is what it was, but for the rounding of two sums.
+    pub(super) fn answer(&self, dt: f32, rest: f32) -> ([Vec3; 2], [Vec3; 2]) {
+        let (n, [a, b], [wa, wb]) = (self.normal, self.velocity, self.inverse_mass);
+        let relative = a - b;
+        let incoming = relative.dot(n);
+        let pressing = -(self.acceleration[0] - self.acceleration[1]).dot(n);
+        let outgoing = if incoming < 0.0 { -incoming * self.feel.elasticity } else { incoming };
+        let rests = pressing > 0.0 && 2.0 * outgoing < RESTING * dt * pressing;
+        let outgoing = if rests { 0.0 } else { outgoing };
+        let slip = relative - n * incoming;
+        // The friction of what stays in touch is taken at once.
+        let press = outgoing - incoming + if rests { pressing * rest } else { 0.0 };
+        let change = n * (outgoing - incoming) + self.feel.friction.answer(slip, press);
+        let share = |by: f32| change * (by / (wa + wb));
+        let mut acceleration = self.acceleration;
+        if rests {
+            acceleration[0] += n * (pressing * (wa / (wa + wb)));
+            acceleration[1] -= n * (pressing * (wb / (wa + wb)));
+        }
+        ([a + share(wa), b - share(wb)], acceleration)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::force::Friction;
+    use crate::time::Time;
+
+    fn head_on(elasticity: f32, inverse_mass: [f32; 2]) -> Touch {
+        let feel = Feel { elasticity, friction: Friction::NONE };
+        let velocity = [Vec3::new(-3.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)];
+        Touch { normal: Vec3::X, velocity, acceleration: [Vec3::ZERO; 2], inverse_mass, feel }
+    }
+
+    #[test]
+    fn equal_balls_swap_what_is_along_the_line_of_centres() {
+        let (after, _) = head_on(1.0, [0.5, 0.5]).answer(0.1, 0.1);
+        assert_eq!(after, [Vec3::new(1.0, 1.0, 0.0), Vec3::new(-3.0, 0.0, 0.0)]);
+        let (after, _) = head_on(0.0, [0.5, 0.5]).answer(0.1, 0.1);
+        assert_eq!(after, [Vec3::new(-1.0, 1.0, 0.0), Vec3::new(-1.0, 0.0, 0.0)]);
+    }
+
+    #[test]
+    fn what_is_fixed_stays() {
+        let (after, _) = head_on(1.0, [1.0, 0.0]).answer(0.1, 0.1);
+        assert_eq!(after, [Vec3::new(5.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)]);
+    }
+
+    #[test]
+    fn what_is_pressed_together_stays_together() {
+        let touch = Touch {
+            velocity: [Vec3::X * -1e-3, Vec3::ZERO],
+            acceleration: [Vec3::X * -10.0, Vec3::ZERO],
+            ..head_on(0.5, [1.0, 1.0])
+        };
+        let (velocity, acceleration) = touch.answer(0.1, 0.1);
+        assert_eq!(velocity[0], velocity[1]);
+        assert_eq!(acceleration, [Vec3::X * -5.0; 2]);
+    }
+
+    #[test]
+    fn touches_are_found_when_they_happen() {
+        let during = [Time::ZERO, Time::from_seconds(1.0)];
+        let way = |x0: Vec3, v: Vec3| Path { x0, v0: v, x1: x0 + v, v1: v, during };
+        let (s, _) = first_touch(&way(Vec3::X * 5.0, Vec3::X * -4.0), 2.0, 1e-6);
+        assert!((s.expect("they meet") - 0.75).abs() < 1e-6);
+        assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -2.0), 2.0, 1e-6).0, None);
+        assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -1e4), 2.0, 1e-6).0.map(|s| s > 0.0), Some(true));
+        assert_eq!(first_touch(&way(Vec3::X * 1.9, Vec3::X), 2.0, 1e-6).0, None);
+        assert_eq!(first_touch(&way(Vec3::X * 1.9, -Vec3::X), 2.0, 1e-6).0, Some(0.0));
+        assert_eq!(first_touch(&way(Vec3::new(5.0, 2.0, 0.0), Vec3::X * -9.0), 2.0, 1e-6).0, None);
+    }
+}

@@ -1,0 +1,129 @@
+//! Who is next: the particles in order of what happens to them first.
+
+/// What a particle remembers while the meetings of a step are worked through. Instants are counted from the step's
+/// beginning in units that the step's length decides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Clock {
+    /// When its present path began.
+    pub(super) since: u32,
+    /// When something happens to it next; [`NEVER`].
+    pub(super) until: u32,
+    /// What that is: another's row, [`WALL`], or one of the other marks.
+    pub(super) partner: u32,
+    /// How much had happened to that other when this was foreseen.
+    pub(super) partner_turns: u32,
+    /// How much has happened to this one.
+    pub(super) turns: u32,
+    /// Where its row stands in the queue.
+    pub(super) place: u32,
+    /// The row that stands at this place of the queue.
+    pub(super) row: u32,
+    /// What makes three vectors of it.
+    pub(super) spare: [u32; 2],
+}
+
+/// Of an instant: nothing will happen.
+pub(super) const NEVER: u32 = u32::MAX;
+/// Of a partner: a collider or a sink.
+pub(super) const WALL: u32 = u32::MAX;
+/// Of a partner: nobody.
+pub(super) const NOBODY: u32 = u32::MAX - 1;
+/// Of a partner: it has met as much as it may, and waits where it is for the step's end.
+pub(super) const WAITS: u32 = u32::MAX - 2;
+/// Of a partner: it is no longer, or never was, to be reckoned with.
+pub(super) const GONE: u32 = u32::MAX - 3;
+
+/// A binary heap of rows in the particles' own clocks: every row has a place, and moves when its instant changes. Of
+/// equal instants the lower row comes first.
+#[derive(Debug)]
+pub(super) struct Queue<'a> {
+    clocks: &'a mut [Clock],
+}
+
+impl<'a> Queue<'a> {
+    /// All rows with the instants that they have.
+    pub(super) fn new(clocks: &'a mut [Clock]) -> Self {
+        for (clock, row) in clocks.iter_mut().zip(0..) {
+            (clock.place, clock.row) = (row, row);
+        }
+        let mut queue = Self { clocks };
+        for place in (0..queue.clocks.len() / 2).rev() {
+            queue.sink(place);
+        }
+        queue
+    }
+
+    pub(super) fn clock(&self, row: usize) -> &Clock {
+        &self.clocks[row]
+    }
+
+    /// The row to which something happens first.
+    pub(super) fn first(&self) -> Option<usize> {
+        let row = self.clocks.first()?.row as usize;
+        (self.clocks[row].until != NEVER).then_some(row)
+    }
+
+    /// Gives a row another clock; its place is found anew.
+    pub(super) fn set(&mut self, row: usize, clock: Clock) {
+        let Clock { place, row: stands, .. } = self.clocks[row];
+        self.clocks[row] = Clock { place, row: stands, ..clock };
+        let place = self.rise(place as usize);
+        self.sink(place);
+    }
+
+    fn key(&self, place: usize) -> (u32, u32) {
+        let row = self.clocks[place].row;
+        (self.clocks[row as usize].until, row)
+    }
+
+    fn swap(&mut self, a: usize, b: usize) {
+        let (first, second) = (self.clocks[a].row, self.clocks[b].row);
+        (self.clocks[a].row, self.clocks[b].row) = (second, first);
+        (self.clocks[first as usize].place, self.clocks[second as usize].place) = (b as u32, a as u32);
+    }
+
+    fn rise(&mut self, mut place: usize) -> usize {
+        while place > 0 && self.key(place) < self.key((place - 1) / 2) {
+            self.swap(place, (place - 1) / 2);
+            place = (place - 1) / 2;
+        }
+        place
+    }
+
+    fn sink(&mut self, mut place: usize) {
+        loop {
+            let children = (2 * place + 1)..(2 * place + 3).min(self.clocks.len());
+            let Some(least) = children.min_by_key(|&child| self.key(child)) else { return };
+            if self.key(place) <= self.key(least) {
+                return;
+            }
+            self.swap(place, least);
+            place = least;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Stream;
+
+    #[test]
+    fn the_least_is_always_first() {
+        let random = |i: u64| (Stream::new(5, 1, i as u32).units(0)[0] * 100.0) as u32;
+        let mut clocks = [Clock::default(); 37];
+        clocks.iter_mut().zip(0..).for_each(|(clock, i)| clock.until = random(i));
+        let mut known = clocks.map(|clock| clock.until);
+        let mut queue = Queue::new(&mut clocks);
+        for i in 0..2000 {
+            let least = (0..37).min_by_key(|&row| (known[row], row)).expect("there are some");
+            assert_eq!(queue.first(), Some(least));
+            let row = if i % 2 == 0 { least } else { i as usize % 37 };
+            known[row] = random(1000 + i);
+            queue.set(row, Clock { until: known[row], ..*queue.clock(row) });
+        }
+        (0..37).for_each(|row| queue.set(row, Clock { until: NEVER, ..*queue.clock(row) }));
+        assert_eq!(queue.first(), None);
+    }
+}

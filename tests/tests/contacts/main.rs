@@ -1,0 +1,4 @@
+//! Particles that have a radius meet each other: by impulse, by force, by position.
+
+mod gas;
+mod impulse;
