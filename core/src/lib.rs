@@ -78,9 +78,9 @@ mod time;
 mod view;
 mod weave;
 
+pub use collide::{Contacts, Grip, Impulse, Projection};
 #[doc(hidden)]
-pub use collide::Passage;
-pub use collide::{Contacts, Grip, Impulse};
+pub use collide::{Passage, Stage};
 pub use emit::{Emit, Emitter, Spread, Varied};
 pub use events::{Event, EventKind, Events};
 pub use force::{

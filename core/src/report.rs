@@ -85,6 +85,8 @@ pub struct Caps {
     pub chords: u64,
     /// A spring lost an end.
     pub springs: u64,
+    /// Two that were near each other, or a particle and a face, found no room in the list of contacts.
+    pub contacts: u64,
     /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
     pub unfit: u64,
 }
@@ -101,7 +103,7 @@ macro_rules! add_fields {
 }
 add_fields! {
     Died { lifetime sink density chance nonfinite }
-    Caps { bounces chords springs unfit }
+    Caps { bounces chords springs contacts unfit }
     Effort { evaluations accepted rejected solves iterations capped }
 }
 
@@ -143,17 +145,17 @@ impl Report {
         contacts: 0,
         broken: 0,
         effort: Effort::NONE,
-        caps: Caps { bounces: 0, chords: 0, springs: 0, unfit: 0 },
+        caps: Caps { bounces: 0, chords: 0, springs: 0, contacts: 0, unfit: 0 },
     };
 
     /// Every counter of what happened, in a fixed order.
-    pub(crate) fn counters(&self) -> [u64; 15] {
+    pub(crate) fn counters(&self) -> [u64; 16] {
         let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
         let Died { lifetime, sink, density, chance, nonfinite } = died;
-        let Caps { bounces, chords, springs, unfit } = caps;
+        let Caps { bounces, chords, springs, contacts: near, unfit } = caps;
         [
             initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, contacts, broken, bounces,
-            chords, springs, unfit,
+            chords, springs, near, unfit,
         ]
     }
 }

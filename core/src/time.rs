@@ -83,6 +83,16 @@ impl Time {
         (turned >> 40) as f32 / 16_777_216.0
     }
 
+    /// The first so many of so many equal parts of it, rounded down to a tick; nothing, if it is cut into none.
+    #[must_use]
+    pub const fn part(self, part: u32, of: u32) -> Self {
+        if of == 0 {
+            return Self::ZERO;
+        }
+        let (part, of) = (part as u64, of as u64);
+        Self((self.0 / of).wrapping_mul(part).wrapping_add((self.0 % of) * part / of))
+    }
+
     /// Half of it, rounded down to a tick.
     #[must_use]
     pub const fn half(self) -> Self {

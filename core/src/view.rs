@@ -1,6 +1,6 @@
 //! The step itself: every algorithm works on a `View`, a system with its memory at hand.
 
-use crate::collide::Passage;
+use crate::collide::{Lists, Passage, Stage};
 use crate::emit::Births;
 use crate::force::{Force, Grow, Needs, Spring, Springs, State, spring};
 use crate::index::{BarnesHut, SpatialIndex};
@@ -145,6 +145,8 @@ impl View<'_> {
             inverse_mass,
             drag,
             charge,
+            elasticity,
+            material,
             born,
             serial,
             row_of,
@@ -155,6 +157,7 @@ impl View<'_> {
         } = self.memory.slices();
         let needs = scene.forces.needs();
         let (start, rest) = work.split_at_mut(if scene.needs_start() { 2 * capacity } else { 0 });
+        let (held, rest) = rest.split_at_mut(scene.contacts.held(scene.index) * capacity);
         let (tree, rest) = rest.split_at_mut((needs.tree_columns() * capacity).min(rest.len()));
         let near_columns = needs.columns(scene.index) - needs.tree_columns();
         let (near, rest) = rest.split_at_mut((near_columns * capacity).min(rest.len()));
@@ -200,12 +203,41 @@ impl View<'_> {
 
         field.first = 0;
         field.springs.serial = &serial[..old];
-        let start = if scene.needs_start() { [&start_x[..old], &start_v[..old]] } else { [&[][..]; 2] };
-        let work = Work { memory: rest, stride: capacity, len: old };
-        let (hint, effort) = (&mut self.status.hint, &mut report.effort);
-        let motion =
-            Motion { position: &mut position[..old], velocity: &mut velocity[..old], start, work, hint, effort };
-        scene.integrator.advance(motion, now, dt, &mut field);
+        let contacts = scene.contacts;
+        let pieces = contacts.substeps();
+        let (position, velocity) = (&mut position[..old], &mut velocity[..old]);
+        let mut stage = Stage {
+            scene,
+            held,
+            lists: Lists::default(),
+            position,
+            velocity,
+            radius,
+            inverse_mass,
+            elasticity,
+            material,
+            now,
+            h: dt,
+            dt,
+            pieces,
+            report,
+        };
+        contacts.gather(&mut stage, bytemuck::cast_slice_mut(rest));
+        for piece in 1..=pieces {
+            let end = now + dt.part(piece, pieces);
+            stage.h = end - stage.now;
+            let start = match contacts.begin(stage.held, stage.position, stage.velocity) {
+                Some(start) => start,
+                None if scene.needs_start() => [&start_x[..old], &start_v[..old]],
+                None => [&[][..]; 2],
+            };
+            let (hint, effort) = (&mut self.status.hint, &mut stage.report.effort);
+            let work = Work { memory: rest, stride: capacity, len: old };
+            let motion = Motion { position: stage.position, velocity: stage.velocity, start, work, hint, effort };
+            scene.integrator.advance(motion, stage.now, stage.h, &mut field);
+            contacts.project(&mut stage);
+            stage.now = end;
+        }
         report.effort.evaluations += field.evaluations;
     }
 

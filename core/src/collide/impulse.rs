@@ -191,10 +191,10 @@ impl Melee<'_> {
         let path = self.path(row);
         let hull = path.hull(self.radius[row]);
         let mut next = Clock { until: NEVER, partner: NOBODY, ..clock };
-        if self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull) {
-            if let Some(meeting) = self.flight(row).first_meeting(&path) {
-                (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
-            }
+        let near_walls = self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull);
+        let meeting = if near_walls { self.flight(row).first_meeting(&path) } else { None };
+        if let Some(meeting) = meeting {
+            (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
         }
         let mut curved = false;
         let mut consider = |other: usize| {

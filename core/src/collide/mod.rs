@@ -6,15 +6,20 @@ mod grip;
 mod impulse;
 mod meeting;
 mod path;
+mod projection;
 mod queue;
 mod slide;
+mod solver;
 
-pub use contacts::{Contacts, Passage};
+pub use contacts::{Contacts, Passage, Stage};
 pub use grip::Grip;
 pub use impulse::Impulse;
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
+pub use projection::Projection;
+pub(crate) use solver::Lists;
 
 use crate::particles::Id;
+use crate::retire::Fate;
 use flight::Flight;
 use path::Path;
 
@@ -31,17 +36,25 @@ fn each_by_itself(passage: Passage<'_, '_>) {
         // A newborn has come only part of the way.
         let start = end - (end - m.born[row]).min(dt);
         let path = Path { x0: start_x, v0: start_v, x1: m.position[row], v1: m.velocity[row], during: [start, end] };
-        let hull = path.hull(m.radius[row]);
+        let held = &m.work[2 * capacity..(2 + scene.contacts.held(scene.index)) * capacity];
+        let has_moved = scene.contacts.has_moved(held, row);
+        // What contacts have moved goes straight, and is only kept from passing: half of it may not touch anything.
+        let (path, radius) = if has_moved { (path.straightened(), 0.5 * m.radius[row]) } else { (path, m.radius[row]) };
+        let hull = path.hull(radius);
         if !(scene.colliders.may_touch(&hull) || scene.sinks.may_touch(&hull)) || !path.is_finite() {
             continue;
         }
-        let (radius, mass, elasticity) = (m.radius[row], m.mass[row], m.elasticity[row]);
+        let (mass, elasticity) = (m.mass[row], m.elasticity[row]);
         let material = m.material[row].checked_sub(1);
         let (report, observer) = (&mut *report, &mut *observer);
         let id = Id { slot: m.slot[row], serial: m.serial[row] };
         let mut flight =
             Flight { scene, id, row, radius, mass, elasticity, material, dt: dt.seconds(), report, observer };
+        let before = flight.report.hits;
         let end = flight.follow(if row >= old { flight.let_go(path) } else { path });
+        if has_moved && end.fate == Fate::Lives && report.hits == before {
+            continue;
+        }
         (m.position[row], m.velocity[row], m.fate[row]) = (end.position, end.velocity, end.fate);
     }
 }

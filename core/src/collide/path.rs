@@ -82,6 +82,13 @@ impl Path {
         Self { x0, v0, x1, v1, during }
     }
 
+    /// Straight from its beginning to its end.
+    pub(super) fn straightened(&self) -> Self {
+        let duration = self.duration();
+        let velocity = if duration > 0.0 { (self.x1 - self.x0) / duration } else { Vec3::ZERO };
+        Self { v0: velocity, v1: velocity, ..*self }
+    }
+
     /// Its mean acceleration \[m/s²\].
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();

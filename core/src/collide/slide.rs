@@ -22,7 +22,7 @@ impl Slide {
     pub(super) fn after(&self, time: f32) -> (Vec3, Vec3) {
         let speed = length(self.velocity);
         if speed == 0.0 {
-            return self.from_rest(time);
+            return self.starting(time);
         }
         let along = self.velocity / speed;
         let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
@@ -31,13 +31,13 @@ impl Slide {
             let until = speed / braking;
             let way = (self.velocity + acceleration * (0.5 * until)) * until;
             // What is left beside the old direction is what the drive has turned it to: friction takes that up anew.
-            let (rest, velocity) = self.from_rest(time - until);
+            let (rest, velocity) = self.starting(time - until);
             return (way + rest, velocity);
         }
         ((self.velocity + acceleration * (0.5 * time)) * time, self.velocity + acceleration * time)
     }
 
-    fn from_rest(&self, time: f32) -> (Vec3, Vec3) {
+    fn starting(&self, time: f32) -> (Vec3, Vec3) {
         let pull = length(self.drive);
         if pull <= self.friction.resting * self.pressing || !(pull > 0.0) {
             return (Vec3::ZERO, Vec3::ZERO);
