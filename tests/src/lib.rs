@@ -5,6 +5,7 @@ pub mod emitting;
 pub mod fields;
 pub mod points;
 pub mod solids;
+pub mod surfaces;
 
 use core::ops::Range;
 use pointmass::force::{Change, State};

@@ -80,7 +80,13 @@ impl Model {
             scenery.push(Solid { shape, to_world: placement(file, item.group), material });
         }
         let solid = scenery.iter().enumerate().filter(|(_, solid)| !matches!(solid.shape, Shape::Line(_)));
+        let has_balls = start.particles.iter().any(|particle| particle.radius > 0.0)
+            || emitters.iter().any(|emitter| emitter.radius.mean + emitter.radius.variance.abs() > 0.0);
         let colliders = solid.map(|(i, solid)| {
+            if has_balls && !solid.shape.meets_balls(&solid.to_world) {
+                let message = "its groups squash what is round: particles with a radius can only meet it as a mesh";
+                return Err(SceneError::value(format!("scenery[{i}].group"), message).in_file(path));
+            }
             let placed = Placed::new(solid.shape.clone(), solid.to_world);
             placed.map(|placed| placed.made_of(solid.material)).ok_or_else(|| {
                 let message = "its groups together flatten space: there is no inverse";

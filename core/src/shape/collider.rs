@@ -1,6 +1,6 @@
 //! What a moving point can run into, one by one or in lists.
 
-use super::Aabb;
+use super::{Aabb, Affine};
 use crate::math::{high, largest, low, max};
 use crate::time::Time;
 use glam::Vec3;
@@ -26,6 +26,14 @@ pub trait Collider: Sync {
     /// of its faces: what a ball there leans on, or is about to. None by default, which leaves all to `first_hit`.
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let _ = (center, reach, at, visit);
+    }
+
+    /// Visits colliders that together are its image under a map that is no similarity, as far as they may be near
+    /// `bounds`, each with the number of its face. Balls ask for them, which such a map would make other than round.
+    ///
+    /// None by default: a ball meets the image of what says so as its centre alone does.
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        let _ = (map, bounds, visit);
     }
 
     /// Whether it is known that nothing can ever hit it.
@@ -146,6 +154,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
+    }
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        (**self).image(map, bounds, visit);
     }
     fn is_empty(&self) -> bool {
         (**self).is_empty()

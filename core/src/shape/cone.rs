@@ -1,8 +1,9 @@
 //! A cone about the y axis.
 
+use super::ball::{Filled, Hollow, first, leave_span};
 use super::convex::{Convex, Span, convex_collider};
-use super::{Aabb, Spot, Surface, revolve};
-use crate::math::{largest, max, sin_cos_turns, sqrt, unit};
+use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, revolve};
+use crate::math::{clamp, largest, max, min, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
@@ -116,4 +117,86 @@ impl Convex for Cone {
         largest(self.center) + self.radius + self.height
     }
 }
+
+impl Filled for Cone {
+    fn gap(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        let (around, out) = polar(offset);
+        let (r, half) = (self.radius, 0.5 * self.height);
+        // In the plane of the axis, measured from the rim: the way along the mantle, and off it.
+        let rim = Vec2::new(out - r, offset.y + half);
+        let along = Vec2::new(-r, self.height) / self.slant();
+        let (way, off) = (rim.dot(along), rim.x * along.y - rim.y * along.x);
+        if off <= 0.0 && rim.y >= 0.0 {
+            return Vec3::ZERO;
+        }
+        let on_mantle = 0.0 < way && way < self.slant();
+        let to_mantle =
+            if on_mantle { Vec2::new(along.y, -along.x) * off } else { rim - along * clamp(way, 0.0, self.slant()) };
+        let to_base = Vec2::new(max(rim.x, 0.0), rim.y);
+        let nearest = if to_base.dot(to_base) < to_mantle.dot(to_mantle) { to_base } else { to_mantle };
+        around * nearest.x + Vec3::Y * nearest.y
+    }
+}
+
+impl Hollow for Cone {
+    fn leave(&self, segment: &Segment) -> Option<(f32, Vec3)> {
+        let (offset, step) = (segment.from - self.center, segment.step());
+        let (half, slant) = (0.5 * self.height, self.slant());
+        // One larger than the largest that fits is held where that would be.
+        let r = min(segment.radius, self.radius * self.height / (self.radius + slant));
+        let base = leave_span(offset.y, step.y, [r - half, f32::INFINITY]).map(|(time, way)| (time, Vec3::Y * -way));
+        let apex = Vec3::Y * (half - r * (slant / self.radius));
+        first(base, self.leave_mantle(offset - apex, step))
+    }
+
+    fn walls(&self, point: Vec3, visit: &mut dyn FnMut(Vec3, f32)) {
+        let offset = point - self.center;
+        visit(self.inward(offset), self.depth(offset - Vec3::Y * (0.5 * self.height)));
+        visit(Vec3::Y, 0.5 * self.height + offset.y);
+    }
+
+    /// One that stays round and upright on its base, taller or flatter.
+    fn stretched(&self, map: &Affine, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        let Some((scale, turn)) = map.stretch().filter(|_| map.keeps_bases()) else { return };
+        let round = Self { center: self.center * scale, radius: self.radius * scale.x, height: self.height * scale.y };
+        Placed::new(round, turn).iter().for_each(|placed| visit(0, placed));
+    }
+}
 convex_collider!(Cone);
+
+impl Cone {
+    /// How deep a point lies below the mantle \[m\], measured from the apex.
+    fn depth(&self, offset: Vec3) -> f32 {
+        -(polar(offset).1 * self.height + offset.y * self.radius) / self.slant()
+    }
+
+    /// The unit normal of the mantle, inward, beside a point measured from the axis.
+    fn inward(&self, offset: Vec3) -> Vec3 {
+        -unit(polar(offset).0 * self.height + Vec3::Y * self.radius)
+    }
+
+    /// When what moves from `offset` by `step`, measured from the apex, comes out of the mantle. Outside of it at first,
+    /// it does so as soon as it moves away.
+    fn leave_mantle(&self, offset: Vec3, step: Vec3) -> Option<(f32, Vec3)> {
+        let inward = self.inward(offset);
+        if self.depth(offset) <= 0.0 {
+            if step.dot(inward) <= 0.0 {
+                return Some((0.0, inward));
+            }
+            // Should it pass by without ever fitting, it may as long as it does not get in deeper.
+            if self.mantle(offset, step).is_none_or(|span| span.leave < 0.0) {
+                return (self.depth(offset + step) < self.depth(offset)).then_some((0.0, inward));
+            }
+        }
+        let time = max(self.mantle(offset, step)?.leave, 0.0);
+        (time <= 1.0).then(|| (time, self.inward(offset + step * time)))
+    }
+}
+
+/// The unit vector away from the y axis, and the distance to it.
+fn polar(offset: Vec3) -> (Vec3, f32) {
+    let side = Vec3::new(offset.x, 0.0, offset.z);
+    let out = sqrt(side.dot(side));
+    (if out > 0.0 { side / out } else { Vec3::X }, out)
+}

@@ -88,7 +88,27 @@ macro_rules! convex_collider {
     ($($solid:ty),+) => {$(
         impl crate::shape::Collider for $solid {
             fn first_hit(&self, segment: &crate::shape::Segment) -> Option<crate::shape::Hit> {
+                if segment.radius > 0.0 {
+                    return crate::shape::ball::first_hit(self, segment);
+                }
                 crate::shape::convex::first_hit(self, segment)
+            }
+            fn contacts(
+                &self,
+                center: glam::Vec3,
+                reach: f32,
+                _: crate::time::Time,
+                visit: &mut dyn FnMut(&crate::shape::Contact),
+            ) {
+                crate::shape::ball::contacts(self, center, reach, visit);
+            }
+            fn image(
+                &self,
+                map: &crate::shape::Affine,
+                _: &crate::shape::Aabb,
+                visit: &mut dyn FnMut(u32, &dyn crate::shape::Collider),
+            ) {
+                crate::shape::ball::Hollow::stretched(self, map, visit);
             }
             fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
                 crate::shape::Surface::bounds(self).overlaps(bounds)

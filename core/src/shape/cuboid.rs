@@ -1,8 +1,9 @@
 //! The surface of an axis-aligned box.
 
+use super::ball::{Filled, Hollow, leave_span};
 use super::convex::{Convex, Span, convex_collider};
-use super::{Aabb, Spot, Surface};
-use crate::math::{largest, max};
+use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, Triangle};
+use crate::math::{high, largest, max};
 use glam::Vec3;
 
 /// The surface of an axis-aligned box, hit from both sides; the corners may be given in any order.
@@ -95,6 +96,57 @@ impl Convex for Cuboid {
 
     fn reach(&self) -> f32 {
         max(largest(self.min), largest(self.max))
+    }
+}
+
+impl Filled for Cuboid {
+    fn gap(&self, point: Vec3) -> Vec3 {
+        let Aabb { min, max } = self.bounds();
+        high(point - max, Vec3::ZERO) - high(min - point, Vec3::ZERO)
+    }
+}
+
+impl Hollow for Cuboid {
+    fn leave(&self, segment: &Segment) -> Option<(f32, Vec3)> {
+        let (Aabb { min, max }, r) = (self.bounds(), segment.radius);
+        let (from, step) = (segment.from, segment.step());
+        let mut best = None;
+        for (axis, unit) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate() {
+            let leave = leave_span(from[axis], step[axis], [min[axis] + r, max[axis] - r]);
+            best = super::ball::first(best, leave.map(|(time, way)| (time, unit * -way)));
+        }
+        best
+    }
+
+    fn walls(&self, point: Vec3, visit: &mut dyn FnMut(Vec3, f32)) {
+        let Aabb { min, max } = self.bounds();
+        for (axis, unit) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate() {
+            visit(unit, point[axis] - min[axis]);
+            visit(-unit, max[axis] - point[axis]);
+        }
+    }
+
+    /// A box, if its edges stay at right angles; else the twelve triangles of a sheared one.
+    fn stretched(&self, map: &Affine, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        if let Some((scale, turn)) = map.stretch() {
+            let cuboid = Self { min: self.min * scale, max: self.max * scale };
+            Placed::new(cuboid, turn).iter().for_each(|placed| visit(0, placed));
+            return;
+        }
+        let Aabb { min, max } = self.bounds();
+        for axis in 0..3 {
+            let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+            for side in [min, max] {
+                let corner = |u: Vec3, v: Vec3| {
+                    let mut corner = side;
+                    (corner[i], corner[j]) = (u[i], v[j]);
+                    map.point(corner)
+                };
+                let [a, b, c, d] = [corner(min, min), corner(max, min), corner(max, max), corner(min, max)];
+                visit(0, &Triangle { corners: [a, b, c] });
+                visit(0, &Triangle { corners: [a, c, d] });
+            }
+        }
     }
 }
 convex_collider!(Cuboid);

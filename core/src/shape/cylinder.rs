@@ -1,9 +1,10 @@
 //! A cylinder about the y axis.
 
+use super::ball::{Filled, Hollow, first, leave_circle, leave_span};
 use super::convex::{Convex, Span, convex_collider};
 use super::sphere::circle_span;
-use super::{Aabb, Spot, Surface, revolve};
-use crate::math::{largest, sin_cos_turns, sqrt, unit};
+use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, revolve};
+use crate::math::{largest, length, max, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
@@ -66,7 +67,6 @@ impl Convex for Cylinder {
         let offset = from - self.center;
         let half = 0.5 * self.height;
         let slab = Span::slab(offset.y, step.y, -half, half, Vec3::Y)?;
-        let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
         let (offset, step) = (flat(offset), flat(step));
         if step == Vec3::ZERO {
             return (offset.dot(offset) < self.radius * self.radius).then_some(slab);
@@ -80,4 +80,43 @@ impl Convex for Cylinder {
         largest(self.center) + self.radius + self.height
     }
 }
+
+impl Filled for Cylinder {
+    fn gap(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        let (side, half) = (flat(offset), 0.5 * self.height);
+        let above = max(offset.y.abs() - half, 0.0);
+        let beside = max(length(side) - self.radius, 0.0);
+        unit(side) * beside + Vec3::Y * if offset.y < 0.0 { -above } else { above }
+    }
+}
+
+impl Hollow for Cylinder {
+    fn leave(&self, segment: &Segment) -> Option<(f32, Vec3)> {
+        let (offset, step) = (segment.from - self.center, segment.step());
+        let half = 0.5 * self.height - segment.radius;
+        let caps = leave_span(offset.y, step.y, [-half, half]).map(|(time, way)| (time, Vec3::Y * -way));
+        first(caps, leave_circle(flat(offset), flat(step), max(self.radius - segment.radius, 0.0)))
+    }
+
+    fn walls(&self, point: Vec3, visit: &mut dyn FnMut(Vec3, f32)) {
+        let offset = point - self.center;
+        let (side, half) = (flat(offset), 0.5 * self.height);
+        visit(if side == Vec3::ZERO { Vec3::X } else { -unit(side) }, self.radius - length(side));
+        visit(Vec3::Y, half + offset.y);
+        visit(Vec3::NEG_Y, half - offset.y);
+    }
+
+    /// One that stays round and upright on its base, taller or flatter.
+    fn stretched(&self, map: &Affine, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        let Some((scale, turn)) = map.stretch().filter(|_| map.keeps_bases()) else { return };
+        let round = Self { center: self.center * scale, radius: self.radius * scale.x, height: self.height * scale.y };
+        Placed::new(round, turn).iter().for_each(|placed| visit(0, placed));
+    }
+}
 convex_collider!(Cylinder);
+
+/// Without its height.
+fn flat(v: Vec3) -> Vec3 {
+    Vec3::new(v.x, 0.0, v.z)
+}

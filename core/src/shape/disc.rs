@@ -1,8 +1,10 @@
 //! A filled disc.
 
+use super::ball::{Filled, approach, lean};
 use super::plane::crossing;
-use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
+use super::{Aabb, Collider, Contact, Hit, Segment, Spot, Surface, earlier};
 use crate::math::{frame, largest, length, sin_cos_turns, sqrt, unit};
+use crate::time::Time;
 use core::f32::consts::PI;
 use glam::Vec3;
 
@@ -58,6 +60,31 @@ impl Collider for Disc {
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let slack = segment.slack(largest(self.center) + self.radius);
+        let center = self.crossed(segment);
+        // What is smaller than rounding is a point.
+        if segment.radius > slack { earlier(approach(self, segment, slack), center) } else { center }
+    }
+
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        let gap = self.gap(center);
+        lean(center, gap, if gap == Vec3::ZERO { unit(self.normal) } else { unit(gap) }, reach, visit);
+    }
+}
+
+impl Filled for Disc {
+    fn gap(&self, point: Vec3) -> Vec3 {
+        let (normal, offset) = (unit(self.normal), point - self.center);
+        let above = normal * normal.dot(offset);
+        let flat = offset - above;
+        let r = length(flat);
+        if r > self.radius { above + flat * ((r - self.radius) / r) } else { above }
+    }
+}
+
+impl Disc {
+    /// Where the path of a point crosses it.
+    fn crossed(&self, segment: &Segment) -> Option<Hit> {
         let normal = unit(self.normal);
         let (time, normal) =
             crossing(normal, normal.dot(segment.from - self.center), normal.dot(segment.to - self.center))?;

@@ -1,7 +1,9 @@
 //! A straight line.
 
-use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
+use super::ball::{Filled, approach, gap_to_line, lean_on};
+use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface};
 use crate::math::{clamp, frame, length, max, sin_cos_turns, unit};
+use crate::time::Time;
 use glam::Vec3;
 
 /// How near a path must come to a line, which has no area, to touch it \[m\]; more where coordinates are coarser.
@@ -50,15 +52,34 @@ impl Collider for Line {
         Aabb { min: min - TOUCH, max: max + TOUCH }.overlaps(bounds)
     }
 
-    /// The nearest approach, if the path comes within 10 µm (or a few units in the last place, where those are more).
+    /// Of a point the nearest approach, if it comes within 10 µm (or a few units in the last place, where those are
+    /// more); of a ball larger than that where it first touches.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let touch = max(TOUCH, segment.slack(crate::math::largest(self.from)));
+        let slack = segment.slack(crate::math::largest(self.from));
+        let touch = max(TOUCH, slack);
+        if segment.radius > touch {
+            return approach(self, segment, slack);
+        }
         let time = nearest_approach(segment, self);
         let point = segment.at(time);
         let gap = length(point - self.nearest(point));
         let before = segment.from - self.nearest(segment.from);
         // A path that starts on the line only leaves it.
         (gap <= touch && gap < length(before)).then(|| Hit::new(time, unit(before), touch))
+    }
+
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        lean_on(self, center, reach, visit);
+    }
+
+    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        visit(0, &Self { from: map.point(self.from), to: map.point(self.to) });
+    }
+}
+
+impl Filled for Line {
+    fn gap(&self, point: Vec3) -> Vec3 {
+        gap_to_line(point, self.from, self.to - self.from)
     }
 }
 

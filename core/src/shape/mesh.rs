@@ -1,6 +1,6 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
-use super::{Aabb, Collider, Contact, Hit, Segment, Spot, Surface, Triangle, earlier};
+use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle, earlier};
 use crate::math::{length, max};
 use crate::time::Time;
 use glam::Vec3;
@@ -172,6 +172,23 @@ impl Collider for Mesh<'_> {
         self.bounds.overlaps(bounds)
     }
 
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let near = Aabb { min: center - reach, max: center + reach }.with_slack();
+        if self.bounds.overlaps(&near) {
+            let faces = self.faces().filter(|face| face.bounds().overlaps(&near));
+            faces.for_each(|face| face.contacts(center, reach, at, visit));
+        }
+    }
+
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        for (triangle, number) in self.faces().zip(0..) {
+            let image = Triangle { corners: triangle.corners.map(|corner| map.point(corner)) };
+            if image.bounds().overlaps(bounds) {
+                visit(number, &image);
+            }
+        }
+    }
+
     fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
@@ -204,6 +221,9 @@ macro_rules! through_view {
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.view().contacts(center, reach, at, visit);
+            }
+            fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+                self.view().image(map, bounds, visit);
             }
             fn is_empty(&self) -> bool {
                 self.view().is_empty()

@@ -1,6 +1,7 @@
 //! The lecture's shapes. Every file holds one: where births lie on it, how far it is, and where a path first hits it.
 
 mod aabb;
+mod ball;
 mod collider;
 mod cone;
 mod convex;
@@ -125,9 +126,23 @@ impl<M: Collider> Collider for Shape<M> {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         each!(self, s => s.contacts(center, reach, at, visit));
     }
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        each!(self, s => s.image(map, bounds, visit));
+    }
 }
 
 impl<M> Shape<M> {
+    /// Whether balls meet it as it is where `map` puts it. Squashed spheres and circles, and cylinders and cones with
+    /// bases that are not round, they meet as their centres alone would.
+    #[must_use]
+    pub fn meets_balls(&self, map: &Affine) -> bool {
+        match self {
+            Self::Sphere(_) | Self::Circle(_) => map.keeps_shapes(),
+            Self::Cylinder(_) | Self::Cone(_) => map.keeps_shapes() || map.keeps_bases(),
+            Self::Line(_) | Self::Box(_) | Self::Mesh(_) | Self::Triangle(_) | Self::Plane(_) => true,
+        }
+    }
+
     /// The same shape with its mesh, if it is one, held in another way.
     ///
     /// # Errors

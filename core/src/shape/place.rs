@@ -1,7 +1,8 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
-use super::{Aabb, Collider, Hit, Segment, Surface};
-use crate::math::{high, length, unit};
+use super::{Aabb, Collider, Contact, Hit, Segment, Surface, earlier};
+use crate::math::{high, largest, length, max, min, unit};
+use crate::time::Time;
 use glam::{Mat3, Vec3};
 
 /// A linear map and a shift.
@@ -21,8 +22,13 @@ pub struct Placed<C> {
     bounds: Aabb,
     /// To the world and back; none, if it stands where it is.
     maps: Option<(Affine, Affine)>,
+    /// How much longer all lengths are in the world, and within which share of them; none, if directions differ.
+    scale: Option<[f32; 2]>,
     material: Option<u16>,
 }
+
+/// How far lengths and angles may be off for a map to count as one that keeps shapes.
+const EVEN: f32 = 1e-5;
 
 impl Affine {
     /// Everything stays where it is.
@@ -60,6 +66,53 @@ impl Affine {
         let sound = self.linear.determinant() != 0.0 && linear.is_finite();
         sound.then(|| Self { linear, shift: -(linear * self.shift) })
     }
+
+    /// Whether all shapes stay what they are, in another size perhaps.
+    pub(super) fn keeps_shapes(&self) -> bool {
+        self.scale().is_some()
+    }
+
+    /// Whether what is round about the y axis and upright stays so.
+    pub(super) fn keeps_bases(&self) -> bool {
+        self.stretch().is_some_and(|(scale, _)| is_even(scale.x, scale.z))
+    }
+
+    /// How much longer all lengths become, and within which share of them; `None` unless it keeps all shapes.
+    fn scale(&self) -> Option<[f32; 2]> {
+        let [x, y, z] = self.lengths();
+        let (least, most) = (min(min(x, y), z), max(max(x, y), z));
+        let error = max((most - least) / most, self.skew());
+        (error <= EVEN).then_some([(x + y + z) * (1.0 / 3.0), error])
+    }
+
+    /// It as a scaling along the axes, and what then turns and moves; `None` if right angles do not stay right.
+    pub(super) fn stretch(&self) -> Option<(Vec3, Self)> {
+        let [x, y, z] = self.lengths();
+        let m = self.linear;
+        let turn = Mat3::from_cols(m.x_axis / x, m.y_axis / y, m.z_axis / z);
+        (self.skew() <= EVEN).then_some((Vec3::new(x, y, z), Self { linear: turn, ..*self }))
+    }
+
+    /// The lengths of the images of the unit vectors.
+    fn lengths(&self) -> [f32; 3] {
+        [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(length)
+    }
+
+    /// The largest cosine between images of the axes.
+    fn skew(&self) -> f32 {
+        let [x, y, z] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(unit);
+        largest(Vec3::new(x.dot(y), y.dot(z), z.dot(x)))
+    }
+}
+
+/// A velocity in the world; that of what is at rest stays as it is, the signs of its zeros too.
+fn carried(to_world: &Affine, velocity: Vec3) -> Vec3 {
+    if velocity == Vec3::ZERO { velocity } else { to_world.linear * velocity }
+}
+
+/// Whether two lengths are one.
+fn is_even(a: f32, b: f32) -> bool {
+    (a - b).abs() <= EVEN * max(a, b)
 }
 
 impl<C: Surface> Placed<C> {
@@ -73,7 +126,7 @@ impl<C: Surface> Placed<C> {
         let bounds = Aabb { min: bounds.min - room, max: bounds.max + room };
         let to_local = to_world.inverse()?;
         let maps = (to_world != Affine::IDENTITY).then_some((to_world, to_local));
-        Some(Self { collider, bounds, maps, material: None })
+        Some(Self { collider, bounds, maps, scale: to_world.scale(), material: None })
     }
 
     /// The same, made of the scene's material with this number.
@@ -85,20 +138,35 @@ impl<C: Surface> Placed<C> {
 
 impl<C: Collider> Collider for Placed<C> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let Some((to_world, to_local)) = &self.maps else {
+        let Some(maps @ (to_world, _)) = &self.maps else {
             return self.collider.first_hit(segment).map(|hit| Hit { material: self.material, ..hit });
         };
-        // Lines stay lines and fractions stay fractions; normals go by the inverse transpose.
-        let local = Segment { from: to_local.point(segment.from), to: to_local.point(segment.to), ..*segment };
-        let hit = self.collider.first_hit(&local)?;
-        let columns = to_world.linear;
-        let stretch = length(Vec3::new(length(columns.x_axis), length(columns.y_axis), length(columns.z_axis)));
-        Some(Hit {
-            normal: unit(to_local.linear.transpose() * hit.normal),
-            slack: hit.slack * stretch + segment.slack(crate::math::largest(to_world.shift)),
-            material: self.material,
-            ..hit
-        })
+        let Some([scale, error]) = self.scale else {
+            // A ball is round in the world only, so that is where the image is met; here its centre, as a last resort.
+            let center = self.hit_in(maps, segment, 0.0, 0.0);
+            return if segment.radius > 0.0 { earlier(self.image_hit(to_world, segment), center) } else { center };
+        };
+        self.hit_in(maps, segment, segment.radius / scale, segment.radius * error)
+    }
+
+    /// Of a collider under a map that does not keep shapes, its image.
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let Some((to_world, to_local)) = &self.maps else {
+            let mut made = |contact: &Contact| visit(&Contact { material: self.material, ..*contact });
+            return self.collider.contacts(center, reach, at, &mut made);
+        };
+        let Some([scale, _]) = self.scale else {
+            let near = Aabb { min: center - reach, max: center + reach }.with_slack();
+            let mut made = |contact: &Contact| visit(&Contact { material: self.material, ..*contact });
+            return self.collider.image(to_world, &near, &mut |_, image| image.contacts(center, reach, at, &mut made));
+        };
+        self.collider.contacts(to_local.point(center), reach / scale, at, &mut |contact| {
+            let normal = unit(to_local.linear.transpose() * contact.normal);
+            let distance = contact.distance * scale;
+            let point = center - normal * distance;
+            let velocity = carried(to_world, contact.velocity);
+            visit(&Contact { point, normal, distance, velocity, material: self.material });
+        });
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
@@ -108,6 +176,33 @@ impl<C: Collider> Collider for Placed<C> {
 
     fn is_empty(&self) -> bool {
         self.collider.is_empty()
+    }
+}
+
+impl<C: Collider> Placed<C> {
+    /// The first hit in the collider's own coordinates, where the ball has this `radius` and is round within `error`.
+    fn hit_in(&self, maps: &(Affine, Affine), segment: &Segment, radius: f32, error: f32) -> Option<Hit> {
+        let (to_world, to_local) = maps;
+        // Lines stay lines and fractions stay fractions; normals go by the inverse transpose.
+        let local = Segment { from: to_local.point(segment.from), to: to_local.point(segment.to), radius, ..*segment };
+        let hit = self.collider.first_hit(&local)?;
+        Some(Hit {
+            normal: unit(to_local.linear.transpose() * hit.normal),
+            slack: hit.slack * length(to_world.lengths().into()) + segment.slack(largest(to_world.shift)) + error,
+            velocity: carried(to_world, hit.velocity),
+            material: self.material,
+            ..hit
+        })
+    }
+
+    /// The first hit of a ball on the image.
+    fn image_hit(&self, to_world: &Affine, segment: &Segment) -> Option<Hit> {
+        let mut best = None;
+        self.collider.image(to_world, &segment.bounds(), &mut |face, image| {
+            let hit = image.first_hit(segment).map(|hit| Hit { face, material: self.material, ..hit });
+            best = earlier(best, hit);
+        });
+        best
     }
 }
 

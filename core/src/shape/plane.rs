@@ -1,7 +1,9 @@
 //! An infinite plane.
 
-use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
-use crate::math::{largest, unit};
+use super::ball::lean;
+use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, earlier};
+use crate::math::{largest, max, unit};
+use crate::time::Time;
 use glam::Vec3;
 
 /// An infinite plane, hit from both sides. It cannot give birth: all of `sample` is its point.
@@ -40,8 +42,23 @@ impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         // Which side, and when, does not depend on the normal's length.
         let side = |point: Vec3| self.normal.dot(point - self.point);
-        let (time, normal) = crossing(self.normal, side(segment.from), side(segment.to))?;
-        Some(Hit::new(time, unit(normal), segment.slack(largest(self.point))))
+        let slack = segment.slack(largest(self.point));
+        let center = crossing(self.normal, side(segment.from), side(segment.to));
+        let center = center.map(|(time, normal)| Hit::new(time, unit(normal), slack));
+        // What is smaller than rounding is a point.
+        if segment.radius > slack { earlier(self.touched(segment, slack), center) } else { center }
+    }
+
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        let normal = unit(self.normal);
+        let distance = normal.dot(center - self.point);
+        lean(center, normal * distance, if distance < 0.0 { -normal } else { normal }, reach, visit);
+    }
+
+    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        if let Some(back) = map.inverse() {
+            visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
+        }
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
@@ -49,6 +66,18 @@ impl Collider for Plane {
         let distance = self.normal.dot(middle - self.point).abs();
         let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
         distance <= self.normal.abs().dot(half + room)
+    }
+}
+
+impl Plane {
+    /// Where a ball first touches it. One that overlaps it touches at once if it moves nearer, else never.
+    fn touched(&self, segment: &Segment, slack: f32) -> Option<Hit> {
+        let normal = unit(self.normal);
+        let start = normal.dot(segment.from - self.point);
+        let normal = if start < 0.0 { -normal } else { normal };
+        let (room, closing) = (start.abs() - segment.radius, -normal.dot(segment.step()));
+        let time = max(room, 0.0) / closing;
+        (closing > 0.0 && time <= 1.0).then(|| Hit::new(time, normal, slack))
     }
 }
 

@@ -1,8 +1,9 @@
 //! The surface of a sphere.
 
+use super::ball::{Filled, Hollow, leave_circle};
 use super::convex::{Convex, Span, convex_collider};
-use super::{Aabb, Spot, Surface};
-use crate::math::{largest, max, sin_cos_turns, sqrt, unit};
+use super::{Aabb, Affine, Collider, Segment, Spot, Surface};
+use crate::math::{largest, length, max, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
 use glam::Vec3;
 
@@ -58,6 +59,28 @@ impl Convex for Sphere {
     fn reach(&self) -> f32 {
         largest(self.center) + self.radius
     }
+}
+
+impl Filled for Sphere {
+    fn gap(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        unit(offset) * max(length(offset) - self.radius, 0.0)
+    }
+}
+
+impl Hollow for Sphere {
+    fn leave(&self, segment: &Segment) -> Option<(f32, Vec3)> {
+        leave_circle(segment.from - self.center, segment.step(), max(self.radius - segment.radius, 0.0))
+    }
+
+    fn walls(&self, point: Vec3, visit: &mut dyn FnMut(Vec3, f32)) {
+        let offset = point - self.center;
+        let inward = if offset == Vec3::ZERO { Vec3::NEG_Y } else { -unit(offset) };
+        visit(inward, self.radius - length(offset));
+    }
+
+    /// Not of an ellipsoid.
+    fn stretched(&self, _: &Affine, _: &mut dyn FnMut(u32, &dyn Collider)) {}
 }
 convex_collider!(Sphere);
 

@@ -1,8 +1,10 @@
 //! One triangle, and the arithmetic that meshes share with it.
 
+use super::ball::{self, Filled, gap_to_line};
 use super::plane::crossing;
-use super::{Aabb, Collider, Hit, Segment, Spot, Surface};
+use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface};
 use crate::math::{clamp, largest, length, max, sqrt, unit};
+use crate::time::Time;
 use glam::Vec3;
 
 /// A flat triangle, hit from both sides; seen from where its corners run counter-clockwise, its normal points here.
@@ -72,19 +74,75 @@ impl Collider for Triangle {
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let center = self.crossed(segment);
+        if segment.radius > 0.0 { ball::on_triangle(self, segment, center) } else { center }
+    }
+
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        let [a, b, c] = self.corners;
+        let gap = self.gap(center);
+        let normal = if gap == Vec3::ZERO { unit((b - a).cross(c - a)) } else { unit(gap) };
+        ball::lean(center, gap, normal, reach, visit);
+    }
+
+    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        visit(0, &Self { corners: self.corners.map(|corner| map.point(corner)) });
+    }
+}
+
+impl Filled for Triangle {
+    /// As `nearest`; beside its inside it goes by the normal, which keeps the digits of small gaps.
+    fn gap(&self, p: Vec3) -> Vec3 {
+        let [a, b, c] = self.corners;
+        let (ab, ac, ap) = (b - a, c - a, p - a);
+        let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return ap;
+        }
+        let bp = p - b;
+        let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+        if d3 >= 0.0 && d4 <= d3 {
+            return bp;
+        }
+        if d1 * d4 - d3 * d2 <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+            return gap_to_line(p, a, ab);
+        }
+        let cp = p - c;
+        let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+        if d6 >= 0.0 && d5 <= d6 {
+            return cp;
+        }
+        if d5 * d2 - d1 * d6 <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+            return gap_to_line(p, a, ac);
+        }
+        if d3 * d6 - d5 * d4 <= 0.0 && d4 >= d3 && d5 >= d6 {
+            return gap_to_line(p, b, c - b);
+        }
+        let normal = ab.cross(ac);
+        normal * (normal.dot(ap) / normal.dot(normal))
+    }
+}
+
+/// How far it reaches from the origin \[m\].
+pub(super) fn size(triangle: &Triangle) -> f32 {
+    let [a, b, c] = triangle.corners;
+    max(largest(a), max(largest(b), largest(c)))
+}
+
+impl Triangle {
+    /// Where the path of a point crosses it.
+    fn crossed(&self, segment: &Segment) -> Option<Hit> {
         let [a, b, c] = self.corners;
         let normal = (b - a).cross(c - a);
         let (before, after) = (normal.dot(segment.from - a), normal.dot(segment.to - a));
-        let slack = segment.slack(max(largest(a), max(largest(b), largest(c))));
+        let slack = segment.slack(size(self));
         // A path toward the plane that ends within rounding of it has met it. Else one that ends beside an edge could
         // be judged to pass one triangle there and, by its continuation, the other.
         let met = after * after <= slack * slack * normal.dot(normal) && before.abs() > after.abs();
         let (time, normal) = crossing(normal, before, if met { 0.0 } else { after })?;
         self.is_passed(segment).then(|| Hit::new(time, unit(normal), slack))
     }
-}
 
-impl Triangle {
     /// Whether the line through a segment passes inside, edges included (Woop, Benthin, Wald, "Watertight Ray/Triangle
     /// Intersection", JCGT 2013).
     ///

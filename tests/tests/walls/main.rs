@@ -1,0 +1,3 @@
+//! Walls that stand and walls that move: that nothing passes them, and how points and balls bounce, rest and slide.
+
+mod balls;
