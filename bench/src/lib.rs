@@ -1,5 +1,7 @@
 //! What the benches measure with: systems of a given size, and a hand-written loop to hold them against.
 
+pub mod drop;
+
 use pointmass::rng::Stream;
 use pointmass::shape::{Disc, Mesh, Shape};
 use pointmass::{Emitter, Heap, Particle, Scene, Spread, System, Time, Varied, Vec3};

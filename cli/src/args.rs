@@ -5,8 +5,8 @@ use crate::formats::{PlotFormat, PointsFormat, RecordFormat, SceneFormat, StudyF
 use crate::lab::Named;
 use crate::substeps::Substeps;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
-use pointmass::Method;
 use pointmass::index::Structure;
+use pointmass::{Method, Response};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -72,6 +72,10 @@ pub struct World {
     /// scene says, else grid
     #[arg(long, value_name = "NAME")]
     pub index: Option<Structure>,
+    /// How particles that have a radius answer each other: impulse, force or position; by default what the scene says,
+    /// else they pass through each other
+    #[arg(long, value_name = "NAME", value_parser = clap::builder::PossibleValuesParser::new(Response::NAMES))]
+    pub response: Option<String>,
     /// The seed of all randomness; by default what the scene says, else 1
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

@@ -40,6 +40,8 @@ pub struct Summary {
     pub hits: u64,
     /// Times that a bound cut work short.
     pub caps: Caps,
+    /// Times that two particles met.
+    pub contacts: u64,
     /// Springs that broke.
     pub broken: u64,
     /// What the method did.
@@ -98,6 +100,7 @@ impl Summary {
             refused: totals.refused,
             hits: totals.hits,
             caps: totals.caps,
+            contacts: totals.contacts,
             broken: totals.broken,
             effort: totals.effort,
             group_errors: None,
@@ -145,14 +148,16 @@ impl Summary {
             ("no longer finite", self.died.nonfinite),
         ];
         push_counts(&mut rows, "died", &died);
-        let Caps { bounces, chords, springs, unfit } = self.caps;
+        let Caps { bounces, chords, springs, contacts, unfit } = self.caps;
         push_counts(&mut rows, "refused", &[("found no room; raise --capacity", self.refused)]);
         push_counts(&mut rows, "hits", &[("", self.hits)]);
+        push_counts(&mut rows, "contacts", &[("", self.contacts)]);
         push_counts(&mut rows, "broken", &[("springs", self.broken)]);
         let caps = [
             ("paths with too many bounces", bounces),
             ("paths with too many chords", chords),
             ("springs without an end", springs),
+            ("contacts without room", contacts),
             ("steps that did not fit", unfit),
         ];
         push_counts(&mut rows, "bounds met", &caps);

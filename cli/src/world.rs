@@ -8,7 +8,7 @@ use crate::substeps::{Pace, Substeps};
 use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::Limit;
-use pointmass::{Heap, Method, Observer, Report, System, Time};
+use pointmass::{Heap, Method, Observer, Report, Response, System, Time};
 
 /// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
 const TOLERANCE: f64 = 1e-4;
@@ -49,6 +49,9 @@ impl World {
         run.index = args.index.unwrap_or(run.index);
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
+        if let Some(name) = args.response.as_deref() {
+            file.contacts = respond(&file, name, dt);
+        }
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
         let particles = model.particles.len();
         let capacity = match args.capacity {
@@ -91,4 +94,13 @@ impl World {
     pub fn step_observed(&mut self, end: Time, observer: &mut dyn Observer) -> Report {
         self.pace.step(&mut self.system, &self.model.scene(), end, Some(observer))
     }
+}
+
+/// The response of a name: the scene's own, if it is that, else one with settings that suit the scene.
+fn respond(file: &SceneFile, name: &str, dt: f64) -> Option<Response> {
+    let born = file.emitters.iter().map(|emitter| emitter.mass.mean - emitter.mass.variance.abs());
+    let masses = file.particles.iter().map(|particle| particle.mass).chain(born).filter(|&mass| mass > 0.0);
+    let lightest = masses.fold(f32::INFINITY, f32::min);
+    let lightest = if lightest.is_finite() { lightest } else { 1.0 };
+    file.contacts.filter(|own| own.name() == name).or_else(|| Response::by_name(name, dt as f32, lightest))
 }

@@ -78,7 +78,7 @@ mod time;
 mod view;
 mod weave;
 
-pub use collide::{Contacts, Grip, Impulse, Projection};
+pub use collide::{Contacts, Grip, Impulse, Projection, Response};
 #[doc(hidden)]
 pub use collide::{Passage, Stage};
 pub use emit::{Emit, Emitter, Spread, Varied};

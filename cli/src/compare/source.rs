@@ -94,6 +94,7 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         dt: None,
         integrator: None,
         index: None,
+        response: None,
         seed: args.seed,
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),

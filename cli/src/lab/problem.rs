@@ -199,6 +199,7 @@ fn from_file(path: &Path, args: &args::Lab) -> Outcome<Problem> {
         dt: None,
         integrator: None,
         index: None,
+        response: None,
         seed: None,
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),

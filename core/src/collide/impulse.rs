@@ -3,9 +3,9 @@
 use super::contacts::{Contacts, Passage};
 use super::flight::Flight;
 use super::grip::of_two;
-use super::meeting::{Touch, first_touch};
-use super::path::Path;
-use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WAITS, WALL};
+use super::meeting::{At, Touch, first_touch};
+use super::path::{Path, between};
+use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
 use crate::index::{Arrange, SpatialIndex};
 use crate::math::{largest, length, max};
 use crate::observe::{Impact, Observer};
@@ -13,6 +13,7 @@ use crate::particles::Id;
 use crate::report::Report;
 use crate::retire::Fate;
 use crate::scene::Scene;
+use crate::shape::Segment;
 use crate::storage::{Slices, Storage};
 use crate::time::Time;
 use glam::Vec3;
@@ -180,18 +181,19 @@ impl Melee<'_> {
     /// Finds out what happens first to a particle on its present path.
     fn foresee(&mut self, row: usize, near: Option<&dyn SpatialIndex>) {
         let clock = *self.clocks.clock(row);
-        if self.inverse_mass[row] == 0.0 || [GONE, WAITS].contains(&clock.partner) {
+        if self.inverse_mass[row] == 0.0 || clock.partner == GONE {
             self.clocks.set(row, Clock { until: NEVER, ..clock });
             return;
         }
         if clock.turns > MAX_TURNS {
             self.wait(row);
-            return;
         }
+        let clock = *self.clocks.clock(row);
         let path = self.path(row);
         let hull = path.hull(self.radius[row]);
         let mut next = Clock { until: NEVER, partner: NOBODY, ..clock };
-        let near_walls = self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull);
+        let moves = clock.waits == 0;
+        let near_walls = moves && (self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull));
         let meeting = if near_walls { self.flight(row).first_meeting(&path) } else { None };
         if let Some(meeting) = meeting {
             (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
@@ -223,17 +225,20 @@ impl Melee<'_> {
 
     /// When a particle on its path touches another.
     fn first_touch(&self, row: usize, other: usize, path: &Path) -> (u32, bool) {
-        let reach = self.radius[row] + self.radius[other];
         let (own, its) = (self.clocks.clock(row), self.clocks.clock(other));
+        let reach = self.radius[row] + self.radius[other];
         if other == row || !(reach > 0.0) || its.partner == GONE {
             return (NEVER, false);
         }
         let from = self.instant(own.since.max(its.since));
-        let (path, its) = (from_on(path, from), from_on(&self.path(other), from));
-        let relative = path.seen_from(&its);
-        let slack = self.slack(row, other);
-        let (touch, curved) = first_touch(&relative, reach, slack);
-        (touch.map_or(NEVER, |s| self.units(relative.instant(s))), curved)
+        let (touch, curved) = self.touch(row, other, [&from_on(path, from), &from_on(&self.path(other), from)]);
+        let end = self.end;
+        (touch.map_or(NEVER, |at| self.units(between([from, end], at.time))), curved)
+    }
+
+    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<At>, bool) {
+        let reach = self.radius[row] + self.radius[other];
+        first_touch(&path.seen_from(its), reach, self.slack(row, other))
     }
 
     /// What rounding may do to the distance of two particles.
@@ -263,12 +268,24 @@ impl Melee<'_> {
     fn meet(&mut self, row: usize, other: usize, until: u32) {
         let now = self.instant(until);
         let rows = [row, other];
-        let paths = rows.map(|row| from_on(&self.path(row), now));
-        let waits = rows.map(|row| self.clocks.clock(row).partner == WAITS);
+        let from = self.instant(self.clocks.clock(row).since.max(self.clocks.clock(other).since));
+        let whole = rows.map(|row| from_on(&self.path(row), from));
+        let at = self.touch(row, other, [&whole[0], &whole[1]]).0;
+        let mut paths = whole.map(|path| from_on(&path, now));
+        if let Some(at) = at {
+            for (path, whole) in paths.iter_mut().zip(&whole) {
+                path.x0 = at.on(whole);
+            }
+        }
+        let waits = rows.map(|row| self.clocks.clock(row).waits != 0);
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
         let offset = paths[0].x0 - paths[1].x0;
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
+        let overlap = self.radius[row] + self.radius[other] - length(offset);
+        if overlap > self.slack(row, other) {
+            self.set_apart(rows, &mut paths, normal * overlap);
+        }
         let material = rows.map(|row| self.material[row].checked_sub(1));
         let feel = of_two(self.scene.grips, rows.map(|row| self.elasticity[row]), material);
         let acceleration = paths.map(|path| path.acceleration());
@@ -306,15 +323,36 @@ impl Melee<'_> {
         }
     }
 
+    /// Moves two that overlap apart, each by its share or one for both, where no wall is in the way: what walls have set
+    /// off may have been put a little into its neighbour, and would creep on and on.
+    fn set_apart(&self, rows: [usize; 2], paths: &mut [Path; 2], way: Vec3) {
+        let [a, b] = rows.map(|row| self.inverse_mass[row]);
+        let free = |i: usize, change: Vec3| {
+            let Path { x0, during: [now, _], .. } = paths[i];
+            let radius = self.radius[rows[i]];
+            let there = Segment { from: x0, to: x0 + change, radius, during: [now; 2] };
+            change == Vec3::ZERO || self.scene.colliders.first_hit(&there).is_none()
+        };
+        let shares = [[a / (a + b), b / (a + b)], [1.0, 0.0], [0.0, 1.0]];
+        let allowed = shares.into_iter().find(|&[first, second]| {
+            let moves = (first == 0.0 || a > 0.0) && (second == 0.0 || b > 0.0);
+            moves && free(0, way * first) && free(1, way * -second)
+        });
+        if let Some([first, second]) = allowed {
+            paths[0].x0 += way * first;
+            paths[1].x0 -= way * second;
+        }
+    }
+
     /// It stays where it is until the step is over, and keeps its velocity.
     fn wait(&mut self, row: usize) {
         let clock = *self.clocks.clock(row);
-        if clock.partner != WAITS {
+        if clock.waits == 0 {
             self.report.caps.bounces += 1;
         }
         self.ends[0][row] = self.starts[0][row];
         self.ends[1][row] = self.starts[1][row];
-        self.clocks.set(row, Clock { partner: WAITS, until: NEVER, ..clock });
+        self.clocks.set(row, Clock { waits: 1, ..clock });
     }
 
     /// Takes a new path.
@@ -328,7 +366,7 @@ impl Melee<'_> {
         let clock = self.clocks.clock(row);
         let during = [self.instant(clock.since), self.end];
         let (x0, v0) = (self.starts[0][row], self.starts[1][row]);
-        if clock.partner == WAITS || self.inverse_mass[row] == 0.0 {
+        if clock.waits != 0 || self.inverse_mass[row] == 0.0 {
             return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during };
         }
         Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during }

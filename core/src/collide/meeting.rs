@@ -6,11 +6,32 @@ use super::path::{MAX_CHORDS, Path};
 use crate::math::{clamp, length, max, sqrt, unit};
 use glam::Vec3;
 
-/// The fraction of a path, of one ball as seen from the other, at which they come within `reach`, the sum of their radii;
-/// and whether the path is so curved that it took more chords than there are.
+/// Where on a path two balls come to touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct At {
+    /// The fraction of the time.
+    pub(super) time: f32,
+    /// The chord, of how many.
+    chord: f32,
+    chords: f32,
+    /// The fraction of the chord.
+    part: f32,
+}
+
+impl At {
+    /// The place there of one of the two, on the chords along which the touch was sought, so that they really touch.
+    pub(super) fn on(&self, path: &Path) -> Vec3 {
+        let end = |i: f32| if i == self.chords { path.x1 } else { path.at(i / self.chords) };
+        let from = end(self.chord);
+        from + (end(self.chord + 1.0) - from) * self.part
+    }
+}
+
+/// Where on a path, of one ball as seen from the other, they come within `reach`, the sum of their radii; and whether it is so
+/// curved that it would take more chords than there are.
 ///
 /// Balls that overlap already meet at once if they come closer still. What stays within `slack` of a touch is none.
-pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, bool) {
+pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<At>, bool) {
     let hull = path.hull(reach);
     let holds_origin = hull.min.cmple(Vec3::ZERO).all() && hull.max.cmpge(Vec3::ZERO).all();
     if !holds_origin || !path.is_finite() {
@@ -18,10 +39,10 @@ pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, 
     }
     let chords = path.chords();
     let count = chords.min(MAX_CHORDS);
-    let mut pieces = path.pieces(count, 0.0).zip(0_u8..);
-    let touch = pieces.find_map(|(chord, i)| {
-        let s = along_chord(chord.from, chord.step(), reach, slack)?;
-        Some((f32::from(i) + s) / count as f32)
+    let touch = path.pieces(count, 0.0).zip(0_u8..).find_map(|(piece, i)| {
+        let part = along_chord(piece.from, piece.step(), reach, slack)?;
+        let (chord, chords) = (f32::from(i), count as f32);
+        Some(At { time: (chord + part) / chords, chord, chords, part })
     });
     (touch, chords > MAX_CHORDS)
 }
@@ -133,12 +154,12 @@ mod tests {
     fn touches_are_found_when_they_happen() {
         let during = [Time::ZERO, Time::from_seconds(1.0)];
         let way = |x0: Vec3, v: Vec3| Path { x0, v0: v, x1: x0 + v, v1: v, during };
-        let (s, _) = first_touch(&way(Vec3::X * 5.0, Vec3::X * -4.0), 2.0, 1e-6);
-        assert!((s.expect("they meet") - 0.75).abs() < 1e-6);
+        let (at, _) = first_touch(&way(Vec3::X * 5.0, Vec3::X * -4.0), 2.0, 1e-6);
+        assert!((at.expect("they meet").time - 0.75).abs() < 1e-6);
         assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -2.0), 2.0, 1e-6).0, None);
-        assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -1e4), 2.0, 1e-6).0.map(|s| s > 0.0), Some(true));
+        assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -1e4), 2.0, 1e-6).0.map(|at| at.time > 0.0), Some(true));
         assert_eq!(first_touch(&way(Vec3::X * 1.9, Vec3::X), 2.0, 1e-6).0, None);
-        assert_eq!(first_touch(&way(Vec3::X * 1.9, -Vec3::X), 2.0, 1e-6).0, Some(0.0));
+        assert_eq!(first_touch(&way(Vec3::X * 1.9, -Vec3::X), 2.0, 1e-6).0.map(|at| at.time), Some(0.0));
         assert_eq!(first_touch(&way(Vec3::new(5.0, 2.0, 0.0), Vec3::X * -9.0), 2.0, 1e-6).0, None);
     }
 }

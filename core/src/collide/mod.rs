@@ -8,6 +8,7 @@ mod meeting;
 mod path;
 mod projection;
 mod queue;
+mod response;
 mod slide;
 mod solver;
 
@@ -16,6 +17,7 @@ pub use grip::Grip;
 pub use impulse::Impulse;
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub use projection::Projection;
+pub use response::Response;
 pub(crate) use solver::Lists;
 
 use crate::particles::Id;

@@ -19,8 +19,10 @@ pub(super) struct Clock {
     pub(super) place: u32,
     /// The row that stands at this place of the queue.
     pub(super) row: u32,
+    /// Not zero: it has met as much as it may, and waits where it is for the step's end.
+    pub(super) waits: u32,
     /// What makes three vectors of it.
-    pub(super) spare: [u32; 2],
+    pub(super) spare: u32,
 }
 
 /// Of an instant: nothing will happen.
@@ -29,10 +31,8 @@ pub(super) const NEVER: u32 = u32::MAX;
 pub(super) const WALL: u32 = u32::MAX;
 /// Of a partner: nobody.
 pub(super) const NOBODY: u32 = u32::MAX - 1;
-/// Of a partner: it has met as much as it may, and waits where it is for the step's end.
-pub(super) const WAITS: u32 = u32::MAX - 2;
 /// Of a partner: it is no longer, or never was, to be reckoned with.
-pub(super) const GONE: u32 = u32::MAX - 3;
+pub(super) const GONE: u32 = u32::MAX - 2;
 
 /// A binary heap of rows in the particles' own clocks: every row has a place, and moves when its instant changes. Of
 /// equal instants the lower row comes first.

@@ -45,6 +45,15 @@ struct Touch {
 }
 
 impl Penalty {
+    /// Nothing.
+    pub const NONE: Self = Self { stiffness: 0.0, damping: 0.0, friction: Friction::NONE, reach: 0.0 };
+
+    /// The same with this reach, if it has none.
+    #[must_use]
+    pub fn reaching(self, reach: f32) -> Self {
+        Self { reach: if self.reach > 0.0 { self.reach } else { reach }, ..self }
+    }
+
     fn touch(&self, state: &State<'_>, [row, other]: [usize; 2]) -> Option<Touch> {
         let d = state.position[row] - state.position[other];
         let distance = length(d);

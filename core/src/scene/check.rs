@@ -31,11 +31,13 @@ impl SceneFile {
         for (i, particle) in self.particles.iter().enumerate() {
             let at = format!("particles[{i}]");
             if !particle.is_sound() {
-                let message =
-                    "its numbers have to be finite, and its mass above zero (3e-39 kg at least) unless it is fixed";
+                let message = "its numbers have to be finite, its radius not below zero, and its mass above zero (3e-39 kg at least) unless it is fixed";
                 return Err(SceneError::value(at, message));
             }
             self.check_material(&at, particle.material)?;
+        }
+        if let Some((at, message)) = self.contacts.and_then(|response| response.fault()) {
+            return Err(SceneError::value(format!("contacts.{at}"), message));
         }
         for (i, spring) in self.springs.iter().enumerate() {
             let at = format!("springs[{i}]");

@@ -1,7 +1,7 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
 use super::Fabric;
-use crate::collide::Grip;
+use crate::collide::{Grip, Response};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
@@ -39,6 +39,9 @@ pub struct SceneFile {
     /// What acts on all of them, in this order.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub forces: Vec<ForceKind>,
+    /// How those that have a radius answer each other's touch; without it they pass through each other.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub contacts: Option<Response>,
     /// What pulls them, after the forces, and removes those that touch it.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub sinks: Vec<Sink<String>>,
@@ -229,6 +232,7 @@ impl SceneFile {
             fabrics: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),
+            contacts: None,
             sinks: Vec::new(),
             scenery: Vec::new(),
             groups: Vec::new(),

@@ -2,11 +2,12 @@
 
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
-use crate::collide::Grip;
+use crate::collide::{Contacts, Grip, Response};
 use crate::emit::Emitter;
-use crate::force::{ForceKind, Sink, Spring};
+use crate::force::{ForceKind, Penalty, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::Tuned;
+use crate::math::max;
 use crate::particles::{Color, Particle};
 use crate::shape::{Affine, MeshBuf, Placed, Shape};
 use crate::storage::Size;
@@ -25,8 +26,10 @@ pub struct Model {
     pub springs: Vec<Spring>,
     /// What brings further particles into the world.
     pub emitters: Vec<Emitter<Arc<MeshBuf>>>,
-    /// What acts on them: forces, then the pull of the sinks.
-    pub forces: (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>),
+    /// What acts on them: forces, then the pull of the sinks, then what pushes balls apart.
+    pub forces: (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>),
+    /// How those that have a radius answer each other's touch.
+    pub contacts: Option<Response>,
     /// What they bounce off.
     pub colliders: Vec<Placed<Shape<Arc<MeshBuf>>>>,
     /// How materials feel, by their numbers.
@@ -79,6 +82,11 @@ impl Model {
             let material = item.material.or_else(|| file.material_of(item.group));
             scenery.push(Solid { shape, to_world: placement(file, item.group), material });
         }
+        let pushes = file.contacts.iter().filter_map(|response| match response {
+            Response::Force(penalty) => Some(penalty.reaching(2.0 * widest(&start.particles, &file.emitters))),
+            _ => None,
+        });
+        let pushes = pushes.collect();
         let solid = scenery.iter().enumerate().filter(|(_, solid)| !matches!(solid.shape, Shape::Line(_)));
         let has_balls = start.particles.iter().any(|particle| particle.radius > 0.0)
             || emitters.iter().any(|emitter| emitter.radius.mean + emitter.radius.variance.abs() > 0.0);
@@ -98,7 +106,8 @@ impl Model {
             springs: start.springs,
             emitters,
             colliders: colliders.collect::<Result<_, _>>()?,
-            forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks),
+            forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes),
+            contacts: file.contacts,
             grips: file.materials.iter().map(|material| material.grip).collect(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
@@ -118,7 +127,7 @@ impl Model {
             colliders: &self.colliders,
             sinks: &self.forces.1,
             grips: &self.grips,
-            contacts: &(),
+            contacts: self.contacts.as_ref().map_or(&(), |response| response as &dyn Contacts),
             integrator: &self.integrator,
             index: &self.index,
         }
@@ -212,6 +221,12 @@ impl Start {
         }
         Ok(start)
     }
+}
+
+/// The largest radius that a particle of the scene may have \[m\].
+fn widest(particles: &[Particle], emitters: &[Emitter<String>]) -> f32 {
+    let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.variance.abs());
+    particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
 }
 
 /// The product of the transforms of all groups around.

@@ -70,6 +70,9 @@ impl Writer {
         if scene.schema.is_some() {
             self.warn("$schema: .scn has no schema; it is left out");
         }
+        if scene.contacts.is_some() {
+            self.warn("contacts: in .scn particles pass through each other; that is left out");
+        }
         if !scene.about.is_empty() {
             scene.about.split(['\n', '\r']).for_each(|text| self.line(format_args!("# {text}")));
             self.warn("about: kept as a comment");

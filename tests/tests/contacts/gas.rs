@@ -59,7 +59,7 @@ struct Gas {
 fn gas(across: usize, radius: f32, steps: usize) -> Gas {
     let start = balls(across, radius);
     let n = start.len() as f64;
-    let inside = Cuboid { min: Vec3::splat(radius), max: Vec3::splat(SIDE - radius) };
+    let inside = Cuboid { min: Vec3::ZERO, max: Vec3::splat(SIDE) };
     let scene =
         Scene { start: &start, colliders: &inside, contacts: &Impulse {}, index: &Structure::Grid, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 1);
