@@ -39,7 +39,7 @@ impl Drop {
             Vec3::new(x, gap * ((i / across / across) as f32 + 1.0) + aside(w), z)
         });
         let half_width = 0.5 * gap * across as f32;
-        Self { positions: positions.collect(), radius, friction: 0.5, elasticity: 0.2, half_width, dt: 1.0 / 60.0 }
+        Self { positions: positions.collect(), radius, friction: 0.5, elasticity: 0.0, half_width, dt: 1.0 / 60.0 }
     }
 
     /// Mass of a ball \[kg\].

@@ -220,12 +220,13 @@ impl View<'_> {
             h: dt,
             dt,
             pieces,
+            piece: 0,
             report,
         };
-        contacts.gather(&mut stage, bytemuck::cast_slice_mut(rest));
-        for piece in 1..=pieces {
-            let end = now + dt.part(piece, pieces);
-            stage.h = end - stage.now;
+        for piece in 0..pieces {
+            let end = now + dt.part(piece + 1, pieces);
+            (stage.piece, stage.h) = (piece, end - stage.now);
+            contacts.gather(&mut stage, bytemuck::cast_slice_mut(rest));
             let start = match contacts.begin(stage.held, stage.position, stage.velocity) {
                 Some(start) => start,
                 None if scene.needs_start() => [&start_x[..old], &start_v[..old]],

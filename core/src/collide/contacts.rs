@@ -40,7 +40,7 @@ pub trait Contacts: Sync {
         1
     }
 
-    /// Before the first of them.
+    /// Before each.
     #[doc(hidden)]
     fn gather(&self, stage: &mut Stage<'_>, scratch: &mut [u32]) {
         let _ = (stage, scratch);
@@ -110,5 +110,7 @@ pub struct Stage<'a> {
     pub(crate) h: Time,
     pub(crate) dt: Time,
     pub(crate) pieces: u32,
+    /// The number of this one, from 0.
+    pub(crate) piece: u32,
     pub(crate) report: &'a mut Report,
 }

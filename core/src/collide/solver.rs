@@ -9,19 +9,28 @@ use crate::shape::Contact;
 use glam::Vec3;
 
 /// Pairs of near particles that there is room for, for each particle.
-const PAIRS: usize = 9;
+const PAIRS: usize = 8;
 /// Faces near a particle that there is room for, for each particle.
 const FACES: usize = 1;
+/// How much farther apart than a touch two may be and still be listed, as a share of the smaller radius.
+const MARGIN: f32 = 0.1;
+/// Sweeps over the velocities at a step's end, so that what rests shows it.
+const SETTLING: u32 = 10;
 /// Vectors a particle takes: a place and two velocities of before, pairs, faces, and marks.
-pub(super) const HELD: usize = 3 + PAIRS + 4 * FACES + 1;
+pub(super) const HELD: usize = 3 + PAIR_COLUMNS + 5 * FACES + 1;
+const PAIR_COLUMNS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>());
 
-/// Two that may touch in the step.
+/// Two that may touch in the step, and what they do to each other then.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Pair {
     rows: [u32; 2],
     /// How far the sub-step moved them apart \[m\]; zero: they did not touch.
     moved: f32,
+    /// How much slip friction can still take in this sub-step \[m/s\].
+    grip: f32,
+    elasticity: f32,
+    friction: [f32; 2],
 }
 
 /// A face that a particle may touch in the step.
@@ -29,14 +38,14 @@ struct Pair {
 #[repr(C)]
 struct Face {
     row: u32,
-    /// Number of its material plus one.
-    material: u32,
     normal: Vec3,
     /// Of the plane from the origin along the normal \[m\]; it goes with the velocity.
     offset: f32,
     velocity: Vec3,
     moved: f32,
-    spare: [u32; 2],
+    elasticity: f32,
+    friction: [f32; 2],
+    spare: [u32; 3],
 }
 
 /// How long the lists are.
@@ -44,6 +53,8 @@ struct Face {
 pub(crate) struct Lists {
     pairs: usize,
     faces: usize,
+    /// The sub-step before which they have to be made anew.
+    until: u32,
     /// Whether somebody is so fast that two could pass each other within a sub-step.
     fast: bool,
 }
@@ -66,9 +77,11 @@ impl<'a> Held<'a> {
         let (x, rest) = memory.split_at_mut(capacity);
         let (v, rest) = rest.split_at_mut(capacity);
         let (pushed, rest) = rest.split_at_mut(capacity);
-        let (pairs, rest) = rest.split_at_mut(PAIRS * capacity);
-        let (faces, marks) = rest.split_at_mut(4 * FACES * capacity);
-        let (pairs, faces) = (bytemuck::cast_slice_mut(pairs), bytemuck::cast_slice_mut(faces));
+        let (pairs, rest) = rest.split_at_mut(PAIR_COLUMNS * capacity);
+        let pairs = bytemuck::cast_slice_mut::<Vec3, u32>(pairs);
+        let whole = pairs.len() - pairs.len() % (size_of::<Pair>() / 4);
+        let (faces, marks) = rest.split_at_mut(5 * FACES * capacity);
+        let (pairs, faces) = (bytemuck::cast_slice_mut(&mut pairs[..whole]), bytemuck::cast_slice_mut(faces));
         Self { x, v, pushed, pairs, faces, marks: bytemuck::cast_slice_mut(marks) }
     }
 }
@@ -80,84 +93,99 @@ pub(super) fn is_marked(memory: &[Vec3], row: usize) -> bool {
     marks[row] != 0
 }
 
-/// Lists all that may come to touch within the step: what is nearer than it can close in on each other at its present
-/// velocities, and a tenth of the smaller radius.
+/// Lists all that may come to touch, for as many sub-steps as nobody goes half a radius in; then anew.
 pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
-    let held = Held::of(stage.held);
     let len = stage.position.len();
-    held.marks[..len].fill(0);
-    let seconds = stage.dt.seconds();
-    let mean = stage.velocity.iter().copied().sum::<Vec3>() / max(len as f32, 1.0);
-    let mut widest = 0.0;
-    let mut narrowest = f32::INFINITY;
-    let mut farthest = 0.0;
-    for (&radius, &velocity) in stage.radius[..len].iter().zip(&*stage.velocity) {
-        let away = length(velocity - mean) * seconds;
-        if radius > 0.0 && away < f32::INFINITY {
-            widest = max(widest, radius);
-            narrowest = min(narrowest, radius);
-            farthest = max(farthest, away);
-        }
+    if stage.piece == 0 {
+        Held::of(stage.held).marks[..len].fill(0);
     }
-    if widest == 0.0 {
+    if stage.piece < stage.lists.until {
         return;
     }
-    stage.lists.fast = 2.0 * farthest > narrowest * stage.pieces as f32;
-    let reach = 2.0 * widest + 2.0 * farthest + 0.1 * narrowest;
-    let (position, velocity, radius, inverse_mass) =
-        (&*stage.position, &*stage.velocity, stage.radius, stage.inverse_mass);
+    stage.lists = Lists { until: stage.pieces, ..Lists::default() };
+    let Some((half, reach)) = reach(stage) else { return };
+    let held = Held::of(stage.held);
+    // Two that go on steadily are within half their way of each other in the middle of the time.
+    let middle = &mut held.x[..len];
+    for (middle, (&x, &v)) in middle.iter_mut().zip(stage.position.iter().zip(&*stage.velocity)) {
+        *middle = x + v * half;
+    }
+    let middle = &*middle;
+    let (velocity, radius, inverse_mass) = (&*stage.velocity, stage.radius, stage.inverse_mass);
+    let (material, elasticity, grips) = (stage.material, stage.elasticity, stage.scene.grips);
     let (lists, report, room) = (&mut stage.lists, &mut *stage.report, held.pairs);
     let mut keep = |row: u32, other: u32| {
         let (a, b) = (row as usize, other as usize);
-        let touching = radius[a] + radius[b];
-        let closing = length(velocity[a] - velocity[b]) * seconds + 0.1 * min(radius[a], radius[b]);
-        let d = position[a] - position[b];
-        let near = touching + closing;
-        if d.dot(d) < near * near && touching > 0.0 && inverse_mass[a] + inverse_mass[b] > 0.0 {
-            match room.get_mut(lists.pairs) {
-                Some(place) => {
-                    *place = Pair { rows: [row, other], moved: 0.0 };
-                    lists.pairs += 1;
-                }
-                None => report.caps.contacts += 1,
-            }
+        let way = length(velocity[a] - velocity[b]) * half;
+        let near = radius[a] + radius[b] + MARGIN * min(radius[a], radius[b]) + way;
+        let d = middle[a] - middle[b];
+        if !(d.dot(d) < near * near) || inverse_mass[a] + inverse_mass[b] == 0.0 {
+            return;
         }
+        let Some(place) = room.get_mut(lists.pairs) else {
+            report.caps.contacts += 1;
+            return;
+        };
+        let of_both = [a, b].map(|row| material[row].checked_sub(1));
+        let Feel { elasticity, friction } = of_two(grips, [elasticity[a], elasticity[b]], of_both);
+        let friction = [friction.resting, friction.sliding];
+        *place = Pair { rows: [row, other], moved: 0.0, grip: 0.0, elasticity, friction };
+        lists.pairs += 1;
     };
     let words = (3 * stage.scene.index.columns() * len).min(scratch.len());
-    stage.scene.index.arrange(&mut scratch[..words], position, reach, &mut |index| match index {
+    stage.scene.index.arrange(&mut scratch[..words], middle, reach, &mut |index| match index {
         Some(index) => {
             index.pairs(reach, &mut |row, others| others.iter().for_each(|&other| keep(row, other)));
         }
         None => (0..len as u32).for_each(|row| (0..row).for_each(|other| keep(row, other))),
     });
-    gather_faces(stage);
+    gather_faces(stage, 2.0 * half);
 }
 
-fn gather_faces(stage: &mut Stage<'_>) {
+/// Half the time for which a list is to do, and how far two may then be from each other that touch in it; none: no two can.
+fn reach(stage: &mut Stage<'_>) -> Option<(f32, f32)> {
+    let len = stage.position.len();
+    let mean = stage.velocity.iter().copied().sum::<Vec3>() / max(len as f32, 1.0);
+    let (mut widest, mut narrowest, mut fastest) = (0.0, f32::INFINITY, 0.0);
+    for (&radius, &velocity) in stage.radius[..len].iter().zip(&*stage.velocity) {
+        let speed = length(velocity - mean);
+        if radius > 0.0 && speed < f32::INFINITY {
+            (widest, narrowest) = (max(widest, radius), min(narrowest, radius));
+            fastest = max(fastest, speed);
+        }
+    }
+    let piece = stage.dt.seconds() / stage.pieces as f32;
+    // The cast saturates.
+    let pieces = (0.5 * narrowest / max(fastest * piece, f32::MIN_POSITIVE)) as u32;
+    let pieces = pieces.clamp(1, stage.pieces - stage.piece);
+    let half = 0.5 * pieces as f32 * piece;
+    stage.lists.until = stage.piece + pieces;
+    stage.lists.fast = 2.0 * fastest * piece > narrowest;
+    (widest > 0.0).then_some((half, 2.0 * widest + 2.0 * fastest * half + MARGIN * narrowest))
+}
+
+fn gather_faces(stage: &mut Stage<'_>, seconds: f32) {
     let held = Held::of(stage.held);
-    let seconds = stage.dt.seconds();
     for (row, &center) in stage.position.iter().enumerate() {
         let radius = stage.radius[row];
         if stage.inverse_mass[row] == 0.0 || !(radius > 0.0) || !center.is_finite() {
             continue;
         }
         // What comes from farther is met on its way.
-        let reach = radius + min(length(stage.velocity[row]) * seconds, 0.5 * radius) + 0.1 * radius;
+        let reach = radius + min(length(stage.velocity[row]) * seconds, 0.5 * radius) + MARGIN * radius;
+        let own = stage.material[row].checked_sub(1);
+        let elasticity = stage.elasticity[row];
         stage.scene.colliders.contacts(center, reach, stage.now, &mut |contact: &Contact| {
             let Some(place) = held.faces.get_mut(stage.lists.faces) else {
                 stage.report.caps.contacts += 1;
                 return;
             };
             stage.lists.faces += 1;
-            *place = Face {
-                row: row as u32,
-                material: contact.material.map_or(0, |number| u32::from(number) + 1),
-                normal: contact.normal,
-                offset: contact.normal.dot(contact.point),
-                velocity: contact.velocity,
-                moved: 0.0,
-                spare: [0; 2],
-            };
+            let Contact { point, normal, velocity, material, .. } = *contact;
+            let Feel { elasticity, friction } = on_surface(stage.scene.grips, elasticity, own, material);
+            let friction = [friction.resting, friction.sliding];
+            let (row, offset) = (row as u32, normal.dot(point));
+            *place = Face { row, normal, offset, velocity, moved: 0.0, elasticity, friction, spare: [0; 3] };
         });
     }
 }
@@ -177,57 +205,65 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
     if !(h > 0.0) {
         return;
     }
+    let Held { x, v, pushed, pairs, faces, marks } = Held::of(stage.held);
+    let (pairs, faces) = (&mut pairs[..stage.lists.pairs], &mut faces[..stage.lists.faces]);
+    pushed[..stage.velocity.len()].copy_from_slice(stage.velocity);
     let mut pass = Pass {
-        x0: &[],
-        v0: &[],
-        pushed: &[],
+        x0: x,
+        v0: v,
+        pushed,
         position: stage.position,
         velocity: stage.velocity,
         radius: stage.radius,
         inverse_mass: stage.inverse_mass,
-        elasticity: stage.elasticity,
-        material: stage.material,
-        grips: stage.scene.grips,
         h,
         rate: 1.0 / h,
         softness: compliance / (h * h),
         long: stage.dt.seconds(),
     };
-    let Held { x, v, pushed, pairs, faces, marks } = Held::of(stage.held);
-    pushed[..pass.velocity.len()].copy_from_slice(pass.velocity);
-    (pass.x0, pass.v0, pass.pushed) = (x, v, pushed);
-    let (pairs, faces) = (&mut pairs[..stage.lists.pairs], &mut faces[..stage.lists.faces]);
+    let backward = stage.piece % 2 == 1;
     for face in faces.iter_mut() {
         face.offset += face.normal.dot(face.velocity) * h;
         pass.move_from_face(face);
     }
-    for pair in pairs.iter_mut() {
-        pass.move_apart(pair, stage.lists.fast);
+    let fast = stage.lists.fast;
+    each(pairs, backward, |pair| pass.move_apart(pair, fast));
+    let is_last = stage.piece + 1 == stage.pieces;
+    for sweep in 0..if is_last { SETTLING } else { 1 } {
+        faces.iter().filter(|face| face.moved > 0.0).for_each(|face| pass.answer_face(face));
+        each(pairs, (sweep % 2 == 0) != backward, |pair| {
+            if pair.moved > 0.0 {
+                pass.answer_pair(pair);
+            }
+        });
     }
     for pair in pairs.iter().filter(|pair| pair.moved > 0.0) {
-        pass.answer_pair(pair);
         pair.rows.iter().for_each(|&row| marks[row as usize] = 1);
         stage.report.contacts += 1;
     }
     for face in faces.iter().filter(|face| face.moved > 0.0) {
-        pass.answer_face(face);
         marks[face.row as usize] = 1;
         stage.report.hits += 1;
     }
 }
 
+/// Visits all, forward or backward: in turns, no direction is preferred and pressure spreads both ways.
+#[inline(always)]
+fn each(pairs: &mut [Pair], backward: bool, visit: impl FnMut(&mut Pair)) {
+    if backward { pairs.iter_mut().rev().for_each(visit) } else { pairs.iter_mut().for_each(visit) }
+}
+
 /// One pass over the contacts of a sub-step.
 struct Pass<'a> {
+    /// Before the sub-step.
     x0: &'a [Vec3],
     v0: &'a [Vec3],
+    /// As the integrator left it.
     pushed: &'a [Vec3],
     position: &'a mut [Vec3],
     velocity: &'a mut [Vec3],
     radius: &'a [f32],
     inverse_mass: &'a [f32],
-    elasticity: &'a [f32],
-    material: &'a [u16],
-    grips: &'a [super::Grip],
     /// The sub-step, its inverse, and the whole step.
     h: f32,
     rate: f32,
@@ -237,6 +273,7 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
+    #[inline(always)]
     fn move_apart(&mut self, pair: &mut Pair, fast: bool) {
         let [a, b] = pair.rows.map(|row| row as usize);
         let (d, reach) = (self.position[a] - self.position[b], self.radius[a] + self.radius[b]);
@@ -244,7 +281,7 @@ impl Pass<'_> {
         pair.moved = 0.0;
         let (normal, overlap) = if square < reach * reach && square > 0.0 {
             let distance = sqrt(square);
-            (d / distance, reach - distance)
+            (d * (1.0 / distance), reach - distance)
         } else if fast && square > 0.0 {
             let Some(normal) = passed(self.x0[a] - self.x0[b], d, reach) else { return };
             (normal, reach - d.dot(normal))
@@ -252,11 +289,12 @@ impl Pass<'_> {
             return;
         };
         let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
-        let share = overlap / (wa + wb + self.softness);
-        pair.moved = share * (wa + wb);
+        let inverse = 1.0 / (wa + wb);
+        pair.moved = overlap * ((wa + wb) / (wa + wb + self.softness));
         let way = (self.position[a] - self.x0[a]) - (self.position[b] - self.x0[b]);
-        let held = held_back(self.friction_of_pair(a, b), way, normal, pair.moved);
-        let change = normal * share + held / (wa + wb);
+        let (held, left) = held_back(pair.friction, way, normal, pair.moved);
+        pair.grip = left * self.rate;
+        let change = (normal * pair.moved + held) * inverse;
         self.shift(a, change * wa);
         self.shift(b, change * -wb);
     }
@@ -269,69 +307,72 @@ impl Pass<'_> {
         if !(overlap > 0.0) {
             return;
         }
-        face.moved = overlap / (w + self.softness) * w;
+        face.moved = overlap * (w / (w + self.softness));
         let way = self.position[row] - self.x0[row] - face.velocity * self.h;
-        let held = held_back(self.feel_of_face(face).friction, way, face.normal, face.moved);
-        self.shift(row, face.normal * face.moved + held);
+        self.shift(row, face.normal * face.moved + held_back(face.friction, way, face.normal, face.moved).0);
     }
 
+    #[inline(always)]
     fn shift(&mut self, row: usize, change: Vec3) {
         self.position[row] += change;
         self.velocity[row] += change * self.rate;
     }
 
-    fn answer_pair(&mut self, pair: &Pair) {
+    #[inline(always)]
+    fn answer_pair(&mut self, pair: &mut Pair) {
         let [a, b] = pair.rows.map(|row| row as usize);
         let d = self.position[a] - self.position[b];
-        let normal = d / max(length(d), f32::MIN_POSITIVE);
+        let normal = d * (1.0 / max(length(d), f32::MIN_POSITIVE));
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        let material = [a, b].map(|row| self.material[row].checked_sub(1));
-        let elasticity = of_two(self.grips, [self.elasticity[a], self.elasticity[b]], material).elasticity;
-        let change = self.change(elasticity, along(self.pushed), along(self.v0), along(self.velocity), pair.moved);
+        let change = self.change(pair.elasticity, &along, pair.moved);
         let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
-        self.velocity[a] += normal * (change * (wa / (wa + wb)));
-        self.velocity[b] -= normal * (change * (wb / (wa + wb)));
+        let share = normal * (change / (wa + wb));
+        self.velocity[a] += share * wa;
+        self.velocity[b] -= share * wb;
+        if pair.grip > 0.0 {
+            let relative = self.velocity[a] - self.velocity[b];
+            let slip = relative - normal * relative.dot(normal);
+            let change = Friction { resting: 1.0, sliding: 1.0 }.answer(slip, pair.grip);
+            pair.grip -= length(change);
+            let share = change * (1.0 / (wa + wb));
+            self.velocity[a] += share * wa;
+            self.velocity[b] -= share * wb;
+        }
     }
 
     fn answer_face(&mut self, face: &Face) {
         let row = face.row as usize;
         let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
-        let elasticity = self.feel_of_face(face).elasticity;
-        let change = self.change(elasticity, along(self.pushed), along(self.v0), along(self.velocity), face.moved);
+        let change = self.change(face.elasticity, &along, face.moved);
         self.velocity[row] += face.normal * change;
     }
 
     /// How the speed at which two part has to change: to the elastic answer to their approach, or to none where the
     /// bounce would be over within a part of the step. It takes back no more than the contact has given, so that it never pulls.
-    fn change(&self, elasticity: f32, approach: f32, began: f32, now: f32, moved: f32) -> f32 {
-        let bounce = max(-approach * elasticity, 0.0);
-        let pressing = max(began - approach, 0.0) * self.rate;
-        let bounces = 2.0 * bounce > RESTING * self.long * pressing;
-        let change = if bounces { bounce } else { 0.0 } - now;
-        max(change, -moved * self.rate)
-    }
-
-    fn friction_of_pair(&self, a: usize, b: usize) -> Friction {
-        if self.grips.is_empty() {
-            return Friction::NONE;
+    #[inline(always)]
+    fn change(&self, elasticity: f32, along: &impl Fn(&[Vec3]) -> f32, moved: f32) -> f32 {
+        let approach = along(self.pushed);
+        let mut bounce = max(-approach * elasticity, 0.0);
+        if bounce > 0.0 {
+            let pressing = max(along(self.v0) - approach, 0.0) * self.rate;
+            if 2.0 * bounce < RESTING * self.long * pressing {
+                bounce = 0.0;
+            }
         }
-        let material = [a, b].map(|row| self.material[row].checked_sub(1));
-        of_two(self.grips, [0.0; 2], material).friction
-    }
-
-    fn feel_of_face(&self, face: &Face) -> Feel {
-        let row = face.row as usize;
-        let surface = face.material.checked_sub(1).and_then(|number| u16::try_from(number).ok());
-        on_surface(self.grips, self.elasticity[row], self.material[row].checked_sub(1), surface)
+        max(bounce - along(self.velocity), -moved * self.rate)
     }
 }
 
-/// What friction takes of a `way` gone along a surface while something was pressed onto it by so much.
-fn held_back(friction: Friction, way: Vec3, normal: Vec3, pressed: f32) -> Vec3 {
-    if friction == Friction::NONE {
-        return Vec3::ZERO;
+/// What friction takes of a `way` gone along a surface while something was pressed onto it by so much, and how much more it
+/// could have taken.
+#[inline(always)]
+fn held_back([resting, sliding]: [f32; 2], way: Vec3, normal: Vec3, pressed: f32) -> (Vec3, f32) {
+    if resting + sliding == 0.0 {
+        return (Vec3::ZERO, 0.0);
     }
-    friction.answer(way - normal * way.dot(normal), pressed)
+    let slip = way - normal * way.dot(normal);
+    let taken = Friction { resting, sliding }.answer(slip, pressed);
+    (taken, max(max(resting, sliding) * pressed - length(taken), 0.0))
 }
 
 /// The normal at the first touch of two, one of which was at `from` and is at `to` as seen from the other, if they touched on
