@@ -2,7 +2,7 @@
 
 use crate::draw::{Renderer, Sink};
 use crate::progress::Progress;
-use crate::stage::{Cast, stage};
+use crate::stage::{Cast, moves, stage};
 use crate::world::World;
 use crate::{Failure, Outcome, args};
 use pointmass::Time;
@@ -21,7 +21,12 @@ pub fn render(args: &args::Render) -> Outcome {
 
     world.warn_of_steps(frame_time / substeps as f64, world.duration);
 
-    let renderer = Renderer::new(&stage(&world.file, &world.model, args.show_sources), args.size.0, args.size.1);
+    let renderer = |world: &World| {
+        let stage = stage(&world.file, &world.model, args.show_sources, world.system.time());
+        Renderer::new(&stage, args.size.0, args.size.1)
+    };
+    // What stands still is brought before the lens but once.
+    let (moves, mut seen) = (moves(&world.model), renderer(&world));
     let mut cast = Cast::new(&world.file, &world.model);
     let mut progress = Progress::new(frames * substeps);
     for frame in 0..=frames {
@@ -35,7 +40,10 @@ pub fn render(args: &args::Render) -> Outcome {
         // Every picture remembers where things were in the one before, drawn or not.
         let dots = cast.dots(&world);
         if frame == frames || !sink.keeps_only_last() {
-            sink.push(&renderer.frame(&dots, &Cast::segments(&world))).map_err(Failure::new)?;
+            if moves {
+                seen = renderer(&world);
+            }
+            sink.push(&seen.frame(&dots, &Cast::segments(&world))).map_err(Failure::new)?;
         }
     }
     progress.finish();

@@ -1,15 +1,16 @@
-//! A scene as the renderer sees it: what stands still, and what moves.
+//! A scene as the renderer sees it: scenery, and what moves.
 
 use crate::draw::{self, Dot, Line, Piece, Segment, Stage, Surface, shapes};
 use crate::world::World;
 use glam::Vec3;
+use pointmass::Time;
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
-use pointmass::shape::{Aabb, Affine, MeshBuf, Shape, Surface as _};
+use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What stands still: scenery, and sources and sinks if they are to be seen.
-pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool) -> Stage {
+/// The scenery as it stands at an instant, and sources and sinks if they are to be seen.
+pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant: Time) -> Stage {
     let bounds = bounds(file, model);
     let mut stage = Stage {
         camera: camera(file.camera.as_ref(), bounds),
@@ -20,9 +21,10 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool) -> Stag
     };
     let default = Material::default();
     let reach = 40.0 * bounds.radius().clamp(1.0, 1e6);
-    for Solid { shape, to_world, material } in &model.scenery {
+    for Solid { shape, to_world, material, motion } in &model.scenery {
         let material = material.and_then(|i| file.materials.get(usize::from(i))).unwrap_or(&default);
-        place(&mut stage, shape, to_world, look(material), reach);
+        let to_world = if motion.is_still() { *to_world } else { motion.at(instant).after(to_world) };
+        place(&mut stage, shape, &to_world, look(material), reach);
     }
     if show_sources {
         let sources = model.emitters.iter().map(|e| (&e.shape, e.color.unwrap_or([120, 200, 120, 255])));
@@ -81,6 +83,11 @@ impl Cast {
         let position = world.system.particles().position;
         springs.ends().map(|[a, b]| Segment { a: position[a], b: position[b], color: [170, 170, 180, 255] }).collect()
     }
+}
+
+/// Whether some of the scenery moves.
+pub(crate) fn moves(model: &Model) -> bool {
+    model.scenery.iter().any(|solid| !solid.motion.is_still())
 }
 
 /// How large a scene is \[m\]: the radius of all that stays put and of the particles that it begins with.
@@ -181,6 +188,19 @@ fn place(stage: &mut Stage, shape: &Shape<Arc<MeshBuf>>, to_world: &Affine, mate
     stage.pieces.push(Piece { surface, material, endless: matches!(shape, Shape::Plane(_)) });
 }
 
+/// A height field as a mesh.
+fn ground(field: &HeightField<'_>) -> Surface {
+    let [columns, rows] = field.size();
+    let vertices: Vec<Vec3> = (0..rows).flat_map(|j| (0..columns).map(move |i| field.vertex(i, j))).collect();
+    let corner = |i: usize, j: usize| (j * columns + i) as u32;
+    let cell = |i, j| {
+        let [a, b, c, d] = [corner(i, j), corner(i, j + 1), corner(i + 1, j), corner(i + 1, j + 1)];
+        [[a, b, c], [c, b, d]]
+    };
+    let triangles: Vec<_> = (0..rows - 1).flat_map(|j| (0..columns - 1).flat_map(move |i| cell(i, j))).collect();
+    shapes::mesh(&vertices, &triangles)
+}
+
 fn tessellate(shape: &Shape<Arc<MeshBuf>>, reach: f32) -> Surface {
     match shape {
         Shape::Line(_) => Surface::default(),
@@ -195,5 +215,6 @@ fn tessellate(shape: &Shape<Arc<MeshBuf>>, reach: f32) -> Surface {
         Shape::Mesh(mesh) => shapes::mesh(mesh.view().vertices(), mesh.view().triangles()),
         Shape::Triangle(s) => shapes::mesh(&s.corners, &[[0, 1, 2]]),
         Shape::Plane(s) => shapes::plane(s.point, s.normal, reach),
+        Shape::HeightField(field) => ground(&field.view()),
     }
 }

@@ -219,7 +219,7 @@ fn place(nodes: Vec<Node>, parent: Option<u32>, scene: &mut SceneFile) {
     for node in nodes {
         match node {
             Node::Item(shape, material) => {
-                scene.scenery.push(Item { shape, material: within(material, count), group: parent });
+                scene.scenery.push(Item { shape, material: within(material, count), group: parent, motion: None });
             }
             Node::Group(matrix, material, nodes) => {
                 let number = scene.groups.len() as u32;
@@ -373,7 +373,7 @@ pub(crate) fn any_scene() -> impl Strategy<Value = SceneFile> {
         }
         for (shape, group) in items {
             let group = group.checked_rem(scene.groups.len() as u32);
-            scene.scenery.insert(0, Item { shape: shape.clone(), material: None, group });
+            scene.scenery.insert(0, Item { shape: shape.clone(), material: None, group, motion: None });
             scene.sinks.push(Sink { shape, intensity: softness, ca: 1.0, la: glow, qa: 0.0, softening: glow });
         }
         if let Some(first) = scene.particles.first_mut() {

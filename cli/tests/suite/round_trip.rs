@@ -87,7 +87,7 @@ fn groups_of_nothing_are_not_lost() {
 #[test]
 fn a_group_entered_twice_keeps_its_meaning() {
     let shape = |x| Shape::Sphere(Sphere { center: Vec3::X * x, radius: 1.0 });
-    let item = |x, group| Item { shape: shape(x), material: None, group };
+    let item = |x, group| Item { shape: shape(x), material: None, group, motion: None };
     let mut matrix = [[0.0; 4]; 4];
     (0..4).for_each(|i| matrix[i][i] = 1.0);
     matrix[0][3] = 0.25;
@@ -137,7 +137,7 @@ fn is_readable_and_warned_of(scene: SceneFile) {
 #[test]
 fn names_of_meshes_that_scn_cannot_say() {
     for name in ["", "#1.off", "a b.off", "a\nb.off", "a\u{2003}b.off"] {
-        let scenery = vec![Item { shape: Shape::Mesh(name.into()), material: None, group: None }];
+        let scenery = vec![Item { shape: Shape::Mesh(name.into()), material: None, group: None, motion: None }];
         is_readable_and_warned_of(SceneFile { scenery, ..SceneFile::new() });
     }
 }
@@ -167,7 +167,7 @@ fn groups_deeper_than_scn_has_them() {
     (0..4).for_each(|i| matrix[i][i] = 1.0);
     let group = |i: u32| Group { matrix, material: None, parent: i.checked_sub(1) };
     let shape = Shape::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
-    let scenery = vec![Item { shape, material: None, group: Some(1024) }];
+    let scenery = vec![Item { shape, material: None, group: Some(1024), motion: None }];
     let scene = SceneFile { groups: (0..=1024).map(group).collect(), scenery, ..SceneFile::new() };
     if scene.check().is_ok() {
         is_readable_and_warned_of(scene);

@@ -93,7 +93,7 @@ fn everything() -> SceneFile {
     let mut sinks: Vec<_> = sinks.collect();
     sinks[1].intensity = -1.0;
     let (unit, two) = (Sphere { center: Vec3::ZERO, radius: 1.0 }, (Vec3::ZERO, 1.0, 2.0));
-    let item = |shape, material, group| Item { shape, material, group };
+    let item = |shape, material, group| Item { shape, material, group, motion: None };
     let matrix = |scale: f32, shift: [f32; 3]| {
         let mut rows = [[0.0; 4]; 4];
         (0..3).for_each(|i| (rows[i][i], rows[i][3]) = (scale, shift[i]));

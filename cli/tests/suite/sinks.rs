@@ -92,7 +92,7 @@ fn signed_distance(x: P, shape: &Shape<Arc<MeshBuf>>) -> f64 {
             });
             if inside { -distance } else { distance }
         }
-        Shape::Triangle(_) | Shape::Plane(_) => panic!("the course has no such sink"),
+        Shape::Triangle(_) | Shape::Plane(_) | Shape::HeightField(_) => panic!("the course has no such sink"),
     }
 }
 

@@ -91,7 +91,8 @@ impl Flight<'_> {
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;
-        Arrival { position: path.x0, velocity: path.v0, fate: Fate::Lives }
+        let position = self.scene.colliders.carry(path.x0, self.radius, path.during);
+        Arrival { position, velocity: path.v0, fate: Fate::Lives }
     }
 
     /// The first hit along the path's chords. A sink wins over a collider in the same place.
@@ -159,24 +160,28 @@ impl Flight<'_> {
     }
 
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
-    /// way there is free; else as far back on the path as is free, at last its beginning.
+    /// way there is free; else as far back on the path as is free, at last its beginning. A surface that moves takes
+    /// what is back on the path along to the instant of the hit.
     fn set_off(&self, meeting: &Meeting) -> Vec3 {
         let Meeting { chord, hit, .. } = meeting;
-        let [start, _] = chord.during;
+        let [start, end] = chord.during;
+        let (moves, ride) = (hit.velocity != Vec3::ZERO, hit.velocity * (end - start).seconds());
+        let taken = |point: Vec3, time: f32| if moves { point + ride * (hit.time - time) } else { point };
         let free = |segment: Segment| self.scene.colliders.first_hit(&segment).is_none();
-        let closing = max(-chord.step().dot(hit.normal), f32::MIN_POSITIVE);
+        let closing = max((ride - chord.step()).dot(hit.normal), f32::MIN_POSITIVE);
         let beside = chord.at(hit.time) + hit.normal * (2.0 * hit.slack);
         let now = between(chord.during, hit.time);
         let mut back = 2.0 * hit.slack / closing;
         // At a rim or in a corner another surface may be nearer than the slack of this one.
         for _ in 0..MAX_RETREATS {
-            let before = chord.at(clamp(hit.time - back, 0.0, 1.0));
+            let time = clamp(hit.time - back, 0.0, 1.0);
+            let before = taken(chord.at(time), time);
             if free(Segment { to: before, during: [start, now], ..*chord }) {
                 let aside = Segment { from: before, to: beside, during: [now; 2], ..*chord };
                 return if free(aside) { beside } else { before };
             }
             back *= 4.0;
         }
-        chord.from
+        taken(chord.from, 0.0)
     }
 }

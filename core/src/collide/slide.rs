@@ -1,7 +1,7 @@
 //! A particle that rests on a surface: it slides, stops and stays by Coulomb's law.
 
 use crate::force::Friction;
-use crate::math::length;
+use crate::math::{length, unit};
 use glam::Vec3;
 
 /// How something moves along a surface that presses back, for a while: all vectors lie in the surface.
@@ -34,6 +34,10 @@ impl Slide {
             let (rest, velocity) = self.starting(time - until);
             return (way + rest, velocity);
         }
+        // Friction is against the motion all along. Told by the direction at the end it only ever shortens a velocity;
+        // by that at the beginning it would throw a slow one from side to side.
+        let along = unit(self.velocity + self.drive * time);
+        let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
         ((self.velocity + acceleration * (0.5 * time)) * time, self.velocity + acceleration * time)
     }
 

@@ -220,6 +220,10 @@ impl SceneFile {
             let at = format!("scenery[{i}]");
             check_shape(&format!("{at}.shape"), &item.shape)?;
             self.check_material(&at, item.material)?;
+            if item.motion.is_some_and(|motion| !motion.is_sound()) {
+                let message = "its numbers have to be finite, and its axis to have a direction if it turns";
+                return Err(SceneError::value(format!("{at}.motion"), message));
+            }
             if item.group.is_some_and(|group| group as usize >= self.groups.len()) {
                 let count = self.groups.len();
                 return Err(SceneError::value(
@@ -336,6 +340,6 @@ fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
         Shape::Circle(s) => rows(&[s.center]).and(sizes(&[s.radius])).and(check_direction(at, s.normal)),
         Shape::Triangle(s) => rows(&s.corners),
         Shape::Plane(s) => rows(&[s.point]).and(check_direction(at, s.normal)),
-        Shape::Mesh(_) => Ok(()),
+        Shape::Mesh(_) | Shape::HeightField(_) => Ok(()),
     }
 }

@@ -7,7 +7,7 @@ use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::{Method, Tuning};
 use crate::particles::Particle;
-use crate::shape::Shape;
+use crate::shape::{Motion, Shape};
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -100,6 +100,9 @@ pub struct Item {
     /// The group whose transform applies, by its place in the list of groups.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u32>,
+    /// How it moves; without one it stands still.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub motion: Option<Motion>,
 }
 
 /// A transform of scenery, inside another if it has a parent. (A flat list: nesting has no depth that could overflow.)

@@ -9,7 +9,7 @@ use crate::index::Structure;
 use crate::integrate::Tuned;
 use crate::math::max;
 use crate::particles::{Color, Particle};
-use crate::shape::{Affine, MeshBuf, Placed, Shape};
+use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Shape};
 use crate::storage::Size;
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -31,7 +31,7 @@ pub struct Model {
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
     /// What they bounce off.
-    pub colliders: Vec<Placed<Shape<Arc<MeshBuf>>>>,
+    pub colliders: Vec<Moving<Placed<Shape<Arc<MeshBuf>>>>>,
     /// How materials feel, by their numbers.
     pub grips: Vec<Grip>,
     /// What is drawn.
@@ -53,6 +53,8 @@ pub struct Solid {
     pub to_world: Affine,
     /// Its material's number, if it has one.
     pub material: Option<u16>,
+    /// How it moves from there.
+    pub motion: Motion,
 }
 
 impl Model {
@@ -80,7 +82,8 @@ impl Model {
         for (i, item) in file.scenery.iter().enumerate() {
             let shape = meshes.shape(&format!("scenery[{i}].shape"), &item.shape)?;
             let material = item.material.or_else(|| file.material_of(item.group));
-            scenery.push(Solid { shape, to_world: placement(file, item.group), material });
+            let motion = item.motion.unwrap_or(Motion::STILL);
+            scenery.push(Solid { shape, to_world: placement(file, item.group), material, motion });
         }
         let pushes = file.contacts.iter().filter_map(|response| match response {
             Response::Force(penalty) => Some(penalty.reaching(2.0 * widest(&start.particles, &file.emitters))),
@@ -96,7 +99,9 @@ impl Model {
                 return Err(SceneError::value(format!("scenery[{i}].group"), message).in_file(path));
             }
             let placed = Placed::new(solid.shape.clone(), solid.to_world);
-            placed.map(|placed| placed.made_of(solid.material)).ok_or_else(|| {
+            let placed = placed.map(|placed| placed.made_of(solid.material));
+            let moving = placed.map(|placed| Moving::new(placed.clone(), &placed.bounds(), solid.motion));
+            moving.ok_or_else(|| {
                 let message = "its groups together flatten space: there is no inverse";
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
             })

@@ -193,7 +193,7 @@ impl Reader<'_> {
             Command::Scenery(piece) => {
                 let material = scope.material(name, piece.material)?;
                 let shape = self.shape(scope, place, name, &piece.shape)?;
-                self.scene.scenery.push(Item { shape, material, group: scope.group() });
+                self.scene.scenery.push(Item { shape, material, group: scope.group(), motion: None });
             }
             Command::Begin { material, matrix } => self.begin(scope, place, material, matrix)?,
             Command::End => {

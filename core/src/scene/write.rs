@@ -164,8 +164,11 @@ impl Writer {
     /// so that those of nothing are not lost.
     fn scenery(&mut self, scene: &SceneFile) {
         let (mut open, mut next): (Vec<u32>, u32) = (Vec::new(), 0);
-        for (i, Item { shape, material, group }) in scene.scenery.iter().enumerate() {
+        for (i, Item { shape, material, group, motion }) in scene.scenery.iter().enumerate() {
             let Some(shape) = self.shape(&format!("scenery[{i}]"), shape, true) else { continue };
+            if motion.is_some() {
+                self.warn(format!("scenery[{i}].motion: .scn has none; it is left out"));
+            }
             self.open_until(scene, &mut open, &mut next, group.map_or(0, |group| group + 1));
             self.enter(scene, &mut open, &scene.chain(*group));
             let (name, arguments) = shape.split_once(' ').unwrap_or((&shape, ""));
@@ -316,6 +319,7 @@ impl Writer {
             Shape::Circle(_) => "a circle that is solid",
             Shape::Triangle(_) => "a triangle that gives birth or takes away",
             Shape::Plane(_) => "a plane",
+            Shape::HeightField(_) => "a height field",
         };
         self.warn(format!("{at}: .scn does not have {kind}; it is left out"));
         None

@@ -28,6 +28,12 @@ pub trait Collider: Sync {
         let _ = (center, reach, at, visit);
     }
 
+    /// Where a ball that waits at `point` is by the end of a span, if what moves would run over it and takes it along.
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        let _ = (radius, during);
+        point
+    }
+
     /// Visits colliders that together are its image under a map that is no similarity, as far as they may be near
     /// `bounds`, each with the number of its face. Balls ask for them, which such a map would make other than round.
     ///
@@ -155,6 +161,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
     }
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        (**self).carry(point, radius, during)
+    }
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         (**self).image(map, bounds, visit);
     }
@@ -176,6 +185,9 @@ impl<T: Collider> Collider for [T] {
         let bounds = Aabb { min: center - reach, max: center + reach };
         self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts(center, reach, at, visit));
     }
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.iter().fold(point, |point, c| c.carry(point, radius, during))
+    }
     fn is_empty(&self) -> bool {
         self.iter().all(Collider::is_empty)
     }
@@ -194,6 +206,9 @@ macro_rules! lists {
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.as_slice().contacts(center, reach, at, visit);
+            }
+            fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+                self.as_slice().carry(point, radius, during)
             }
             fn is_empty(&self) -> bool {
                 self.iter().all(Collider::is_empty)
@@ -227,6 +242,12 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 $($name.contacts(center, reach, at, visit);)+
+            }
+            fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $(let point = $name.carry(point, radius, during);)+
+                point
             }
             fn is_empty(&self) -> bool {
                 #[allow(non_snake_case)]

@@ -232,7 +232,7 @@ macro_rules! through_view {
     )+};
 }
 #[cfg(feature = "alloc")]
-through_view!(MeshBuf, alloc::sync::Arc<MeshBuf>);
+through_view!(MeshBuf, alloc::sync::Arc<MeshBuf>, super::HeightFieldBuf);
 
 fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BadMesh> {
     if let Some(vertex) = vertices.iter().position(|v| !v.is_finite()) {

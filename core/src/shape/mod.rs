@@ -8,8 +8,10 @@ mod convex;
 mod cuboid;
 mod cylinder;
 mod disc;
+mod heightfield;
 mod line;
 mod mesh;
+mod moving;
 mod place;
 mod plane;
 mod revolve;
@@ -23,10 +25,14 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
+pub use heightfield::{BadHeights, HeightField};
+#[cfg(feature = "alloc")]
+pub use heightfield::{HeightFieldBuf, Heights};
 pub use line::Line;
 #[cfg(feature = "alloc")]
 pub use mesh::MeshBuf;
 pub use mesh::{BadMesh, Mesh};
+pub use moving::{Motion, Moving};
 pub use place::{Affine, Placed};
 pub use plane::Plane;
 pub use sphere::Sphere;
@@ -82,6 +88,10 @@ pub enum Shape<M> {
     Triangle(Triangle),
     /// An infinite plane, hit from both sides.
     Plane(Plane),
+    /// Ground: heights over a grid.
+    #[cfg(feature = "alloc")]
+    #[cfg_attr(feature = "serde", serde(rename = "heightfield"))]
+    HeightField(HeightFieldBuf),
 }
 
 /// Hands a call to whichever shape it is.
@@ -97,6 +107,8 @@ macro_rules! each {
             Shape::Mesh($s) => $call,
             Shape::Triangle($s) => $call,
             Shape::Plane($s) => $call,
+            #[cfg(feature = "alloc")]
+            Shape::HeightField($s) => $call,
         }
     };
 }
@@ -139,7 +151,7 @@ impl<M> Shape<M> {
         match self {
             Self::Sphere(_) | Self::Circle(_) => map.keeps_shapes(),
             Self::Cylinder(_) | Self::Cone(_) => map.keeps_shapes() || map.keeps_bases(),
-            Self::Line(_) | Self::Box(_) | Self::Mesh(_) | Self::Triangle(_) | Self::Plane(_) => true,
+            _ => true,
         }
     }
 
@@ -158,6 +170,8 @@ impl<M> Shape<M> {
             Self::Mesh(m) => Shape::Mesh(f(m)?),
             Self::Triangle(s) => Shape::Triangle(*s),
             Self::Plane(s) => Shape::Plane(*s),
+            #[cfg(feature = "alloc")]
+            Self::HeightField(s) => Shape::HeightField(s.clone()),
         })
     }
 }

@@ -129,6 +129,12 @@ impl<C: Surface> Placed<C> {
         Some(Self { collider, bounds, maps, scale: to_world.scale(), material: None })
     }
 
+    /// A box around it in the world.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
     /// The same, made of the scene's material with this number.
     #[must_use]
     pub fn made_of(self, material: Option<u16>) -> Self {

@@ -2,7 +2,7 @@
 
 use super::ball::lean;
 use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, earlier};
-use crate::math::{largest, max, unit};
+use crate::math::{clamp, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -85,10 +85,12 @@ impl Plane {
 /// from. A point on the plane is on the side its normal points to: it can leave that way freely, and lie there.
 #[inline]
 pub(super) fn crossing(normal: Vec3, before: f32, after: f32) -> Option<(f32, Vec3)> {
+    // Of distances that are not finite the share is no number, which clamps to zero.
+    let time = clamp(before / (before - after), 0.0, 1.0);
     if before >= 0.0 && after <= 0.0 && before > after {
-        Some((before / (before - after), normal))
+        Some((time, normal))
     } else if before < 0.0 && after >= 0.0 {
-        Some((before / (before - after), -normal))
+        Some((time, -normal))
     } else {
         None
     }

@@ -1,3 +1,10 @@
 //! Walls that stand and walls that move: that nothing passes them, and how points and balls bounce, rest and slide.
 
 mod balls;
+mod blocks;
+mod bounces;
+mod heights;
+mod moving;
+mod poison;
+mod scenes;
+mod tunnels;
