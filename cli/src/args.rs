@@ -6,7 +6,7 @@ use crate::lab::Named;
 use crate::substeps::Substeps;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::index::Structure;
-use pointmass::{Method, Response};
+use pointmass::{Method, Response, rays};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -76,6 +76,10 @@ pub struct World {
     /// else they pass through each other
     #[arg(long, value_name = "NAME", value_parser = clap::builder::PossibleValuesParser::new(Response::NAMES))]
     pub response: Option<String>,
+    /// How paths find what they run into among the triangles of a mesh: brute, grid, octree, kd, bsp or bvh, all to the
+    /// same end; by default what the scene says, else bvh
+    #[arg(long, value_name = "NAME")]
+    pub collision_index: Option<rays::Structure>,
     /// The seed of all randomness; by default what the scene says, else 1
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

@@ -47,6 +47,7 @@ impl World {
             warn(&[format!("--tolerance does nothing with {method} in steps that are given: add --substeps auto")]);
         }
         run.index = args.index.unwrap_or(run.index);
+        run.collision_index = args.collision_index.unwrap_or(run.collision_index);
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
         if let Some(name) = args.response.as_deref() {

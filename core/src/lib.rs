@@ -64,6 +64,7 @@ pub mod math;
 mod measure;
 mod observe;
 mod particles;
+pub mod rays;
 mod report;
 mod retire;
 pub mod rng;

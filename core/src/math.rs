@@ -77,6 +77,12 @@ pub fn largest(v: Vec3) -> f32 {
     max(max(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
+/// The power of two that brings a positive length to between one and two, as far as there is one.
+#[must_use]
+pub(crate) fn power_to_one(length: f32) -> f32 {
+    f32::from_bits((254 - (length.to_bits() >> 23).clamp(1, 253)) << 23)
+}
+
 /// Cube root of a number above zero, to 1e-6 of it: an estimate by its bits, then Newton's method.
 #[must_use]
 pub fn cbrt(x: f32) -> f32 {

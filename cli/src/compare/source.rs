@@ -95,6 +95,7 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         integrator: None,
         index: None,
         response: None,
+        collision_index: None,
         seed: args.seed,
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),

@@ -200,6 +200,7 @@ fn from_file(path: &Path, args: &args::Lab) -> Outcome<Problem> {
         integrator: None,
         index: None,
         response: None,
+        collision_index: None,
         seed: None,
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),

@@ -83,6 +83,7 @@ fn usage_errors_exit_with_2() {
         "run a.scn --out",
         "render a.scn",
         "run a.scn --index tree",
+        "run a.scn --collision-index hash",
         "render a.scn --out o.jpg",
         "render a.scn --out o.gif --size 0x5",
         "render a.scn --out o.gif --size big",
@@ -147,6 +148,21 @@ fn neighbours_are_the_same_in_every_index() {
     for structure in pointmass::index::Structure::ALL {
         let found = energy(structure.name());
         assert!((found / brute - 1.0).abs() < 1e-4, "{structure}: {found}, not {brute}");
+    }
+}
+
+#[test]
+fn collisions_are_the_same_in_every_index() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/rain_on_mesh.json");
+    let folder = Folder::with("a.scn", BUSY);
+    let told = |index: &str| {
+        let report = folder.report(&format!("{scene} --steps 60 --collision-index {index}"));
+        assert!(report["hits"].as_u64().is_some_and(|hits| hits > 100), "{report}");
+        [report["hash"].clone(), report["hits"].clone()]
+    };
+    let brute = told("brute");
+    for structure in pointmass::rays::Structure::ALL {
+        assert_eq!(told(structure.name()), brute, "{structure}");
     }
 }
 

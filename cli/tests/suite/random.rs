@@ -3,6 +3,7 @@
 use pointmass::emit::{Burst, Emitter, Spread, Varied};
 use pointmass::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
 use pointmass::index::Structure;
+use pointmass::rays;
 use pointmass::scene::{Camera, Files, Group, Item, Light, Material, Run, SceneFile};
 use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
 use pointmass::{Method, Particle, Tuning, Vec3};
@@ -339,20 +340,21 @@ fn any_emitter() -> impl Strategy<Value = Emitter<String>> {
 
 fn run() -> impl Strategy<Value = Run> {
     let method = select(Method::ALL.to_vec());
-    let index = select(Structure::ALL.to_vec());
+    let indices = (select(Structure::ALL.to_vec()), select(rays::Structure::ALL.to_vec()));
     let tuning = (1e-9f32..1.0, 1u32..9, 1u32..1000).prop_map(|(tolerance, newton, iterations)| Tuning {
         tolerance,
         newton,
         iterations,
         ..Tuning::DEFAULT
     });
-    (0.0f64..1e6, 1e-6f64..10.0, method, (tuning, index), any::<u64>(), any::<u32>()).prop_map(
-        |(duration, dt, integrator, (tuning, index), seed, capacity)| Run {
+    (0.0f64..1e6, 1e-6f64..10.0, method, (tuning, indices), any::<u64>(), any::<u32>()).prop_map(
+        |(duration, dt, integrator, (tuning, (index, collision_index)), seed, capacity)| Run {
             duration,
             dt,
             integrator,
             tuning,
             index,
+            collision_index,
             seed,
             capacity,
         },

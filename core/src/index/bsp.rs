@@ -78,7 +78,7 @@ fn surface([low, high]: [Vec3; 2]) -> f32 {
 }
 
 /// The axes along which points are uncorrelated: the eigenvectors of their covariance, by Jacobi's rotations.
-fn principal_axes<I: Iterator<Item = Vec3>>(points: impl Fn() -> I) -> Mat3 {
+pub(crate) fn principal_axes<I: Iterator<Item = Vec3>>(points: impl Fn() -> I) -> Mat3 {
     let (sum, count) = points().fold((Vec3::ZERO, 0.0), |(sum, count), point| (sum + point, count + 1.0));
     let mean = sum / count;
     let mut covariance = [[0.0f32; 3]; 3];

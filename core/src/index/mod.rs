@@ -53,6 +53,7 @@ pub use barnes_hut::FieldError;
 pub use barnes_hut::{BarnesHut, Opening};
 pub use brute::Brute;
 pub use bsp::Bsp;
+pub(crate) use bsp::principal_axes;
 pub use bvh::Bvh;
 pub use grid::Grid;
 pub use hash::Hash;

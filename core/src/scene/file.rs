@@ -7,6 +7,7 @@ use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::{Method, Tuning};
 use crate::particles::Particle;
+use crate::rays;
 use crate::shape::{Motion, Shape};
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -81,6 +82,8 @@ pub struct Run {
     pub tuning: Tuning,
     /// How forces find the neighbours of a particle.
     pub index: Structure,
+    /// How paths find what they run into among the triangles of a mesh.
+    pub collision_index: rays::Structure,
     /// The seed of all randomness.
     pub seed: u64,
     /// Particles alive at once.
@@ -262,6 +265,7 @@ impl Default for Run {
             integrator: Method::Rk4,
             tuning: Tuning::DEFAULT,
             index: Structure::Grid,
+            collision_index: rays::Structure::Bvh,
             seed: 1,
             capacity: 65_536,
         }

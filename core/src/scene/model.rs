@@ -9,6 +9,7 @@ use crate::index::Structure;
 use crate::integrate::Tuned;
 use crate::math::max;
 use crate::particles::{Color, Particle};
+use crate::rays;
 use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Shape};
 use crate::storage::Size;
 use alloc::collections::BTreeMap;
@@ -64,7 +65,7 @@ impl Model {
     /// If a value cannot be used or a mesh cannot be read.
     pub fn load(file: &SceneFile, path: &str, files: &mut dyn Files) -> Result<Self, SceneError> {
         file.check().map_err(|error| error.in_file(path))?;
-        let mut meshes = Meshes { loaded: BTreeMap::new(), path, files };
+        let mut meshes = Meshes { loaded: BTreeMap::new(), path, files, index: file.run.collision_index };
         let start = Start::of(file, &mut meshes)?;
         file.check_corners(start.particles.len()).map_err(|error| error.in_file(path))?;
         let mut emitters = Vec::with_capacity(file.emitters.len());
@@ -158,7 +159,12 @@ struct Meshes<'a> {
     loaded: BTreeMap<String, Arc<MeshBuf>>,
     path: &'a str,
     files: &'a mut dyn Files,
+    /// How those with more than a few triangles are organised.
+    index: rays::Structure,
 }
+
+/// Triangles that are looked at sooner than an index of them.
+const FEW: usize = 8;
 
 impl Meshes<'_> {
     fn shape(&mut self, at: &str, shape: &Shape<String>) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
@@ -170,7 +176,9 @@ impl Meshes<'_> {
             return Ok(mesh.clone());
         }
         let mesh = self.files.mesh(&beside(self.path, name));
-        let mesh = Arc::new(mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?);
+        let mesh = mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?;
+        let few = mesh.triangles().len() <= FEW;
+        let mesh = Arc::new(if few { mesh } else { mesh.indexed(self.index) });
         self.loaded.insert(name.to_string(), mesh.clone());
         Ok(mesh)
     }

@@ -1,7 +1,10 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle, earlier};
-use crate::math::{length, max};
+use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
+use crate::math::{high, largest, length, max};
+use crate::rays::{Index, Pieces, Unsound};
+#[cfg(feature = "alloc")]
+use crate::rays::{Structure, TooSmall};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -14,6 +17,7 @@ pub struct Mesh<'a> {
     /// Running sums of the triangles' areas in units of 2⁻³⁶ of the largest: whole numbers, so that a million
     /// triangles lose nothing; empty if births were not asked for.
     areas: &'a [u64],
+    index: Index<'a>,
 }
 
 /// A triangle mesh on the heap.
@@ -24,6 +28,7 @@ pub struct MeshBuf {
     vertices: alloc::vec::Vec<Vec3>,
     triangles: alloc::vec::Vec<[u32; 3]>,
     areas: alloc::vec::Vec<u64>,
+    index: alloc::vec::Vec<u32>,
 }
 
 /// Why vertices and triangles do not make a mesh.
@@ -70,7 +75,22 @@ impl<'a> Mesh<'a> {
             }
             sum_areas(vertices, triangles, areas);
         }
-        Ok(Self { bounds: Aabb::around(vertices.iter().copied()), vertices, triangles, areas })
+        Ok(Self { bounds: Aabb::around(vertices.iter().copied()), vertices, triangles, areas, index: Index::BRUTE })
+    }
+
+    /// The same with an index of its triangles, built before, perhaps at another time: paths no longer look at all of
+    /// them. Looks at each triangle once.
+    ///
+    /// # Errors
+    /// If the index was built from other triangles.
+    pub fn with_index(self, index: Index<'a>) -> Result<Self, Unsound> {
+        if index.is_of(&self) { Ok(Self { index, ..self }) } else { Err(Unsound) }
+    }
+
+    /// The index of its triangles.
+    #[must_use]
+    pub fn index(&self) -> Index<'a> {
+        self.index
     }
 
     /// The vertices \[m\].
@@ -83,6 +103,13 @@ impl<'a> Mesh<'a> {
     #[must_use]
     pub fn triangles(&self) -> &'a [[u32; 3]] {
         self.triangles
+    }
+
+    /// The triangle with a number.
+    #[inline(always)]
+    fn face(&self, number: usize) -> Option<Triangle> {
+        let [a, b, c] = self.triangles.get(number)?.map(|corner| self.vertices.get(corner as usize).copied());
+        Some(Triangle { corners: [a?, b?, c?] })
     }
 
     fn faces(&self) -> impl Iterator<Item = Triangle> + 'a {
@@ -102,7 +129,28 @@ impl MeshBuf {
         let bounds = Aabb::around(vertices.iter().copied());
         let mut areas = alloc::vec![0; triangles.len()];
         sum_areas(&vertices, &triangles, &mut areas);
-        Ok(Self { bounds, vertices, triangles, areas })
+        Ok(Self { bounds, vertices, triangles, areas, index: alloc::vec::Vec::new() })
+    }
+
+    /// The same with an index of its triangles, so that paths no longer look at all of them.
+    #[must_use]
+    pub fn indexed(mut self, structure: Structure) -> Self {
+        let build = |mesh: &Self, mut memory: alloc::vec::Vec<u32>| -> Result<_, TooSmall> {
+            let words = structure.build(&mesh.view(), &mut memory)?.words().len();
+            memory.truncate(words);
+            memory.shrink_to_fit();
+            Ok(memory)
+        };
+        let memory = alloc::vec![0; structure.words(self.triangles.len())];
+        // There is room for all that can be in memory.
+        self.index = build(&self, memory).unwrap_or_default();
+        self
+    }
+
+    /// The index of its triangles; [`Index::BRUTE`] as long as it has none.
+    #[must_use]
+    pub fn index(&self) -> Index<'_> {
+        Index::trusted(&self.index)
     }
 
     /// The vertices \[m\].
@@ -120,7 +168,8 @@ impl MeshBuf {
     /// The same, borrowed.
     #[must_use]
     pub fn view(&self) -> Mesh<'_> {
-        Mesh { bounds: self.bounds, vertices: &self.vertices, triangles: &self.triangles, areas: &self.areas }
+        let index = self.index();
+        Mesh { bounds: self.bounds, vertices: &self.vertices, triangles: &self.triangles, areas: &self.areas, index }
     }
 }
 
@@ -157,36 +206,66 @@ impl Surface for Mesh<'_> {
     }
 }
 
+impl Pieces for Mesh<'_> {
+    fn count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    #[inline(always)]
+    fn box_of(&self, piece: usize) -> Aabb {
+        self.face(piece).map_or(Aabb::EMPTY, |face| face.bounds())
+    }
+
+    #[inline(always)]
+    fn hit(&self, piece: usize, segment: &Segment) -> Option<Hit> {
+        Some(Hit { face: piece as u32, ..self.face(piece)?.first_hit(segment)? })
+    }
+
+    fn reach(&self) -> f32 {
+        if self.triangles.is_empty() { 0.0 } else { max(largest(self.bounds.min), largest(self.bounds.max)) }
+    }
+}
+
 impl Collider for Mesh<'_> {
-    /// Looks at every triangle. Watertight: an edge shared by two triangles is judged by the same arithmetic for both.
+    /// Of hits at one time that of the lower triangle. Watertight: an edge shared by two triangles is judged by the same
+    /// arithmetic for both.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        if !self.bounds.overlaps(&segment.bounds()) {
-            return None;
-        }
-        self.faces().zip(0..).fold(None, |best, (triangle, face)| {
-            earlier(best, triangle.first_hit(segment).map(|hit| Hit { face, ..hit }))
-        })
+        self.index.first_hit(self, segment)
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.bounds.overlaps(bounds)
     }
 
-    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        let near = Aabb { min: center - reach, max: center + reach }.with_slack();
-        if self.bounds.overlaps(&near) {
-            let faces = self.faces().filter(|face| face.bounds().overlaps(&near));
-            faces.for_each(|face| face.contacts(center, reach, at, visit));
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        let mut show = |number: usize| {
+            let image =
+                self.face(number).map(|face| Triangle { corners: face.corners.map(|corner| map.point(corner)) });
+            if let Some(image) = image.filter(|image| image.bounds().overlaps(bounds)) {
+                visit(number as u32, &image);
+            }
+        };
+        match map.inverse() {
+            Some(back) => {
+                // As much room as the way there and back may cost.
+                let far = high(bounds.min.abs(), bounds.max.abs());
+                let own = high(self.bounds.min.abs(), self.bounds.max.abs());
+                let room = (back.linear.abs() * (far + map.linear.abs() * own + map.shift.abs()) + back.shift.abs())
+                    * (32.0 * f32::EPSILON);
+                let local = back.bounds(bounds);
+                self.index.near(self, &Aabb { min: local.min - room, max: local.max + room }, &mut show);
+            }
+            None => (0..self.triangles.len()).for_each(show),
         }
     }
 
-    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
-        for (triangle, number) in self.faces().zip(0..) {
-            let image = Triangle { corners: triangle.corners.map(|corner| map.point(corner)) };
-            if image.bounds().overlaps(bounds) {
-                visit(number, &image);
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach }.with_slack();
+        self.index.near(self, &bounds, &mut |piece| {
+            if let Some(face) = self.face(piece) {
+                face.contacts(center, reach, at, visit);
             }
-        }
+        });
     }
 
     fn is_empty(&self) -> bool {

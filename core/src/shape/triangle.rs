@@ -3,7 +3,7 @@
 use super::ball::{self, Filled, gap_to_line};
 use super::plane::crossing;
 use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface};
-use crate::math::{clamp, largest, length, max, sqrt, unit};
+use crate::math::{clamp, largest, length, max, power_to_one, sqrt, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -74,8 +74,16 @@ impl Collider for Triangle {
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let center = self.crossed(segment);
-        if segment.radius > 0.0 { ball::on_triangle(self, segment, center) } else { center }
+        let reach = max(size(self), max(max(largest(segment.from), largest(segment.to)), segment.radius));
+        if (SMALL..LARGE).contains(&reach) {
+            return self.met(segment);
+        }
+        // Products of several lengths are beyond all numbers: everything is brought to about one, which keeps all digits.
+        let scale = power_to_one(reach);
+        let (from, to, radius) = (segment.from * scale, segment.to * scale, segment.radius * scale);
+        let near = Self { corners: self.corners.map(|corner| corner * scale) };
+        let hit = near.met(&Segment { from, to, radius, ..*segment })?;
+        Some(Hit { slack: hit.slack / scale, ..hit })
     }
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
@@ -129,7 +137,18 @@ pub(super) fn size(triangle: &Triangle) -> f32 {
     max(largest(a), max(largest(b), largest(c)))
 }
 
+/// Coordinates between which the products that are formed here are numbers \[m\].
+const SMALL: f32 = 1e-6;
+const LARGE: f32 = 1e6;
+
 impl Triangle {
+    /// Where the path of a point or a ball first meets it.
+    #[inline]
+    fn met(&self, segment: &Segment) -> Option<Hit> {
+        let center = self.crossed(segment);
+        if segment.radius > 0.0 { ball::on_triangle(self, segment, center) } else { center }
+    }
+
     /// Where the path of a point crosses it.
     fn crossed(&self, segment: &Segment) -> Option<Hit> {
         let [a, b, c] = self.corners;

@@ -1,0 +1,107 @@
+//! What a path meets first: one search, six ways to organise what stands in the way, the same answers from all.
+//!
+//! [`Pieces`] are things with boxes: the triangles of a mesh, the solids of a scene. A [`Structure`] sorts them once into
+//! a slice of words that the caller lends; an [`Index`] reads such words, wherever they lie: on the heap, on the stack, or
+//! as a constant in flash. It holds no pointers and no copy of the pieces, only their boxes and numbers.
+//!
+//! Every structure gives the identical [`Hit`] as looking at every piece: the earliest, of several at once that of the
+//! piece with the lowest number. The proof has three parts. What a piece answers depends on the piece and the segment
+//! alone. Its time is held within the span of time during which the segment is inside the piece's own box, widened by the
+//! radius and by more than rounding can take; outside it is not asked. And a node's span is computed by the same
+//! expression, `(plane − from) × inverse`, which rounding keeps in order: the span of a box that holds another holds its
+//! span. So a node that is entered after the best time so far holds nothing better, to the last bit. Where a plane cuts a
+//! piece's box (octree, kd-tree, grid), the spans of both parts overlap at the plane, so that every instant of the piece's
+//! span is in that of a part.
+//!
+//! ```
+//! use pointmass::rays::{Index, Structure};
+//! use pointmass::shape::{Collider, Mesh, Segment};
+//! use pointmass::Vec3;
+//!
+//! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+//! let mesh = Mesh::new(&vertices, &[[0, 1, 2]], &mut [])?;
+//! let mut memory = [0; Structure::Bvh.words(1)];
+//! let index = Structure::Bvh.build(&mesh, &mut memory)?;
+//! let down = Segment::new(Vec3::new(0.2, 0.2, 1.0), Vec3::new(0.2, 0.2, -1.0));
+//! assert_eq!(index.first_hit(&mesh, &down).map(|hit| hit.time), Some(0.5));
+//! // These words could be a constant of a program for a chip without a heap.
+//! let again = Index::new(index.words())?;
+//! assert_eq!(mesh.with_index(again)?.first_hit(&down), index.first_hit(&mesh, &down));
+//! # Ok::<(), Box<dyn core::error::Error>>(())
+//! ```
+
+mod bsp;
+mod bvh;
+mod entries;
+mod grid;
+mod grow;
+mod header;
+mod index;
+mod kd;
+mod near;
+mod octree;
+mod pieces;
+mod probe;
+mod split;
+mod structure;
+#[cfg(all(test, feature = "alloc"))]
+mod tests;
+mod tree;
+
+pub use index::{Index, Unsound};
+pub use pieces::{Pieces, Solids};
+pub use structure::{Structure, UnknownStructure};
+
+/// What a query took: the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Nodes or cells that were looked at.
+    pub visits: u64,
+    /// Pieces whose own box the path meets, and which were therefore asked.
+    pub tests: u64,
+}
+
+impl core::ops::AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.visits += other.visits;
+        self.tests += other.tests;
+    }
+}
+
+/// What has been built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Pieces in it.
+    pub pieces: usize,
+    /// Pieces left out because their boxes are not finite: nothing hits them.
+    pub skipped: usize,
+    /// How often pieces are listed: more than once each where cells cut them.
+    pub references: usize,
+    /// Nodes or cells.
+    pub nodes: usize,
+    /// Levels below the root.
+    pub depth: usize,
+    /// The most pieces in a leaf or cell.
+    pub fullest: usize,
+    /// Leaves larger than they should be, or how many times cells had to grow by a quarter, for want of memory.
+    pub crowded: usize,
+    /// Bytes in use once it is built; building takes more, see [`Structure::words`].
+    pub bytes: usize,
+}
+
+/// The memory is too small for so many pieces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooSmall {
+    /// Words that were lent.
+    pub words: usize,
+    /// Words that are needed at least.
+    pub needed: usize,
+}
+
+impl core::fmt::Display for TooSmall {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "the index needs at least {} words of memory, not {}", self.needed, self.words)
+    }
+}
+
+impl core::error::Error for TooSmall {}

@@ -1,0 +1,112 @@
+//! The structures by name.
+
+use super::header::{Boxes, HEADER, Header};
+use super::{Index, Pieces, TooSmall, bsp, bvh, grid, grow, kd, octree};
+
+/// How pieces are organised, by its name, as files and the command line say it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "RayStructure"))]
+pub enum Structure {
+    /// No structure: every piece is looked at.
+    Brute,
+    /// Cells of one size.
+    Grid,
+    /// Cubes cut into eighths.
+    Octree,
+    /// Boxes cut by planes across the axes where that pays most.
+    Kd,
+    /// Parts cut by planes of any orientation.
+    Bsp,
+    /// Boxes cut where those of both parts become small.
+    Bvh,
+}
+
+impl Structure {
+    /// All of them.
+    pub const ALL: &'static [Self] = &[Self::Brute, Self::Grid, Self::Octree, Self::Kd, Self::Bsp, Self::Bvh];
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Brute => "brute",
+            Self::Grid => "grid",
+            Self::Octree => "octree",
+            Self::Kd => "kd",
+            Self::Bsp => "bsp",
+            Self::Bvh => "bvh",
+        }
+    }
+
+    /// Words of memory, four bytes each, that building it takes for so many pieces; `usize::MAX` where it takes more.
+    /// With less, leaves and cells are larger. What is needed afterwards is less, see [`Index::words`].
+    #[must_use]
+    pub const fn words(self, pieces: usize) -> usize {
+        match self {
+            Self::Brute => HEADER,
+            Self::Grid => grid::words(pieces),
+            Self::Octree | Self::Kd => grow::words(pieces, 48),
+            Self::Bsp | Self::Bvh => grow::words(pieces, 22),
+        }
+    }
+
+    /// Sorts pieces into memory. Takes n log n time.
+    ///
+    /// # Errors
+    /// If there is not even room for all of them in one leaf, or there are more than 2³⁰ pieces.
+    pub fn build<'m, P: Pieces + ?Sized>(self, pieces: &P, memory: &'m mut [u32]) -> Result<Index<'m>, TooSmall> {
+        let words = match self {
+            Self::Brute => brute(pieces, memory)?,
+            Self::Grid => grid::build(pieces, memory)?,
+            Self::Octree => grow::grow(self, &octree::Eighths, pieces, memory)?,
+            Self::Kd => grow::grow(self, &kd::Cheapest, pieces, memory)?,
+            Self::Bsp => grow::grow(self, &bsp::Planes, pieces, memory)?,
+            Self::Bvh => grow::grow(self, &bvh::Areas, pieces, memory)?,
+        };
+        Ok(Index::trusted(words))
+    }
+}
+
+/// Nothing but a header.
+fn brute<'m, P: Pieces + ?Sized>(pieces: &P, memory: &'m mut [u32]) -> Result<&'m [u32], TooSmall> {
+    if memory.len() < HEADER {
+        return Err(TooSmall { words: memory.len(), needed: HEADER });
+    }
+    let mut header = Header::new(Structure::Brute);
+    (header.pieces, header.references, header.fullest) =
+        (pieces.count() as u32, pieces.count() as u32, pieces.count() as u32);
+    let finite = |piece: &usize| {
+        let bounds = pieces.box_of(*piece);
+        bounds.min.is_finite() && bounds.max.is_finite()
+    };
+    header.skipped = (pieces.count() - (0..pieces.count()).filter(finite).count()) as u32;
+    header.boxes = Boxes::of(pieces);
+    Ok(header.write(memory))
+}
+
+impl core::fmt::Display for Structure {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// There is no structure of that name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnknownStructure;
+
+impl core::fmt::Display for UnknownStructure {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("unknown structure; there are")?;
+        Structure::ALL.iter().try_for_each(|structure| write!(f, " {structure}"))
+    }
+}
+
+impl core::error::Error for UnknownStructure {}
+
+impl core::str::FromStr for Structure {
+    type Err = UnknownStructure;
+    fn from_str(name: &str) -> Result<Self, UnknownStructure> {
+        Self::ALL.iter().copied().find(|structure| structure.name() == name).ok_or(UnknownStructure)
+    }
+}
