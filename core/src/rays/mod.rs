@@ -4,7 +4,7 @@
 //! a slice of words that the caller lends; an [`Index`] reads such words, wherever they lie: on the heap, on the stack, or
 //! as a constant in flash. It holds no pointers and no copy of the pieces, only their boxes and numbers.
 //!
-//! Every structure gives the identical [`Hit`] as looking at every piece: the earliest, of several at once that of the
+//! Every structure gives the identical [`Hit`](crate::shape::Hit) as looking at every piece: the earliest, of several at once that of the
 //! piece with the lowest number. The proof has three parts. What a piece answers depends on the piece and the segment
 //! alone. Its time is held within the span of time during which the segment is inside the piece's own box, widened by the
 //! radius and by more than rounding can take; outside it is not asked. And a node's span is computed by the same

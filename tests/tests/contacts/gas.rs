@@ -52,8 +52,8 @@ struct Gas {
     far: f64,
     /// On the walls \[Pa\].
     pressure: f64,
-    /// Centres in a volume, in all that is open to them and in the middle of the box \[1/m³\].
-    density: [f64; 2],
+    /// Centres in the volume that is open to them \[1/m³\].
+    density: f64,
 }
 
 fn gas(across: usize, radius: f32, steps: usize) -> Gas {
@@ -75,11 +75,9 @@ fn gas(across: usize, radius: f32, steps: usize) -> Gas {
     let far = ks(system.particles().velocity.iter().map(|v| f64::from(v.length())), |v| maxwell(v, square.sqrt()));
     let drift = (after - before) / before * 1e4 / system.totals().contacts as f64;
 
-    let (mut walls, mut central, began) = (Walls::default(), 0, system.time());
+    let (mut walls, began) = (Walls::default(), system.time());
     for _ in 0..steps {
         system.step_observed(&scene, dt, &mut walls);
-        let is_central = |x: &&Vec3| (**x - Vec3::splat(SIDE / 2.0)).abs().max_element() < 0.3 * SIDE;
-        central += system.particles().position.iter().filter(is_central).count();
     }
     let time = (system.time() - began).seconds_f64();
     assert_eq!(system.totals().caps.bounces, 0);
@@ -87,9 +85,8 @@ fn gas(across: usize, radius: f32, steps: usize) -> Gas {
         assert!(x.min_element() >= radius * 0.999 && x.max_element() <= SIDE - radius * 0.999, "{x}");
     }
     let open = f64::from(SIDE - 2.0 * radius);
-    let middle = (0.6 * f64::from(SIDE)).powi(3);
-    let density = [n / open.powi(3), central as f64 / steps as f64 / middle];
-    Gas { square, drift, far, pressure: walls.impulse / (6.0 * open * open * time), density }
+    let pressure = walls.impulse / (6.0 * open * open * time);
+    Gas { square, drift, far, pressure, density: n / open.powi(3) }
 }
 
 /// Pressure over density and mean square speed (Carnahan and Starling, "Equation of State for Nonattracting Rigid
@@ -101,25 +98,17 @@ fn carnahan_starling(density: f64, radius: f32) -> f64 {
 
 const STEPS: usize = if cfg!(debug_assertions) { 300 } else { 2000 };
 
+/// Beside a wall a gas is denser than elsewhere. That tells less the smaller the balls are against the box: at 8 % filling
+/// with balls a thirtieth as wide as the box about 3 %, here half of that.
 #[test]
 fn equal_speeds_become_maxwell_s_and_press_as_carnahan_and_starling_say() {
     let gas = gas(11, 0.02, STEPS);
     assert!(gas.drift.abs() < 1e-5, "{}", gas.drift);
     // 1.63 once in a hundred times.
     assert!(gas.far < 1.63, "{}", gas.far);
-    let z = gas.pressure / (gas.density[0] * gas.square);
-    let want = carnahan_starling(gas.density[0], 0.02);
+    let z = gas.pressure / (gas.density * gas.square);
+    let want = carnahan_starling(gas.density, 0.02);
     println!("open volume: {z:.4}, Carnahan and Starling {want:.4}");
-    assert!((z / want - 1.0).abs() < 0.03);
-}
-
-/// Beside a wall a dense gas is denser, and so it is thinner everywhere else: what it presses belongs to that density.
-#[test]
-fn a_denser_gas_presses_as_its_middle_says() {
-    let gas = gas(10, 0.03, STEPS);
-    let z = gas.pressure / (gas.density[1] * gas.square);
-    let want = carnahan_starling(gas.density[1], 0.03);
-    println!("middle: {z:.4}, Carnahan and Starling {want:.4}, far {}", gas.far);
     assert!((z / want - 1.0).abs() < 0.03);
 }
 
