@@ -5,7 +5,7 @@ export function run(pointmass, scenes) {
   const hashes = {};
   for (const [name, text] of Object.entries(scenes)) {
     const declared = text.startsWith("{");
-    const world = new World(text, undefined, declared ? undefined : 48);
+    const world = new World(text, undefined, declared ? undefined : 40);
     for (let frame = 1; frame <= (declared ? 30 : 600); frame++) world.stepTo(frame / 60);
     hashes[name] = world.hash();
     world.free();

@@ -15,6 +15,7 @@ mod solver;
 pub use contacts::{Contacts, Passage, Stage};
 pub use grip::Grip;
 pub use impulse::Impulse;
+#[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub use projection::Projection;
 pub use response::Response;

@@ -6,7 +6,7 @@ use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{AllPairs, Drag, Gravity, Sink, Spring};
 use crate::integrate::Rk4;
 use crate::particles::{Color, Particle};
-use crate::shape::{Affine, Mesh, Placed, Shape};
+use crate::shape::{Aabb, Affine, Collider, Hit, Placed, Segment, Shape, Spot, Surface};
 use glam::{Mat3, Vec3};
 use heapless::Vec;
 
@@ -29,9 +29,34 @@ use heapless::Vec;
 pub struct InlineScene<const PARTICLES: usize, const SPRINGS: usize, const OTHERS: usize> {
     particles: Vec<Particle, PARTICLES>,
     springs: Vec<Spring, SPRINGS>,
-    emitters: Vec<Emitter<Mesh<'static>>, OTHERS>,
-    forces: (Vec<Gravity, 1>, Drag, Vec<AllPairs, 1>, Vec<Sink<Mesh<'static>>, OTHERS>),
-    colliders: Vec<Placed<Shape<Mesh<'static>>>, OTHERS>,
+    emitters: Vec<Emitter<NoMesh>, OTHERS>,
+    forces: (Vec<Gravity, 1>, Drag, Vec<AllPairs, 1>, Vec<Sink<NoMesh>, OTHERS>),
+    colliders: Vec<Placed<Shape<NoMesh>>, OTHERS>,
+}
+
+/// The mesh of a scene that has none: it takes no room.
+#[derive(Clone, Copy, Debug)]
+enum NoMesh {}
+
+impl Surface for NoMesh {
+    fn area(&self) -> f32 {
+        match *self {}
+    }
+    fn sample(&self, _: [f32; 3]) -> Spot {
+        match *self {}
+    }
+    fn nearest(&self, _: Vec3) -> Vec3 {
+        match *self {}
+    }
+    fn bounds(&self) -> Aabb {
+        match *self {}
+    }
+}
+
+impl Collider for NoMesh {
+    fn first_hit(&self, _: &Segment) -> Option<Hit> {
+        match *self {}
+    }
 }
 
 /// Why a scene cannot be read into inline arrays.
@@ -225,7 +250,7 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
 }
 
 /// A shape that is no mesh.
-fn plain(shape: &Shape<&str>) -> Result<Shape<Mesh<'static>>, &'static str> {
+fn plain(shape: &Shape<&str>) -> Result<Shape<NoMesh>, &'static str> {
     shape.with_mesh(|_| Err("meshes cannot be read here"))
 }
 

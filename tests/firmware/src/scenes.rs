@@ -8,9 +8,9 @@ use pointmass::{Inline, Slices, Storage, System, Time};
 
 /// Everything that the scenes need, none of it on the stack: a microbit has 16 KiB in all.
 pub(crate) struct Memory {
-    scene: InlineScene<21, 20, 5>,
-    /// Room for no more than 48 particles, so that `overflow` overflows.
-    system: Inline<48, 4, 20, 5>,
+    scene: InlineScene<21, 20, 4>,
+    /// Room for no more than 40 particles, so that `overflow` overflows.
+    system: Inline<40, 4, 20, 5>,
 }
 
 impl Memory {
