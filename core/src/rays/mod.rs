@@ -50,6 +50,7 @@ mod tree;
 
 pub use index::{Index, Unsound};
 pub use pieces::{Pieces, Solids};
+pub(crate) use probe::{Best, Probe};
 pub use structure::{Structure, UnknownStructure};
 
 /// What a query took: the same on every machine.

@@ -8,7 +8,7 @@ use wide::f32x8;
 
 /// A segment, prepared.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Probe<'s> {
+pub(crate) struct Probe<'s> {
     pub(super) segment: &'s Segment,
     /// One over each coordinate of its step, never infinite and never zero.
     inverse: [f32; 3],
@@ -27,7 +27,7 @@ const STILL: f32 = 1e-37;
 
 impl<'s> Probe<'s> {
     /// Nothing, if the segment can meet nothing: it has no length, or is not finite.
-    pub(super) fn new(segment: &'s Segment, reach: f32) -> Option<Self> {
+    pub(crate) fn new(segment: &'s Segment, reach: f32) -> Option<Self> {
         let step = segment.step();
         // Twice what a hit may be off by, and what it takes to be moved by a room.
         let rounding = 2.0 * segment.slack(reach);
@@ -94,19 +94,19 @@ impl<'s> Probe<'s> {
 
 /// The earliest hit so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Best {
-    pub(super) time: f32,
+pub(crate) struct Best {
+    pub(crate) time: f32,
     piece: u32,
-    pub(super) hit: Option<Hit>,
+    pub(crate) hit: Option<Hit>,
     pub(super) cost: Cost,
 }
 
 impl Best {
-    pub(super) const NONE: Self = Self { time: 1.0, piece: u32::MAX, hit: None, cost: Cost { visits: 0, tests: 0 } };
+    pub(crate) const NONE: Self = Self { time: 1.0, piece: u32::MAX, hit: None, cost: Cost { visits: 0, tests: 0 } };
 
     /// Asks a piece by its own box.
     #[inline(always)]
-    pub(super) fn ask<P: Pieces + ?Sized>(&mut self, pieces: &P, probe: &Probe<'_>, piece: usize) {
+    pub(crate) fn ask<P: Pieces + ?Sized>(&mut self, pieces: &P, probe: &Probe<'_>, piece: usize) {
         let bounds = pieces.box_of(piece);
         let finite = bounds.min.is_finite() && bounds.max.is_finite();
         if let Some(span) = probe.span(&bounds).filter(|span| finite && span.0 <= self.time) {

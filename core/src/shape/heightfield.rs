@@ -1,7 +1,8 @@
 //! Ground: heights over a grid of x and z, borrowed (`HeightField`) or owned (`HeightFieldBuf`).
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle, earlier};
-use crate::math::{clamp, floor, length, max, min};
+use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
+use crate::math::{clamp, floor, largest, length, max, min};
+use crate::rays::{Best, Pieces, Probe};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -93,6 +94,12 @@ impl<'a> HeightField<'a> {
         let [a, b] = [self.vertex(column, row), self.vertex(column, row + 1)];
         let [c, d] = [self.vertex(column + 1, row), self.vertex(column + 1, row + 1)];
         [Triangle { corners: [a, b, c] }, Triangle { corners: [c, b, d] }]
+    }
+
+    /// The triangle of a number.
+    fn triangle(&self, number: usize) -> Triangle {
+        let (cell, across) = (number / 2, self.columns - 1);
+        self.triangles(cell % across, cell / across)[number % 2]
     }
 
     fn cells(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
@@ -212,6 +219,25 @@ impl Surface for HeightField<'_> {
     }
 }
 
+impl Pieces for HeightField<'_> {
+    fn count(&self) -> usize {
+        let [columns, rows] = self.size();
+        2 * (columns - 1) * (rows - 1)
+    }
+
+    fn box_of(&self, piece: usize) -> Aabb {
+        self.triangle(piece).bounds()
+    }
+
+    fn hit(&self, piece: usize, segment: &Segment) -> Option<Hit> {
+        Some(Hit { face: piece as u32, ..self.triangle(piece).first_hit(segment)? })
+    }
+
+    fn reach(&self) -> f32 {
+        max(largest(self.bounds.min), largest(self.bounds.max))
+    }
+}
+
 impl Collider for HeightField<'_> {
     /// Walks strip by strip across the grid, along the axis on which the path goes farther, and in each only over the
     /// cells that the ball may touch there.
@@ -227,7 +253,8 @@ impl Collider for HeightField<'_> {
         let way = if forth { reach } else { -reach };
         let strips = self.between(along, from[along] - way, segment.to[along] + way);
         let (first, count) = (strips.start, strips.len());
-        let mut best: Option<Hit> = None;
+        let Some(probe) = Probe::new(segment, self.reach()) else { return None };
+        let mut best = Best::NONE;
         for k in 0..count {
             let strip = if forth { first + k } else { first + count - 1 - k };
             // When the ball is over the strip, its neighbours' share of rounding included.
@@ -236,7 +263,7 @@ impl Collider for HeightField<'_> {
             let share = |x: f32| if step[along] == 0.0 { 0.5 } else { (x - from[along]) / step[along] };
             let (enter, leave) = (clamp(share(near - way), 0.0, 1.0), clamp(share(far + way), 0.0, 1.0));
             let (enter, leave) = if step[along] == 0.0 { (0.0, 1.0) } else { (enter, leave) };
-            if best.is_some_and(|hit| hit.time < enter) {
+            if best.time < enter {
                 break;
             }
             let (a, b) = (segment.at(enter), segment.at(leave));
@@ -246,13 +273,12 @@ impl Collider for HeightField<'_> {
                 if !self.is_within(column, row, heights) {
                     continue;
                 }
-                for (half, triangle) in self.triangles(column, row).iter().enumerate() {
-                    let face = self.face(column, row, half);
-                    best = earlier(best, triangle.first_hit(segment).map(|hit| Hit { face, ..hit }));
+                for half in 0..2 {
+                    best.ask(self, &probe, self.face(column, row, half) as usize);
                 }
             }
         }
-        best
+        best.hit
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {

@@ -60,12 +60,7 @@ fn a_height_field_is_the_mesh_of_its_triangles() {
             let radius = if random.unit() < 0.5 { 0.0 } else { spacing * random.magnitude(1e-2, 1.0) };
             let segment = Segment { radius, ..Segment::new(from, to) };
             let (a, b) = (field.first_hit(&segment), mesh.first_hit(&segment));
-            // A mesh holds the time within its triangle's box, by a little more than rounding.
-            let apart = match (a, b) {
-                (Some(a), Some(b)) => (a.time - b.time).abs() * segment.step().length() <= 4.0 * a.slack,
-                (a, b) => a.is_none() && b.is_none(),
-            };
-            assert!(apart, "{segment:?} {a:?} {b:?}");
+            assert_eq!(a, b, "{segment:?}");
             hits += usize::from(a.is_some());
             if i % 10 == 0 {
                 let (a, b) = (field.nearest(from) - from, mesh.nearest(from) - from);
