@@ -3,6 +3,7 @@
 use crate::compare::{Distribution, Workload};
 use crate::formats::{PlotFormat, PointsFormat, RecordFormat, SceneFormat, StudyFormat, extension};
 use crate::lab::Named;
+use crate::meshes::Made;
 use crate::substeps::Substeps;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::index::Structure;
@@ -25,6 +26,7 @@ Examples:
   pointmass check scenes/rope.scn --dt 1/30
   pointmass convert lab.scn lab.json
   pointmass compare --distribution uniform,plummer --n 1e3,1e4,1e5 --out study.html
+  pointmass compare --mesh bunny.ply --out rays.html
   pointmass lab --problems oscillator,kepler --out lab.html
   pointmass lab scenes/rope.scn --duration 2 --dt 1/60,1/120,1/240,1/480"
 )]
@@ -45,7 +47,7 @@ pub enum Command {
     Convert(Convert),
     /// Say which steps a scene stands with every integrator, what limits them and what to change
     Check(Check),
-    /// Measure which spatial partition suits which points and queries
+    /// Measure which spatial partition suits which points and queries, or which mesh and rays
     Compare(Compare),
     /// Measure how exact the integrators are, and how well they keep energy
     Lab(Lab),
@@ -195,32 +197,39 @@ pub struct Compare {
     /// When a scene's particles are taken, in seconds; by default at the end of its duration
     #[arg(long, value_name = "S", value_parser = seconds, requires = "scene")]
     pub at: Option<f64>,
-    /// Made-up points, one or more
-    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',', default_value = "uniform")]
+    /// Made-up points, one or more; by default uniform
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
     pub distribution: Vec<Distribution>,
     /// How many points, such as 1e3,1e4; by default 1e3,1e4,1e5, or all that the file or the scene has, of which
     /// other numbers take a random subset
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = count)]
     pub n: Vec<usize>,
-    /// The radius of queries, in the points' unit
+    /// The triangles of a mesh, which segments are held against: .off, .obj, .stl or .ply
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["points", "scene", "distribution", "surface", "triangles"])]
+    pub mesh: Option<PathBuf>,
+    /// Made-up meshes, one or more; by default both. What is asked of a mesh is --queries ray
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
+    pub surface: Vec<Made>,
+    /// About how many triangles made-up meshes have, such as 1e4,1e5; by default 6e4
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = triangles)]
+    pub triangles: Vec<usize>,
+    /// How many segments of every kind are held against a mesh; by default 20000
+    #[arg(long, value_name = "N", value_parser = segments)]
+    pub segments: Option<usize>,
+    /// The radius of queries, in the points' unit; of a mesh that of the balls, by default a thousandth of its diagonal
     #[arg(long, value_name = "R", value_parser = radius, conflicts_with = "neighbours")]
     pub radius: Option<f32>,
-    /// Choose the radius so that a point has so many others within it on average
-    #[arg(long, value_name = "M", default_value_t = 30.0, value_parser = neighbours)]
-    pub neighbours: f64,
-    /// How many nearest others `nearest` looks for
-    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u8).range(1..=64))]
-    pub k: u8,
-    /// What is asked; building is always measured
-    #[arg(
-        long,
-        value_name = "NAME,...",
-        value_enum,
-        value_delimiter = ',',
-        default_value = "count,within,nearest,pairs,moving"
-    )]
+    /// Choose the radius so that a point has so many others within it on average; by default 30
+    #[arg(long, value_name = "M", value_parser = neighbours)]
+    pub neighbours: Option<f64>,
+    /// How many nearest others `nearest` looks for; by default 8
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub k: Option<u8>,
+    /// What is asked; building is always measured. By default all that points are asked, count,within,nearest,pairs,moving,
+    /// or with a mesh ray, which stands alone
+    #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
     pub queries: Vec<Workload>,
-    /// Which structures, such as grid,kd; or all
+    /// Which structures, such as grid,kd; or all. Of triangles there are brute, grid, octree, kd, bsp and bvh
     #[arg(long, value_name = "NAME,...", default_value = "all", value_parser = structures)]
     pub structures: Structures,
     /// Measure other libraries as well, where the program is built with them (--features peers)
@@ -230,7 +239,7 @@ pub struct Compare {
     /// times where a round takes very long
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub repeat: Option<u32>,
-    /// The seed of made-up points, subsets and scenes; by default 1, or what the scene says
+    /// The seed of made-up points, subsets, segments and scenes; by default 1, or what the scene says
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Write the comparison into FILE: .html, a page with charts; .svg, the charts; .csv or .json, all figures; may be
@@ -311,10 +320,21 @@ where
 }
 
 fn count(text: &str) -> Result<usize, String> {
-    const MOST: f64 = 1e8;
-    let value = number(text)?;
-    let whole = value.fract() == 0.0 && (2.0..=MOST).contains(&value);
-    if whole { Ok(value as usize) } else { Err("expected a whole number of points, from 2 to 1e8".into()) }
+    whole(text, 2.0, 1e8).ok_or("expected a whole number of points, from 2 to 1e8".into())
+}
+
+fn triangles(text: &str) -> Result<usize, String> {
+    whole(text, 12.0, 2e7).ok_or("expected a whole number of triangles, from 12 to 2e7".into())
+}
+
+fn segments(text: &str) -> Result<usize, String> {
+    whole(text, 1.0, 1e7).ok_or("expected a whole number of segments, from 1 to 1e7".into())
+}
+
+/// A whole number, which may have an exponent.
+fn whole(text: &str, least: f64, most: f64) -> Option<usize> {
+    let value = number(text).ok()?;
+    (value.fract() == 0.0 && (least..=most).contains(&value)).then_some(value as usize)
 }
 
 fn radius(text: &str) -> Result<f32, String> {

@@ -3,7 +3,6 @@
 use crate::formats::SceneFormat;
 use crate::meshes::{self, MAX_BYTES};
 use crate::{Failure, Outcome, warn};
-use pointmass::Vec3;
 use pointmass::scene::{Files, SceneFile, read_scn};
 use pointmass::shape::MeshBuf;
 use std::fs::File;
@@ -21,8 +20,7 @@ impl Files for Disk {
 
     fn mesh(&mut self, path: &str) -> Result<MeshBuf, String> {
         let mesh = meshes::load(Path::new(path)).map_err(|error| error.to_string())?;
-        let vertices = mesh.vertices.into_iter().map(Vec3::from).collect();
-        MeshBuf::new(vertices, mesh.triangles).map_err(|error| format!("{path}: {error}"))
+        mesh.solid().map_err(|error| format!("{path}: {error}"))
     }
 
     fn exists(&mut self, path: &str) -> bool {

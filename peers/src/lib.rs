@@ -1,4 +1,5 @@
-//! Other libraries that find what is near, each used as fast as its public interface allows, behind one small trait.
+//! Other libraries that find what is near, and such that find what a ray hits, each used as fast as its public interface
+//! allows, behind one small trait for either; and, with the feature `rapier`, an engine of rigid bodies.
 //!
 //! Each asks its questions from the points in the order its own structure has them, where that is to be had: what is
 //! near in space is then near in memory. Single core, `f32`, no code that needs a nightly compiler.
@@ -8,10 +9,14 @@ mod kiddo;
 mod nanoflann;
 mod parry;
 mod particular;
+#[cfg(feature = "rapier")]
+pub mod rapier;
+mod rays;
 mod rstar;
 mod zelll;
 
 pub use particular::particular_barnes_hut;
+pub use rays::{FirstHit, RayPeer, ray_peers};
 
 /// A library that finds what is near.
 ///

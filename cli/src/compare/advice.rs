@@ -1,42 +1,43 @@
 //! What to use, and why: sentences made of measured figures.
 
-use super::study::{Advice, Case, Contestant, Figure, line, series, workloads};
+use super::study::{Advice, Case, Contestant, Figure, Subject, line, series, workloads};
 use super::workload::Workload;
 use crate::words::{digits, thousands};
 
-/// One sentence or two for every workload of every series of points, about its largest number of points; and one for all.
+/// One sentence or two for every workload of every series of cases, about the largest; and one for all.
 pub(crate) fn advise(cases: &[Case]) -> Vec<Advice> {
     let mut advice = Vec::new();
-    for (points, cases) in series(cases) {
+    for (of, cases) in series(cases) {
         let Some(largest) = cases.last() else { continue };
         let queries: Vec<_> =
             workloads(cases.iter().copied()).into_iter().filter(|workload| workload.is_query()).collect();
         for &workload in &queries {
-            advice.extend(for_workload(points, &cases, largest, workload));
+            advice.extend(for_workload(of, &cases, largest, workload));
         }
         if queries.len() > 1 {
-            advice.extend(all_round(points, &cases, &queries));
+            advice.extend(all_round(of, &cases, &queries));
         }
     }
     advice
 }
 
-fn for_workload(points: &str, cases: &[&Case], largest: &Case, workload: Workload) -> Option<Advice> {
+fn for_workload(of: &str, cases: &[&Case], largest: &Case, workload: Workload) -> Option<Advice> {
     let ranking = largest.ranking(workload);
     let (best, figure) = *ranking.first()?;
     let like: Vec<&str> =
         ranking[1..].iter().filter(|(_, other)| other.ties).map(|(other, _)| other.name.as_str()).collect();
     let next = ranking[1..].iter().find(|(_, other)| !other.ties);
+    let unit = largest.subject.unit(workload);
     let mut text = match like[..] {
-        [] => format!("use {}: {} ns a point", best.name, digits(figure.median)),
+        [] => format!("use {}: {} {unit}", best.name, digits(figure.median)),
         [other] => format!(
-            "use {} or {other}: {} ns a point, and they are within {:.0} %, which is within the spread",
+            "use {} or {other}: {} {unit}, and they are within {:.0} %, which is within the spread",
             best.name,
             digits(figure.median),
             between(&ranking[..2])
         ),
         _ => format!(
-            "use any of {}, {}: {} ns a point, and they are within {:.0} %, which is within the spread",
+            "use any of {}, {}: {} {unit}, and they are within {:.0} %, which is within the spread",
             best.name,
             like.join(", "),
             digits(figure.median),
@@ -45,12 +46,12 @@ fn for_workload(points: &str, cases: &[&Case], largest: &Case, workload: Workloa
     };
     if let Some((other, slower)) = next {
         text.push_str(&format!("; {} takes {} times as long", other.name, digits(slower.ratio)));
-        text.push_str(&reason((best, figure), (other, slower)));
+        text.push_str(&reason(largest.subject, (best, figure), (other, slower)));
     }
     text.push('.');
     text.push_str(&with_build(largest, workload, &best.name));
     text.push_str(&elsewhere(cases, workload, &best.name, &like));
-    Some(Advice { points: points.into(), workload: Some(workload), best: best.name.clone(), text })
+    Some(Advice { of: of.into(), workload: Some(workload), best: best.name.clone(), text })
 }
 
 /// By how many per cent the slowest of some is slower than the fastest.
@@ -60,16 +61,17 @@ fn between(ranking: &[(&Contestant, &Figure)]) -> f64 {
 }
 
 /// Why the first is faster than the second, by what both counted.
-fn reason((best, a): (&Contestant, &Figure), (other, b): (&Contestant, &Figure)) -> String {
+fn reason(subject: Subject, (best, a): (&Contestant, &Figure), (other, b): (&Contestant, &Figure)) -> String {
     let (Some(a_tests), Some(b_tests), Some(a_visits), Some(b_visits)) = (a.tests, b.tests, a.visits, b.visits) else {
         return String::new();
     };
+    let (tests, query) = (subject.tests(), subject.query());
     let (mine, theirs) = ([a_visits, a_tests].map(digits), [b_visits, b_tests].map(digits));
     if mine == theirs {
-        return format!(", though both look at {} nodes and {} distances a point", mine[0], mine[1]);
+        return format!(", though both look at {} nodes and {} {tests} a {query}", mine[0], mine[1]);
     }
     let mut reason = format!(
-        ": to find {} it looks at {} nodes and {} distances a point, {} at {} and {}",
+        ": to find {} it looks at {} nodes and {} {tests} a {query}, {} at {} and {}",
         digits(a.found.unwrap_or_default()),
         theirs[0],
         theirs[1],
@@ -83,14 +85,19 @@ fn reason((best, a): (&Contestant, &Figure), (other, b): (&Contestant, &Figure))
     if a_tests > b_tests && a_visits > b_visits {
         reason.push_str(", which is more work, but simpler");
     } else if fullest(other) > FULL && fullest(best) <= FULL {
-        reason.push_str(&format!(", and up to {} points share one of its cells", thousands(fullest(other))));
+        reason.push_str(&format!(
+            ", and up to {} {} share one of its cells",
+            thousands(fullest(other)),
+            subject.things()
+        ));
     }
     reason
 }
 
 /// Whether building changes the order, for those who ask but once.
 fn with_build(case: &Case, workload: Workload, best: &str) -> String {
-    if workload == Workload::Moving {
+    // How often a mesh is asked is not known.
+    if workload == Workload::Moving || case.subject == Subject::Mesh {
         return String::new();
     }
     let total = |one: &Contestant| Some(one.figure(workload)?.median + one.figure(Workload::Build)?.median);
@@ -114,14 +121,14 @@ fn elsewhere(cases: &[&Case], workload: Workload, best: &str, like: &[&str]) -> 
         let Some((other, _)) = ranking.first() else { continue };
         let own = ranking.iter().find(|(one, _)| one.name == best);
         let Some((_, own)) = own.filter(|(_, own)| !own.ties && !like.contains(&other.name.as_str())) else { continue };
-        let (other, ratio, n) = (&other.name, digits(own.ratio), thousands(case.n));
-        text.push_str(&format!(" Of {n} points, {other} is {ratio} times as fast as {best}."));
+        let (other, ratio, n, things) = (&other.name, digits(own.ratio), thousands(case.n), case.subject.things());
+        text.push_str(&format!(" Of {n} {things}, {other} is {ratio} times as fast as {best}."));
     }
     text
 }
 
 /// Who is never far behind.
-fn all_round(points: &str, cases: &[&Case], queries: &[Workload]) -> Option<Advice> {
+fn all_round(of: &str, cases: &[&Case], queries: &[Workload]) -> Option<Advice> {
     let names: Vec<&str> = cases.last()?.contestants.iter().map(|one| one.name.as_str()).collect();
     let worst = |name: &str| -> Option<f64> {
         let mut worst = 1.0f64;
@@ -145,5 +152,5 @@ fn all_round(points: &str, cases: &[&Case], queries: &[Workload]) -> Option<Advi
             format!("if one has to do for all of this, {best}: never more than {} times the best{next}.", digits(ratio))
         }
     };
-    Some(Advice { points: points.into(), workload: None, best: best.into(), text })
+    Some(Advice { of: of.into(), workload: None, best: best.into(), text })
 }

@@ -5,14 +5,14 @@ use super::measure::{Measured, Plan, measure};
 use super::radius::radius_for;
 use super::sample::sample;
 use super::source::Source;
-use super::study::{Case, Contestant, Figure};
+use super::study::{Case, Subject};
 use super::verify::{EXHAUSTIVE, Expected, SAMPLE};
 use super::workload::Workload;
+use super::{k, neighbours};
 use crate::progress::Progress;
 use crate::words::thousands;
 use crate::{Failure, Outcome, args};
 use pointmass::Vec3;
-use pointmass::index::Cost;
 use pointmass::rng::Stream;
 
 /// What all cases share.
@@ -67,13 +67,13 @@ impl<'a> Bench<'a> {
         points: usize,
     ) -> Self {
         let ahead = points as u64 * entrants.len() as u64 * (VERIFICATION + ROUNDS);
-        let gauge = Gauge { progress: Progress::of_work(ahead), ahead, title: String::new() };
+        let gauge = Gauge::new(ahead);
         Self { args, seed: args.seed.unwrap_or(1), queries, entrants, memory: Vec::new(), gauge }
     }
 
     /// Everything is done.
     pub(crate) fn finish(&self) {
-        self.gauge.progress.finish();
+        self.gauge.finish();
     }
 
     /// Verifies and measures everybody on so many of the source's points.
@@ -89,26 +89,28 @@ impl<'a> Bench<'a> {
         self.gauge.step(0, all * (VERIFICATION + ROUNDS), "radius");
         let radius = match self.args.radius {
             Some(radius) => radius,
-            None => radius_for(&points, self.args.neighbours, &mut self.memory)?,
+            None => radius_for(&points, neighbours(self.args), &mut self.memory)?,
         };
         let moved = moved(&points, radius, self.seed);
-        let question = Question { points: &points, moved: &moved, radius, k: usize::from(self.args.k) };
+        let question = Question { points: &points, moved: &moved, radius, k: k(self.args) };
         let shares = self.shares(&question)?;
         let (expected, verified) = self.verify(&question, &shares)?;
         let plan = Plan { shares: &shares, repeat: self.args.repeat };
         let measured = measure(self.entrants, &question, &mut self.memory, &plan, &mut self.gauge)?;
-        let rounds = measured.iter().flat_map(|one| &one.series).map(|(_, samples, _)| samples.len()).max();
+        let rounds = measured.iter().map(Measured::rounds).max();
         let contestants = self.entrants.iter().zip(measured).zip(shares);
         let mut case = Case {
-            points: source.name().into(),
+            subject: Subject::Points,
+            of: source.name().into(),
             about: source.about(n),
             n,
             radius,
-            neighbours: expected.neighbours(),
+            neighbours: Some(expected.neighbours()),
+            queries: None,
             verified,
             rounds: rounds.unwrap_or(0),
             contestants: contestants
-                .map(|((entrant, measured), share)| contestant(entrant.name(), measured, share.left_out, n))
+                .map(|((entrant, measured), share)| measured.contestant(entrant.name(), share.left_out))
                 .collect(),
         };
         case.rank();
@@ -219,8 +221,18 @@ pub(crate) struct Gauge {
 }
 
 impl Gauge {
+    /// Of so much work.
+    pub(crate) fn new(ahead: u64) -> Self {
+        Self { progress: Progress::of_work(ahead), ahead, title: String::new() }
+    }
+
+    /// Everything is done.
+    pub(crate) fn finish(&self) {
+        self.progress.finish();
+    }
+
     /// A case begins, of which so much was expected.
-    fn begin(&mut self, title: String, expected: u64) {
+    pub(crate) fn begin(&mut self, title: String, expected: u64) {
         self.title = title;
         self.ahead = self.ahead.saturating_sub(expected);
     }
@@ -236,7 +248,7 @@ pub(crate) fn provide(memory: &mut Vec<u32>, words: usize) -> Outcome {
     let more = words.saturating_sub(memory.len());
     memory.try_reserve_exact(more).map_err(|_| {
         let megabytes = words >> 18;
-        Failure::new(format!("there are no {megabytes} MB of memory for a structure of so many points; lower --n"))
+        Failure::new(format!("there are no {megabytes} MB of memory for a structure of so many; ask for fewer"))
     })?;
     memory.resize(memory.len() + more, 0);
     Ok(())
@@ -254,14 +266,4 @@ pub(crate) fn moved(points: &[Vec3], radius: f32, seed: u64) -> Vec<Vec3> {
         if there.is_finite() { there } else { *point }
     };
     points.iter().enumerate().map(go).collect()
-}
-
-fn contestant(name: &str, measured: Measured, left_out: Option<String>, n: usize) -> Contestant {
-    let each = |count: u64| count as f64 / n as f64;
-    let counters = |cost: Cost| [each(cost.visits), each(cost.tests), each(cost.found)];
-    let figures = measured.series.into_iter();
-    let mut figures: Vec<_> =
-        figures.map(|(workload, samples, cost)| Figure::new(workload, samples, cost.map(counters))).collect();
-    figures.sort_by_key(|figure| figure.workload);
-    Contestant { name: name.into(), left_out, build: measured.build, figures }
 }

@@ -1,6 +1,6 @@
-//! Charts: time against the number of points on paper of two logarithmic scales, and bars at the largest number.
+//! Charts: time against the number of points or triangles on paper of two logarithmic scales, and bars at the largest number.
 
-use super::study::{Case, Contestant, Study, line, names, series, workloads};
+use super::study::{Case, Contestant, Study, Subject, line, names, series, workloads};
 use super::table::ratio;
 use super::workload::Workload;
 use crate::Outcome;
@@ -19,15 +19,15 @@ pub(crate) fn all(study: &Study) -> Outcome<String> {
 pub(crate) fn charts(study: &Study) -> Vec<Chart<'_>> {
     let looks = names(&study.cases);
     let mut charts = Vec::new();
-    for (points, cases) in series(&study.cases) {
+    for (title, cases) in series(&study.cases) {
         for workload in workloads(cases.iter().copied()).into_iter().filter(|_| cases.len() > 1) {
-            charts.push(lines(points, &cases, workload, &looks));
+            charts.push(lines(title, &cases, workload, &looks));
         }
         let Some(largest) = cases.last() else { continue };
         for workload in workloads(cases.iter().copied()).into_iter().filter(|workload| workload.is_query()) {
-            charts.push(bars(points, largest, workload, &looks));
+            charts.push(bars(title, largest, workload, &looks));
         }
-        charts.push(memory(points, largest, &looks));
+        charts.push(memory(title, largest, &looks));
     }
     charts
 }
@@ -36,7 +36,7 @@ fn look(looks: &[&str], name: &str) -> usize {
     looks.iter().position(|look| *look == name).unwrap_or(0)
 }
 
-fn lines<'a>(points: &'a str, cases: &[&'a Case], workload: Workload, looks: &[&'a str]) -> Chart<'a> {
+fn lines<'a>(of: &'a str, cases: &[&'a Case], workload: Workload, looks: &[&'a str]) -> Chart<'a> {
     let mut lines: Vec<_> = looks
         .iter()
         .map(|name| {
@@ -47,18 +47,20 @@ fn lines<'a>(points: &'a str, cases: &[&'a Case], workload: Workload, looks: &[&
         .collect();
     // The legend has the order of the lines' right ends.
     lines.sort_by(|a, b| end(b).total_cmp(&end(a)));
-    let title = format!("{points}: {}, time for each point", workload.name());
+    let subject = cases.first().map_or(Subject::Points, |case| case.subject);
+    let unit = subject.unit(workload);
+    let title = format!("{of}: {}, {unit}", workload.name());
     let sizes = cases.iter().map(|case| case.n as f64).collect();
-    let x = Axis { ticks: sizes, format: |n| thousands(n.round() as usize), ..Axis::log("points") };
-    Chart::of_lines(points, title, lines, [x, Axis::log("ns a point")])
+    let x = Axis { ticks: sizes, format: |n| thousands(n.round() as usize), ..Axis::log(subject.things()) };
+    Chart::of_lines(of, title, lines, [x, Axis::log(unit)])
 }
 
 fn end(line: &Line<'_>) -> f64 {
     line.dots.last().map_or(0.0, |dot| dot.1)
 }
 
-fn bars<'a>(points: &'a str, case: &'a Case, workload: Workload, looks: &[&'a str]) -> Chart<'a> {
-    let is_built = workload != Workload::Moving;
+fn bars<'a>(of: &'a str, case: &'a Case, workload: Workload, looks: &[&'a str]) -> Chart<'a> {
+    let is_built = workload != Workload::Moving && case.subject == Subject::Points;
     let rows = case.ranking(workload).into_iter().map(|(one, figure)| {
         let build = one.figure(Workload::Build).map_or(0.0, |build| build.median);
         let (parts, label) = match is_built {
@@ -69,12 +71,13 @@ fn bars<'a>(points: &'a str, case: &'a Case, workload: Workload, looks: &[&'a st
         Bar { name: &one.name, look: look(looks, &one.name), parts, label }
     });
     let behind = if is_built { " + build (pale)" } else { "" };
-    let title = format!("{points}, {} points: {}{behind}, ns a point", thousands(case.n), workload.name());
-    Chart::of_bars(points, title, rows.collect())
+    let (n, things, unit) = (thousands(case.n), case.subject.things(), case.subject.unit(workload));
+    let title = format!("{of}, {n} {things}: {}{behind}, {unit}", workload.name());
+    Chart::of_bars(of, title, rows.collect())
 }
 
-fn memory<'a>(points: &'a str, case: &'a Case, looks: &[&'a str]) -> Chart<'a> {
-    let bytes = |one: &Contestant| one.build.bytes_per_point;
+fn memory<'a>(of: &'a str, case: &'a Case, looks: &[&'a str]) -> Chart<'a> {
+    let bytes = |one: &Contestant| one.build.bytes_each;
     let mut all: Vec<_> = case.contestants.iter().filter_map(|one| Some((bytes(one)?, one))).collect();
     all.retain(|(_, one)| !one.figures.is_empty());
     all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -84,8 +87,9 @@ fn memory<'a>(points: &'a str, case: &'a Case, looks: &[&'a str]) -> Chart<'a> {
         parts: [bytes, 0.0],
         label: format!("{bytes:.0} bytes"),
     });
-    let title = format!("{points}, {} points: memory for each point", thousands(case.n));
-    Chart::of_bars(points, title, rows.collect())
+    let (n, things, thing) = (thousands(case.n), case.subject.things(), case.subject.thing());
+    let title = format!("{of}, {n} {things}: memory for each {thing}");
+    Chart::of_bars(of, title, rows.collect())
 }
 
 #[cfg(test)]

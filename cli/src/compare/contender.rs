@@ -63,12 +63,12 @@ pub struct Build {
     pub nodes: Option<usize>,
     /// Levels below the root.
     pub depth: Option<usize>,
-    /// The most points in a leaf or cell.
+    /// The most points or triangles in a leaf or cell.
     pub fullest: Option<usize>,
     /// Leaves left too large, or times that cells were doubled, for want of memory.
     pub crowded: Option<usize>,
-    /// Bytes for each point.
-    pub bytes_per_point: Option<f64>,
+    /// Bytes for each point or triangle.
+    pub bytes_each: Option<f64>,
 }
 
 /// What a query takes for a point, before it is asked of all.
@@ -135,7 +135,7 @@ impl Contender for Own<'_> {
             depth: Some(stats.depth),
             fullest: Some(stats.fullest),
             crowded: Some(stats.crowded),
-            bytes_per_point: Some(stats.bytes as f64 / stats.points.max(1) as f64),
+            bytes_each: Some(stats.bytes as f64 / stats.points.max(1) as f64),
         }
     }
 

@@ -94,7 +94,7 @@ fn in_cube(stream: &Stream) -> Vec3 {
 }
 
 /// Evenly on the unit sphere (Archimedes: the height is uniform).
-fn direction([height, turns]: [f32; 2]) -> Vec3 {
+pub(crate) fn direction([height, turns]: [f32; 2]) -> Vec3 {
     let y = 2.0 * height - 1.0;
     let (sin, cos) = sin_cos_turns(turns);
     let across = sqrt((1.0 - y * y).max(0.0));

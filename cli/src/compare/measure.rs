@@ -3,6 +3,7 @@
 use super::bench::{Gauge, Share};
 use super::contender::{Build, Contender, Entrant, Question, Scratch};
 use super::stopwatch::Stopwatch;
+use super::study::{Contestant, Figure};
 use super::workload::Workload;
 use crate::Outcome;
 use pointmass::index::Cost;
@@ -15,7 +16,7 @@ const ROUNDS: std::ops::RangeInclusive<usize> = 7..=31;
 /// If those at least would take longer than this, so few have to do.
 const LONG: Duration = Duration::from_secs(60);
 const FEWEST: usize = 3;
-/// So few points that a measurement takes less than what surrounds it are gone through several times.
+/// Fewer than this are gone through several times.
 const FEW: usize = 2000;
 
 /// Who is asked what, and how often.
@@ -28,16 +29,30 @@ pub(crate) struct Plan<'a> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Measured {
     pub(crate) build: Build,
-    /// Samples \[ns for each point\] by workload, and what it took.
-    pub(crate) series: Vec<(Workload, Vec<f64>, Option<Cost>)>,
+    /// Samples \[ns for each point, triangle or query\] by workload, and its counters: visits, tests, finds, for each too.
+    pub(crate) series: Vec<(Workload, Vec<f64>, Option<[f64; 3]>)>,
 }
 
 impl Measured {
-    fn add(&mut self, workload: Workload, sample: f64, cost: Option<Cost>) {
+    pub(crate) fn add(&mut self, workload: Workload, sample: f64, counters: Option<[f64; 3]>) {
         match self.series.iter_mut().find(|(known, ..)| *known == workload) {
             Some((_, samples, _)) => samples.push(sample),
-            None => self.series.push((workload, vec![sample], cost)),
+            None => self.series.push((workload, vec![sample], counters)),
         }
+    }
+
+    /// How often everything was measured.
+    pub(crate) fn rounds(&self) -> usize {
+        self.series.iter().map(|(_, samples, _)| samples.len()).max().unwrap_or(0)
+    }
+
+    /// What it came to.
+    pub(crate) fn contestant(self, name: &str, left_out: Option<String>) -> Contestant {
+        let series = self.series.into_iter();
+        let mut figures: Vec<_> =
+            series.map(|(workload, samples, counters)| Figure::new(workload, samples, counters)).collect();
+        figures.sort_by_key(|figure| figure.workload);
+        Contestant { name: name.into(), left_out, mismatches: None, build: self.build, figures }
     }
 }
 
@@ -54,41 +69,56 @@ pub(crate) fn measure(
 ) -> Outcome<Vec<Measured>> {
     let mut measured = vec![Measured::default(); entrants.len()];
     let mut scratch = Scratch::new(question);
-    let (n, turns) = (question.points.len(), plan.shares.iter().filter(|share| share.is_in()).count());
-    let begun = Instant::now();
-    let (mut round, mut rounds) = (0, plan.rounds(Duration::ZERO, 1));
-    while round < rounds {
-        let mut left = turns;
-        // Another begins each round, so that nobody always follows the same.
-        for turn in 0..entrants.len() {
-            let at = (turn + round) % entrants.len();
-            let (entrant, share) = (&mut entrants[at], &plan.shares[at]);
-            if share.is_in() {
-                left -= 1;
-                gauge.step(n as u64, (n * (left + turns * (rounds - round - 1))) as u64, entrant.name());
-                let mut contender = entrant.enter(n, memory);
-                take_turn(contender.as_mut(), question, &share.queries, &mut scratch, &mut measured[at])?;
-            }
-        }
-        round += 1;
-        rounds = plan.rounds(begun.elapsed(), round).max(round);
-    }
+    let n = question.points.len();
+    let players: Vec<_> = (0..entrants.len()).filter(|&at| plan.shares[at].is_in()).collect();
+    take_turns(&players, plan.repeat, |at, left| {
+        let (entrant, share) = (&mut entrants[at], &plan.shares[at]);
+        gauge.step(n as u64, (n * left) as u64, entrant.name());
+        let mut contender = entrant.enter(n, memory);
+        take_turn(contender.as_mut(), question, &share.queries, &mut scratch, &mut measured[at])
+    })?;
     Ok(measured)
 }
 
-impl Plan<'_> {
-    /// How many rounds there will be, by what the first ones took.
-    fn rounds(&self, elapsed: Duration, done: usize) -> usize {
-        match self.repeat {
-            Some(rounds) => rounds as usize,
-            None => {
-                let each = elapsed.as_secs_f64() / done.max(1) as f64;
-                let possible = PATIENCE.as_secs_f64() / each.max(1e-9);
-                let is_long = each * *ROUNDS.start() as f64 > LONG.as_secs_f64();
-                (possible as usize).clamp(if is_long { FEWEST } else { *ROUNDS.start() }, *ROUNDS.end())
-            }
+/// Has every player take a turn in every round, of which it is told how many turns are left, that is expected.
+///
+/// # Errors
+/// If a turn fails.
+pub(crate) fn take_turns(
+    players: &[usize],
+    repeat: Option<u32>,
+    mut turn: impl FnMut(usize, usize) -> Outcome,
+) -> Outcome {
+    let begun = Instant::now();
+    let (mut round, mut all) = (0, rounds(repeat, Duration::ZERO, 1));
+    while round < all {
+        for at in 0..players.len() {
+            let left = players.len() * (all - round) - at - 1;
+            // Another begins each round, so that nobody always follows the same.
+            turn(players[(at + round) % players.len()], left)?;
+        }
+        round += 1;
+        all = rounds(repeat, begun.elapsed(), round).max(round);
+    }
+    Ok(())
+}
+
+/// How many rounds there will be, by what the first ones took.
+fn rounds(repeat: Option<u32>, elapsed: Duration, done: usize) -> usize {
+    match repeat {
+        Some(rounds) => rounds as usize,
+        None => {
+            let each = elapsed.as_secs_f64() / done.max(1) as f64;
+            let possible = PATIENCE.as_secs_f64() / each.max(1e-9);
+            let is_long = each * *ROUNDS.start() as f64 > LONG.as_secs_f64();
+            (possible as usize).clamp(if is_long { FEWEST } else { *ROUNDS.start() }, *ROUNDS.end())
         }
     }
+}
+
+/// So few points or triangles are gone through several times, as a measurement of once takes less than what surrounds it.
+pub(crate) fn times(n: usize) -> usize {
+    (FEW / n).max(1)
 }
 
 fn take_turn(
@@ -99,7 +129,9 @@ fn take_turn(
     measured: &mut Measured,
 ) -> Outcome {
     let (n, radius) = (question.points.len(), question.radius);
-    let times = (FEW / n).max(1);
+    let times = times(n);
+    let each = |count: u64| count as f64 / n as f64;
+    let counters = |cost: Option<Cost>| cost.map(|cost| [each(cost.visits), each(cost.tests), each(cost.found)]);
     let per_point = |elapsed: Duration| elapsed.as_secs_f64() * 1e9 / (n * times) as f64;
 
     let begun = Stopwatch::start();
@@ -117,7 +149,7 @@ fn take_turn(
         }
         let elapsed = begun.elapsed();
         if let Some(cost) = cost {
-            measured.add(query, per_point(elapsed), cost);
+            measured.add(query, per_point(elapsed), counters(cost));
         }
     }
     if queries.contains(&Workload::Moving) {
@@ -134,7 +166,7 @@ fn take_turn(
         }
         measured.add(Workload::Refit, per_point(following), None);
         if let Some(cost) = cost {
-            measured.add(Workload::Moving, per_point(following + counting), cost);
+            measured.add(Workload::Moving, per_point(following + counting), counters(cost));
         }
     }
     Ok(())

@@ -1,8 +1,8 @@
-//! `pointmass compare`: which spatial partition suits which points and queries.
+//! `pointmass compare`: which spatial partition suits which points and queries, or which mesh and rays.
 //!
 //! `source` brings the points, `contender` those who take part, `bench` asks them: `verify` holds their answers against an exhaustive search,
 //! `measure` holds the clock; `study` is what it came to, which `advice` puts into words and `table`, `sheet`, `chart` and
-//! `page` tell.
+//! `page` tell. `rays` does for meshes what `source` to `measure` do for points, and leaves the rest to them.
 
 mod advice;
 mod bench;
@@ -16,6 +16,7 @@ mod page;
 mod peer;
 pub mod points;
 mod radius;
+mod rays;
 mod sample;
 mod sheet;
 mod source;
@@ -31,7 +32,8 @@ mod workload;
 pub use contender::Build;
 pub use distribution::Distribution;
 pub use machine::Machine;
-pub use study::{Advice, Case, Contestant, Crossover, Figure, Growth, Study};
+pub use rays::{Query, Surface};
+pub use study::{Advice, Case, Contestant, Crossover, Figure, Growth, Study, Subject};
 pub use workload::Workload;
 
 use crate::formats::{StudyFormat, json};
@@ -44,12 +46,18 @@ use contender::Entrant;
 /// Compares as the arguments say. Files are written whole, at the end, or not at all.
 ///
 /// # Errors
-/// If the points cannot be used, a contender gives a wrong answer, or a file cannot be written.
+/// If the points or the mesh cannot be used, a contender gives a wrong answer, or a file cannot be written.
 pub fn compare(args: &args::Compare) -> Outcome {
-    let mut entrants = entrants(args)?;
-    let read = args.points.iter().map(|(path, _)| path).chain(&args.scene);
+    let subject = subject(args)?;
+    if args.peers && !cfg!(feature = "peers") {
+        return Err(Failure::new(
+            "this program was built without other libraries; for --peers, run `cargo run --release --features peers -- \
+             compare --peers`",
+        ));
+    }
+    let read = args.points.iter().map(|(path, _)| path).chain(&args.scene).chain(&args.mesh);
     let outs = Outs::create(&args.out, read)?;
-    let study = study(args, &mut entrants)?;
+    let study = study(args, subject)?;
     outs.write(|format| match format {
         StudyFormat::Csv => sheet::csv(&study),
         StudyFormat::Json => json(&study),
@@ -59,28 +67,60 @@ pub fn compare(args: &args::Compare) -> Outcome {
     print(&table::text(&study, args.detail))
 }
 
+/// What the arguments are about.
+fn subject(args: &args::Compare) -> Outcome<Subject> {
+    let of_points = [
+        ("--points", args.points.is_some()),
+        ("--scene", args.scene.is_some()),
+        ("--distribution", !args.distribution.is_empty()),
+        ("--n", !args.n.is_empty()),
+        ("--neighbours", args.neighbours.is_some()),
+        ("--k", args.k.is_some()),
+    ];
+    let of_meshes = [
+        ("--mesh", args.mesh.is_some()),
+        ("--surface", !args.surface.is_empty()),
+        ("--triangles", !args.triangles.is_empty()),
+        ("--segments", args.segments.is_some()),
+    ];
+    let given = |options: &[(&'static str, bool)]| options.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+    let other = args.queries.iter().find(|query| **query != Workload::Ray).map(|query| query.name());
+    let rays = args.queries.contains(&Workload::Ray);
+    match (given(&of_points), given(&of_meshes), rays, other) {
+        (_, _, true, Some(other)) => Err(Failure::new(format!(
+            "--queries: ray is asked of a mesh, {other} of points; ask for one after the other"
+        ))),
+        (Some(option), _, true, _) => {
+            Err(Failure::new(format!("{option} is about points: --queries ray is asked of a mesh, see --mesh")))
+        }
+        (_, Some(option), _, Some(other)) => {
+            Err(Failure::new(format!("{option} is about a mesh: {other} is asked of points; expected --queries ray")))
+        }
+        (Some(points), Some(mesh), ..) => {
+            Err(Failure::new(format!("{points} is about points, {mesh} about a mesh; leave one of them out")))
+        }
+        (_, None, false, _) => Ok(Subject::Points),
+        _ => Ok(Subject::Mesh),
+    }
+}
+
 /// Those who take part, in the order of every table.
-fn entrants(args: &args::Compare) -> Outcome<Vec<Entrant>> {
+fn entrants(args: &args::Compare) -> Vec<Entrant> {
     #[cfg_attr(not(feature = "peers"), expect(unused_mut, reason = "peers join"))]
     let mut entrants: Vec<_> = args.structures.0.iter().map(|structure| Entrant::Own(*structure)).collect();
     #[cfg(feature = "peers")]
     if args.peers {
         entrants.extend(peer::all().into_iter().map(Entrant::Peer));
     }
-    if args.peers && !cfg!(feature = "peers") {
-        return Err(Failure::new(
-            "this program was built without other libraries; for --peers, run `cargo run --release --features peers -- \
-             compare --peers`",
-        ));
-    }
-    Ok(entrants)
+    entrants
 }
 
-/// Verifies and measures everything.
-fn study(args: &args::Compare, entrants: &mut [Entrant]) -> Outcome<Study> {
+/// Verifies and measures everything on points.
+fn of_points(args: &args::Compare) -> Outcome<Vec<Case>> {
+    let mut entrants = entrants(args);
     let (sources, sizes) = source::sources(args)?;
     let points = sizes.iter().sum::<usize>() * sources.len();
-    let mut bench = Bench::new(args, queries(args), entrants, points);
+    let mut bench = Bench::new(args, queries(args), &mut entrants, points);
     let mut cases = Vec::new();
     for source in &sources {
         for &n in &sizes {
@@ -88,23 +128,45 @@ fn study(args: &args::Compare, entrants: &mut [Entrant]) -> Outcome<Study> {
         }
     }
     bench.finish();
+    Ok(cases)
+}
+
+/// All that was measured, and what it comes to.
+fn study(args: &args::Compare, subject: Subject) -> Outcome<Study> {
+    let cases = match subject {
+        Subject::Points => of_points(args)?,
+        Subject::Mesh => rays::cases(args)?,
+    };
     Ok(Study {
         version: env!("CARGO_PKG_VERSION").into(),
         command: command(std::env::args()),
         machine: Machine::this(),
         seed: args.seed.unwrap_or(1),
-        k: usize::from(args.k),
+        k: k(args),
         growth: study::growths(&cases),
         crossovers: study::crossovers(&cases),
         advice: advice::advise(&cases),
-        notes: notes(&cases, args.radius.is_none().then_some(args.neighbours)),
+        notes: notes(&cases, args.radius.is_none().then_some(neighbours(args))),
         cases,
     })
+}
+
+/// How many nearest others are looked for.
+fn k(args: &args::Compare) -> usize {
+    usize::from(args.k.unwrap_or(8))
+}
+
+/// How many others a point shall have within the radius, on average.
+fn neighbours(args: &args::Compare) -> f64 {
+    args.neighbours.unwrap_or(30.0)
 }
 
 /// What is asked, each once.
 fn queries(args: &args::Compare) -> Vec<Workload> {
     let mut queries = args.queries.clone();
+    if queries.is_empty() {
+        queries = Workload::OF_POINTS.to_vec();
+    }
     queries.sort_unstable();
     queries.dedup();
     queries
@@ -114,8 +176,9 @@ fn queries(args: &args::Compare) -> Vec<Workload> {
 fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
     let mut notes = Vec::new();
     for case in cases {
-        let (name, n, found) = (&case.points, thousands(case.n), case.neighbours);
-        if let Some(wanted) = wanted.filter(|wanted| (found - wanted).abs() > 0.2 * wanted) {
+        let (name, n, things) = (&case.of, thousands(case.n), case.subject.things());
+        let far = |(wanted, found): &(f64, f64)| (found - wanted).abs() > 0.2 * wanted;
+        if let Some((wanted, found)) = wanted.zip(case.neighbours).filter(far) {
             let [wanted, found] = [wanted, found].map(digits);
             notes.push(format!(
                 "{name}, {n} points: there is no radius with {wanted} others within it on average; {found} is the closest"
@@ -125,7 +188,7 @@ fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
         let usual = 100.0 * statistics::Summary::of(&spreads.collect::<Vec<_>>()).median;
         if usual > 10.0 {
             notes.push(format!(
-                "{name}, {n} points: the machine was busy, samples usually spread by {usual:.0} %; try again with --repeat 31"
+                "{name}, {n} {things}: the machine was busy, samples usually spread by {usual:.0} %; try again with --repeat 31"
             ));
         }
     }

@@ -1,10 +1,10 @@
 //! A comparison as a page that stands alone: no scripts, nothing from the network.
 
 use super::chart::charts;
-use super::study::{Case, Contestant, Crossover, Study, series, workloads};
-use super::table::{heading, ratio};
+use super::study::{Case, Contestant, Crossover, Study, Subject, series, workloads};
+use super::table::{heading, ratio, unlike};
 use super::workload::Workload;
-use super::{stopwatch, study, verify};
+use super::{rays, stopwatch, study, verify};
 use crate::Outcome;
 use crate::page::{Page, escape};
 use crate::plot::Chart;
@@ -20,14 +20,14 @@ pub(crate) fn html(study: &Study) -> Outcome<String> {
     page.summary(study);
     page.advice(study);
     let charts = charts(study);
-    for (points, cases) in series(&study.cases) {
-        page.tagged("h2", &format!("Measurements: {points}"));
+    for (title, cases) in series(&study.cases) {
+        page.tagged("h2", &format!("Measurements: {title}"));
         for case in &cases {
             page.case(case);
         }
-        page.growth(study, points, &cases);
-        page.crossovers(study, points);
-        page.charts(points, &charts)?;
+        page.growth(study, title, &cases);
+        page.crossovers(study, title);
+        page.charts(title, &charts)?;
         if let Some(largest) = cases.last() {
             page.details(largest);
         }
@@ -42,11 +42,11 @@ impl Page {
         let names = study::names(&study.cases).join(", ");
         self.raw("<dl>\n");
         let _ = writeln!(self.0, "<dt>Compared</dt><dd>{}</dd>", escape(&names));
-        for (points, cases) in series(&study.cases) {
+        for (title, cases) in series(&study.cases) {
             let sizes: Vec<_> = cases.iter().map(|case| thousands(case.n)).collect();
             let about = cases.last().map_or("", |case| case.about.as_str());
-            let text = format!("{}; {} points", about, sizes.join(", "));
-            let _ = writeln!(self.0, "<dt>{}</dt><dd>{}</dd>", escape(points), escape(&text));
+            let text = format!("{about}; {} {}", sizes.join(", "), study.subject().things());
+            let _ = writeln!(self.0, "<dt>{}</dt><dd>{}</dd>", escape(title), escape(&text));
         }
         let machine = format!("{}, {} cores (one is used), {}", machine.cpu, machine.cores, machine.os);
         let _ = writeln!(self.0, "<dt>Machine</dt><dd>{}</dd>", escape(&machine));
@@ -58,10 +58,10 @@ impl Page {
 
     fn advice(&mut self, study: &Study) {
         self.tagged("h2", "What to use");
-        for (points, cases) in series(&study.cases) {
+        for (title, cases) in series(&study.cases) {
             let Some(largest) = cases.last() else { continue };
-            self.tagged("h3", &format!("{points}, {} points", thousands(largest.n)));
-            let of = study.advice.iter().filter(|advice| advice.points == points);
+            self.tagged("h3", &format!("{title}, {} {}", thousands(largest.n), largest.subject.things()));
+            let of = study.advice.iter().filter(|advice| advice.of == title);
             let items: Vec<_> = of
                 .map(|advice| (advice.workload.map_or("all round", Workload::name).into(), advice.text.clone()))
                 .collect();
@@ -72,16 +72,17 @@ impl Page {
 
     fn case(&mut self, case: &Case) {
         self.tagged("h3", &heading(case));
-        let (rounds, verified) = (counted(case.rounds, "round"), &case.verified);
+        let (rounds, verified, units) = (counted(case.rounds, "round"), &case.verified, case.subject.units());
         let text = format!(
-            "Medians of {rounds}, in ns a point, and times the best; {verified}. Green: the best and what cannot be told \
+            "Medians of {rounds}, in {units}, and times the best; {verified}. Green: the best and what cannot be told \
              apart from it."
         );
         self.tagged("p", &text);
         let workloads = case.workloads();
         self.raw("<div class=\"wide\"><table><tr><th></th>");
         workloads.iter().for_each(|workload| self.cell("th", "", workload.name()));
-        ["bytes a point", "nodes", "depth", "fullest", "crowded"].iter().for_each(|name| self.cell("th", "", name));
+        self.cell("th", "", &format!("bytes a {}", case.subject.thing()));
+        ["nodes", "depth", "fullest", "crowded"].iter().for_each(|name| self.cell("th", "", name));
         self.raw("</tr>\n");
         for one in &case.contestants {
             self.row(case, one, &workloads);
@@ -93,6 +94,7 @@ impl Page {
         if !partly.is_empty() {
             self.tagged("p", &format!("Left out: {}.", partly.join("; ")));
         }
+        unlike(case).iter().for_each(|line| self.tagged("p", line));
     }
 
     fn row(&mut self, case: &Case, one: &Contestant, workloads: &[Workload]) {
@@ -112,7 +114,7 @@ impl Page {
                     None => self.cell("td", "", "-"),
                 }
             }
-            let bytes = one.build.bytes_per_point.map_or("-".into(), |bytes| format!("{bytes:.0}"));
+            let bytes = one.build.bytes_each.map_or("-".into(), |bytes| format!("{bytes:.0}"));
             self.cell("td", "", &bytes);
             let build = &one.build;
             for count in [build.nodes, build.depth, build.fullest, build.crowded] {
@@ -122,12 +124,16 @@ impl Page {
         self.raw("</tr>\n");
     }
 
-    fn growth(&mut self, study: &Study, points: &str, cases: &[&Case]) {
-        let of: Vec<_> = study.growth.iter().filter(|growth| growth.points == points).collect();
+    fn growth(&mut self, study: &Study, title: &str, cases: &[&Case]) {
+        let of: Vec<_> = study.growth.iter().filter(|growth| growth.of == title).collect();
         if of.is_empty() {
             return;
         }
-        self.tagged("h3", "Growth: time for all points, as a power of their number");
+        let growth = match study.subject() {
+            Subject::Points => "Growth: time for all points, as a power of their number",
+            Subject::Mesh => "Growth: time of the build and of a query, as a power of the number of triangles",
+        };
+        self.tagged("h3", growth);
         let workloads = workloads(cases.iter().copied());
         self.raw("<table><tr><th></th>");
         workloads.iter().for_each(|workload| self.cell("th", "", workload.name()));
@@ -150,11 +156,12 @@ impl Page {
         self.tagged("p", meaning);
     }
 
-    fn crossovers(&mut self, study: &Study, points: &str) {
-        let of: Vec<_> = study.crossovers.iter().filter(|crossover| crossover.points == points).collect();
+    fn crossovers(&mut self, study: &Study, title: &str) {
+        let of: Vec<_> = study.crossovers.iter().filter(|crossover| crossover.of == title).collect();
         if of.is_empty() {
             return;
         }
+        let things = study.subject().things();
         self.tagged("h3", "Where one overtakes another");
         self.raw("<ul>\n");
         for (i, first) in of.iter().enumerate() {
@@ -164,21 +171,22 @@ impl Page {
             }
             let losers = of.iter().filter(is_like).map(|other| format!("{} at {}", other.loser, other.size()));
             let losers = losers.collect::<Vec<_>>().join(", ");
-            self.tagged("li", &format!("{}: {} overtakes {losers} points", first.workload.name(), first.winner));
+            self.tagged("li", &format!("{}: {} overtakes {losers} {things}", first.workload.name(), first.winner));
         }
         self.raw("</ul>\n");
     }
 
-    fn charts(&mut self, points: &str, charts: &[Chart<'_>]) -> Outcome {
-        self.pictures(charts.iter().filter(|chart| chart.of == points))
+    fn charts(&mut self, title: &str, charts: &[Chart<'_>]) -> Outcome {
+        self.pictures(charts.iter().filter(|chart| chart.of == title))
     }
 
     fn details(&mut self, case: &Case) {
-        self.tagged("h3", &format!("In detail: {} points", thousands(case.n)));
+        self.tagged("h3", &format!("In detail: {} {}", thousands(case.n), case.subject.things()));
         for workload in case.workloads() {
             self.tagged("p", &format!("{}: {}", workload.name(), workload.describe()));
             self.raw("<div class=\"wide\"><table><tr><th></th>");
-            let head = ["median ns", "minimum ns", "spread", "times the best", "nodes visited", "distances", "found"];
+            let head =
+                ["median ns", "minimum ns", "spread", "times the best", "nodes visited", case.subject.tests(), "found"];
             head.iter().for_each(|name| self.cell("th", "", name));
             self.raw("</tr>\n");
             for (one, figure) in case.ranking(workload) {
@@ -199,40 +207,55 @@ impl Page {
             }
             self.raw("</table></div>\n");
         }
-        self.tagged(
-            "p",
-            "All of it for each point. Nodes, distances and finds are counted, not timed: the same on every machine.",
+        let (query, tests) = (case.subject.query(), case.subject.tests());
+        let text = format!(
+            "All of it for each {query}. Nodes, {tests} and finds are counted, not timed: the same on every machine."
         );
+        self.tagged("p", &text);
     }
 
     fn method(&mut self, study: &Study) {
         self.tagged("h2", "How it was measured");
         let work = workloads(&study.cases);
         self.items(&work.iter().map(|w| (w.name().into(), w.describe().into())).collect::<Vec<_>>());
-        let (most, sample, k) = (thousands(verify::EXHAUSTIVE), verify::SAMPLE, study.k);
-        let (totals, distances) = (verify::TOTALS, verify::DISTANCES);
-        let paragraphs = [
-            format!(
-                "Verification comes first: who gives a wrong answer ends the comparison. Counts, neighbours, pairs and the \
-                 distances of the {k} nearest of every row have to be the same from all structures, to the last bit, and \
-                 the same as those of an exhaustive search: of all rows up to {most} points, of {sample} random rows \
-                 beyond. Other libraries round in their own way, so their totals may differ by {totals} and their \
-                 distances by {distances} of the value."
-            ),
-            format!("Everybody takes a turn in every round, another one first each time, so that what else the machine does hits \
-             all alike. A turn builds, asks, moves all points by up to 5 % of the radius along every axis, refits and \
-             counts. Times are {}; the spread is the range of the middle half of the samples over their median. \
-             Two medians are told apart where they differ by more than 3 % and by more than two standard errors. Who \
-             would compute very many distances is left out, and the table says so.", stopwatch::SHOWS),
-            "Structures answer for all rows in one call, which shares work between rows that are near each other. Other \
-             libraries are asked row by row in the order of the points, or in the best way they have for all rows."
-                .into(),
-            "Of what was built, nodes are nodes or cells, depth is the levels below the root, fullest the most points in a \
-             leaf or cell, and crowded the leaves left larger than they should be, or how many times cells were doubled, \
-             for want of memory. Bytes are all that the structure uses, its copy of the points included."
-                .into(),
-            format!("All randomness comes from the seed {}.", study.seed),
-        ];
+        let paragraphs = match study.subject() {
+            Subject::Points => of_points(study),
+            Subject::Mesh => rays::method(),
+        };
         paragraphs.iter().for_each(|paragraph| self.tagged("p", paragraph));
+        let text = format!(
+            "Times are {}; the spread is the range of the middle half of the samples over their median. Two medians are told \
+             apart where they differ by more than 3 % and by more than two standard errors. All randomness comes from the \
+             seed {}.",
+            stopwatch::SHOWS,
+            study.seed
+        );
+        self.tagged("p", &text);
     }
+}
+
+/// How points are compared.
+fn of_points(study: &Study) -> Vec<String> {
+    let (most, sample, k) = (thousands(verify::EXHAUSTIVE), verify::SAMPLE, study.k);
+    let (totals, distances) = (verify::TOTALS, verify::DISTANCES);
+    vec![
+        format!(
+            "Verification comes first: who gives a wrong answer ends the comparison. Counts, neighbours, pairs and the \
+             distances of the {k} nearest of every row have to be the same from all structures, to the last bit, and \
+             the same as those of an exhaustive search: of all rows up to {most} points, of {sample} random rows \
+             beyond. Other libraries round in their own way, so their totals may differ by {totals} and their \
+             distances by {distances} of the value."
+        ),
+        "Everybody takes a turn in every round, another one first each time, so that what else the machine does hits \
+         all alike. A turn builds, asks, moves all points by up to 5 % of the radius along every axis, refits and \
+         counts. Who would compute very many distances is left out, and the table says so."
+            .into(),
+        "Structures answer for all rows in one call, which shares work between rows that are near each other. Other \
+         libraries are asked row by row in the order of the points, or in the best way they have for all rows."
+            .into(),
+        "Of what was built, nodes are nodes or cells, depth is the levels below the root, fullest the most points in a \
+         leaf or cell, and crowded the leaves left larger than they should be, or how many times cells were doubled, \
+         for want of memory. Bytes are all that the structure uses, its copy of the points included."
+            .into(),
+    ]
 }

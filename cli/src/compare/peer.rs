@@ -41,8 +41,8 @@ impl Contender for &mut Foreign {
     }
 
     fn built(&self) -> Build {
-        let bytes_per_point = self.peer.bytes().map(|bytes| bytes as f64 / self.points.max(1) as f64);
-        Build { bytes_per_point, ..Build::default() }
+        let bytes_each = self.peer.bytes().map(|bytes| bytes as f64 / self.points.max(1) as f64);
+        Build { bytes_each, ..Build::default() }
     }
 
     /// Libraries do not say what they computed, so costs are none of theirs.

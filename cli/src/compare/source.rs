@@ -56,6 +56,9 @@ pub(crate) fn sources(args: &args::Compare) -> Outcome<(Vec<Source>, Vec<usize>)
                     made.push(*one);
                 }
             });
+            if made.is_empty() {
+                made.push(Distribution::Uniform);
+            }
             made.into_iter().map(|distribution| Source::Made(distribution, seed)).collect()
         }
     };

@@ -6,6 +6,67 @@ use super::statistics::{Summary, crossing, growth};
 use super::workload::Workload;
 use serde::Serialize;
 
+/// What structures are compared on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Subject {
+    /// Points, which queries are asked about, one for each of them.
+    Points,
+    /// The triangles of a mesh, which segments are held against.
+    Mesh,
+}
+
+impl Subject {
+    /// What is sorted in.
+    pub(crate) fn thing(self) -> &'static str {
+        match self {
+            Self::Points => "point",
+            Self::Mesh => "triangle",
+        }
+    }
+
+    /// Many of it.
+    pub(crate) fn things(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Mesh => "triangles",
+        }
+    }
+
+    /// What times and counters of queries are those of.
+    pub(crate) fn query(self) -> &'static str {
+        match self {
+            Self::Points => "point",
+            Self::Mesh => "query",
+        }
+    }
+
+    /// What is computed to find out.
+    pub(crate) fn tests(self) -> &'static str {
+        match self {
+            Self::Points => "distances",
+            Self::Mesh => "triangles",
+        }
+    }
+
+    /// What times are given in, such as `ns a point`.
+    pub(crate) fn unit(self, workload: Workload) -> &'static str {
+        match (self, workload.is_query()) {
+            (Self::Points, _) => "ns a point",
+            (Self::Mesh, true) => "ns a query",
+            (Self::Mesh, false) => "ns a triangle",
+        }
+    }
+
+    /// The same of all workloads.
+    pub(crate) fn units(self) -> &'static str {
+        match self {
+            Self::Points => "ns a point",
+            Self::Mesh => "ns a query, of the build in ns a triangle",
+        }
+    }
+}
+
 /// A comparison.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
@@ -17,11 +78,11 @@ pub struct Study {
     pub machine: Machine,
     /// The seed of all randomness.
     pub seed: u64,
-    /// How many nearest others were looked for.
+    /// How many nearest others of points were looked for.
     pub k: usize,
-    /// One for every set of points.
+    /// One for every set of points or mesh.
     pub cases: Vec<Case>,
-    /// How time grows with the number of points.
+    /// How time grows with the number of points or triangles.
     pub growth: Vec<Growth>,
     /// Where one overtakes another.
     pub crossovers: Vec<Crossover>,
@@ -31,19 +92,23 @@ pub struct Study {
     pub notes: Vec<String>,
 }
 
-/// A set of points and all that was measured on it.
+/// A set of points or a mesh, and all that was measured on it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Case {
-    /// The name of the distribution, file or scene.
-    pub points: String,
-    /// What they are.
+    /// Which of the two.
+    pub subject: Subject,
+    /// The name of the distribution, surface, file or scene.
+    pub of: String,
+    /// What it is.
     pub about: String,
-    /// How many.
+    /// How many points or triangles.
     pub n: usize,
-    /// The radius of queries, in the points' unit.
+    /// The radius of queries, or of balls, in the unit of the coordinates.
     pub radius: f32,
     /// How many others a point has within the radius, on average.
-    pub neighbours: f64,
+    pub neighbours: Option<f64>,
+    /// How many queries of each kind were asked of a mesh; of points it is one for each.
+    pub queries: Option<usize>,
     /// How the answers were verified.
     pub verified: String,
     /// How often everything was measured.
@@ -59,13 +124,15 @@ pub struct Contestant {
     pub name: String,
     /// What it did not do, and why.
     pub left_out: Option<String>,
+    /// How many of another library's first hits differ from ours by more than rounding.
+    pub mismatches: Option<usize>,
     /// What it built.
     pub build: Build,
     /// What was measured.
     pub figures: Vec<Figure>,
 }
 
-/// A measurement; times are in nanoseconds for each point.
+/// A measurement; times are in nanoseconds for each point, or of a mesh for each query, but for each triangle if built.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure {
     /// What was measured.
@@ -80,37 +147,37 @@ pub struct Figure {
     pub ratio: f64,
     /// Whether the best cannot be told apart from it.
     pub ties: bool,
-    /// Nodes or rows of cells looked at, for each point.
+    /// Nodes or rows of cells looked at, for each point or query.
     pub visits: Option<f64>,
-    /// Distances computed, for each point.
+    /// Distances computed for each point, or triangles tested for each query.
     pub tests: Option<f64>,
-    /// Others, pairs or nearest found, for each point.
+    /// Others, pairs or nearest found for each point, or hits for each query.
     pub found: Option<f64>,
     /// All samples, in the order in which they were taken.
     pub samples: Vec<f64>,
 }
 
-/// How a contestant's time grows with the number of points.
+/// How a contestant's time grows with the number of points or triangles.
 #[derive(Clone, Debug, Serialize)]
 pub struct Growth {
-    /// Of which points.
-    pub points: String,
+    /// Of which points or mesh.
+    pub of: String,
     /// Doing what.
     pub workload: Workload,
     /// Who.
     pub name: String,
-    /// The power of the number of points that its time in all grows with.
+    /// The power of their number that its time grows with: in all, but of a mesh for each query.
     pub exponent: f64,
 }
 
 /// Where one contestant overtakes another.
 #[derive(Clone, Debug, Serialize)]
 pub struct Crossover {
-    /// Of which points.
-    pub points: String,
+    /// Of which points or mesh.
+    pub of: String,
     /// Doing what.
     pub workload: Workload,
-    /// The faster of more points.
+    /// The faster of more of them.
     pub winner: String,
     /// The faster of fewer.
     pub loser: String,
@@ -118,15 +185,15 @@ pub struct Crossover {
     pub between: [usize; 2],
     /// Where the lines cross.
     pub at: f64,
-    /// Whether the loser was the best of all at fewer points, and the winner is at more.
+    /// Whether the loser was the best of all at fewer, and the winner is at more.
     pub leads: bool,
 }
 
 /// A sentence of advice.
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice {
-    /// For which points.
-    pub points: String,
+    /// For which points or mesh.
+    pub of: String,
     /// For what; none: for all of it.
     pub workload: Option<Workload>,
     /// What to use.
@@ -156,6 +223,13 @@ impl Figure {
     /// interquartile range over 1.349.
     fn doubt(&self) -> f64 {
         2.0 * 1.253 / 1.349 * self.spread * self.median / (self.samples.len().max(1) as f64).sqrt()
+    }
+}
+
+impl Study {
+    /// What it is about.
+    pub(crate) fn subject(&self) -> Subject {
+        self.cases.first().map_or(Subject::Points, |case| case.subject)
     }
 }
 
@@ -194,13 +268,13 @@ impl Case {
     }
 }
 
-/// Cases of the same points, by their number.
+/// Cases of the same points or mesh, by their number.
 pub(crate) fn series(cases: &[Case]) -> Vec<(&str, Vec<&Case>)> {
     let mut series: Vec<(&str, Vec<&Case>)> = Vec::new();
     for case in cases {
-        match series.iter_mut().find(|(points, _)| *points == case.points) {
+        match series.iter_mut().find(|(of, _)| *of == case.of) {
             Some((_, cases)) => cases.push(case),
-            None => series.push((&case.points, vec![case])),
+            None => series.push((&case.of, vec![case])),
         }
     }
     series.iter_mut().for_each(|(_, cases)| cases.sort_by_key(|case| case.n));
@@ -227,7 +301,7 @@ pub(crate) fn workloads<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<Wo
     workloads
 }
 
-/// (number of points, figure) of one who took part, by number.
+/// (number of points or triangles, figure) of one who took part, by number.
 pub(crate) fn line<'a>(cases: &[&'a Case], name: &str, workload: Workload) -> Vec<(usize, &'a Figure)> {
     let figure = |case: &&'a Case| {
         let one = case.contestants.iter().find(|one| one.name == name)?;
@@ -236,18 +310,20 @@ pub(crate) fn line<'a>(cases: &[&'a Case], name: &str, workload: Workload) -> Ve
     cases.iter().filter_map(figure).collect()
 }
 
-/// How time grows, of all who were measured on two numbers of points or more.
+/// How time grows, of all who were measured on two numbers of points or triangles or more.
 pub(crate) fn growths(cases: &[Case]) -> Vec<Growth> {
     let mut growths = Vec::new();
-    for (points, cases) in series(cases) {
+    for (of, cases) in series(cases) {
         for workload in workloads(cases.iter().copied()) {
+            // As many queries of a mesh are asked whatever its size.
+            let is_for_each = cases.iter().any(|case| case.subject == Subject::Mesh) && workload.is_query();
             for name in names(cases.iter().copied()) {
                 let times: Vec<_> = line(&cases, name, workload)
                     .iter()
-                    .map(|(n, figure)| (*n as f64, figure.median * *n as f64))
+                    .map(|(n, figure)| (*n as f64, figure.median * if is_for_each { 1.0 } else { *n as f64 }))
                     .collect();
                 if let Some(exponent) = growth(&times) {
-                    growths.push(Growth { points: points.into(), workload, name: name.into(), exponent });
+                    growths.push(Growth { of: of.into(), workload, name: name.into(), exponent });
                 }
             }
         }
@@ -258,17 +334,17 @@ pub(crate) fn growths(cases: &[Case]) -> Vec<Growth> {
 /// Where one overtakes another, if they can be told apart on both sides.
 pub(crate) fn crossovers(cases: &[Case]) -> Vec<Crossover> {
     let mut crossovers = Vec::new();
-    for (points, cases) in series(cases) {
+    for (of, cases) in series(cases) {
         for workload in workloads(cases.iter().copied()) {
             for pair in cases.windows(2) {
-                cross(points, workload, [pair[0], pair[1]], &mut crossovers);
+                cross(of, workload, [pair[0], pair[1]], &mut crossovers);
             }
         }
     }
     crossovers
 }
 
-fn cross(points: &str, workload: Workload, ends: [&Case; 2], crossovers: &mut Vec<Crossover>) {
+fn cross(of: &str, workload: Workload, ends: [&Case; 2], crossovers: &mut Vec<Crossover>) {
     let names = names(ends);
     let best = ends.map(|case| case.ranking(workload).first().map(|(one, _)| one.name.as_str()));
     for (i, a) in names.iter().enumerate() {
@@ -282,7 +358,7 @@ fn cross(points: &str, workload: Workload, ends: [&Case; 2], crossovers: &mut Ve
             let (winner, loser) = if a1.median < b1.median { (a, b) } else { (b, a) };
             let leads = workload.is_query() && best == [Some(*loser), Some(*winner)];
             crossovers.extend(at.map(|at| Crossover {
-                points: points.into(),
+                of: of.into(),
                 workload,
                 winner: winner.to_string(),
                 loser: loser.to_string(),

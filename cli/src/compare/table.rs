@@ -1,6 +1,6 @@
 //! A comparison for those who sit at a terminal.
 
-use super::study::{Case, Study, names, series, workloads};
+use super::study::{Case, Contestant, Study, Subject, names, series, workloads};
 use super::workload::Workload;
 use crate::words::{counted, digits, paragraph, say, thousands};
 
@@ -20,10 +20,19 @@ pub(crate) fn text(study: &Study, detail: bool) -> String {
     text
 }
 
-/// Of what radius, how many neighbours, and how it was verified.
+/// How many points of what radius and how many neighbours; how many triangles, and asked how often.
 pub(crate) fn heading(case: &Case) -> String {
-    let (n, radius, neighbours) = (thousands(case.n), digits(f64::from(case.radius)), digits(case.neighbours));
-    format!("{}, {n} points: radius {radius}, {neighbours} others within it on average", case.points)
+    let (of, n, radius) = (&case.of, thousands(case.n), digits(f64::from(case.radius)));
+    match case.subject {
+        Subject::Points => {
+            let neighbours = digits(case.neighbours.unwrap_or_default());
+            format!("{of}, {n} points: radius {radius}, {neighbours} others within it on average")
+        }
+        Subject::Mesh => {
+            let queries = thousands(case.queries.unwrap_or_default());
+            format!("{of}, {n} triangles: {queries} segments of every kind, balls of radius {radius}")
+        }
+    }
 }
 
 fn overview(text: &mut String, case: &Case) {
@@ -32,7 +41,8 @@ fn overview(text: &mut String, case: &Case) {
     paragraph(text, " ", &case.verified);
     let rounds = counted(case.rounds, "round");
     let mark = "* marks the best and what cannot be told apart from it";
-    say(text, &format!("  medians of {rounds} in ns a point, and times the best; {mark}"));
+    let units = case.subject.units();
+    say(text, &format!("  medians of {rounds} in {units}, and times the best; {mark}"));
     let workloads = case.workloads();
     let mut head = format!("  {:<10}", "");
     workloads.iter().for_each(|workload| head.push_str(&format!(" {:>11}", workload.name())));
@@ -47,7 +57,7 @@ fn overview(text: &mut String, case: &Case) {
             });
             row.push_str(&format!(" {cell:>11}"));
         }
-        let bytes = one.build.bytes_per_point.map_or("-".into(), |bytes| format!("{bytes:.0}"));
+        let bytes = one.build.bytes_each.map_or("-".into(), |bytes| format!("{bytes:.0}"));
         let spread = one.figures.iter().fold(0.0f64, |most, figure| most.max(figure.spread));
         say(text, &format!("{row} {bytes:>6} {:>4.0} %", spread * 100.0));
     }
@@ -55,6 +65,43 @@ fn overview(text: &mut String, case: &Case) {
         if let Some(why) = &one.left_out {
             say(text, &format!("  {:<10}  left out: {why}", one.name));
         }
+    }
+    unlike(case).iter().for_each(|line| say(text, &format!("  {line}")));
+    say(text, "");
+    if case.subject == Subject::Mesh {
+        work(text, case);
+    }
+}
+
+/// Who finds other first hits than ours, and how often.
+pub(crate) fn unlike(case: &Case) -> Vec<String> {
+    let all = case.queries.unwrap_or_default();
+    let line = |one: &Contestant| {
+        let asked = all * one.figures.iter().filter(|figure| figure.workload.is_query()).count();
+        let (unlike, asked) = (thousands(one.mismatches?), thousands(asked));
+        Some(format!("{:<10}  {unlike} of {asked} first hits differ from ours by more than rounding", one.name))
+    };
+    case.contestants.iter().filter_map(line).collect()
+}
+
+/// What every query looked at, and how deep the structures are.
+fn work(text: &mut String, case: &Case) {
+    let queries: Vec<_> = case.workloads().into_iter().filter(|workload| workload.is_query()).collect();
+    say(text, "  nodes visited and triangles tested, for each query; counted, so the same on every machine");
+    let mut head = format!("  {:<10}", "");
+    queries.iter().for_each(|workload| head.push_str(&format!(" {:>13}", workload.name())));
+    say(text, &format!("{head} {:>9} {:>6} {:>8}", "nodes", "depth", "fullest"));
+    for one in case.contestants.iter().filter(|one| one.build.nodes.is_some()) {
+        let mut row = format!("  {:<10}", one.name);
+        for &workload in &queries {
+            let counters = one.figure(workload).and_then(|figure| figure.visits.zip(figure.tests));
+            let cell =
+                counters.map_or("-".into(), |(visits, tests)| format!("{} {:>6}", digits(visits), digits(tests)));
+            row.push_str(&format!(" {cell:>13}"));
+        }
+        let [nodes, depth, fullest] =
+            [one.build.nodes, one.build.depth, one.build.fullest].map(|count| count.map_or("-".into(), thousands));
+        say(text, &format!("{row} {nodes:>9} {depth:>6} {fullest:>8}"));
     }
     say(text, "");
 }
@@ -70,9 +117,15 @@ pub(crate) fn ratio(ratio: f64) -> String {
 
 fn details(text: &mut String, case: &Case, workload: Workload) {
     say(text, &format!("  {}: {}", workload.name(), workload.describe()));
-    let head = ["median ns", "min", "spread", "x best", "nodes/pt", "tests/pt", "found/pt"];
+    let each = match case.subject {
+        Subject::Points => ["nodes/pt", "tests/pt", "found/pt"],
+        Subject::Mesh => ["nodes/q", "tests/q", "hits/q"],
+    };
     let mut line = format!("  {:<10}", "");
-    head.iter().for_each(|name| line.push_str(&format!(" {name:>10}")));
+    ["median ns", "min", "spread", "x best"]
+        .iter()
+        .chain(&each)
+        .for_each(|name| line.push_str(&format!(" {name:>10}")));
     say(text, &line);
     for (one, figure) in case.ranking(workload) {
         let counter = |counter: Option<f64>| counter.map_or("-".into(), digits);
@@ -93,14 +146,20 @@ fn details(text: &mut String, case: &Case, workload: Workload) {
 }
 
 fn growth(text: &mut String, study: &Study) {
-    for (points, cases) in series(&study.cases) {
-        let of: Vec<_> = study.growth.iter().filter(|growth| growth.points == points).collect();
+    let subject = study.subject();
+    let what = match subject {
+        Subject::Points => "time",
+        Subject::Mesh => "time of the build, and of a query,",
+    };
+    for (title, cases) in series(&study.cases) {
+        let of: Vec<_> = study.growth.iter().filter(|growth| growth.of == title).collect();
         let (Some(first), Some(last)) = (cases.first(), cases.last()) else { continue };
         if of.is_empty() {
             continue;
         }
         let (from, to) = (thousands(first.n), thousands(last.n));
-        say(text, &format!("{points}: time grows from {from} to {to} points with this power of their number"));
+        let things = subject.things();
+        say(text, &format!("{title}: {what} grows from {from} to {to} {things} with this power of their number"));
         let workloads = workloads(cases.iter().copied());
         let mut head = format!("  {:<10}", "");
         workloads.iter().for_each(|workload| head.push_str(&format!(" {:>8}", workload.name())));
@@ -123,7 +182,7 @@ fn crossovers(text: &mut String, study: &Study) {
     if !leading.is_empty() {
         say(text, "The lead changes");
         for crossover in &leading {
-            say(text, &format!("  {}", crossover.text()));
+            say(text, &format!("  {}", crossover.text(study.subject())));
         }
         say(text, "");
     }
@@ -131,12 +190,13 @@ fn crossovers(text: &mut String, study: &Study) {
 
 impl super::study::Crossover {
     /// In words.
-    pub(crate) fn text(&self) -> String {
-        let Self { points, workload, winner, loser, .. } = self;
-        format!("{points}, {}: {winner} overtakes {loser} at about {} points", workload.name(), self.size())
+    pub(crate) fn text(&self, subject: Subject) -> String {
+        let Self { of, workload, winner, loser, .. } = self;
+        let (size, things) = (self.size(), subject.things());
+        format!("{of}, {}: {winner} overtakes {loser} at about {size} {things}", workload.name())
     }
 
-    /// The number of points, with two digits: between two sizes the lines are not known better.
+    /// The number of points or triangles, with two digits: between two sizes the lines are not known better.
     pub(crate) fn size(&self) -> String {
         let digits = 10f64.powf(self.at.log10().floor() - 1.0).max(1.0);
         thousands(((self.at / digits).round() * digits) as usize)
@@ -144,10 +204,10 @@ impl super::study::Crossover {
 }
 
 fn advice(text: &mut String, study: &Study) {
-    for (points, cases) in series(&study.cases) {
+    for (title, cases) in series(&study.cases) {
         let Some(largest) = cases.last() else { continue };
-        say(text, &format!("Advice for {points}, {} points", thousands(largest.n)));
-        for advice in study.advice.iter().filter(|advice| advice.points == points) {
+        say(text, &format!("Advice for {title}, {} {}", thousands(largest.n), largest.subject.things()));
+        for advice in study.advice.iter().filter(|advice| advice.of == title) {
             let what = advice.workload.map_or("all round", Workload::name);
             paragraph(text, &format!("  {what}:"), &advice.text);
         }

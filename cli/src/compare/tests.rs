@@ -3,12 +3,11 @@
 use super::bench::{limit, moved};
 use super::contender::{Answer, Build, Contender, Effort, Own, Question, Scratch};
 use super::source::Source;
-use super::study::{Case, Contestant, Figure};
+use super::study::{Case, Contestant, Figure, Subject};
 use super::verify::{ASKED, Expected};
 use super::workload::Workload;
 use super::{Distribution, advice, chart, command, page, sheet, study, table};
 use crate::Outcome;
-use clap::ValueEnum;
 use pointmass::Vec3;
 use pointmass::index::{Cost, SpatialIndex, Structure};
 
@@ -78,7 +77,7 @@ fn caught(about: Workload, exact: bool, exhaustive: bool) -> Option<String> {
 
 #[test]
 fn a_wrong_answer_is_caught_and_the_row_named() {
-    for &about in Workload::value_variants() {
+    for about in ASKED {
         for exhaustive in [true, false] {
             let said = caught(about, true, exhaustive).unwrap_or_else(|| panic!("{about:?} was not caught"));
             assert!(said.starts_with(&format!("liar gives a wrong answer to {}, row 17", about.name())), "{said}");
@@ -138,15 +137,18 @@ pub(super) fn case(n: usize, times: &[(&str, f64)]) -> Case {
     let contestant = |(name, median): &(&str, f64)| Contestant {
         name: name.to_string(),
         left_out: None,
-        build: Build { bytes_per_point: Some(20.0), ..Build::default() },
+        mismatches: None,
+        build: Build { bytes_each: Some(20.0), ..Build::default() },
         figures: vec![figure(10.0, Workload::Build), figure(*median, Workload::Count)],
     };
     let mut case = Case {
-        points: "a<b & \"c\"".into(),
+        subject: Subject::Points,
+        of: "a<b & \"c\"".into(),
         about: "made up".into(),
         n,
         radius: 0.1,
-        neighbours: 30.0,
+        neighbours: Some(30.0),
+        queries: None,
         verified: "verified".into(),
         rounds: 5,
         contestants: times.iter().map(contestant).collect(),
@@ -188,8 +190,14 @@ fn every_report_tells_the_same_figures() {
     let mut case = case(1000, &[]);
     for (name, scale) in [("grid", 1.0), ("kd", 2.0)] {
         let figure = Figure::new(Workload::Count, [90.0, 100.0, 140.0].map(|ns| ns * scale).to_vec(), None);
-        let build = Build { bytes_per_point: Some(20.0 * scale), ..Build::default() };
-        case.contestants.push(Contestant { name: name.into(), left_out: None, build, figures: vec![figure] });
+        let build = Build { bytes_each: Some(20.0 * scale), ..Build::default() };
+        case.contestants.push(Contestant {
+            name: name.into(),
+            left_out: None,
+            mismatches: None,
+            build,
+            figures: vec![figure],
+        });
     }
     case.rank();
     let study = study_of(vec![case]);
@@ -265,7 +273,7 @@ fn growth_and_crossovers_are_those_of_the_figures() {
     let crossovers = study::crossovers(&cases);
     let [one] = &crossovers[..] else { panic!("{crossovers:?}") };
     assert!((one.at - 10_000.0).abs() < 1e-6 && one.winner == "tree" && one.loser == "brute" && one.leads, "{one:?}");
-    assert!(one.text().contains("tree overtakes brute at about 10 000 points"), "{}", one.text());
+    assert!(one.text(Subject::Points).contains("tree overtakes brute at about 10 000 points"), "{one:?}");
 }
 
 #[test]

@@ -3,11 +3,12 @@
 use clap::ValueEnum;
 use serde::Serialize;
 
-/// What is measured: building, or what is asked of a structure once it is built.
+/// What is measured: building, or what is asked of a structure once it is built: of points from `Count` on, of a mesh from
+/// `Short` on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Workload {
-    /// Sorting the points in
+    /// Sorting the points or triangles in
     #[value(skip)]
     Build,
     /// Following the points after all have moved a little
@@ -23,9 +24,29 @@ pub enum Workload {
     Pairs,
     /// Following points that moved a little, and counting: a step of a simulation
     Moving,
+    /// Which triangle of a mesh a segment hits first: short, sorted and long segments, and short ones of balls
+    Ray,
+    /// First hits of short segments: steps of particles near the surface
+    #[value(skip)]
+    Short,
+    /// First hits of the same in an order in which neighbours follow each other
+    #[value(skip)]
+    Sorted,
+    /// First hits of segments across the whole mesh
+    #[value(skip)]
+    Long,
+    /// First hits of the short segments by balls
+    #[value(skip)]
+    Balls,
 }
 
 impl Workload {
+    /// What is asked of points if nobody says.
+    pub const OF_POINTS: [Self; 5] = [Self::Count, Self::Within, Self::Nearest, Self::Pairs, Self::Moving];
+
+    /// All that is asked of a mesh.
+    pub const OF_MESHES: [Self; 4] = [Self::Short, Self::Sorted, Self::Long, Self::Balls];
+
     /// What it is called.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -37,6 +58,11 @@ impl Workload {
             Self::Nearest => "nearest",
             Self::Pairs => "pairs",
             Self::Moving => "moving",
+            Self::Ray => "ray",
+            Self::Short => "short",
+            Self::Sorted => "sorted",
+            Self::Long => "long",
+            Self::Balls => "balls",
         }
     }
 
@@ -44,13 +70,18 @@ impl Workload {
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {
-            Self::Build => "sort all points in",
+            Self::Build => "sort everything in",
             Self::Refit => "follow all points after a small move",
             Self::Count => "count the others within the radius of every point",
             Self::Within => "list the others within the radius of every point",
             Self::Nearest => "find the nearest others of every point",
             Self::Pairs => "visit every two points within the radius of each other once",
             Self::Moving => "follow all points after a small move, then count: a step of a simulation",
+            Self::Ray => "find the first triangle that segments hit",
+            Self::Short => "find the first triangle that steps near the surface hit, in no order",
+            Self::Sorted => "the same steps, in the order of a Morton curve through their beginnings",
+            Self::Long => "find the first triangle that segments across the whole mesh hit",
+            Self::Balls => "the short steps in no order, of balls instead of points",
         }
     }
 

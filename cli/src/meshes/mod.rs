@@ -1,9 +1,10 @@
-//! Triangle meshes from files: OFF, OBJ, STL and PLY, told apart by the file's extension.
+//! Triangle meshes from files: OFF, OBJ, STL and PLY, told apart by the file's extension; and some that are made up.
 //!
 //! Whatever the bytes are, the answer is a mesh or one line saying what is wrong with the file: nothing here panics,
 //! and nothing is allocated because a header promises it.
 
 pub(crate) mod error;
+mod made;
 mod obj;
 mod off;
 pub(crate) mod ply;
@@ -13,7 +14,10 @@ mod tests;
 mod text;
 
 pub use error::MeshError;
+pub use made::Made;
 
+use pointmass::Vec3;
+use pointmass::shape::{BadMesh, MeshBuf};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -33,6 +37,14 @@ pub struct MeshData {
 }
 
 impl MeshData {
+    /// The mesh to collide with.
+    ///
+    /// # Errors
+    /// If an index is out of range or a coordinate is not finite, which no file's are.
+    pub fn solid(self) -> Result<MeshBuf, BadMesh> {
+        MeshBuf::new(self.vertices.into_iter().map(Vec3::from).collect(), self.triangles)
+    }
+
     /// Adds a polygon as a fan of triangles around its first corner.
     fn add_polygon(&mut self, corners: &[u32]) {
         let [first, others @ ..] = corners else { return };

@@ -101,7 +101,7 @@ fn the_same_points_are_compared_whatever_they_come_in() {
     folder.write("a.npy", npy);
     for name in ["a.csv", "b.csv", "a.xyz", "b.xyz", "a.ply", "a.npy"] {
         let case = case(&folder, &format!("--points {name}"));
-        assert_eq!((&case["points"], &case["n"]), (&name.into(), &40.into()), "{case}");
+        assert_eq!((&case["of"], &case["n"]), (&name.into(), &40.into()), "{case}");
         let once = folder.run(&format!("compare --points {name} --radius 1 --repeat 1 --out r.json")).fine();
         assert!(once.stdout.contains("radius 1.00, 2.00 others within it on average"), "{name}: {}", once.stdout);
     }
@@ -215,7 +215,7 @@ fn the_command_line_says_what_it_wants() {
     let folder = Folder::with("a.csv", "1,2,3\n4,5,6\n");
     for (args, expected) in [
         ("--structures grid,nonsense", "unknown structure; there are brute grid"),
-        ("--queries fly", "[possible values: count, within, nearest, pairs, moving]"),
+        ("--queries fly", "[possible values: count, within, nearest, pairs, moving, ray]"),
         ("--distribution galaxy", "uniform, plummer, sphere, plane, line, clusters, mixed"),
         ("--n 1e9", "expected a whole number of points, from 2 to 1e8"),
         ("--radius 0", "expected a positive, finite radius"),

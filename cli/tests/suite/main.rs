@@ -4,6 +4,7 @@ mod bad_input;
 mod check;
 mod command_line;
 mod compare;
+mod compare_rays;
 mod conversion;
 mod course;
 mod fuzz;

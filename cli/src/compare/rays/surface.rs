@@ -1,0 +1,77 @@
+//! Where triangles come from: made up, or a file.
+
+use crate::meshes::error::excerpt;
+use crate::meshes::{self, Made, MeshData};
+use crate::words::thousands;
+use crate::{Failure, Outcome, args};
+use pointmass::shape::{MeshBuf, Surface as _};
+use std::path::Path;
+
+/// About how many triangles are made up if nobody says: as many as the Stanford bunny has, roughly.
+pub(super) const TRIANGLES: usize = 60_000;
+
+/// A mesh to be compared on.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// What it is called.
+    pub name: String,
+    /// What it is.
+    pub about: String,
+    /// Its triangles, without an index.
+    pub mesh: MeshBuf,
+    /// The diagonal of its box \[m\].
+    pub size: f32,
+}
+
+/// All that the arguments name, each in all its sizes, ascending.
+///
+/// # Errors
+/// If a file cannot be used.
+pub(super) fn surfaces(args: &args::Compare) -> Outcome<Vec<Surface>> {
+    if let Some(path) = &args.mesh {
+        return Surface::read(path).map(|surface| vec![surface]);
+    }
+    let mut made = if args.surface.is_empty() { vec![Made::Knot, Made::Terrain] } else { args.surface.clone() };
+    made.sort_by_key(|made| *made as usize);
+    made.dedup();
+    let mut sizes = if args.triangles.is_empty() { vec![TRIANGLES] } else { args.triangles.clone() };
+    sizes.sort_unstable();
+    sizes.dedup();
+    made.into_iter().flat_map(|made| sizes.iter().map(move |n| Surface::made(made, *n))).collect()
+}
+
+impl Surface {
+    /// From a file: OFF, OBJ, STL or PLY.
+    ///
+    /// # Errors
+    /// If it cannot be read, with file and line where there is one, or is too large or small to be measured.
+    pub fn read(path: &Path) -> Outcome<Self> {
+        let data = meshes::load(path).map_err(|error| Failure::new(error.to_string()))?;
+        let (vertices, shown) = (thousands(data.vertices.len()), excerpt(&path.to_string_lossy()));
+        let about = format!("{} triangles between {vertices} vertices of {shown}", thousands(data.triangles.len()));
+        let name = excerpt(&path.file_name().unwrap_or_default().to_string_lossy());
+        Self::new(&shown, name, about, data)
+    }
+
+    /// Made up, of about so many triangles.
+    ///
+    /// # Errors
+    /// None that are known.
+    pub fn made(made: Made, triangles: usize) -> Outcome<Self> {
+        Self::new(made.name(), made.name().into(), made.describe().into(), made.mesh(triangles))
+    }
+
+    pub(super) fn new(path: &str, name: String, about: String, data: MeshData) -> Outcome<Self> {
+        let mesh = data.solid().map_err(|error| Failure::new(format!("{path}: {error}")))?;
+        let bounds = mesh.bounds();
+        let sides = [0, 1, 2].map(|axis| f64::from(bounds.max[axis]) - f64::from(bounds.min[axis]));
+        let size = sides.iter().map(|side| side * side).sum::<f64>().sqrt();
+        // Steps and balls are parts of it, whose squares have to be numbers.
+        match (1e-12..1e15).contains(&size) {
+            true => Ok(Self { name, about, mesh, size: size as f32 }),
+            false => Err(Failure::new(format!(
+                "{path}: the mesh is {size:.1e} across: expected from 1e-12 to 1e15; scale it"
+            ))),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The drop of many balls into an open box by rapier3d, to be held against the same drop by pointmass.
+
+use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, SharedShape, Vector};
+
+/// Gravity \[m/s²\], along −y: what pointmass means by it.
+pub const GRAVITY: f32 = 9.80665;
+
+/// What is dropped, and into what: a box whose floor is at y = 0, open at the top.
+#[derive(Clone, Debug)]
+pub struct Drop {
+    /// Where the balls' centres start \[m\], at rest.
+    pub positions: Vec<[f32; 3]>,
+    /// The radius of each \[m\].
+    pub radius: f32,
+    /// Their density \[kg/m³\].
+    pub density: f32,
+    /// The coefficient of friction of all that touch.
+    pub friction: f32,
+    /// The coefficient of restitution of all that touch.
+    pub elasticity: f32,
+    /// Half the box's width along x and z \[m\], about the y axis.
+    pub half_width: f32,
+    /// The step \[s\].
+    pub dt: f32,
+    /// What rapier calls so \[m\]: 2 % of it is how far ahead it looks for contacts, and three times it a second is how fast it
+    /// parts what overlaps at the most. Its default of 1 is made for things of a metre: with balls of centimetres every ball has
+    /// dozens of contacts to be looked at. Less is faster and leaves deeper overlaps.
+    pub length_unit: f32,
+    /// Whether balls may turn; particles of pointmass have no orientation.
+    pub turns: bool,
+}
+
+/// A drop under way in rapier: one thread, its defaults for everything but what [`Drop`] says; nothing ever sleeps.
+pub struct Pile {
+    world: PhysicsWorld,
+    balls: Vec<RigidBodyHandle>,
+    radius: f32,
+    half_width: f32,
+}
+
+impl Pile {
+    /// All balls at rest where they start, and the box: five half-spaces.
+    #[must_use]
+    pub fn new(drop: &Drop) -> Self {
+        let mut world = PhysicsWorld { gravity: Vector::new(0.0, -GRAVITY, 0.0), ..PhysicsWorld::default() };
+        world.integration_parameters.dt = drop.dt;
+        world.integration_parameters.length_unit = drop.length_unit;
+        // Rapier takes the average of both colliders' coefficients, so the walls get the balls'.
+        let touching = |collider: ColliderBuilder| collider.friction(drop.friction).restitution(drop.elasticity);
+        let half = drop.half_width;
+        let sides = [Vector::X, -Vector::X, Vector::Z, -Vector::Z].map(|inward| (inward * -half, inward));
+        for (place, inward) in [(Vector::ZERO, Vector::Y)].into_iter().chain(sides) {
+            let wall = ColliderBuilder::new(SharedShape::halfspace(inward));
+            world.insert_collider(touching(wall).translation(place), None);
+        }
+        let ball = |place: &[f32; 3]| {
+            let body = RigidBodyBuilder::dynamic().translation((*place).into()).can_sleep(false);
+            let body = if drop.turns { body } else { body.lock_rotations() };
+            world.insert(body, touching(ColliderBuilder::ball(drop.radius)).density(drop.density)).0
+        };
+        let balls = drop.positions.iter().map(ball).collect();
+        Self { world, balls, radius: drop.radius, half_width: half }
+    }
+
+    /// Goes on by one step.
+    pub fn step(&mut self) {
+        self.world.step();
+    }
+
+    /// Of all balls \[J\], their turning included.
+    #[must_use]
+    pub fn kinetic_energy(&self) -> f64 {
+        self.balls.iter().map(|&ball| f64::from(self.world.bodies[ball].kinetic_energy())).sum()
+    }
+
+    /// How deep two balls, or a ball and the box, are in each other at the most \[m\].
+    #[must_use]
+    pub fn max_penetration(&self) -> f32 {
+        max_penetration(&self.positions(), self.radius, self.half_width)
+    }
+
+    /// The balls' centres \[m\], in the order of the drop.
+    #[must_use]
+    pub fn positions(&self) -> Vec<[f32; 3]> {
+        self.balls.iter().map(|&ball| self.world.bodies[ball].translation().into()).collect()
+    }
+}
+
+/// How deep two balls of a radius, or a ball and the box of a [`Drop`], are in each other at the most \[m\]; zero if none
+/// touch. Written for either engine: it looks at places alone.
+///
+/// Balls are swept along x, so that only those are compared whose centres are within a diameter along it.
+#[must_use]
+pub fn max_penetration(positions: &[[f32; 3]], radius: f32, half_width: f32) -> f32 {
+    let inside = |&[x, y, z]: &[f32; 3]| radius - y.min(half_width - x.abs()).min(half_width - z.abs());
+    let deepest = positions.iter().map(inside).fold(0.0, f32::max);
+    let mut sorted = positions.to_vec();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut nearest = 4.0 * radius * radius;
+    for (i, a) in sorted.iter().enumerate() {
+        for b in sorted[i + 1..].iter().take_while(|b| b[0] - a[0] < 2.0 * radius) {
+            nearest = nearest.min(crate::square_distance(*a, *b));
+        }
+    }
+    deepest.max(2.0 * radius - nearest.sqrt())
+}
