@@ -75,6 +75,14 @@ fn run(drop: &Drop, response: &Response, seconds: usize) {
         }
     }
     let particles = system.particles();
+    if verbose {
+        let mut fast: Vec<_> =
+            particles.velocity.iter().zip(particles.position).map(|(v, x)| (v.length(), *v, *x)).collect();
+        fast.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for i in [0, 1, 2, 3, 5, 10, 30, 100, 300, 1000, 3000, 6000, 9000] {
+            println!("    {i} {:?}", fast[i]);
+        }
+    }
     println!(
         "{:10} {:10.2} {:12.2} {:14.2e} {:12.2}  {:?}",
         response.name(),

@@ -33,12 +33,15 @@ impl Drop {
         let positions = (0..count).map(|i| {
             let random = Stream::new(11, 0, i as u32);
             let ([u, v], [w, _]) = (random.units(0), random.units(1));
-            let place = |k: usize| (k as f32 + 0.5 - 0.5 * across as f32) * gap;
+            // Every other layer stands over the gaps of the one below.
+            let layer = i / across / across;
+            let shift = if layer % 2 == 0 { -0.25 } else { 0.25 };
+            let place = |k: usize| (k as f32 + 0.5 - 0.5 * across as f32 + shift) * gap;
             let aside = |u: f32| (u - 0.5) * 0.3 * radius;
             let (x, z) = (place(i % across) + aside(u), place(i / across % across) + aside(v));
-            Vec3::new(x, gap * ((i / across / across) as f32 + 1.0) + aside(w), z)
+            Vec3::new(x, gap * (layer as f32 + 1.0) + aside(w), z)
         });
-        let half_width = 0.5 * gap * across as f32;
+        let half_width = 0.5 * gap * (across as f32 + 0.5);
         Self { positions: positions.collect(), radius, friction: 0.5, elasticity: 0.0, half_width, dt: 1.0 / 60.0 }
     }
 

@@ -10,8 +10,12 @@ use glam::Vec3;
 ///
 /// XPBD with one iteration for each of many small steps (Macklin et al., "Small Steps in Physics Simulation", SCA 2019; Müller
 /// et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020). A softness in m/N is the same
-/// however many sub-steps there are. Overlap left in a heap is about 2 g h² for each layer above, h being the
-/// sub-step. A sub-step takes about 20 ns a contact.
+/// however many sub-steps there are.
+///
+/// Of two that rest on each other the lower one gives way less (Macklin et al., "Unified Particle Physics for Real-Time
+/// Applications", SIGGRAPH 2014, section 5.3), so that overlap hardly grows with the height of a heap; momentum is exact for all
+/// that meet faster than gravity makes them in a step, and where nothing drives them. Balls do not spin. Hits and contacts of this kind are counted
+/// in every sub-step, and [`Observer`](crate::Observer)s are not told of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -24,7 +28,7 @@ pub struct Projection {
 
 impl Default for Projection {
     fn default() -> Self {
-        Self { substeps: 20, compliance: 0.0 }
+        Self { substeps: 12, compliance: 0.0 }
     }
 }
 
