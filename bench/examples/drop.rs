@@ -1,36 +1,40 @@
-//! `cargo run --release -p pointmass-bench --example drop -- [BALLS] [SECONDS] [SUBSTEPS]`: the same drop of balls into a box, by
-//! impulse, by force and by position, and by other engines with `--features peers`.
+//! The same drop of balls into a box by position, by impulse and by force, and by rapier3d in the same run:
+//! `cargo run --release -p pointmass-bench --features rapier --example drop -- [BALLS] [SECONDS] [SUBSTEPS]`.
+//!
+//! Times are means over all steps of 1/60 s; the force takes 20 of our steps for each, as its stiffness asks.
 
 use pointmass::index::Structure;
 use pointmass::{Gravity, Heap, Penalty, Projection, Response, Scene, Symplectic, System, Time, Vec3};
 use pointmass_bench::drop::{Drop, deepest};
 use std::time::Instant;
 
+/// Our steps for one of the drop's, by force.
+const FORCE_STEPS: usize = 20;
+
 fn main() {
     let argument = |i: usize, default: usize| std::env::args().nth(i).and_then(|x| x.parse().ok()).unwrap_or(default);
-    let (balls, seconds, substeps) = (argument(1, 10_000), argument(2, 10), argument(3, 20));
-    let only = std::env::args().nth(4);
+    let (balls, seconds) = (argument(1, 10_000), argument(2, 8));
+    let substeps = argument(3, Projection::default().substeps as usize) as u32;
     let drop = Drop::of(balls);
-    println!("{balls} balls, {seconds} s; a drop's energy is {:.3} J a ball", drop.energy());
-    println!(
-        "{:10} {:>10} {:>12} {:>14} {:>12}  {}",
-        "response", "ms a step", "ms at rest", "KE / drop", "overlap %r", "notes"
-    );
-    let position = Response::Position(Projection { substeps: substeps as u32, ..Projection::default() });
-    let force = Response::by_name("force", drop.dt / 20.0, drop.mass());
+    println!("{balls} balls, {seconds} s; the drop brings {:.3} J a ball", drop.energy());
+    let [response, mean, last, energy, overlap] =
+        ["response", "ms a step", "last second", "energy/drop", "overlap/radius"];
+    println!("{response:12}{mean:>12}{last:>14}{energy:>14}{overlap:>16}");
+    let position = Response::Position(Projection { substeps, ..Projection::default() });
     let impulse = Response::by_name("impulse", drop.dt, drop.mass());
+    let force = Response::by_name("force", drop.dt / FORCE_STEPS as f32, drop.mass());
     for response in [Some(position), impulse, force].into_iter().flatten() {
-        if only.as_ref().is_none_or(|only| only == response.name()) {
-            run(&drop, &response, seconds);
-        }
+        run(&drop, &response, seconds);
     }
+    #[cfg(feature = "rapier")]
+    rapier(&drop, seconds);
 }
 
 fn run(drop: &Drop, response: &Response, seconds: usize) {
     let start = drop.particles();
     let (walls, grips) = (drop.walls(), drop.grips());
-    let (push, cuts) = match response {
-        Response::Force(penalty) => (penalty.reaching(2.0 * drop.radius), 20),
+    let (push, steps) = match response {
+        Response::Force(penalty) => (penalty.reaching(2.0 * drop.radius), FORCE_STEPS),
         _ => (Penalty::NONE, 1),
     };
     let forces = (Gravity::EARTH, push);
@@ -45,51 +49,50 @@ fn run(drop: &Drop, response: &Response, seconds: usize) {
         ..Scene::EMPTY
     };
     let mut system = System::with(Heap::new(scene.size()));
-    system.start(&scene, 1).expect("it fits");
-    let dt = Time::from_seconds(drop.dt / cuts as f32);
-    let steps = seconds * 60;
-    let (mut all, mut rest) = (0.0, 0.0);
-    let energy = |v: &[Vec3]| {
-        v.iter().map(|v| 0.5 * f64::from(drop.mass()) * f64::from(v.length_squared())).sum::<f64>() / v.len() as f64
-    };
-    let verbose = std::env::var_os("VERBOSE").is_some();
-    for step in 0..steps {
-        let began = Instant::now();
-        for _ in 0..cuts {
-            system.step(&scene, dt);
-        }
-        let took = began.elapsed().as_secs_f64() * 1e3;
-        all += took;
-        if step + 60 >= steps {
-            rest += took / 60.0;
-        }
-        if verbose && step % std::env::var("EVERY").map_or(60, |x| x.parse().unwrap()) == 0 {
-            let particles = system.particles();
-            println!(
-                "  {step} {:.2} {:.2e} {:.2} {}",
-                took,
-                energy(particles.velocity) / drop.energy(),
-                100.0 * deepest(drop, particles.position) / drop.radius,
-                system.totals().contacts
-            );
-        }
-    }
+    system.start(&scene, 1).expect("the memory was made for the scene");
+    let dt = Time::from_seconds(drop.dt / steps as f32);
+    let times = timed(seconds, || (0..steps).for_each(|_| drop_report(system.step(&scene, dt))));
     let particles = system.particles();
-    if verbose {
-        let mut fast: Vec<_> =
-            particles.velocity.iter().zip(particles.position).map(|(v, x)| (v.length(), *v, *x)).collect();
-        fast.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for i in [0, 1, 2, 3, 5, 10, 30, 100, 300, 1000, 3000, 6000, 9000] {
-            println!("    {i} {:?}", fast[i]);
-        }
-    }
-    println!(
-        "{:10} {:10.2} {:12.2} {:14.2e} {:12.2}  {:?}",
-        response.name(),
-        all / steps as f64,
-        rest,
-        energy(particles.velocity) / drop.energy(),
-        100.0 * deepest(drop, particles.position) / drop.radius,
-        system.totals().caps
-    );
+    let squares: f64 = particles.velocity.iter().map(|v| f64::from(v.length_squared())).sum();
+    let energy = 0.5 * f64::from(drop.mass()) * squares / start.len() as f64;
+    row(response.name(), times, energy / drop.energy(), deepest(drop, particles.position) / drop.radius);
+}
+
+fn drop_report(report: pointmass::Report) {
+    std::hint::black_box(report);
+}
+
+#[cfg(feature = "rapier")]
+fn rapier(drop: &Drop, seconds: usize) {
+    use pointmass_peers::rapier;
+    let mut pile = rapier::Pile::new(&rapier::Drop {
+        positions: drop.positions.iter().map(Vec3::to_array).collect(),
+        radius: drop.radius,
+        density: 1000.0,
+        friction: drop.friction,
+        elasticity: drop.elasticity,
+        half_width: drop.half_width,
+        dt: drop.dt,
+        length_unit: 2.0 * drop.radius,
+        turns: true,
+    });
+    let times = timed(seconds, || pile.step());
+    let energy = pile.kinetic_energy() / drop.positions.len() as f64;
+    let positions: Vec<Vec3> = pile.positions().into_iter().map(Vec3::from).collect();
+    row("rapier3d", times, energy / drop.energy(), deepest(drop, &positions) / drop.radius);
+}
+
+/// Milliseconds of a step on average, and in the last second.
+fn timed(seconds: usize, mut step: impl FnMut()) -> [f64; 2] {
+    let mut timed = |steps: usize| {
+        let began = Instant::now();
+        (0..steps).for_each(|_| step());
+        began.elapsed().as_secs_f64() * 1e3
+    };
+    let (first, last) = (timed(60 * seconds.saturating_sub(1)), timed(60));
+    [(first + last) / (60.0 * seconds.max(1) as f64), last / 60.0]
+}
+
+fn row(name: &str, [mean, last]: [f64; 2], energy: f64, overlap: f32) {
+    println!("{name:12}{mean:12.2}{last:14.2}{energy:14.1e}{overlap:16.4}");
 }
