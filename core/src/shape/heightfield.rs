@@ -253,7 +253,7 @@ impl Collider for HeightField<'_> {
         let way = if forth { reach } else { -reach };
         let strips = self.between(along, from[along] - way, segment.to[along] + way);
         let (first, count) = (strips.start, strips.len());
-        let Some(probe) = Probe::new(segment, self.reach()) else { return None };
+        let probe = Probe::new(segment, self.reach())?;
         let mut best = Best::NONE;
         for k in 0..count {
             let strip = if forth { first + k } else { first + count - 1 - k };
