@@ -29,7 +29,7 @@ pub enum EventKind {
     /// A particle hit a collider.
     #[default]
     Hit,
-    /// A particle hit another; there is a second record in which the two are exchanged.
+    /// A particle hit another; there is a second record in which the two are exchanged, unless the other is fixed.
     Contact(Id),
     /// A particle was born.
     Birth,
@@ -41,7 +41,8 @@ pub enum EventKind {
 
 /// Records of a step in memory that its owner lends: watch with it by [`System::step_observed`](crate::System), read, clear.
 ///
-/// What finds no room is counted, never overwritten.
+/// What finds no room is counted, never overwritten. Contacts held by position or by force last, and are no hits: of them
+/// there are no records.
 ///
 /// ```
 /// use pointmass::shape::Plane;

@@ -55,7 +55,8 @@ pub enum Phase {
     Delete,
 }
 
-/// A particle's meeting with a collider or with another particle; that of two particles is told of both.
+/// A particle's meeting with a collider or with another particle; that of two particles is told of both, unless one of
+/// them is fixed: nothing happens to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// The particle.

@@ -14,9 +14,9 @@ pub struct Report {
     pub died: Died,
     /// Particles that found no room.
     pub refused: u64,
-    /// Times that a particle met a collider.
+    /// Times that a particle met a collider; of contacts held by position one in each sub-step.
     pub hits: u64,
-    /// Times that two particles met.
+    /// Times that two particles met; of contacts held by position one in each sub-step, of those by force none.
     pub contacts: u64,
     /// Springs that broke.
     pub broken: u64,

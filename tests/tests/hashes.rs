@@ -1,5 +1,7 @@
 //! What the firmware runs, on the host: the same hashes on every target.
 
+#[path = "../firmware/src/contacts.rs"]
+mod contacts;
 #[path = "../firmware/src/expected.rs"]
 mod expected;
 #[path = "../firmware/src/indices.rs"]
@@ -22,6 +24,11 @@ fn every_index_has_its_hash() {
 #[test]
 fn every_method_has_its_hash() {
     as_expected("tests/motion.txt", motion::EXPECTED, |out| motion::run(&mut motion::Memory::new(), out));
+}
+
+#[test]
+fn every_response_has_its_hash() {
+    as_expected("tests/contacts.txt", contacts::EXPECTED, |out| contacts::run(&mut contacts::Memory::new(), out));
 }
 
 fn as_expected(file: &str, list: &'static str, run: impl FnOnce(&mut dyn FnMut(&str, u64))) {

@@ -1,7 +1,7 @@
 //! How materials feel to what touches them.
 
 use crate::force::Friction;
-use crate::math::sqrt;
+use crate::math::{max, sqrt};
 
 /// How a material feels to what touches it.
 ///
@@ -57,8 +57,8 @@ pub(crate) fn on_surface(grips: &[Grip], elasticity: f32, own: Option<u16>, surf
 /// Two particles with their elasticities and materials.
 pub(crate) fn of_two(grips: &[Grip], elasticity: [f32; 2], material: [Option<u16>; 2]) -> Feel {
     let [a, b] = elasticity;
-    // Of two that are alike just theirs, to the bit.
-    let elasticity = if a == b { a } else { sqrt(a * b) };
+    // Of two that are alike just theirs, to the bit. What is no number bounces nobody.
+    let elasticity = if a == b { a } else { sqrt(max(a * b, 0.0)) };
     Feel { elasticity, friction: friction(grip(grips, material[0]), grip(grips, material[1])) }
 }
 

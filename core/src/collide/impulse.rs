@@ -7,7 +7,7 @@ use super::meeting::{At, Touch, first_touch};
 use super::path::{Path, between};
 use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
 use crate::index::{Arrange, SpatialIndex};
-use crate::math::{largest, length, max};
+use crate::math::{high, largest, length, max};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
 use crate::report::Report;
@@ -24,6 +24,7 @@ use glam::Vec3;
 /// Nothing passes through anything however fast, momentum is exact to rounding, and with elasticities of one so is energy.
 /// A particle that has met 32 times in a step waits where it is for the step's end (counted in `caps.bounces`): that is
 /// what happens in a dense heap, where every touch is a meeting; for heaps use [`Projection`](crate::Projection).
+/// Whichever index the scene has, the answer is the same to the bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -145,7 +146,9 @@ impl Melee<'_> {
             }
             let hull = self.path(row).hull(0.0);
             farthest = max(farthest, length(hull.max - hull.min));
-            self.widest = max(self.widest, self.radius[row]);
+            if self.radius[row] < f32::INFINITY {
+                self.widest = max(self.radius[row], self.widest);
+            }
         }
         self.leash = 2.0 * farthest;
     }
@@ -160,6 +163,7 @@ impl Melee<'_> {
             let clock = *self.clocks.clock(row);
             if clock.partner == WALL {
                 self.meet_wall(row, clock.until);
+                near = near.filter(|_| !self.strays(row));
                 self.foresee(row, near);
                 continue;
             }
@@ -169,13 +173,17 @@ impl Melee<'_> {
                 continue;
             }
             self.meet(row, other, clock.until);
-            if [row, other].into_iter().any(|row| length(self.ends[0][row] - self.home[row]) > self.leash) {
-                // One of them will be where the index has not been asked to look.
-                near = None;
-            }
+            near = near.filter(|_| !self.strays(row) && !self.strays(other));
             self.foresee(row, near);
             self.foresee(other, near);
         }
+    }
+
+    /// Whether a particle's present path leads where the index is not asked to look for it.
+    fn strays(&self, row: usize) -> bool {
+        let path = self.path(row);
+        let (hull, home) = (path.hull(0.0), self.home[row]);
+        path.is_finite() && length(high(hull.max - home, home - hull.min)) > self.leash
     }
 
     /// Finds out what happens first to a particle on its present path.
@@ -185,7 +193,7 @@ impl Melee<'_> {
             self.clocks.set(row, Clock { until: NEVER, ..clock });
             return;
         }
-        if clock.turns > MAX_TURNS {
+        if clock.turns > MAX_TURNS && clock.waits == 0 {
             self.wait(row);
         }
         let clock = *self.clocks.clock(row);
@@ -227,7 +235,10 @@ impl Melee<'_> {
     fn first_touch(&self, row: usize, other: usize, path: &Path) -> (u32, bool) {
         let (own, its) = (self.clocks.clock(row), self.clocks.clock(other));
         let reach = self.radius[row] + self.radius[other];
-        if other == row || !(reach > 0.0) || its.partner == GONE {
+        let yielding = self.inverse_mass[row] + self.inverse_mass[other];
+        // What has no size or no mass that an answer could be reckoned with meets nobody.
+        let is_sound = |x: f32| x > 0.0 && x < f32::INFINITY;
+        if other == row || its.partner == GONE || !is_sound(reach) || !is_sound(yielding) {
             return (NEVER, false);
         }
         let from = self.instant(own.since.max(its.since));
@@ -250,9 +261,14 @@ impl Melee<'_> {
     fn meet_wall(&mut self, row: usize, until: u32) {
         let path = self.path(row);
         let mut flight = self.flight(row);
-        let Some(meeting) = flight.first_meeting(&path) else { return };
+        let meeting = flight.first_meeting(&path);
         let clock = *self.clocks.clock(row);
         let (turns, since) = (clock.turns + 1, until);
+        let Some(meeting) = meeting else {
+            // A collider that answers otherwise the second time: it must not be asked for ever.
+            self.clocks.set(row, Clock { turns, ..clock });
+            return;
+        };
         if meeting.is_sink {
             let end = meeting.arrival(&path);
             (self.ends[0][row], self.ends[1][row], self.fate[row]) = (end.position, end.velocity, end.fate);
@@ -344,13 +360,14 @@ impl Melee<'_> {
         }
     }
 
-    /// It stays where it is until the step is over, and keeps its velocity.
+    /// It stays where it is until the step is over, unless a wall that moves takes it along, and keeps its velocity.
     fn wait(&mut self, row: usize) {
         let clock = *self.clocks.clock(row);
         if clock.waits == 0 {
             self.report.caps.bounces += 1;
         }
-        self.ends[0][row] = self.starts[0][row];
+        let during = [self.instant(clock.since), self.end];
+        self.ends[0][row] = self.scene.colliders.carry(self.starts[0][row], self.radius[row], during);
         self.ends[1][row] = self.starts[1][row];
         self.clocks.set(row, Clock { waits: 1, ..clock });
     }

@@ -3,7 +3,7 @@
 use super::flight::RESTING;
 use super::grip::Feel;
 use super::path::{MAX_CHORDS, Path};
-use crate::math::{clamp, length, max, sqrt, unit};
+use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use glam::Vec3;
 
 /// Where on a path two balls come to touch.
@@ -32,9 +32,10 @@ impl At {
 ///
 /// Balls that overlap already meet at once if they come closer still. What stays within `slack` of a touch is none.
 pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<At>, bool) {
-    let hull = path.hull(reach);
-    let holds_origin = hull.min.cmple(Vec3::ZERO).all() && hull.max.cmpge(Vec3::ZERO).all();
-    if !holds_origin || !path.is_finite() {
+    let hull = path.hull(0.0);
+    // By the distance, not by a box: what an index has not found near is not near here either.
+    let way = high(low(Vec3::ZERO, hull.max), hull.min);
+    if !(length(way) <= reach) || !path.is_finite() {
         return (None, false);
     }
     let chords = path.chords();

@@ -40,7 +40,8 @@ fn each_by_itself(passage: Passage<'_, '_>) {
         let start = end - (end - m.born[row]).min(dt);
         let path = Path { x0: start_x, v0: start_v, x1: m.position[row], v1: m.velocity[row], during: [start, end] };
         let held = &m.work[2 * capacity..(2 + scene.contacts.held(scene.index)) * capacity];
-        let has_moved = scene.contacts.has_moved(held, row);
+        // Contacts know nothing of the newborn.
+        let has_moved = row < old && scene.contacts.has_moved(held, row);
         // What contacts have moved goes straight, and is only kept from passing: half of it may not touch anything.
         let (path, radius) = if has_moved { (path.straightened(), 0.5 * m.radius[row]) } else { (path, m.radius[row]) };
         let hull = path.hull(radius);

@@ -121,7 +121,9 @@ pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
         let way = length(velocity[a] - velocity[b]) * half;
         let near = radius[a] + radius[b] + MARGIN * min(radius[a], radius[b]) + way;
         let d = middle[a] - middle[b];
-        if !(d.dot(d) < near * near) || inverse_mass[a] + inverse_mass[b] == 0.0 {
+        let yielding = inverse_mass[a] + inverse_mass[b];
+        let is_sound = |x: f32| x > 0.0 && x < f32::INFINITY;
+        if !(d.dot(d) < near * near) || !is_sound(radius[a] + radius[b]) || !is_sound(yielding) {
             return;
         }
         let Some(place) = room.get_mut(lists.pairs) else {
@@ -147,11 +149,12 @@ pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
 /// Half the time for which a list is to do, and how far two may then be from each other that touch in it; none: no two can.
 fn reach(stage: &mut Stage<'_>) -> Option<(f32, f32)> {
     let len = stage.position.len();
-    let mean = stage.velocity.iter().copied().sum::<Vec3>() / max(len as f32, 1.0);
+    let finite = stage.velocity.iter().copied().filter(|v| v.is_finite());
+    let mean = finite.sum::<Vec3>() / max(len as f32, 1.0);
     let (mut widest, mut narrowest, mut fastest) = (0.0, f32::INFINITY, 0.0);
     for (&radius, &velocity) in stage.radius[..len].iter().zip(&*stage.velocity) {
         let speed = length(velocity - mean);
-        if radius > 0.0 && speed < f32::INFINITY {
+        if radius > 0.0 && radius < f32::INFINITY && speed < f32::INFINITY {
             (widest, narrowest) = (max(widest, radius), min(narrowest, radius));
             fastest = max(fastest, speed);
         }
@@ -163,7 +166,7 @@ fn reach(stage: &mut Stage<'_>) -> Option<(f32, f32)> {
     let half = 0.5 * pieces as f32 * piece;
     stage.lists.until = stage.piece + pieces;
     stage.lists.fast = 2.0 * fastest * piece > narrowest;
-    (widest > 0.0).then_some((half, 2.0 * widest + 2.0 * fastest * half + MARGIN * narrowest))
+    (widest > 0.0).then_some((half, 2.0 * widest + 2.0 * fastest * half + MARGIN * widest))
 }
 
 fn gather_faces(stage: &mut Stage<'_>, seconds: f32) {
@@ -279,9 +282,11 @@ impl Pass<'_> {
         let (d, reach) = (self.position[a] - self.position[b], self.radius[a] + self.radius[b]);
         let square = d.dot(d);
         pair.moved = 0.0;
-        let (normal, overlap) = if square < reach * reach && square > 0.0 {
+        let (normal, overlap) = if square < reach * reach {
             let distance = sqrt(square);
-            (d * (1.0 / distance), reach - distance)
+            // Of two in one place the one with the higher row goes up.
+            let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
+            (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance)
         } else if fast && square > 0.0 {
             let Some(normal) = passed(self.x0[a] - self.x0[b], d, reach) else { return };
             (normal, reach - d.dot(normal))

@@ -65,8 +65,10 @@ impl Penalty {
         let upward = if row > other { Vec3::Y } else { Vec3::NEG_Y };
         let normal = if distance > 0.0 { d / distance } else { upward };
         let (a, b) = (state.mass[row], state.mass[other]);
+        let (light, heavy) = (min(a, b), max(a, b));
         // A fixed particle counts by the mass it has, and may have none.
-        let reduced = if a > 0.0 && b > 0.0 { a / (a / b + 1.0) } else { max(a, b) };
+        // The lighter one first: both see the same bits, and an infinite mass is as good as a wall.
+        let reduced = if light > 0.0 { light / (light / heavy + 1.0) } else { heavy };
         let critical = 2.0 * sqrt(self.stiffness * reduced);
         Some(Touch { normal, overlap, critical, relative: state.velocity[row] - state.velocity[other] })
     }

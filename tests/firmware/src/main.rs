@@ -1,5 +1,6 @@
 //! Runs the hash scenes on a microcontroller and compares them with `tests/hashes.txt`; where there is memory enough, the
-//! indices and the methods of motion as well, with `tests/indices.txt` and `tests/motion.txt`.
+//! indices, the methods of motion and the responses of balls as well, with `tests/indices.txt`, `tests/motion.txt` and
+//! `tests/contacts.txt`.
 //!
 //! Prints a line `name hash` each over semihosting, in the format of those files, and exits with 0 if all are as
 //! expected, else with 1.
@@ -11,6 +12,8 @@
 #[cfg(target_arch = "arm")]
 use cortex_m as _;
 
+#[cfg(roomy)]
+mod contacts;
 mod expected;
 #[cfg(roomy)]
 mod indices;
@@ -26,6 +29,8 @@ static SCENES: ConstStaticCell<scenes::Memory> = ConstStaticCell::new(scenes::Me
 #[cfg(roomy)]
 static INDICES: ConstStaticCell<indices::Memory> = ConstStaticCell::new(indices::Memory::new());
 #[cfg(roomy)]
+static CONTACTS: ConstStaticCell<contacts::Memory> = ConstStaticCell::new(contacts::Memory::new());
+#[cfg(roomy)]
 static MOTION: ConstStaticCell<motion::Memory> = ConstStaticCell::new(motion::Memory::new());
 
 #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
@@ -36,6 +41,7 @@ fn main() -> ! {
     #[cfg(roomy)]
     {
         right &= as_expected(indices::EXPECTED, |out| indices::run(INDICES.take(), out));
+        right &= as_expected(contacts::EXPECTED, |out| contacts::run(CONTACTS.take(), out));
         right &= as_expected(motion::EXPECTED, |out| motion::run(MOTION.take(), out));
     }
     process::exit(i32::from(!right))

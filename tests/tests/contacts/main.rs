@@ -1,4 +1,10 @@
 //! Particles that have a radius meet each other: by impulse, by force, by position.
 
+mod events;
+mod fast;
+mod force;
 mod gas;
 mod impulse;
+mod meetings;
+mod poison;
+mod position;

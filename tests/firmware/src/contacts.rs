@@ -1,0 +1,85 @@
+//! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
+//!
+//! Balls of many sizes, one of them pinned, fall through each other's way into a room, rub and bounce: by each response,
+//! with an index and without.
+
+use pointmass::force::Friction;
+use pointmass::index::{Arrange, Structure};
+use pointmass::shape::Cuboid;
+use pointmass::{
+    Force, Gravity, Grip, Impulse, Inline, Particle, Penalty, Projection, Response, Scene, System, Time, Vec3,
+};
+
+/// The hashes in the form of `all` in `expected.rs`.
+pub(crate) const EXPECTED: &str = include_str!("../../contacts.txt");
+
+const ACROSS: usize = 4;
+const PARTICLES: usize = ACROSS * ACROSS * ACROSS;
+const COLUMNS: usize = 48;
+
+/// Everything that they need, none of it on the stack.
+pub(crate) struct Memory {
+    start: [Particle; PARTICLES],
+    system: System<Inline<PARTICLES, 0, 0, COLUMNS>>,
+}
+
+impl Memory {
+    pub(crate) const fn new() -> Self {
+        Self {
+            start: [Particle { mass: 0.0, elasticity: 0.0, ..Particle::REST }; PARTICLES],
+            system: System::with(Inline::new()),
+        }
+    }
+}
+
+const PENALTY: Penalty =
+    Penalty { stiffness: 500.0, damping: 0.1, friction: Friction { resting: 0.3, sliding: 0.3 }, reach: 0.4 };
+
+/// The responses by the names of their hashes, without an index and with one.
+const RESPONSES: [([&str; 2], Response); 3] = [
+    (["impulse", "impulse_grid"], Response::Impulse(Impulse {})),
+    (["force", "force_grid"], Response::Force(PENALTY)),
+    (["position", "position_grid"], Response::Position(Projection { substeps: 8, compliance: 1e-6 })),
+];
+
+/// Calls `out` with the name of each and the hash after a second.
+pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
+    let Memory { start, system } = memory;
+    heap(start);
+    let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(1.72, 3.0, 1.72) };
+    let grips = [Grip { elasticity: Some(0.8), friction: Some(Friction { resting: 0.5, sliding: 0.4 }) }];
+    for (names, response) in &RESPONSES {
+        let push = if let Response::Force(penalty) = response { *penalty } else { Penalty::NONE };
+        let forces: &dyn Force = &(Gravity::EARTH, push);
+        let indices: [&dyn Arrange; 2] = [&(), &Structure::Grid];
+        for (name, index) in names.iter().zip(indices) {
+            let scene =
+                Scene { start, forces, colliders: &room, grips: &grips, contacts: response, index, ..Scene::EMPTY };
+            if system.start(&scene, 1).is_ok() {
+                for frame in 1..=60 {
+                    system.step(&scene, Time::frame(frame, 60) - system.time());
+                }
+            }
+            out(name, system.hash());
+        }
+    }
+}
+
+/// A lattice of balls, all a little different.
+fn heap(start: &mut [Particle]) {
+    let along = |i: usize| (i % ACROSS) as f32 * 0.42 + 0.22;
+    for (i, place) in start.iter_mut().enumerate() {
+        let odd = (i * 7 % 10) as f32 * 0.1;
+        *place = Particle {
+            position: Vec3::new(along(i), along(i / (ACROSS * ACROSS)) + 0.2, along(i / ACROSS))
+                + Vec3::new(odd, -odd, odd) * 0.02,
+            velocity: Vec3::new(odd - 0.5, -2.0 * odd, 0.3) * 2.0,
+            radius: 0.12 + 0.08 * odd,
+            mass: 0.5 + odd,
+            elasticity: 0.9 - 0.5 * odd,
+            material: Some((i % 2) as u16),
+            fixed: i == 5,
+            ..Particle::REST
+        };
+    }
+}

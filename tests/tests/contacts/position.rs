@@ -1,0 +1,218 @@
+//! Heaps: contacts held by moving balls apart.
+
+use pointmass::force::Friction;
+use pointmass::index::Structure;
+use pointmass::shape::{Cuboid, Plane};
+use pointmass::{Gravity, Grip, Particle, Projection, Scene, Time, Vec3};
+use pointmass_tests::{G, Random, f64s, run, started};
+
+const GROUND: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+
+fn ball(y: f32) -> Particle {
+    Particle { position: Vec3::Y * y, radius: 0.1, elasticity: 0.0, ..Particle::REST }
+}
+
+#[test]
+fn a_soft_floor_gives_way_by_the_same_however_many_sub_steps() {
+    for (mass, compliance) in [(1.0, 1e-3), (0.2, 2e-3), (5.0, 4e-4)] {
+        let start = [Particle { mass, ..ball(0.1) }];
+        let want = f64::from(mass) * G * f64::from(compliance);
+        for substeps in [5, 10, 20] {
+            let contacts = &Projection { substeps, compliance };
+            let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &GROUND, contacts, ..Scene::EMPTY };
+            let mut system = started(&scene, 1, 1);
+            run(&mut system, &scene, 1.0 / 60.0, 600);
+            let sunk = 0.1 - f64s(system.particles().position[0])[1];
+            assert!((sunk / want - 1.0).abs() < 0.03, "{substeps} sub-steps: {sunk}, {want}");
+        }
+    }
+}
+
+#[test]
+fn a_bounce_gives_back_its_share_of_the_speed() {
+    for elasticity in [0.3, 0.5, 0.8, 1.0] {
+        let start = [Particle { elasticity, ..ball(1.1) }];
+        let contacts = &Projection::default();
+        let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &GROUND, contacts, ..Scene::EMPTY };
+        let mut system = started(&scene, 1, 1);
+        let (mut lowest, mut apex, mut hit) = (f32::INFINITY, 0.0_f32, false);
+        for frame in 1..=240 {
+            system.step(&scene, Time::frame(frame, 240) - system.time());
+            let (y, v) = (system.particles().position[0].y - 0.1, system.particles().velocity[0].y);
+            lowest = lowest.min(y);
+            hit |= v > 0.0;
+            if hit {
+                apex = apex.max(y);
+            }
+        }
+        let share = apex.sqrt();
+        assert!(hit && (share / elasticity - 1.0).abs() < 0.02, "{elasticity}: {share}");
+        assert!(lowest > -0.01, "{lowest}");
+    }
+}
+
+#[test]
+fn two_balls_bounce_off_each_other_with_their_share_of_the_speed() {
+    for elasticity in [0.0, 0.5, 1.0] {
+        let at = |x: f32, v: f32, mass: f32| Particle {
+            position: Vec3::X * x,
+            velocity: Vec3::X * v,
+            elasticity,
+            mass,
+            ..ball(0.0)
+        };
+        let start = [at(-0.5, 2.0, 1.0), at(0.5, -1.0, 3.0)];
+        let scene = Scene { start: &start, contacts: &Projection::default(), ..Scene::EMPTY };
+        let mut system = started(&scene, 2, 1);
+        run(&mut system, &scene, 1.0 / 60.0, 60);
+        let [a, b] = [0, 1].map(|row| f64s(system.particles().velocity[row])[0]);
+        assert!(((b - a) / 3.0 - f64::from(elasticity)).abs() < 0.02, "{elasticity}: {a} {b}");
+        assert!((a + 3.0 * b + 1.0).abs() < 1e-5, "{a} {b}");
+    }
+}
+
+#[test]
+fn what_slides_stops_after_its_way() {
+    for sliding in [0.2, 0.4, 0.8] {
+        let grips = [Grip { elasticity: None, friction: Some(Friction { resting: sliding, sliding }) }];
+        let start = [Particle { velocity: Vec3::X * 3.0, material: Some(0), ..ball(0.1) }];
+        let contacts = &Projection::default();
+        let forces = &Gravity::EARTH;
+        let scene = Scene { start: &start, grips: &grips, forces, colliders: &GROUND, contacts, ..Scene::EMPTY };
+        let mut system = started(&scene, 1, 1);
+        run(&mut system, &scene, 1.0 / 60.0, 120);
+        let want = 9.0 / (2.0 * f64::from(sliding) * G);
+        let way = f64s(system.particles().position[0])[0];
+        assert!((way / want - 1.0).abs() < 0.03, "{sliding}: {way}, {want}");
+        let v = system.particles().velocity[0];
+        assert!(v.length() < 1e-3, "{v}");
+    }
+}
+
+#[test]
+fn momentum_of_free_balls_is_conserved() {
+    let mut random = Random::new(61);
+    let grips = [Grip { elasticity: None, friction: Some(Friction { resting: 0.5, sliding: 0.4 }) }];
+    let start: Vec<Particle> = (0..125)
+        .map(|i| {
+            let place = Vec3::new((i % 5) as f32, (i / 5 % 5) as f32, (i / 25) as f32) - 2.0;
+            Particle {
+                position: place,
+                velocity: random.direction() - place * 2.0,
+                radius: random.between(0.2, 0.45),
+                mass: random.magnitude(0.1, 10.0),
+                elasticity: random.unit(),
+                material: Some(0),
+                ..Particle::REST
+            }
+        })
+        .collect();
+    let scene = Scene { start: &start, grips: &grips, contacts: &Projection::default(), ..Scene::EMPTY };
+    let mut system = started(&scene, start.len(), 1);
+    let momentum = |mass: &[f32], velocity: &[Vec3]| -> [f64; 3] {
+        core::array::from_fn(|axis| mass.iter().zip(velocity).map(|(&m, &v)| f64::from(m) * f64s(v)[axis]).sum())
+    };
+    let before = momentum(system.particles().mass, system.particles().velocity);
+    run(&mut system, &scene, 1.0 / 60.0, 60);
+    let after = momentum(system.particles().mass, system.particles().velocity);
+    let contacts = system.totals().contacts;
+    assert!(contacts > 1000);
+    // Each is answered in some passes, and each of them rounds velocities of up to 10 m/s.
+    let bound = 10.0 * 10.0 * f64::from(f32::EPSILON) * (contacts as f64 * 10.0).sqrt();
+    for axis in 0..3 {
+        let error = (after[axis] - before[axis]).abs();
+        assert!(error < bound, "{error} of {bound}");
+    }
+}
+
+#[test]
+fn what_overlaps_at_rest_is_parted_without_a_bang() {
+    for apart in [0.0, 1e-6, 0.05, 0.15] {
+        let start = [ball(0.0), Particle { mass: 4.0, elasticity: 0.9, ..ball(apart) }];
+        let scene = Scene { start: &start, contacts: &Projection::default(), ..Scene::EMPTY };
+        let mut system = started(&scene, 2, 1);
+        run(&mut system, &scene, 1.0 / 60.0, 30);
+        let p = system.particles();
+        let gap = p.position[0].distance(p.position[1]) - 0.2;
+        assert!(gap > -2e-4, "{apart}: {gap}");
+        for v in p.velocity {
+            assert!(v.length() < 1e-3, "{apart}: {v}");
+        }
+    }
+}
+
+#[test]
+fn a_heap_settles_and_keeps_its_room() {
+    const RADIUS: f32 = 0.05;
+    let mut random = Random::new(62);
+    let start: Vec<Particle> = (0..500)
+        .map(|i| Particle {
+            position: Vec3::new((i % 7) as f32 + 0.5, (i / 49) as f32 + 0.6, (i / 7 % 7) as f32 + 0.5) * (2.1 * RADIUS)
+                + random.vector(0.04 * RADIUS),
+            radius: RADIUS,
+            elasticity: 0.2,
+            material: Some(0),
+            ..Particle::REST
+        })
+        .collect();
+    let grips = [Grip { elasticity: None, friction: Some(Friction { resting: 0.4, sliding: 0.3 }) }];
+    let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(14.8, 200.0, 14.8) * RADIUS };
+    let scene = Scene {
+        start: &start,
+        grips: &grips,
+        forces: &Gravity::EARTH,
+        colliders: &room,
+        contacts: &Projection::default(),
+        index: &Structure::Grid,
+        ..Scene::EMPTY
+    };
+    let mut system = started(&scene, start.len(), 1);
+    run(&mut system, &scene, 1.0 / 60.0, 180);
+    let p = system.particles();
+    let (mut overlap, mut touching) = (0.0_f32, 0);
+    for a in 0..p.position.len() {
+        for b in 0..a {
+            let deep = 2.0 * RADIUS - p.position[a].distance(p.position[b]);
+            overlap = overlap.max(deep);
+            touching += usize::from(deep > -1e-3 * RADIUS);
+        }
+        let inside = p.position[a].cmpge(room.min + 0.97 * RADIUS).all();
+        assert!(inside && p.position[a].cmple(room.max - 0.97 * RADIUS).all(), "{}", p.position[a]);
+    }
+    let speed = p.velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
+    println!("overlap {:.4} of a radius, {touching} touch, fastest {speed}", overlap / RADIUS);
+    assert!(touching > 500, "{touching}");
+    assert!(overlap < 0.02 * RADIUS, "{overlap}");
+    assert!(speed < 0.25, "{speed}");
+    assert_eq!(system.totals().caps.contacts, 0);
+}
+
+#[test]
+fn newborns_owe_nothing_to_who_had_their_row() {
+    // The first is pressed onto the ground and dies; one born into its row falls freely beside a ceiling's edge.
+    let heavy = Particle { lifetime: 0.25, ..ball(0.1) };
+    let emitter = |radius: f32| pointmass::Emitter {
+        speed: pointmass::Varied::exactly(3.0),
+        direction: Some(Vec3::NEG_Y),
+        radius: pointmass::Varied::exactly(radius),
+        elasticity: pointmass::Varied::exactly(1.0),
+        burst: Some(pointmass::emit::Burst { count: 1, at: 0.51, every: 9.0 }),
+        ..pointmass::Emitter::new(pointmass_tests::point(Vec3::Y * 0.15), 0.0)
+    };
+    let emitters = emitter(0.1);
+    let newborn = |start: &[Particle]| {
+        let contacts = &Projection::default();
+        let forces = &Gravity::EARTH;
+        let scene = Scene { start, forces, emitters: &emitters, colliders: &GROUND, contacts, ..Scene::EMPTY };
+        let mut system = started(&scene, 1, 1);
+        let mut after = None;
+        for _ in 0..6 {
+            system.step(&scene, Time::from_seconds(0.1));
+            if system.totals().born == 1 {
+                after = Some((system.particles().position[0], system.particles().velocity[0]));
+            }
+        }
+        after.expect("one was born")
+    };
+    assert_eq!(newborn(&[heavy]), newborn(&[]));
+}
