@@ -38,13 +38,13 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant
     stage
 }
 
-/// The part of the picture's width that a particle without a size of its own takes up in the middle of the scene.
+/// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
 const DOT: f32 = 0.009;
 
 /// What moves, remembering where it was in the picture before.
 pub(crate) struct Cast {
     before: HashMap<u32, Vec3>,
-    /// The diameter of particles whose material has none \[m\].
+    /// The diameter of points whose material has none \[m\].
     size: f32,
 }
 
@@ -67,9 +67,11 @@ impl Cast {
             let number = usize::from(particles.material[row]).checked_sub(1);
             let material = number.and_then(|number| world.file.materials.get(number));
             let (size, glow) = material.map_or((0.0, 0.0), |m| (m.size, m.glow));
-            let size = if size > 0.0 { size } else { self.size };
+            let radius = particles.radius[row];
+            let solid = !(size > 0.0) && radius > 0.0;
+            let size = [size, 2.0 * radius, self.size].into_iter().find(|&size| size > 0.0).unwrap_or(0.0);
             let previous = self.before.get(&serial).copied().unwrap_or(position);
-            dots.push(Dot { position, previous, color: particles.color[row], size, glow });
+            dots.push(Dot { position, previous, color: particles.color[row], size, glow, solid });
             now.insert(serial, position);
         }
         self.before = now;

@@ -54,6 +54,10 @@ impl World {
             file.contacts = respond(&file, name, dt);
         }
         let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
+        if !model.has_balls() && file.contacts.is_some() {
+            let said = if args.response.is_some() { "--response" } else { "contacts" };
+            warn(&[format!("{said} does nothing: no particle of the scene has a radius")]);
+        }
         let particles = model.particles.len();
         let capacity = match args.capacity {
             Some(capacity) => capacity as usize,

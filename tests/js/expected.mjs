@@ -42,6 +42,10 @@ export function check(result) {
   assert.equal(born, fountain.count + died.lifetime);
   assert.equal(refused, 0);
 
+  assert.deepEqual(result.balls.radii, [0.25, 0.5, 0]);
+  assert.deepEqual(result.balls.speeds, [0, 0, 0, 1, 0, 0, 0, 0, 0]);
+  assert.equal(result.balls.report.contacts, 1);
+
   assert.equal(result.error, "scene:2:5: particle: expected the velocity, a number, found 'x'");
   assert.equal(result.missing, "scene:1:1: mesh: there is no mesh file 'bunny.off'");
 }

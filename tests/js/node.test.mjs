@@ -39,4 +39,5 @@ test("declares the types of what it exports", () => {
   const types = readFileSync(join(built, "pointmass.d.ts"), "utf8");
   assert.match(types, /export function version\(\): string;/);
   assert.match(types, /positions\(\): Float32Array;/);
+  assert.match(types, /radii\(\): Float32Array;/);
 });

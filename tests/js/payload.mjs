@@ -37,10 +37,27 @@ export function run(pointmass, scenes) {
       speeds: fountain.velocities().length,
       report: JSON.parse(fountain.report()),
     },
+    balls: balls(World),
     error: message(() => new World("particle 0 0 0\n  1 x")),
     missing: message(() => new World("mesh -1 bunny.off")),
   };
   fountain.free();
+  return result;
+}
+
+// Two that meet, and a point.
+function balls(World) {
+  const world = new World(JSON.stringify({
+    contacts: { impulse: {} },
+    particles: [
+      { position: [-1, 0, 0], velocity: [1, 0, 0], radius: 0.25, elasticity: 1 },
+      { position: [1, 0, 0], radius: 0.5, elasticity: 1 },
+      { position: [0, 9, 0] },
+    ],
+  }));
+  world.stepTo(2);
+  const result = { radii: [...world.radii()], speeds: [...world.velocities()], report: JSON.parse(world.report()) };
+  world.free();
   return result;
 }
 

@@ -1,7 +1,7 @@
 //! The project's own scenes: every one is sound, runs, and counts nothing that it should not.
 
 use pointmass::scene::{Files, Model, SceneFile, read_scn, schema};
-use pointmass::{Heap, System, Time};
+use pointmass::{Columns, Heap, System, Time};
 use pointmass_cli::load::Disk;
 use std::path::{Path, PathBuf};
 
@@ -93,4 +93,67 @@ fn every_scene_survives_a_round_trip_through_json() {
         let file = read(&path);
         assert_eq!(SceneFile::from_json("again", &file.to_json()), Ok(file), "{path:?}");
     }
+}
+
+/// Runs a scene of the folder for some seconds, and shows `look` the state after each step and the instant \[s\].
+fn watch(name: &str, seconds: f64, mut look: impl FnMut(Columns<'_>, f64)) {
+    let path = folder().join(name).with_extension("json");
+    let file = read(&path);
+    let model = Model::load(&file, name, &mut Disk).unwrap_or_else(|error| panic!("{error}"));
+    let mut system = System::with(Heap::new(model.size(file.run.capacity as usize)));
+    system.start(&model.scene(), file.run.seed).expect("it fits");
+    for step in 1..=(seconds / file.run.dt) as u64 {
+        let end = Time::from_seconds_f64(step as f64 * file.run.dt);
+        system.step(&model.scene(), end - system.time());
+        look(system.particles(), end.seconds_f64());
+    }
+}
+
+#[test]
+fn balls_rise_to_the_square_of_their_elasticity() {
+    let mut apexes = [const { Vec::new() }; 6];
+    let mut elasticities = [0.0; 6];
+    watch("bouncing_balls", 4.0, |balls, _| {
+        for (row, apexes) in apexes.iter_mut().enumerate() {
+            let speed = f64::from(balls.velocity[row].y);
+            let height = f64::from(balls.position[row].y - balls.radius[row]) + speed * speed / (2.0 * 9.80665);
+            elasticities[row] = f64::from(balls.elasticity[row]);
+            if apexes.last().is_none_or(|last| (last - height) / last > 0.01) {
+                apexes.push(height);
+            }
+        }
+    });
+    for (apexes, elasticity) in apexes.iter().zip(elasticities) {
+        for (n, apex) in apexes.iter().enumerate().take(4) {
+            let right = 2.5 * elasticity.powi(2 * n as i32);
+            assert!((apex - right).abs() < 3e-4, "{elasticity}: {apex} after {n} bounces, not {right}");
+        }
+    }
+    assert!(apexes[0].len() == 1 && apexes[1..].iter().all(|apexes| apexes.len() >= 3), "{apexes:?}");
+}
+
+#[test]
+fn two_balls_come_in_and_two_go_out() {
+    let mut out = Vec::new();
+    watch("cradle", 0.85, |balls, now| {
+        if now > 0.8 {
+            out = (0..5).map(|i| balls.velocity[3 * i].x).collect();
+        }
+    });
+    assert!(out[..3].iter().all(|speed| speed.abs() < 0.01), "{out:?}");
+    assert!(out[3..].iter().all(|&speed| speed > 1.5) && (out[3] - out[4]).abs() < 0.01, "{out:?}");
+}
+
+#[test]
+fn no_bullet_leaves_the_room() {
+    let (mut fastest, mut moved) = (0.0, 0);
+    watch("bullet", 3.0, |balls, now| {
+        for (center, &r) in balls.position.iter().zip(balls.radius) {
+            let room = center.x.abs() + r < 2.0001 && center.z.abs() + r < 1.0001;
+            assert!(room && center.y - r > 0.0009 && center.y + r < 1.5001, "{center} at {now} s");
+        }
+        fastest = balls.velocity.iter().fold(fastest, |most, v| v.length().max(most));
+        moved = balls.velocity[..55].iter().filter(|v| v.length() > 0.01).count();
+    });
+    assert!(fastest > 200.0 && moved > 10, "{fastest} m/s, {moved} of 55 hit");
 }

@@ -17,7 +17,7 @@ pub use files::Files;
 
 use js_sys::{Float32Array, Uint8Array, Uint32Array};
 use pointmass::scene::{Model, SceneFile, read_scn};
-use pointmass::{Heap, System, Time, Vec3};
+use pointmass::{Heap, System, Time};
 use wasm_bindgen::prelude::*;
 
 /// The version of this package.
@@ -109,13 +109,19 @@ impl World {
     /// world may do that, stepping never does.
     #[must_use]
     pub fn positions(&self) -> Float32Array {
-        view(self.system.particles().position)
+        view(bytemuck::cast_slice(self.system.particles().position))
     }
 
     /// Velocities \[m/s\], as `positions`.
     #[must_use]
     pub fn velocities(&self) -> Float32Array {
-        view(self.system.particles().velocity)
+        view(bytemuck::cast_slice(self.system.particles().velocity))
+    }
+
+    /// Radii \[m\], one number a particle, zero for points: a view as `positions`.
+    #[must_use]
+    pub fn radii(&self) -> Float32Array {
+        view(self.system.particles().radius)
     }
 
     /// Colours, four bytes a particle: red, green, blue, opacity. A copy.
@@ -150,12 +156,12 @@ impl World {
     }
 }
 
-/// Vectors as a flat list of numbers where they lie.
+/// Numbers where they lie.
 #[allow(unsafe_code)]
-fn view(vectors: &[Vec3]) -> Float32Array {
-    let Some(first) = vectors.first() else { return Float32Array::new_with_length(0) };
-    // SAFETY: the pointer and length are those of a slice of `Vec3`, which is three `f32` without padding (repr(C)).
+fn view(numbers: &[f32]) -> Float32Array {
+    let Some(first) = numbers.first() else { return Float32Array::new_with_length(0) };
+    // SAFETY: the pointer and length are those of a slice.
     // JavaScript may keep the view: it then reads memory that belongs to the module as long as that lives, which
     // cannot break any invariant of Rust's, since every bit pattern is an `f32`.
-    unsafe { Float32Array::view_mut_raw((&raw const *first).cast_mut().cast(), vectors.len() * 3) }
+    unsafe { Float32Array::view_mut_raw((&raw const *first).cast_mut(), numbers.len()) }
 }

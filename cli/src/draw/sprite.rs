@@ -19,6 +19,9 @@ const POINT: f32 = 1.2;
 const SMALLEST: f32 = 0.8;
 const FAINTEST: f32 = 0.4;
 
+/// How deep in a surface a solid ball still shows, in radii: about as much as heaps leave, and pictures round.
+const SINK: f32 = 0.1;
+
 /// How strongly a ball's streak covers what is behind it.
 const STREAK: f32 = 0.4;
 
@@ -40,6 +43,8 @@ pub(super) struct Sprite {
     pub(super) opacity: f32,
     pub(super) glow: f32,
     pub(super) depth: f32,
+    /// Whether it is a ball of its very size.
+    pub(super) solid: bool,
     tail_depth: f32,
     head: Vec2,
     tail: Vec2,
@@ -74,6 +79,7 @@ impl Sprite {
             opacity: opacity * faintness,
             glow: if dot.glow > 0.0 { dot.glow.min(1.0) } else { 0.0 },
             depth,
+            solid: dot.solid,
             tail_depth: Lens::depth(tail),
             head: lens.project(place),
             tail: lens.project(tail),
@@ -114,7 +120,12 @@ impl Sprite {
         let dab = Stroke::dab(self.head, self.radius + 0.5);
         dab.each_pixel(canvas.width, canvas.height, |touch| {
             let covered = (self.radius + 0.5 - touch.offset.length()).clamp(0.0, 1.0);
-            let share = opacity * covered * self.open(canvas, touch.pixel, 1.0);
+            let open = if self.solid {
+                self.open_to_face(canvas, touch.pixel, touch.offset / self.radius)
+            } else {
+                self.open(canvas, touch.pixel, 1.0)
+            };
+            let share = opacity * covered * open;
             if share > 0.0 {
                 let color = if roundness > 0.0 {
                     self.color.lerp(self.ball(touch.offset / self.radius, key), roundness)
@@ -173,5 +184,11 @@ impl Sprite {
     fn open(&self, canvas: &Canvas, pixel: usize, along: f32) -> f32 {
         let depth = self.tail_depth + along * (self.depth - self.tail_depth);
         canvas.open(pixel, depth - (1.5 + 2.5 * self.glow) * self.reach, self.reach)
+    }
+
+    /// How much of a pixel is open to a place on a solid ball's face, from the middle, 0, to the outline, 1.
+    fn open_to_face(&self, canvas: &Canvas, pixel: usize, at: Vec2) -> f32 {
+        let bulge = (1.0 - at.length_squared()).max(0.0).sqrt();
+        canvas.open(pixel, self.depth - (bulge + SINK) * self.reach, SINK * self.reach)
     }
 }

@@ -125,6 +125,8 @@ pub struct Dot {
     pub size: f32,
     /// From 0, a lit little ball, to 1, pure light.
     pub glow: f32,
+    /// Whether it is a ball of that very size, which lies on what it touches; others may be half in it.
+    pub solid: bool,
 }
 
 /// A moving line, such as a spring.

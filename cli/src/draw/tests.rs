@@ -23,7 +23,7 @@ fn wall(distance: f32, material: Material) -> Piece {
 }
 
 fn dot(position: Vec3, [red, green, blue]: [u8; 3]) -> Dot {
-    Dot { position, previous: position, color: [red, green, blue, 255], size: 0.05, glow: 0.0 }
+    Dot { position, previous: position, color: [red, green, blue, 255], size: 0.05, glow: 0.0, solid: false }
 }
 
 fn frame(stage: &Stage, dots: &[Dot], segments: &[Segment]) -> RgbImage {
@@ -166,6 +166,19 @@ fn nothing_that_is_not_finite_is_drawn() {
     let plain = frame(&sound, &[Dot { size: 0.0, ..dot(here, [255; 3]) }], &[]);
     let odd = Dot { size: f32::NAN, glow: f32::NAN, previous: NAN, ..dot(here, [255; 3]) };
     assert_eq!(frame(&sound, &[odd], &[]), plain);
+}
+
+#[test]
+fn a_solid_ball_is_hidden_by_what_is_before_its_face() {
+    let stage = stage(vec![wall(3.0, Material::default())]);
+    let ball = |distance: f32, solid| Dot { size: 0.4, solid, ..dot(distance * Vec3::NEG_Z, [255, 0, 0]) };
+    let seen = |dot: Dot| {
+        let [red, green, _] = middle(&frame(&stage, &[dot], &[]));
+        red > green.saturating_add(50)
+    };
+    assert!(seen(ball(2.8, true)) && seen(ball(3.1, true)), "its face is before the wall");
+    assert!(!seen(ball(3.25, true)), "all of it is behind the wall");
+    assert!(seen(ball(3.25, false)), "others are forgiven");
 }
 
 #[test]

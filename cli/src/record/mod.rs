@@ -26,6 +26,9 @@ pub(crate) struct Row {
     vz: f32,
     mass: f32,
     age: f64,
+    /// In recordings of balls only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    radius: Option<f32>,
 }
 
 /// The state after a step, by id.
@@ -33,22 +36,27 @@ pub(crate) struct Frame {
     step: u64,
     time: f64,
     rows: Vec<Row>,
+    /// Whether rows have radii.
+    balls: bool,
     colors: Vec<[u8; 4]>,
 }
 
 impl Frame {
-    pub(crate) fn of(step: u64, system: &System<Heap>) -> Self {
+    /// That of a system; of balls with their radii.
+    pub(crate) fn of(step: u64, system: &System<Heap>, balls: bool) -> Self {
         let now = system.time();
         let time = nanoseconds(now.seconds_f64());
-        let Columns { serial, position, velocity, mass, born, color, .. } = system.particles();
+        let Columns { serial, position, velocity, mass, radius, born, color, .. } = system.particles();
         let mut order: Vec<usize> = (0..serial.len()).collect();
         order.sort_unstable_by_key(|&row| serial[row]);
         let row = |&i: &usize| {
             let ([x, y, z], [vx, vy, vz]) = (position[i].to_array(), velocity[i].to_array());
             let age = nanoseconds((now - born[i]).seconds_f64());
-            Row { step, time, id: serial[i], x, y, z, vx, vy, vz, mass: mass[i], age }
+            let radius = balls.then(|| radius[i]);
+            Row { step, time, id: serial[i], x, y, z, vx, vy, vz, mass: mass[i], age, radius }
         };
-        Self { step, time, rows: order.iter().map(row).collect(), colors: order.iter().map(|&i| color[i]).collect() }
+        let colors = order.iter().map(|&i| color[i]).collect();
+        Self { step, time, rows: order.iter().map(row).collect(), balls, colors }
     }
 }
 

@@ -75,16 +75,20 @@ fn cloud(frame: &Frame) -> Cloud<DefaultElement> {
         ("green", UChar),
         ("blue", UChar),
         ("alpha", UChar),
+        // In clouds of balls only.
+        ("radius", Float),
     ];
+    let columns = if frame.balls { &columns[..] } else { &columns[..columns.len() - 1] };
     let mut vertex = ElementDef::new("vertex".to_string());
-    for (name, kind) in &columns {
+    for (name, kind) in columns {
         vertex.properties.add(PropertyDef::new(name.to_string(), PropertyType::Scalar(kind.clone())));
     }
     let point = |(row, color): (&Row, &[u8; 4])| {
-        let Row { x, y, z, vx, vy, vz, mass, age, id, .. } = *row;
+        let Row { x, y, z, vx, vy, vz, mass, age, id, radius, .. } = *row;
         let floats = [x, y, z, vx, vy, vz, mass].into_iter().map(Property::Float);
         let rest = [Property::Double(age), Property::UInt(id)];
-        let values = floats.chain(rest).chain(color.iter().map(|&c| Property::UChar(c)));
+        let values =
+            floats.chain(rest).chain(color.iter().map(|&c| Property::UChar(c))).chain(radius.map(Property::Float));
         columns.iter().map(|(name, _)| name.to_string()).zip(values).collect()
     };
     let mut cloud = Cloud::new();

@@ -19,7 +19,8 @@ impl Csv {
 impl Writer for Csv {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         if frame.step == 0 {
-            self.writer.write_record(["step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age"])?;
+            let head = ["step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age"];
+            self.writer.write_record(head.into_iter().chain(frame.balls.then_some("radius")))?;
         }
         frame.rows.iter().try_for_each(|row| self.writer.serialize(row)).map_err(io::Error::from)
     }

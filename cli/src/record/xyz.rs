@@ -19,10 +19,13 @@ impl Writer for Xyz {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let out = &mut self.file;
         writeln!(out, "{}", frame.rows.len())?;
-        let columns = "species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1";
+        let radius = if frame.balls { ":radius:R:1" } else { "" };
+        let columns = format!("species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1{radius}");
         writeln!(out, "Properties={columns} Time={} Step={}", frame.time, frame.step)?;
-        for Row { id, x, y, z, vx, vy, vz, mass, .. } in &frame.rows {
-            writeln!(out, "X {x} {y} {z} {vx} {vy} {vz} {mass} {id}")?;
+        for Row { id, x, y, z, vx, vy, vz, mass, radius, .. } in &frame.rows {
+            write!(out, "X {x} {y} {z} {vx} {vy} {vz} {mass} {id}")?;
+            radius.map_or(Ok(()), |radius| write!(out, " {radius}"))?;
+            writeln!(out)?;
         }
         Ok(())
     }

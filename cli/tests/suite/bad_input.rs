@@ -256,6 +256,49 @@ fn springs_fabrics_and_forces_that_are_wrong() {
 }
 
 #[test]
+fn balls_contacts_and_motion_that_are_wrong() {
+    let ball = |rest: &str| format!(r#"{{"particles": [{{"radius": 0.1}}], {rest}}}"#);
+    let grip = |grip: &str| ball(&format!(r#""materials": [{{"grip": {{{grip}}}}}]"#));
+    let sphere = r#""shape": {"sphere": {"center": [9, 0, 0], "radius": 1}}"#;
+    let cases = [
+        (
+            r#"{"particles": [{"radius": -0.1}]}"#.into(),
+            "a.json:particles[0]: its numbers have to be finite, its radius",
+        ),
+        (
+            format!(r#"{{"emitters": [{{{sphere}, "radius": {{"mean": 1, "variance": 2}}}}]}}"#),
+            "a.json:emitters[0].radius: must not be below zero, the variance counted in",
+        ),
+        (ball(r#""contacts": "impulse""#), "a.json:1:55: a name alone, where its settings should follow"),
+        (
+            ball(r#""contacts": {"glue": {}}"#),
+            "a.json:1:52: unknown variant `glue`, expected one of `impulse`, `force`",
+        ),
+        (ball(r#""contacts": {"force": {}}"#), "a.json:1:57: missing field `stiffness`"),
+        (ball(r#""contacts": {"force": {"stiffness": 0}}"#), "a.json:contacts.force.stiffness: has to be above zero"),
+        (
+            ball(r#""contacts": {"position": {"substeps": 0}}"#),
+            "a.json:contacts.position.substeps: has to be from 1 to",
+        ),
+        (grip(r#""elasticity": 1.5"#), "a.json:materials[0].grip.elasticity: has to be from 0 to 1, not 1.5"),
+        (grip(r#""friction": 0.5"#), "a.json:1:72: invalid type: floating point `0.5`, expected {\"resting\": "),
+        (
+            grip(r#""friction": {"resting": 1, "sliding": -1}"#),
+            "a.json:materials[0].grip.friction.sliding: has to be zero or more, not -1",
+        ),
+        (
+            ball(&format!(r#""scenery": [{{{sphere}, "motion": {{"axis": [0, 0, 0], "spin": 1}}}}]"#)),
+            "a.json:scenery[0].motion: its numbers have to be finite, and its axis to have a direction",
+        ),
+    ];
+    let folder = Folder::new();
+    for (text, error) in cases {
+        folder.write("a.json", &text);
+        refused_by(&folder, "a.json", error, &["run", "render", "check"]);
+    }
+}
+
+#[test]
 fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
     // A list, where there should be an object with names.
     for text in ["[]", "[null]", r#"{"run": 1}"#, r#"{"particles": {}}"#, r#"{"camera": 1}"#] {

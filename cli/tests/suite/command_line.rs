@@ -109,7 +109,7 @@ fn the_json_report_has_exactly_its_fields() {
     let report = folder.report("busy.scn --steps 60 --seed 9 --dt 0.01 --integrator verlet");
     let fields = |value: &Value| value.as_object().expect("an object").keys().cloned().collect::<BTreeSet<_>>();
     let expected = |names: &str| names.split(' ').map(str::to_string).collect::<BTreeSet<_>>();
-    let all = "scene integrator dt seed steps time substeps initial born live died refused hits broken caps effort energy forces \
+    let all = "scene integrator dt seed steps time substeps initial born live died refused hits contacts broken caps effort energy forces \
                momentum angular_momentum hash seconds ns_per_particle_step";
     assert_eq!(fields(&report), expected(all));
     assert_eq!(fields(&report["died"]), expected("lifetime sink density chance nonfinite"));
@@ -308,4 +308,18 @@ fn settings_come_from_the_file_unless_the_command_line_says_otherwise() {
     // A scene that begins with more particles than its capacity has room for them all.
     folder.write("b.json", r#"{"run":{"capacity":0},"particles":[{},{},{}]}"#);
     assert_eq!(number(&folder.report("b.json --steps 1"), "live"), 3.0);
+}
+
+#[test]
+fn a_response_where_nothing_has_a_radius_is_remarked_on() {
+    let folder = Folder::with("points.json", r#"{"particles": [{}]}"#);
+    for name in pointmass::Response::NAMES {
+        let answer = folder.run(&format!("run points.json --steps 1 --response {name}"));
+        assert_eq!(answer.warnings(), ["--response does nothing: no particle of the scene has a radius"]);
+    }
+    folder.write("points.json", r#"{"particles": [{}], "contacts": {"impulse": {}}}"#);
+    let answer = folder.run("run points.json --steps 1");
+    assert_eq!(answer.warnings(), ["contacts does nothing: no particle of the scene has a radius"]);
+    folder.write("ball.json", r#"{"particles": [{"radius": 0.1}]}"#);
+    assert!(folder.run("run ball.json --steps 1 --response impulse").warnings().is_empty());
 }

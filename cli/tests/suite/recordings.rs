@@ -197,3 +197,18 @@ fn files_can_be_read_by_whoever_may() {
         }
     }
 }
+
+#[test]
+fn records_of_balls_have_their_radii() {
+    let scene = r#"{"particles": [{"radius": 0.25}, {"position": [9, 0, 0]}]}"#;
+    let folder = Folder::with("a.json", scene);
+    folder.run("run a.json --steps 0 --out a.csv --out a.jsonl --out a.xyz --out a.ply").fine();
+    let csv = folder.read("a.csv");
+    let last: Vec<_> = csv.lines().filter_map(|line| line.rsplit(',').next()).collect();
+    assert_eq!((csv.lines().next(), &last[..]), (Some(&*format!("{HEAD},radius")), &["radius", "0.25", "0.0"][..]));
+    assert!(folder.read("a.jsonl").lines().next().is_some_and(|line| line.ends_with(r#","radius":0.25}"#)));
+    let xyz = folder.read("a.xyz");
+    assert!(xyz.contains(":id:I:1:radius:R:1 ") && xyz.lines().nth(2).is_some_and(|line| line.ends_with(" 0 0.25")));
+    let radii: Vec<_> = cloud(&folder, "a_000000.ply").iter().map(|vertex| vertex["radius"].clone()).collect();
+    assert_eq!(radii, [Property::Float(0.25), Property::Float(0.0)]);
+}

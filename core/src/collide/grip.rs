@@ -29,9 +29,20 @@ impl Grip {
     /// Whether its numbers can be used: an elasticity from 0 to 1, coefficients of friction from 0 on.
     #[must_use]
     pub fn is_sound(&self) -> bool {
-        let friction = self.friction.unwrap_or(Friction::NONE);
-        (0.0..=1.0).contains(&self.elasticity.unwrap_or(0.0))
-            && [friction.resting, friction.sliding].iter().all(|mu| (0.0..f32::INFINITY).contains(mu))
+        self.fault().is_none()
+    }
+
+    /// The first number that cannot be used: which, what it is, and what it has to be.
+    pub(crate) fn fault(&self) -> Option<(&'static str, f32, &'static str)> {
+        let elasticity = self.elasticity.unwrap_or(0.0);
+        if !(0.0..=1.0).contains(&elasticity) {
+            return Some(("elasticity", elasticity, "has to be from 0 to 1"));
+        }
+        let Friction { resting, sliding } = self.friction.unwrap_or(Friction::NONE);
+        [("friction.resting", resting), ("friction.sliding", sliding)]
+            .into_iter()
+            .find(|(_, mu)| !(0.0..f32::INFINITY).contains(mu))
+            .map(|(name, mu)| (name, mu, "has to be zero or more"))
     }
 }
 

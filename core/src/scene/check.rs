@@ -243,9 +243,9 @@ impl SceneFile {
             let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
             finite(&format!("materials[{i}]"), colors.as_flattened())?;
             finite(&format!("materials[{i}]"), &[m.shininess, m.refraction, m.size, m.glow])?;
-            if !m.grip.is_sound() {
-                let message = "takes an elasticity from 0 to 1 and coefficients of friction from 0 on";
-                return Err(SceneError::value(format!("materials[{i}].grip"), message));
+            if let Some((name, number, meant)) = m.grip.fault() {
+                let message = format!("{meant}, not {number}");
+                return Err(SceneError::value(format!("materials[{i}].grip.{name}"), message));
             }
         }
         for (i, light) in self.lights.iter().enumerate() {

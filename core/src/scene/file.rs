@@ -145,7 +145,7 @@ pub struct Material {
     /// The file of a texture.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub texture: Option<String>,
-    /// The diameter particles are drawn with \[m\]; zero: a size that suits the picture.
+    /// The diameter particles are drawn with \[m\]; zero: that of their radius, or of points one that suits the picture.
     pub size: f32,
     /// How particles are drawn, from 0, a lit ball, to 1, a glow.
     pub glow: f32,

@@ -36,6 +36,9 @@ fn plain(message: &str) -> String {
     if message == "number out of range" {
         return "number out of range: the largest is 3.4e38".to_string();
     }
+    if message == "invalid type: unit variant, expected newtype variant" {
+        return r#"a name alone, where its settings should follow: {"name": {...}}"#.to_string();
+    }
     for (name, meaning) in [
         ("f32", "a number"),
         ("f64", "a number"),
@@ -43,6 +46,7 @@ fn plain(message: &str) -> String {
         ("u16", "a whole number from 0 to 65535"),
         ("u32", "a whole number from 0 to 4294967295"),
         ("u64", "a whole number, zero or more"),
+        ("struct Friction", r#"{"resting": ..., "sliding": ...}"#),
     ] {
         if let Some(rest) = message.strip_suffix(name).filter(|rest| rest.ends_with(", expected ")) {
             return format!("{rest}{meaning}");

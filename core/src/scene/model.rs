@@ -92,8 +92,7 @@ impl Model {
         });
         let pushes = pushes.collect();
         let solid = scenery.iter().enumerate().filter(|(_, solid)| !matches!(solid.shape, Shape::Line(_)));
-        let has_balls = start.particles.iter().any(|particle| particle.radius > 0.0)
-            || emitters.iter().any(|emitter| emitter.radius.mean + emitter.radius.variance.abs() > 0.0);
+        let has_balls = widest(&start.particles, &file.emitters) > 0.0;
         let colliders = solid.map(|(i, solid)| {
             if has_balls && !solid.shape.meets_balls(&solid.to_world) {
                 let message = "its groups squash what is round: particles with a radius can only meet it as a mesh";
@@ -120,6 +119,12 @@ impl Model {
             index: file.run.index,
             fabrics: start.fabrics,
         })
+    }
+
+    /// Whether particles may have a radius: some of those it begins with, or some that are born.
+    #[must_use]
+    pub fn has_balls(&self) -> bool {
+        widest(&self.particles, &self.emitters) > 0.0
     }
 
     /// The scene, for a system to step through.
@@ -237,7 +242,7 @@ impl Start {
 }
 
 /// The largest radius that a particle of the scene may have \[m\].
-fn widest(particles: &[Particle], emitters: &[Emitter<String>]) -> f32 {
+fn widest<M>(particles: &[Particle], emitters: &[Emitter<M>]) -> f32 {
     let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.variance.abs());
     particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
 }
