@@ -3,8 +3,10 @@
 //!
 //! Times are means over all steps of 1/60 s; the force takes 20 of our steps for each, as its stiffness asks.
 
+#[cfg(feature = "rapier")]
+use pointmass::Vec3;
 use pointmass::index::Structure;
-use pointmass::{Gravity, Heap, Penalty, Projection, Response, Scene, Symplectic, System, Time, Vec3};
+use pointmass::{Gravity, Heap, Penalty, Projection, Response, Scene, Symplectic, System, Time};
 use pointmass_bench::drop::{Drop, deepest};
 use std::time::Instant;
 

@@ -29,6 +29,9 @@ struct Pair {
     rows: [u32; 2],
     /// How far the sub-step moved them apart \[m\]; zero: they did not touch.
     moved: f32,
+    /// As far as velocities follow: what the sub-step did is undone, but overlap of before gives no more speed than
+    /// weight does in a step, so that it cannot throw anything, however short a sub-step is.
+    felt: f32,
     /// How much slip friction can still take in this sub-step \[m/s\].
     grip: f32,
     elasticity: f32,
@@ -45,9 +48,10 @@ struct Face {
     offset: f32,
     velocity: Vec3,
     moved: f32,
+    felt: f32,
     elasticity: f32,
     friction: [f32; 2],
-    spare: [u32; 3],
+    spare: [u32; 2],
 }
 
 /// How long the lists are.
@@ -133,7 +137,7 @@ pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
         let Feel { elasticity, friction } = of_two(grips, [elasticity[a], elasticity[b]], of_both);
         let friction = [friction.resting, friction.sliding];
-        *place = Pair { rows: [row, other], moved: 0.0, grip: 0.0, elasticity, friction };
+        *place = Pair { rows: [row, other], moved: 0.0, felt: 0.0, grip: 0.0, elasticity, friction };
         lists.pairs += 1;
     };
     let words = (3 * stage.scene.index.columns() * len).min(scratch.len());
@@ -190,7 +194,7 @@ fn gather_faces(stage: &mut Stage<'_>, seconds: f32) {
             let Feel { elasticity, friction } = on_surface(stage.scene.grips, elasticity, own, material);
             let friction = [friction.resting, friction.sliding];
             let (row, offset) = (row as u32, normal.dot(point));
-            *place = Face { row, normal, offset, velocity, moved: 0.0, elasticity, friction, spare: [0; 3] };
+            *place = Face { row, normal, offset, velocity, moved: 0.0, felt: 0.0, elasticity, friction, spare: [0; 2] };
         });
     }
 }
@@ -293,15 +297,21 @@ impl Pass<'_> {
         } else {
             return;
         };
+        if !(overlap > 0.0) {
+            return;
+        }
         let way = (self.position[a] - self.x0[a]) - (self.position[b] - self.x0[b]);
         let (wa, wb) = self.weights([a, b], normal, way.dot(normal) * self.rate);
         let inverse = 1.0 / (wa + wb);
         pair.moved = overlap * ((wa + wb) / (wa + wb + self.softness));
         let (held, left) = held_back(pair.friction, way, normal, pair.moved);
         pair.grip = left * self.rate;
+        let closing = max((self.velocity[b] - self.velocity[a]).dot(normal), 0.0);
+        pair.felt = min(pair.moved, (closing + self.calm) * self.h);
         let change = (normal * pair.moved + held) * inverse;
-        self.shift(a, change * wa);
-        self.shift(b, change * -wb);
+        let felt = change * (pair.felt / max(pair.moved, f32::MIN_POSITIVE));
+        self.shift(a, change * wa, felt * wa);
+        self.shift(b, change * -wb, felt * -wb);
     }
 
     fn move_from_face(&mut self, face: &mut Face) {
@@ -314,7 +324,10 @@ impl Pass<'_> {
         }
         face.moved = overlap * (w / (w + self.softness));
         let way = self.position[row] - self.x0[row] - face.velocity * self.h;
-        self.shift(row, face.normal * face.moved + held_back(face.friction, way, face.normal, face.moved).0);
+        let closing = max((face.velocity - self.velocity[row]).dot(face.normal), 0.0);
+        face.felt = min(face.moved, (closing + self.calm) * self.h);
+        let change = face.normal * face.moved + held_back(face.friction, way, face.normal, face.moved).0;
+        self.shift(row, change, change * (face.felt / max(face.moved, f32::MIN_POSITIVE)));
     }
 
     /// By how much each of two gives way. Of two that rest on each other the lower one counts as heavier: then a heap carries
@@ -335,9 +348,9 @@ impl Pass<'_> {
     }
 
     #[inline(always)]
-    fn shift(&mut self, row: usize, change: Vec3) {
+    fn shift(&mut self, row: usize, change: Vec3, felt: Vec3) {
         self.position[row] += change;
-        self.velocity[row] += change * self.rate;
+        self.velocity[row] += felt * self.rate;
     }
 
     #[inline(always)]
@@ -346,7 +359,7 @@ impl Pass<'_> {
         let d = self.position[a] - self.position[b];
         let normal = d * (1.0 / max(length(d), f32::MIN_POSITIVE));
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        let change = self.change(pair.elasticity, &along, pair.moved);
+        let change = self.change(pair.elasticity, &along, pair.felt);
         let (wa, wb) = self.weights([a, b], normal, along(self.pushed));
         let share = normal * (change / (wa + wb));
         self.velocity[a] += share * wa;
@@ -365,14 +378,14 @@ impl Pass<'_> {
     fn answer_face(&mut self, face: &Face) {
         let row = face.row as usize;
         let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
-        let change = self.change(face.elasticity, &along, face.moved);
+        let change = self.change(face.elasticity, &along, face.felt);
         self.velocity[row] += face.normal * change;
     }
 
     /// How the speed at which two part has to change: to the elastic answer to their approach, or to none where the
     /// bounce would be over within a part of the step. It takes back no more than the contact has given, so that it never pulls.
     #[inline(always)]
-    fn change(&self, elasticity: f32, along: &impl Fn(&[Vec3]) -> f32, moved: f32) -> f32 {
+    fn change(&self, elasticity: f32, along: &impl Fn(&[Vec3]) -> f32, felt: f32) -> f32 {
         let approach = along(self.pushed);
         let mut bounce = max(-approach * elasticity, 0.0);
         if bounce > 0.0 {
@@ -381,7 +394,7 @@ impl Pass<'_> {
                 bounce = 0.0;
             }
         }
-        max(bounce - along(self.velocity), -moved * self.rate)
+        max(bounce - along(self.velocity), -felt * self.rate)
     }
 }
 
