@@ -1,4 +1,5 @@
-//! Contacts held by position: lists of who may touch whom, made once a step, and the passes over them in each sub-step.
+//! Contacts held by position: lists of who may touch whom, made anew when somebody has gone far, and the passes over them in
+//! each sub-step.
 
 use super::contacts::Stage;
 use super::flight::RESTING;
@@ -11,7 +12,7 @@ use glam::Vec3;
 /// Pairs of near particles that there is room for, for each particle.
 const PAIRS: usize = 8;
 /// Faces near a particle that there is room for, for each particle.
-const FACES: usize = 1;
+const FACES: usize = 3;
 /// How much farther apart than a touch two may be and still be listed, as a share of the smaller radius.
 const MARGIN: f32 = 0.1;
 /// Sweeps over the velocities at a step's end, so that what rests shows it.
@@ -218,8 +219,9 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
     let (pairs, faces) = (&mut pairs[..stage.lists.pairs], &mut faces[..stage.lists.faces]);
     pushed[..stage.velocity.len()].copy_from_slice(stage.velocity);
     let len = stage.velocity.len();
-    let driven = stage.velocity.iter().zip(&v[..len]).map(|(now, before)| *now - *before).sum::<Vec3>();
-    let driven = driven / max(len as f32, 1.0);
+    let driven = stage.velocity.iter().zip(&v[..len]).map(|(now, before)| *now - *before);
+    // What is no longer finite must not reach the others before it is taken out.
+    let driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
     let mut pass = Pass {
         up: -unit(driven),
         calm: stage.pieces as f32 * length(driven),

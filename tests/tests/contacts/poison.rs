@@ -169,3 +169,20 @@ fn balls_stay_above_an_outsider_s_floor() {
         assert!(lowest > bound, "{}: {lowest}", response.name());
     }
 }
+
+/// Those that touch in the very step in which another is no longer a number.
+#[test]
+fn one_that_is_no_number_harms_nobody_who_is_in_touch() {
+    let ball = |y: f32| Particle { position: Vec3::new(0.7, y, 0.7), radius: 0.2, ..Particle::REST };
+    for velocity in [Vec3::NAN, Vec3::X * f32::INFINITY] {
+        let start = [ball(0.2), ball(0.599), Particle { velocity, ..ball(1.19) }];
+        for response in responses() {
+            with_scene(&response, &start, &(), |scene| {
+                let mut system = started(scene, 3, 1);
+                run(&mut system, scene, 1.0 / 60.0, 10);
+                assert_eq!((system.len(), system.totals().died.nonfinite), (2, 1), "{response:?}");
+                assert!(system.particles().position.iter().all(|x| (x.y - 0.4).abs() < 0.21), "{response:?}");
+            });
+        }
+    }
+}
