@@ -232,7 +232,7 @@ pub struct Compare {
     /// Which structures, such as grid,kd; or all. Of triangles there are brute, grid, octree, kd, bsp and bvh
     #[arg(long, value_name = "NAME,...", default_value = "all", value_parser = structures)]
     pub structures: Structures,
-    /// Measure other libraries as well, where the program is built with them (--features peers)
+    /// Measure other libraries as well, where the program has them (cargo run --release -p pointmass-peers -- ...)
     #[arg(long)]
     pub peers: bool,
     /// How many times everything is measured; by default as often as three seconds allow, from 7 to 31 times, or 3

@@ -28,6 +28,32 @@ pub mod whole;
 mod words;
 pub mod world;
 
+use args::{Args, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// What the command does: parses its arguments, does what they say, and turns the outcome into an exit code.
+#[must_use]
+pub fn main(peers: compare::Peers) -> ExitCode {
+    let args = Args::parse();
+    let outcome = match &args.command {
+        Command::Run(args) => run::run(args),
+        Command::Render(args) => render::render(args),
+        Command::Convert(args) => convert::convert(args),
+        Command::Check(args) => check::check(args),
+        Command::Compare(args) => compare::compare(args, peers),
+        Command::Lab(args) => lab::lab(args),
+        Command::Schema => print(&pointmass::scene::schema()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            tell("error", &error.to_string());
+            ExitCode::FAILURE
+        }
+    }
+}
+
 /// What went wrong, as one line for a person.
 #[derive(Debug)]
 pub struct Failure(String);

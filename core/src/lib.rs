@@ -1,45 +1,10 @@
-//! Particle systems that are exact, bounded and the same everywhere.
-//!
-//! A [`Scene`] is immutable data that says what the world does; a [`System`] is the state it is done to;
-//! [`System::step`] is the only verb. Nothing allocates, nothing panics, every bound is counted in the [`Report`], and
-//! the same scene, seed and step give the same bits on every target, which [`System::hash`] proves.
-//!
-//! Units are SI, angles are radians, y points up, and the axes are right-handed.
-//!
-//! ```
-//! use pointmass::{Emitter, Gravity, Inline, Scene, Spread, System, Time, Varied, Vec3};
-//! use pointmass::shape::{Disc, Mesh, Plane, Shape};
-//!
-//! let nozzle = Shape::<Mesh>::Circle(Disc { center: Vec3::ZERO, normal: Vec3::Y, radius: 0.1 });
-//! let jet = Emitter {
-//!     speed: Varied { mean: 6.0, variance: 0.5 },
-//!     spread: Spread::Uniform(0.2),
-//!     lifetime: Varied::exactly(1.5),
-//!     ..Emitter::new(nozzle, 40.0)
-//! };
-//! let ground = Plane { point: Vec3::new(0.0, -0.1, 0.0), normal: Vec3::Y };
-//! let scene = Scene { emitters: &jet, forces: &Gravity::EARTH, colliders: &ground, ..Scene::EMPTY };
-//!
-//! // Room for 64 particles, 1 emitter, no springs, 3 columns to work with: all in this value, none on the heap.
-//! let mut fountain = System::with(Inline::<64, 1, 0, 3>::new());
-//! fountain.start(&scene, 7)?;
-//! for frame in 1..=120 {
-//!     fountain.step(&scene, Time::frame(frame, 60) - fountain.time());
-//! }
-//! assert_eq!(fountain.totals().born, 80);
-//! assert!(fountain.particles().position.iter().all(|x| x.y > -0.1));
-//! # Ok::<(), pointmass::Unfit>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! # Map
-//! `system` holds the state and `view` the step; `emit` creates, `force` and `integrate` move, `collide` and `shape` collide, `retire`
-//! deletes, `measure`, `ledger`, `stability` and `report` tell what happened and what will; `weave` makes cloth; `storage` owns the memory; `scene` (feature `alloc`) reads and
-//! writes scene files; `stability` (feature `std`) says which steps a method stands.
-//!
-//! # Features
-//! `alloc`: storage on the heap, declared scenes. `serde`: the domain types as data. `json`: scenes as JSON. `schema`: their
-//! JSON Schema. `std`: for hosts, their faster square root, with the same bits, and
-//! `Measures` in double precision. Without features: no allocation at all.
+//! [`System`] holds the state, and `view` has the step. [`emit`] creates; [`force`] and [`integrate`] move; `collide` and
+//! [`shape`] collide, with [`rays`] to find what a path meets first and [`index`] to find what is near; `retire` deletes.
+//! [`Report`], and with the feature `std` [`Measures`], [`Ledger`] and [`stability`], tell what happened and what will.
+//! [`Sheet`] makes cloth. [`Storage`] is the memory. [`scene`] reads and writes scene files.
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -111,8 +76,3 @@ pub use time::Time;
 #[cfg(feature = "alloc")]
 pub use weave::mesh_springs;
 pub use weave::{Sheet, Thread, Threads};
-
-/// The README's example has to compile and run.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;

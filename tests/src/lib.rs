@@ -229,3 +229,8 @@ pub fn icosahedron() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     }
     (vertices.into_iter().map(Vec3::normalize).collect(), triangles)
 }
+
+/// The README's examples have to compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -1,4 +1,4 @@
-//! Who takes part: our structures, and other libraries where the program is built with them.
+//! Who takes part: our structures, and other libraries where the program has them.
 
 use super::workload::Workload;
 use crate::{Failure, Outcome};
@@ -22,7 +22,6 @@ pub(crate) struct Question<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     pub(crate) counts: Vec<u32>,
-    #[cfg_attr(not(feature = "peers"), expect(dead_code, reason = "only peers write distances"))]
     pub(crate) distances: Vec<f32>,
     pub(crate) found: Vec<Neighbour>,
 }
@@ -44,7 +43,6 @@ pub(crate) enum Answer {
     /// Of every row, the distances of the k nearest others; infinite where there are fewer.
     Distances(Vec<f32>),
     /// Of rows and others, how many there are.
-    #[cfg_attr(not(feature = "peers"), expect(dead_code, reason = "only peers know no more than that"))]
     Total(u64),
 }
 
@@ -216,15 +214,13 @@ pub(crate) fn tie(links: &mut [u64], a: u32, b: u32) {
 /// Who may take part.
 pub(crate) enum Entrant {
     Own(Structure),
-    #[cfg(feature = "peers")]
-    Peer(super::peer::Foreign),
+    Peer(super::foreign::Foreign),
 }
 
 impl Entrant {
     pub(crate) fn name(&self) -> &str {
         match self {
             Self::Own(structure) => structure.name(),
-            #[cfg(feature = "peers")]
             Self::Peer(peer) => peer.name(),
         }
     }
@@ -238,7 +234,6 @@ impl Entrant {
     pub(crate) fn words(&self, points: usize) -> usize {
         match self {
             Self::Own(structure) => structure.words(points),
-            #[cfg(feature = "peers")]
             Self::Peer(_) => 0,
         }
     }
@@ -247,7 +242,6 @@ impl Entrant {
     pub(crate) fn enter<'a>(&'a mut self, points: usize, memory: &'a mut [u32]) -> Box<dyn Contender + 'a> {
         match self {
             Self::Own(structure) => Box::new(Own::new(*structure, points, memory)),
-            #[cfg(feature = "peers")]
             Self::Peer(peer) => {
                 let _ = (points, memory);
                 Box::new(peer)

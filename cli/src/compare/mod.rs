@@ -9,11 +9,11 @@ mod bench;
 mod chart;
 mod contender;
 mod distribution;
+mod foreign;
 mod machine;
 mod measure;
 mod page;
-#[cfg(feature = "peers")]
-mod peer;
+mod peers;
 pub mod points;
 mod radius;
 mod rays;
@@ -32,6 +32,7 @@ mod workload;
 pub use contender::Build;
 pub use distribution::Distribution;
 pub use machine::Machine;
+pub use peers::{FirstHit, Peer, Peers, RayPeer};
 pub use rays::{Query, Surface};
 pub use study::{Advice, Case, Contestant, Crossover, Figure, Growth, Study, Subject};
 pub use workload::Workload;
@@ -42,22 +43,19 @@ use crate::words::{command, digits, thousands};
 use crate::{Failure, Outcome, args, print};
 use bench::Bench;
 use contender::Entrant;
+use foreign::Foreign;
 
-/// Compares as the arguments say. Files are written whole, at the end, or not at all.
+/// Compares as the arguments say, `peers` beside our structures where they ask for it. Files are written whole, at the
+/// end, or not at all.
 ///
 /// # Errors
 /// If the points or the mesh cannot be used, a contender gives a wrong answer, or a file cannot be written.
-pub fn compare(args: &args::Compare) -> Outcome {
+pub fn compare(args: &args::Compare, peers: Peers) -> Outcome {
     let subject = subject(args)?;
-    if args.peers && !cfg!(feature = "peers") {
-        return Err(Failure::new(
-            "this program was built without other libraries; for --peers, run `cargo run --release --features peers -- \
-             compare --peers`",
-        ));
-    }
+    let peers = peers.asked(args.peers)?;
     let read = args.points.iter().map(|(path, _)| path).chain(&args.scene).chain(&args.mesh);
     let outs = Outs::create(&args.out, read)?;
-    let study = study(args, subject)?;
+    let study = study(args, subject, peers)?;
     outs.write(|format| match format {
         StudyFormat::Csv => sheet::csv(&study),
         StudyFormat::Json => json(&study),
@@ -105,19 +103,14 @@ fn subject(args: &args::Compare) -> Outcome<Subject> {
 }
 
 /// Those who take part, in the order of every table.
-fn entrants(args: &args::Compare) -> Vec<Entrant> {
-    #[cfg_attr(not(feature = "peers"), expect(unused_mut, reason = "peers join"))]
-    let mut entrants: Vec<_> = args.structures.0.iter().map(|structure| Entrant::Own(*structure)).collect();
-    #[cfg(feature = "peers")]
-    if args.peers {
-        entrants.extend(peer::all().into_iter().map(Entrant::Peer));
-    }
-    entrants
+fn entrants(args: &args::Compare, peers: Vec<Box<dyn Peer>>) -> Vec<Entrant> {
+    let own = args.structures.0.iter().map(|structure| Entrant::Own(*structure));
+    own.chain(peers.into_iter().map(|peer| Entrant::Peer(Foreign::new(peer)))).collect()
 }
 
 /// Verifies and measures everything on points.
-fn of_points(args: &args::Compare) -> Outcome<Vec<Case>> {
-    let mut entrants = entrants(args);
+fn of_points(args: &args::Compare, peers: Vec<Box<dyn Peer>>) -> Outcome<Vec<Case>> {
+    let mut entrants = entrants(args, peers);
     let (sources, sizes) = source::sources(args)?;
     let points = sizes.iter().sum::<usize>() * sources.len();
     let mut bench = Bench::new(args, queries(args), &mut entrants, points);
@@ -132,10 +125,10 @@ fn of_points(args: &args::Compare) -> Outcome<Vec<Case>> {
 }
 
 /// All that was measured, and what it comes to.
-fn study(args: &args::Compare, subject: Subject) -> Outcome<Study> {
+fn study(args: &args::Compare, subject: Subject, peers: Peers) -> Outcome<Study> {
     let cases = match subject {
-        Subject::Points => of_points(args)?,
-        Subject::Mesh => rays::cases(args)?,
+        Subject::Points => of_points(args, peers.of_points)?,
+        Subject::Mesh => rays::cases(args, peers.of_meshes)?,
     };
     Ok(Study {
         version: env!("CARGO_PKG_VERSION").into(),

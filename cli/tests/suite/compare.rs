@@ -234,19 +234,6 @@ fn the_command_line_says_what_it_wants() {
     let answer = folder.run("compare --n 4e4 --structures brute");
     assert!(answer.error().contains("nobody is left to compare: every query would compute about 2e9 distances"));
     assert!(folder.run("compare --n 50 --out no/a.html").error().contains("there is no folder no"));
-    #[cfg(not(feature = "peers"))]
-    assert!(folder.run("compare --n 50 --peers").error().contains("cargo run --release --features peers"));
-}
-
-#[cfg(feature = "peers")]
-#[test]
-fn other_libraries_take_part() {
-    let folder = Folder::new();
-    for points in ["uniform", "plane", "mixed"] {
-        let args = format!("compare --n 500 --distribution {points} --peers --structures grid {QUICK} --out a.json");
-        folder.run(&args).fine();
-        let study: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
-        let contestants = study["cases"][0]["contestants"].as_array().expect("contestants");
-        assert!(contestants.len() > 3 && contestants.iter().all(|one| one["left_out"].is_null()), "{study}");
-    }
+    let answer = folder.run("compare --n 50 --peers");
+    assert!(answer.error().contains("cargo run --release -p pointmass-peers -- compare --peers"));
 }

@@ -33,6 +33,21 @@ pub trait Files {
     fn exists(&mut self, path: &str) -> bool;
 }
 
+/// No files at all: for scenes that name none.
+impl Files for () {
+    fn text(&mut self, path: &str) -> Result<String, String> {
+        Err(format!("there is no file '{path}'"))
+    }
+
+    fn mesh(&mut self, path: &str) -> Result<MeshBuf, String> {
+        Err(format!("there is no file '{path}'"))
+    }
+
+    fn exists(&mut self, _: &str) -> bool {
+        false
+    }
+}
+
 /// Reads a `.scn` text that lies at `path`, and what it includes; the strings are warnings.
 ///
 /// Names of meshes and textures come out relative to `path`'s folder, includes are flattened.

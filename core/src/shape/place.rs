@@ -62,9 +62,8 @@ impl Affine {
     /// The way back, if there is one.
     #[must_use]
     pub fn inverse(&self) -> Option<Self> {
-        let linear = self.linear.inverse();
-        let sound = self.linear.determinant() != 0.0 && linear.is_finite();
-        sound.then(|| Self { linear, shift: -(linear * self.shift) })
+        let linear = self.linear.try_inverse()?;
+        Some(Self { linear, shift: -(linear * self.shift) })
     }
 
     /// Whether all shapes stay what they are, in another size perhaps.

@@ -126,9 +126,7 @@ impl<'a> Bench<'a> {
 
     /// How many answers of other libraries are no rounding.
     fn mismatches(&mut self, task: &Task<'_>) -> Outcome<Vec<Option<usize>>> {
-        #[cfg_attr(not(feature = "peers"), expect(unused_mut, reason = "peers are counted"))]
         let mut all = vec![None; self.entrants.len()];
-        #[cfg(feature = "peers")]
         for (entrant, unlike) in self.entrants.iter_mut().zip(&mut all).filter(|(entrant, _)| !entrant.is_own()) {
             let name = entrant.name().to_string();
             let (tracer, _) = entrant.build(task.mesh, &mut self.memory, 1)?;

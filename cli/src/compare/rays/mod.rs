@@ -4,8 +4,7 @@
 //! clock, once `verify` has held their answers against every triangle.
 
 mod bench;
-#[cfg(feature = "peers")]
-mod peer;
+mod foreign;
 mod query;
 mod surface;
 #[cfg(test)]
@@ -16,6 +15,7 @@ mod verify;
 pub use query::Query;
 pub use surface::Surface;
 
+use super::peers::RayPeer;
 use super::study::Case;
 use crate::words::thousands;
 use crate::{Failure, Outcome, args};
@@ -30,8 +30,9 @@ const SEGMENTS: usize = 20_000;
 ///
 /// # Errors
 /// If a mesh cannot be used, or somebody's answer is wrong.
-pub(super) fn cases(args: &args::Compare) -> Outcome<Vec<Case>> {
+pub(super) fn cases(args: &args::Compare, peers: Vec<Box<dyn RayPeer>>) -> Outcome<Vec<Case>> {
     let mut entrants = entrants(args)?;
+    entrants.extend(peers.into_iter().map(Entrant::Peer));
     let surfaces = surface::surfaces(args)?;
     let mut bench = Bench::new(args, &mut entrants, surfaces.len());
     let cases = surfaces.iter().map(|surface| bench.case(surface)).collect();
@@ -39,7 +40,7 @@ pub(super) fn cases(args: &args::Compare) -> Outcome<Vec<Case>> {
     cases
 }
 
-/// Those who take part, in the order of every table.
+/// Our structures that take part, in the order of every table.
 fn entrants(args: &args::Compare) -> Outcome<Vec<Entrant>> {
     let asked = &args.structures.0;
     let is_all = asked.len() == pointmass::index::Structure::ALL.len();
@@ -57,10 +58,6 @@ fn entrants(args: &args::Compare) -> Outcome<Vec<Entrant>> {
                 )));
             }
         }
-    }
-    #[cfg(feature = "peers")]
-    if args.peers {
-        entrants.extend(pointmass_peers::ray_peers().into_iter().map(Entrant::Peer));
     }
     Ok(entrants)
 }

@@ -20,7 +20,6 @@ pub struct Query {
     /// The segments, in the order in which they are asked.
     pub segments: Vec<Segment>,
     /// Their ends, for those who know no segments of ours.
-    #[cfg(feature = "peers")]
     pub(super) ends: Vec<[[f32; 3]; 2]>,
 }
 
@@ -43,7 +42,6 @@ impl Query {
     fn new(workload: Workload, segments: Vec<Segment>) -> Self {
         Self {
             workload,
-            #[cfg(feature = "peers")]
             ends: segments.iter().map(|segment| [segment.from.to_array(), segment.to.to_array()]).collect(),
             segments,
         }

@@ -1,6 +1,7 @@
-//! Who takes part: our structures over triangles, and other libraries where the program is built with them.
+//! Who takes part: our structures over triangles, and other libraries where the program has them.
 
 use super::super::contender::Build;
+use super::super::peers::{FirstHit, RayPeer};
 use super::super::stopwatch::Stopwatch;
 use super::query::Query;
 use crate::{Failure, Outcome};
@@ -15,8 +16,7 @@ pub(crate) struct Answers {
     /// By our structures.
     pub(crate) exact: Vec<Option<Hit>>,
     /// By others, which round in their own way: the fraction of the segment that is free, and the triangle.
-    #[cfg(feature = "peers")]
-    pub(crate) rounded: Vec<Option<(f32, u32)>>,
+    pub(crate) rounded: Vec<FirstHit>,
 }
 
 /// What has been built and answers.
@@ -67,15 +67,13 @@ impl Tracer for Own<'_> {
 /// Who may take part.
 pub(crate) enum Entrant {
     Own(Structure),
-    #[cfg(feature = "peers")]
-    Peer(Box<dyn pointmass_peers::RayPeer>),
+    Peer(Box<dyn RayPeer>),
 }
 
 impl Entrant {
     pub(crate) fn name(&self) -> &str {
         match self {
             Self::Own(structure) => structure.name(),
-            #[cfg(feature = "peers")]
             Self::Peer(peer) => peer.name(),
         }
     }
@@ -94,7 +92,6 @@ impl Entrant {
     pub(crate) fn words(&self, triangles: usize) -> usize {
         match self {
             Self::Own(structure) => structure.words(triangles),
-            #[cfg(feature = "peers")]
             Self::Peer(_) => 0,
         }
     }
@@ -122,11 +119,10 @@ impl Entrant {
                 let took = begun.elapsed() / times as u32;
                 Ok((Box::new(Own { mesh, index }), took))
             }
-            #[cfg(feature = "peers")]
             Self::Peer(peer) => {
                 (0..times).for_each(|_| peer.build(bytemuck::cast_slice(mesh.vertices()), mesh.triangles()));
                 let took = begun.elapsed() / times as u32;
-                Ok((Box::new(super::peer::Foreign { peer: &**peer, triangles: mesh.triangles().len() }), took))
+                Ok((Box::new(super::foreign::Foreign { peer: &**peer, triangles: mesh.triangles().len() }), took))
             }
         }
     }

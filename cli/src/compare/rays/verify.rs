@@ -75,7 +75,6 @@ impl Expected {
     ///
     /// # Errors
     /// If they are too many to be that.
-    #[cfg(feature = "peers")]
     pub(crate) fn unlike(&self, tracer: &dyn Tracer, name: &str, queries: &[Query]) -> Outcome<usize> {
         let (mut answers, mut sum) = (Answers::default(), 0);
         for (query, all) in queries.iter().zip(&self.0) {

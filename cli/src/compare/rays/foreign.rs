@@ -1,11 +1,11 @@
 //! Other libraries as tracers.
 
 use super::super::contender::Build;
+use super::super::peers::RayPeer;
 use super::super::workload::Workload;
 use super::query::Query;
 use super::tracer::{Answers, Tracer};
 use pointmass::rays::Cost;
-use pointmass_peers::RayPeer;
 
 /// A library that has been built, and of how many triangles.
 pub(super) struct Foreign<'a> {

@@ -1,11 +1,11 @@
 //! Other libraries as contenders.
 
 use super::contender::{Answer, Build, Contender, Effort, Question, Scratch, tie};
+use super::peers::Peer;
 use super::workload::Workload;
 use crate::Outcome;
 use pointmass::Vec3;
 use pointmass::index::Cost;
-use pointmass_peers::Peer;
 use std::hint::black_box;
 
 /// A library, and how many points it was built from.
@@ -14,12 +14,11 @@ pub(crate) struct Foreign {
     points: usize,
 }
 
-/// All that this program was built with.
-pub(crate) fn all() -> Vec<Foreign> {
-    pointmass_peers::peers().into_iter().map(|peer| Foreign { peer, points: 0 }).collect()
-}
-
 impl Foreign {
+    pub(crate) fn new(peer: Box<dyn Peer>) -> Self {
+        Self { peer, points: 0 }
+    }
+
     pub(crate) fn name(&self) -> &'static str {
         self.peer.name()
     }
