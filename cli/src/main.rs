@@ -5,8 +5,21 @@ use pointmass_cli::args::{Args, Command};
 use pointmass_cli::{check, compare, convert, lab, render, run};
 use std::process::ExitCode;
 
+/// Says what is wrong with the arguments, or helps, and ends the program. What is quoted may hold codes that terminals
+/// obey; then it goes without colours.
+fn refuse(error: &clap::Error) -> ! {
+    let text = error.render().to_string();
+    let harmless = pointmass_cli::harmless(&text);
+    if harmless == text {
+        error.exit();
+    }
+    eprint!("{harmless}");
+    std::process::exit(error.exit_code());
+}
+
 fn main() -> ExitCode {
-    let args = Args::parse();
+    pointmass_cli::temporary::clean_up_when_interrupted();
+    let args = Args::try_parse().unwrap_or_else(|error| refuse(&error));
     let outcome = match &args.command {
         Command::Run(args) => run::run(args),
         Command::Render(args) => render::render(args),

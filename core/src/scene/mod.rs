@@ -21,7 +21,11 @@ mod json;
 mod model;
 #[cfg(feature = "alloc")]
 mod read;
+#[cfg(feature = "alloc")]
+mod remarks;
 mod rules;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod scn;
 #[cfg(feature = "alloc")]
 mod write;
@@ -34,11 +38,11 @@ pub use fabric::{Fabric, Form, Gas};
 pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "schema")]
-pub use json::schema;
+pub use schema::schema;
 #[cfg(feature = "alloc")]
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
-pub use read::{Files, beside, read_scn};
+pub use read::{Files, Unknown, beside, read_scn, read_scn_with};
 pub use rules::{Scene, Unfit};
 #[cfg(feature = "alloc")]
 pub use write::write_scn;

@@ -111,6 +111,18 @@ impl<'a> Lexer<'a> {
         (!word.is_empty()).then_some((word, place))
     }
 
+    /// Goes to the next line that begins with a word for which `is_wanted`, or to the end.
+    pub(super) fn skip_to_line_of(&mut self, is_wanted: impl Fn(&str) -> bool) {
+        while let Some(end) = self.rest.find(['\n', '\r']) {
+            self.skip(end + 1);
+            let line = self.rest.trim_start_matches(|c: char| c.is_whitespace() && c != '\n' && c != '\r');
+            if line.split(char::is_whitespace).next().is_some_and(&is_wanted) {
+                return;
+            }
+        }
+        self.skip(self.rest.len());
+    }
+
     /// The next word as the argument `what`.
     pub(super) fn word(&mut self, what: &'static str) -> Result<(&'a str, Place), ScnError<'a>> {
         self.next().ok_or_else(|| self.error(self.place, "", Problem::Missing(what)))
