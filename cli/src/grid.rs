@@ -58,7 +58,9 @@ mod tests {
     #[test]
     fn what_finds_no_room_comes_below() {
         let mut grid = Grid::of(["brute", "a long name"]);
-        for (head, cell) in [("one", "1".repeat(30)), ("two", "2".repeat(30)), ("three", "3".repeat(90)), ("four", "4".into())] {
+        for (head, cell) in
+            [("one", "1".repeat(30)), ("two", "2".repeat(30)), ("three", "3".repeat(90)), ("four", "4".into())]
+        {
             grid.column(head, [cell.clone(), cell]);
         }
         let mut text = String::new();

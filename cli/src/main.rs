@@ -8,12 +8,11 @@ use std::process::ExitCode;
 /// Says what is wrong with the arguments, or helps, and ends the program. What is quoted may hold codes that terminals
 /// obey; then it goes without colours.
 fn refuse(error: &clap::Error) -> ! {
-    let text = error.render().to_string();
-    let harmless = pointmass_cli::harmless(&text);
-    if harmless == text {
+    let is_harmless = |text: &str| pointmass_cli::harmless(text) == text;
+    if std::env::args_os().all(|argument| is_harmless(&argument.to_string_lossy())) {
         error.exit();
     }
-    eprint!("{harmless}");
+    eprint!("{}", pointmass_cli::harmless(&error.render().to_string()));
     std::process::exit(error.exit_code());
 }
 

@@ -45,11 +45,15 @@ impl Drop for Temporary {
     }
 }
 
+/// Whether its name says that it is temporary; folders made for files that are to stay have names of their own.
+fn is_ours(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX))
+}
+
 /// Nobody is left to be told if that fails, and what has been given another name is not there.
 fn remove(path: &Path) {
-    let is_ours = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX));
     let _ = match path.is_dir() {
-        true if is_ours => fs::remove_dir_all(path),
+        true if is_ours(path) => fs::remove_dir_all(path),
         true => fs::remove_dir(path),
         false => fs::remove_file(path),
     };
@@ -66,8 +70,9 @@ pub fn clean_up_when_interrupted() {
     let wait = move || {
         if let Some(signal) = signals.forever().next() {
             let all = uninterrupted();
-            // What is in a folder comes behind it.
-            all.iter().rev().for_each(|path| remove(path));
+            // What is in a folder goes before it.
+            let (ours, folders): (Vec<_>, Vec<_>) = all.iter().partition(|path| is_ours(path));
+            ours.into_iter().chain(folders).for_each(|path| remove(path));
             std::process::exit(128 + signal);
         }
     };

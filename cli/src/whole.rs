@@ -127,6 +127,8 @@ impl Series {
     /// # Errors
     /// If it cannot be made.
     pub(crate) fn next(&mut self, path: PathBuf) -> io::Result<File> {
+        // Who cleans up has to find all that there is.
+        let _uninterrupted = uninterrupted();
         let file = File::create(self.waiting.path().join(self.paths.len().to_string()))?;
         self.paths.push(path);
         Ok(file)

@@ -1,6 +1,7 @@
 //! What to change.
 
 use super::bounds::place;
+use super::contact::STEPS;
 use super::report::{Check, Stand};
 use super::words::{plain, time, typed};
 use crate::words::counted;
@@ -8,8 +9,6 @@ use pointmass::Spring;
 use pointmass::scene::Model;
 use pointmass::stability::Limit;
 
-/// Steps that a hit should have at least.
-const HIT: f64 = 7.5;
 /// Steps that an orbit should have at least, and parts of a sink's time.
 const ORBIT: f64 = 50.0;
 const PULL: f64 = 10.0;
@@ -131,7 +130,7 @@ fn world(check: &Check) -> Vec<String> {
             time(followed.step)
         ));
     }
-    if let Some(hit) = check.hit.filter(|hit| check.dt * HIT > *hit) {
+    if let Some(hit) = check.hit.filter(|hit| check.dt * STEPS > *hit) {
         advice.push(format!(
             "a hit lasts {}: take --dt {} or less for ten steps in it, as many as its bounce takes to be right",
             time(hit),

@@ -87,17 +87,7 @@ impl Bounds {
             )],
             _ => Vec::new(),
         };
-        let contact = self.contact.iter().zip(bound(self.contact_step(method)));
-        warnings.extend(contact.filter(|&(_, limit)| step > limit).map(|(Contact { part, .. }, limit)| {
-            format!(
-                "steps of {} are too long for contacts by force: beyond {} hits by {method} add energy, because of {} {}; \
-                 try --substeps auto, or see `pointmass check`",
-                time(step),
-                time(limit),
-                part.place,
-                part.about
-            )
-        }));
+        warnings.extend(self.contact.as_ref().and_then(|contact| contact.warning(method, step)));
         warnings
     }
 
@@ -116,11 +106,6 @@ impl Bounds {
         let parts = [&self.stiffest, &self.dragged].into_iter().flatten();
         parts.min_by(|a, b| strictest(a).total_cmp(&strictest(b))).map(|part| format!("{} {}", part.place, part.about))
     }
-}
-
-/// The step, where a limit is one.
-fn bound(limit: Limit) -> Option<f64> {
-    if let Limit::Step(step) = limit { Some(step) } else { None }
 }
 
 /// What air does to a particle: so many times its own coefficient of drag, and a coefficient for all \[kg/s\].

@@ -2,7 +2,7 @@
 
 use super::bounds::{Part, place};
 use super::hit;
-use super::words::plain;
+use super::words::{plain, time, typed};
 use pointmass::force::Penalty;
 use pointmass::scene::Model;
 use pointmass::stability::{Limit, Mode};
@@ -11,6 +11,9 @@ use pointmass::{Emitter, Method};
 /// The largest Σ cos² of the angles between a line and the ways to all that touch a ball of their size: two before and
 /// behind it, and five at 60° around each.
 const CROWD: f64 = 4.5;
+
+/// Steps that a hit should have at least.
+pub(crate) const STEPS: f64 = 7.5;
 
 /// The contact of a scene that bounds the step most.
 pub(crate) struct Contact {
@@ -64,6 +67,26 @@ impl Contact {
         let swings = self.swings.iter().map(|&mode| hit::largest_step(method, mode));
         let slip = self.slip.iter().map(|mode| mode.largest_step(method));
         swings.chain(slip).fold(Limit::Unconditional, Limit::and)
+    }
+
+    /// What to say of steps \[s\] that do hits no justice.
+    pub(crate) fn warning(&self, method: Method, step: f64) -> Option<String> {
+        let (steps, hit) = (time(step), self.duration());
+        let Part { place, about, .. } = &self.part;
+        match self.largest_step(method) {
+            Limit::Step(limit) if step > limit => Some(format!(
+                "steps of {steps} are too long for contacts by force: beyond {} hits by {method} add energy, because of \
+                 {place} {about}; try --substeps auto, or see `pointmass check`",
+                time(limit)
+            )),
+            _ if step * STEPS > hit => Some(format!(
+                "steps of {steps} are coarse for contacts by force: a hit lasts {}, and its bounce comes out wrong, because \
+                 of {place} {about}; try --dt {}",
+                time(hit),
+                typed(0.1 * hit)
+            )),
+            _ => None,
+        }
     }
 
     /// How long a hit lasts \[s\]: half a swing.

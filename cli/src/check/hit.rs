@@ -114,10 +114,11 @@ mod tests {
 
     #[test]
     fn limits_are_those_of_theory() {
-        let limit = |method: Method, damping: f64| match largest_step(method, Mode { omega2: 4.0, damping: 2.0 * damping }) {
-            Limit::Step(step) => 2.0 * step,
-            other => panic!("{method}: {other:?}"),
-        };
+        let limit =
+            |method: Method, damping: f64| match largest_step(method, Mode { omega2: 4.0, damping: 2.0 * damping }) {
+                Limit::Step(step) => 2.0 * step,
+                other => panic!("{method}: {other:?}"),
+            };
         // Explicit Euler multiplies the energy of what nothing damps by 1 + h² a step, exp(πh) in half a swing.
         assert!((limit(Method::Euler, 0.0) / (GAIN.ln() / std::f64::consts::PI) - 1.0).abs() < 0.1);
         // The midpoint method by 1 + h⁴/4.

@@ -21,7 +21,11 @@ pub(crate) fn text(check: &Check) -> String {
     let _ = writeln!(text, "\n{}", row("largest step", &heads(check), &format!("at {}", time(check.dt))));
     for stand in &check.methods {
         let mark = if stand.method == check.integrator { "*" } else { " " };
-        let _ = writeln!(text, "{}", row(&format!("{mark} {}", stand.method), &limits(check, stand), verdict(stand).as_str()));
+        let _ = writeln!(
+            text,
+            "{}",
+            row(&format!("{mark} {}", stand.method), &limits(check, stand), verdict(stand).as_str())
+        );
     }
     text.push('\n');
     for advice in &check.advice {
@@ -64,9 +68,13 @@ pub(crate) fn facts(check: &Check) -> Vec<(&'static str, String)> {
     facts.extend(check.stiffest.as_ref().map(|part| ("stiffest", format!("{} {}", part.place, part.about))));
     let drag = check.dragged.as_ref();
     facts.extend(drag.map(|part| ("drag", format!("{} {}: {} /s", part.place, part.about, plain(part.mode.damping)))));
-    facts.extend(check.touching.as_ref().zip(check.hit).map(|(part, hit)| {
-        ("contact", format!("{} {}; a hit lasts {}", part.place, part.about, time(hit)))
-    }));
+    facts.extend(
+        check
+            .touching
+            .as_ref()
+            .zip(check.hit)
+            .map(|(part, hit)| ("contact", format!("{} {}; a hit lasts {}", part.place, part.about, time(hit)))),
+    );
     facts.extend(check.followed.as_ref().map(|followed| {
         let (step, g) = (time(followed.step), plain(followed.acceleration));
         (

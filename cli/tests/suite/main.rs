@@ -9,6 +9,8 @@ mod conversion;
 mod course;
 mod fuzz;
 mod lab;
+#[cfg(unix)]
+mod outputs;
 mod random;
 mod recordings;
 mod robustness;
@@ -17,3 +19,4 @@ mod scenes;
 mod scn;
 mod sinks;
 mod tool;
+mod touching;

@@ -55,7 +55,6 @@ fn plain(message: &str) -> String {
     message.to_string()
 }
 
-
 /// Puts lists of plain numbers on one line: a vector is read as one thing.
 ///
 /// The pretty printer puts every bracket and every entry at the end or on a line of its own, and no string spans lines.

@@ -202,7 +202,7 @@ impl Reader<'_> {
             match command {
                 Ok(located) => self.command(&mut scope, located)?,
                 Err(error) if error.problem == Problem::UnknownCommand && self.unknown == Unknown::Skip => {
-                    commands.resume_at_line();
+                    commands.resume_after(error.place);
                     self.skipped += 1;
                     self.warnings.push(format!("{} is passed over", place_of(path, error)));
                 }

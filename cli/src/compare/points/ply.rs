@@ -1,8 +1,8 @@
 //! PLY point clouds and meshes, text and binary of both byte orders: the vertices are the points.
 
 use super::{Fault, Rows};
-use crate::meshes::ply::{Skipped, split};
 use crate::meshes::MAX_BYTES;
+use crate::meshes::ply::{Skipped, split};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 use std::io::{BufRead, Read};
 
@@ -35,7 +35,9 @@ impl PropertyAccess for Vertex {
 pub(super) fn check_size(bytes: u64) -> Result<(), Fault> {
     let limit = MAX_BYTES >> 20;
     match bytes > MAX_BYTES {
-        true => Err(Fault::new(format!("is larger than {limit} MiB, the most that is read of this format; thin it out"))),
+        true => {
+            Err(Fault::new(format!("is larger than {limit} MiB, the most that is read of this format; thin it out")))
+        }
         false => Ok(()),
     }
 }

@@ -150,11 +150,18 @@ const NAMES: [&str; 23] = [
 ];
 
 impl Commands<'_> {
-    /// Goes on after an error at the next line that begins with the name of a command. What lies between, such as an
-    /// unknown command's arguments, is passed over.
-    pub fn resume_at_line(&mut self) {
+    /// Goes on after an unknown command, which stands at `place`, at the next line that begins with a command: a known one,
+    /// or a word that may be the name of another and stands no further in. What lies between, such as arguments, is passed
+    /// over.
+    pub fn resume_after(&mut self, place: Place) {
         self.failed = false;
-        self.lexer.skip_to_line_of(|word| NAMES.contains(&word));
+        let is_name = |word: &str| {
+            word.starts_with(|c: char| c.is_ascii_alphabetic())
+                && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        };
+        self.lexer.skip_to_line_of(|word, column| {
+            NAMES.contains(&word) || (is_name(word) && column <= place.column as usize)
+        });
     }
 }
 
@@ -370,7 +377,8 @@ mod tests {
 
     #[test]
     fn what_is_unknown_ends_where_a_line_begins_with_a_command() {
-        let text = "player 1 camera 2\n  3 # box\n\n 4 end\n\t background 1 0 0\nenemy\rambient 0 1 0 player";
+        let text = "player 1 camera 2\n  3 # box\n\n red 4 end\n\t background 1 0 0\nenemy 1\nboss.off\nboss\rambient 0 1 0 \
+                    player";
         let mut commands = commands(text);
         let (mut found, mut unknown) = (std::vec::Vec::new(), std::vec::Vec::new());
         while let Some(command) = commands.next() {
@@ -378,11 +386,12 @@ mod tests {
                 Ok(located) => found.push((located.name, located.place.line)),
                 Err(error) => {
                     unknown.push(error.word);
-                    commands.resume_at_line();
+                    commands.resume_after(error.place);
                 }
             }
         }
-        assert_eq!((found, unknown), (std::vec![("background", 5), ("ambient", 6)], std::vec!["player", "enemy", "player"]));
+        assert_eq!(found, [("background", 5), ("ambient", 8)]);
+        assert_eq!(unknown, ["player", "enemy", "boss", "player"]);
     }
 
     #[test]

@@ -111,12 +111,13 @@ impl<'a> Lexer<'a> {
         (!word.is_empty()).then_some((word, place))
     }
 
-    /// Goes to the next line that begins with a word for which `is_wanted`, or to the end.
-    pub(super) fn skip_to_line_of(&mut self, is_wanted: impl Fn(&str) -> bool) {
+    /// Goes to the next line that begins with a word which is wanted in its column, or to the end.
+    pub(super) fn skip_to_line_of(&mut self, is_wanted: impl Fn(&str, usize) -> bool) {
         while let Some(end) = self.rest.find(['\n', '\r']) {
             self.skip(end + 1);
             let line = self.rest.trim_start_matches(|c: char| c.is_whitespace() && c != '\n' && c != '\r');
-            if line.split(char::is_whitespace).next().is_some_and(&is_wanted) {
+            let column = 1 + self.rest[..self.rest.len() - line.len()].chars().count();
+            if line.split(char::is_whitespace).next().is_some_and(|word| is_wanted(word, column)) {
                 return;
             }
         }
