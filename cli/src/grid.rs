@@ -20,10 +20,10 @@ impl<'a> Grid<'a> {
         Self { names: names.into_iter().collect(), columns: Vec::new() }
     }
 
-    /// Adds a column with a cell for each row.
-    pub(crate) fn column(&mut self, head: &str, cells: impl IntoIterator<Item = String>) {
+    /// Adds a column with a cell for each row, `least` letters wide or more.
+    pub(crate) fn column(&mut self, head: &str, least: usize, cells: impl IntoIterator<Item = String>) {
         let cells: Vec<_> = std::iter::once(head.to_string()).chain(cells).collect();
-        let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
+        let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0).max(least);
         self.columns.push(Column { cells, width });
     }
 
@@ -34,7 +34,7 @@ impl<'a> Grid<'a> {
         while !rest.is_empty() {
             let mut taken = 2 + longest;
             let fitting = rest.iter().take_while(|column| {
-                taken += 2 + column.width;
+                taken += 1 + column.width;
                 taken <= WIDTH
             });
             let (now, later) = rest.split_at(fitting.count().max(1));
@@ -42,7 +42,7 @@ impl<'a> Grid<'a> {
                 let mut line = format!("  {name:<longest$}");
                 for Column { cells, width } in now {
                     let cell = cells.get(row).map_or("-", String::as_str);
-                    line.push_str(&format!("  {cell:>width$}"));
+                    line.push_str(&format!(" {cell:>width$}"));
                 }
                 say(text, &line);
             }
@@ -61,14 +61,19 @@ mod tests {
         for (head, cell) in
             [("one", "1".repeat(30)), ("two", "2".repeat(30)), ("three", "3".repeat(90)), ("four", "4".into())]
         {
-            grid.column(head, [cell.clone(), cell]);
+            grid.column(head, 8, [cell.clone(), cell]);
         }
         let mut text = String::new();
         grid.write(&mut text);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(lines.len(), 9, "{text}");
-        assert!(lines[0].ends_with("one                             two") && lines[3].ends_with("three"), "{text}");
-        assert!(lines[8].starts_with("  a long name  ") && lines[8].ends_with('4'), "{text}");
-        assert!(lines.iter().all(|line| line.len() <= WIDTH || line.contains('3')), "{text}");
+        for (row, words) in [(0, "one two"), (3, "three"), (6, "four"), (8, "a long name 4")] {
+            assert_eq!(lines[row].split_whitespace().collect::<Vec<_>>().join(" "), words, "{text}");
+        }
+        assert_eq!((lines[8].len(), lines[6].len()), (22, 22), "{text}");
+        assert!(
+            lines.iter().all(|line| line.len() <= WIDTH || line.contains('3') || line.ends_with("three")),
+            "{text}"
+        );
     }
 }

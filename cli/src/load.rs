@@ -3,7 +3,7 @@
 use crate::formats::SceneFormat;
 use crate::meshes::{self, MAX_BYTES};
 use crate::{Failure, Outcome, warn};
-use pointmass::scene::{Files, SceneError, SceneFile, Unknown, read_scn_with};
+use pointmass::scene::{Files, Reading, SceneError, SceneFile, Unknown, read_scn_with};
 use pointmass::shape::MeshBuf;
 use std::fs::File;
 use std::io::Read;
@@ -45,6 +45,22 @@ pub fn scene(path: &Path) -> Outcome<SceneFile> {
 /// # Errors
 /// As of [`scene`].
 pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
+    let Reading { scene, warnings, remarks } = read(path, unknown)?;
+    warn(&[warnings, remarks].concat());
+    Ok(scene)
+}
+
+/// The same for those who only translate it, without remarks on what it says.
+///
+/// # Errors
+/// As of [`scene`].
+pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
+    let Reading { scene, warnings, .. } = read(path, unknown)?;
+    warn(&warnings);
+    Ok(scene)
+}
+
+fn read(path: &Path, unknown: Unknown) -> Outcome<Reading> {
     let format = SceneFormat::of(path);
     if format.is_none() && path.is_file() {
         let path = path.display();
@@ -53,15 +69,12 @@ pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
     let (text, name) = (text(path)?, path.to_string_lossy());
     // A pipe has no name to tell by.
     let is_json = format.map_or_else(|| text.trim_start().starts_with('{'), |format| format == SceneFormat::Json);
-    let (scene, warnings) = if is_json {
-        let scene = SceneFile::from_json(&name, &text)?;
-        let remarks = scene.remarks().into_iter().map(|remark| format!("{name}:{remark}")).collect();
-        (scene, remarks)
-    } else {
-        read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?
-    };
-    warn(&warnings);
-    Ok(scene)
+    if !is_json {
+        return Ok(read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?);
+    }
+    let scene = SceneFile::from_json(&name, &text)?;
+    let remarks = scene.remarks().into_iter().map(|remark| format!("{name}:{remark}")).collect();
+    Ok(Reading { scene, warnings: Vec::new(), remarks })
 }
 
 /// How to go on where a command is unknown.

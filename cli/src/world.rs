@@ -71,7 +71,8 @@ impl World {
         let mut system = System::with(memory);
         system.start(&model.scene(), seed).map_err(|unfit| Failure::new(unfit.to_string()))?;
         let method = model.integrator.method;
-        let limit = if method.chooses_steps() { Limit::Unconditional } else { Bounds::of(&model).largest_step(method) };
+        let chosen = args.substeps == Substeps::Auto && !method.chooses_steps();
+        let limit = if chosen { Bounds::of(&model).largest_step(method) } else { Limit::Unconditional };
         let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
         let pace = Pace::new(args.substeps, limit, tolerance);
         Ok(Self { file, model, system, duration, dt, pace })

@@ -48,7 +48,8 @@ impl Contact {
         let pairs = others.iter().map(|other| swing(penalty, lightest, other));
         let mode = pairs.clone().max_by(|a, b| a.omega2.total_cmp(&b.omega2))?;
         let most = |mode: Mode| Mode { omega2: crowd * mode.omega2, damping: crowd * mode.damping };
-        let swings = pairs.flat_map(|mode| [mode, most(mode)]).collect();
+        let crowded = pairs.clone().map(most).filter(|_| crowd > 1.0);
+        let swings = pairs.chain(crowded).collect();
         let slips = penalty.friction.sliding > 0.0;
         // Slowly, friction brakes as what would just not let the contact swing.
         let slip = slips.then(|| Mode { omega2: 0.0, damping: 2.0 * mode.omega2.sqrt() });

@@ -48,17 +48,17 @@ fn overview(text: &mut String, case: &Case) {
     let mut grid = Grid::of(measured().map(|one| one.name.as_str()));
     for workload in case.workloads() {
         let cell = |one: &Contestant| {
-            one.figure(workload).map_or("- ".to_string(), |figure| {
+            one.figure(workload).map_or("-".to_string(), |figure| {
                 let mark = if figure.ties { '*' } else { ' ' };
                 format!("{} {:>4}{mark}", digits(figure.median), ratio(figure.ratio))
             })
         };
-        grid.column(&format!("{} ", workload.name()), measured().map(cell));
+        grid.column(workload.name(), 11, measured().map(cell));
     }
     let bytes = |one: &Contestant| one.build.bytes_each.map_or("-".into(), |bytes| format!("{bytes:.0}"));
-    grid.column("bytes", measured().map(bytes));
+    grid.column("bytes", 6, measured().map(bytes));
     let spread = |one: &Contestant| one.figures.iter().fold(0.0f64, |most, figure| most.max(figure.spread));
-    grid.column("spread", measured().map(|one| format!("{:.0} %", spread(one) * 100.0)));
+    grid.column("spread", 6, measured().map(|one| format!("{:.0} %", spread(one) * 100.0)));
     grid.write(text);
     for one in &case.contestants {
         if let Some(why) = &one.left_out {
@@ -100,12 +100,12 @@ fn work(text: &mut String, case: &Case) {
             let counters = one.figure(workload).and_then(|figure| figure.visits.zip(figure.tests));
             counters.map_or("-".into(), |(visits, tests)| format!("{} {:>6}", digits(visits), digits(tests)))
         };
-        grid.column(workload.name(), counted().map(cell));
+        grid.column(workload.name(), 12, counted().map(cell));
     }
     let shown = |count: Option<usize>| count.map_or("-".into(), thousands);
-    grid.column("nodes", counted().map(|one| shown(one.build.nodes)));
-    grid.column("depth", counted().map(|one| shown(one.build.depth)));
-    grid.column("fullest", counted().map(|one| shown(one.build.fullest)));
+    grid.column("nodes", 7, counted().map(|one| shown(one.build.nodes)));
+    grid.column("depth", 7, counted().map(|one| shown(one.build.depth)));
+    grid.column("fullest", 7, counted().map(|one| shown(one.build.fullest)));
     grid.write(text);
     say(text, "");
 }
@@ -129,13 +129,13 @@ fn details(text: &mut String, case: &Case, workload: Workload) {
     let mut grid = Grid::of(ranking.iter().map(|(one, _)| one.name.as_str()));
     let counter = |counter: Option<f64>| counter.map_or("-".into(), digits);
     let figures = || ranking.iter().map(|(_, figure)| figure);
-    grid.column("median ns", figures().map(|figure| digits(figure.median)));
-    grid.column("min", figures().map(|figure| digits(figure.min)));
-    grid.column("spread", figures().map(|figure| format!("{:.0} %", figure.spread * 100.0)));
-    grid.column("x best", figures().map(|figure| ratio(figure.ratio)));
-    grid.column(each[0], figures().map(|figure| counter(figure.visits)));
-    grid.column(each[1], figures().map(|figure| counter(figure.tests)));
-    grid.column(each[2], figures().map(|figure| counter(figure.found)));
+    grid.column("median ns", 8, figures().map(|figure| digits(figure.median)));
+    grid.column("min", 8, figures().map(|figure| digits(figure.min)));
+    grid.column("spread", 8, figures().map(|figure| format!("{:.0} %", figure.spread * 100.0)));
+    grid.column("x best", 8, figures().map(|figure| ratio(figure.ratio)));
+    grid.column(each[0], 8, figures().map(|figure| counter(figure.visits)));
+    grid.column(each[1], 8, figures().map(|figure| counter(figure.tests)));
+    grid.column(each[2], 8, figures().map(|figure| counter(figure.found)));
     grid.write(text);
     say(text, "");
 }
@@ -164,7 +164,7 @@ fn growth(text: &mut String, study: &Study) {
                 let growth = of.iter().find(|growth| growth.name == *row && growth.workload == workload);
                 growth.map_or("-".into(), |growth| format!("{:.2}", growth.exponent))
             };
-            grid.column(workload.name(), rows.iter().map(cell));
+            grid.column(workload.name(), 8, rows.iter().map(cell));
         }
         grid.write(text);
         say(text, "");

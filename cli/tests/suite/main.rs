@@ -13,6 +13,7 @@ mod lab;
 mod outputs;
 mod random;
 mod recordings;
+mod remarks;
 mod robustness;
 mod round_trip;
 mod scenes;

@@ -3,7 +3,7 @@
 use crate::tool::{Folder, number};
 use serde_json::{Value, json};
 
-const STEPPERS: [&str; 6] = ["euler", "symplectic", "midpoint", "lecture_midpoint", "verlet", "rk4"];
+const STEPPERS: [&str; 5] = ["euler", "symplectic", "midpoint", "verlet", "rk4"];
 
 /// Two balls that fly into each other in one line.
 fn two(masses: [f64; 2], penalty: &Value) -> Value {
@@ -19,7 +19,7 @@ fn two(masses: [f64; 2], penalty: &Value) -> Value {
 /// What `run` warns of, and by how much the kinetic energy grows at the most over several ways for steps to fall.
 fn run(folder: &Folder, scene: &Value, args: &str) -> (Vec<String>, f64) {
     let (mut most, mut warnings) = (0.0f64, Vec::new());
-    for shift in 0..3 {
+    for shift in 0..2 {
         let mut scene = scene.clone();
         scene["particles"][0]["position"][0] = json!(-0.3 - 0.0013 * f64::from(shift));
         folder.write("a.json", scene.to_string());
@@ -48,7 +48,7 @@ fn energy_never_grows_unwarned() {
         let scene = two(masses, &json!({"stiffness": stiffness, "damping": damping}));
         let omega = (stiffness * (1.0 / masses[0] + 1.0 / masses[1])).sqrt();
         for method in STEPPERS {
-            for part in [0.05, 0.3, 1.0, 1.7, 2.6, 3.5] {
+            for part in [0.05, 0.25, 1.0, 1.8, 3.0] {
                 let args = format!("--integrator {method} --dt {}", part / omega);
                 let (warnings, growth) = run(&folder, &scene, &args);
                 let is_stable = stable(&folder, &format!("--dt {}", part / omega), method);
@@ -60,7 +60,7 @@ fn energy_never_grows_unwarned() {
             }
         }
     }
-    assert!(seen.iter().all(|&count| count > 20), "{seen:?}");
+    assert!(seen.iter().all(|&count| count > 15), "{seen:?}");
 }
 
 #[test]

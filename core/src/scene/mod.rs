@@ -40,7 +40,7 @@ pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
-pub use read::{Files, Unknown, beside, read_scn, read_scn_with};
+pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use rules::{Scene, Unfit};
 #[cfg(feature = "schema")]
 pub use schema::schema;

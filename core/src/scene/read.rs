@@ -40,6 +40,17 @@ pub trait Files {
     }
 }
 
+/// A scene that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// What it says.
+    pub scene: SceneFile,
+    /// What is not as it was written, or not there.
+    pub warnings: Vec<String>,
+    /// What can be run but is hardly meant: what [`SceneFile::remarks`] finds, with line and column.
+    pub remarks: Vec<String>,
+}
+
 /// What becomes of a command that `.scn` does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unknown {
@@ -57,23 +68,20 @@ pub enum Unknown {
 /// # Errors
 /// If anything in it is unknown, out of range, cut off or missing: with file, line and column.
 pub fn read_scn(path: &str, text: &str, files: &mut dyn Files) -> Result<(SceneFile, Vec<String>), SceneError> {
-    read_scn_with(path, text, files, Unknown::Refuse)
+    let Reading { scene, warnings, .. } = read_scn_with(path, text, files, Unknown::Refuse)?;
+    Ok((scene, warnings))
 }
 
-/// The same, which may pass over commands that are `unknown`.
+/// The same, which may pass over commands that are `unknown`, and remarks on what is hardly meant.
 ///
 /// # Errors
 /// As of [`read_scn`].
-pub fn read_scn_with(
-    path: &str,
-    text: &str,
-    files: &mut dyn Files,
-    unknown: Unknown,
-) -> Result<(SceneFile, Vec<String>), SceneError> {
+pub fn read_scn_with(path: &str, text: &str, files: &mut dyn Files, unknown: Unknown) -> Result<Reading, SceneError> {
     let mut reader = Reader {
         files,
         unknown,
         skipped: 0,
+        remarks: Vec::new(),
         root: path,
         scene: SceneFile::new(),
         gravity: None,
@@ -89,7 +97,8 @@ pub fn read_scn_with(
         let (count, s) = (reader.skipped, if reader.skipped == 1 { "" } else { "s" });
         reader.warnings.insert(0, format!("{path}: {count} unknown command{s} passed over"));
     }
-    Ok((reader.scene, reader.warnings))
+    let Reader { scene, warnings, remarks, .. } = reader;
+    Ok(Reading { scene, warnings, remarks })
 }
 
 /// The path of `name`, which the file at `path` names: relative to its folder, with `.` and `..` resolved.
@@ -123,6 +132,7 @@ struct Reader<'a> {
     scene: SceneFile,
     gravity: Option<Gravity>,
     warnings: Vec<String>,
+    remarks: Vec<String>,
     /// The files being read, the outermost first.
     open: Vec<String>,
     includes: usize,
@@ -222,7 +232,8 @@ impl Reader<'_> {
         let scene = &mut self.scene;
         match command {
             Command::Particle { mut particle, material } => {
-                self.remark(scope, place, name, odd_elasticity(Varied::exactly(particle.elasticity)), "elasticity");
+                let odd = odd_elasticity(Varied::exactly(particle.elasticity)).filter(|_| !particle.fixed);
+                self.remark(scope, place, name, odd, "elasticity");
                 particle.material = self.inherited(scope, scope.material(name, material)?);
                 scope.particles.push(self.scene.particles.len() as u32);
                 self.scene.particles.push(particle);
@@ -274,7 +285,8 @@ impl Reader<'_> {
 
     fn source(&mut self, scope: &Scope<'_>, place: Place, name: &str, source: Source<'_>) -> Result<(), SceneError> {
         let Source { newborn, material, rate, velocity, angle_cutoff, shape } = source;
-        self.remark(scope, place, name, odd_elasticity(Varied::exactly(newborn.elasticity)), "elasticity");
+        let odd = odd_elasticity(Varied::exactly(newborn.elasticity)).filter(|_| !newborn.fixed);
+        self.remark(scope, place, name, odd, "elasticity");
         self.remark(scope, place, name, odd_cutoff(angle_cutoff), "angle cutoff");
         let shape = self.shape(scope, place, name, &shape)?;
         let material = self.inherited(scope, scope.material(name, material)?);
@@ -339,7 +351,7 @@ impl Reader<'_> {
     /// Warns of what is odd about an argument.
     fn remark(&mut self, scope: &Scope<'_>, place: Place, name: &str, odd: Option<String>, argument: &str) {
         if let Some(odd) = odd {
-            self.warnings.push(scope.error(place, name, format!("{argument}: {odd}")).to_string());
+            self.remarks.push(scope.error(place, name, format!("{argument}: {odd}")).to_string());
         }
     }
 

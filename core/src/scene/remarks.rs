@@ -17,7 +17,8 @@ impl SceneFile {
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         let mut add = |at: String, remark: Option<String>| remarks.extend(remark.map(|text| format!("{at}: {text}")));
-        for (i, particle) in self.particles.iter().enumerate() {
+        // What is fixed hits nothing.
+        for (i, particle) in self.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed) {
             add(format!("particles[{i}].elasticity"), odd_elasticity(Varied::exactly(particle.elasticity)));
         }
         for (i, spring) in self.springs.iter().enumerate() {
@@ -28,7 +29,7 @@ impl SceneFile {
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
             let (Spread::Uniform(cutoff) | Spread::Lecture(cutoff)) = emitter.spread;
-            add(format!("emitters[{i}].elasticity"), odd_elasticity(emitter.elasticity));
+            add(format!("emitters[{i}].elasticity"), odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed));
             add(format!("emitters[{i}].spread"), odd_cutoff(cutoff));
             let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
             let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
