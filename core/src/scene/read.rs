@@ -1,7 +1,7 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
 use super::check::{MAX_GROUPS, MAX_MATERIALS};
-use super::remarks::{odd_cutoff, odd_elasticity, odd_ends};
+use super::remarks::{odd_elasticity, odd_ends};
 use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands};
 use super::{Camera, Group, Item, Light, Material, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
@@ -287,7 +287,6 @@ impl Reader<'_> {
         let Source { newborn, material, rate, velocity, angle_cutoff, shape } = source;
         let odd = odd_elasticity(Varied::exactly(newborn.elasticity)).filter(|_| !newborn.fixed);
         self.remark(scope, place, name, odd, "elasticity");
-        self.remark(scope, place, name, odd_cutoff(angle_cutoff), "angle cutoff");
         let shape = self.shape(scope, place, name, &shape)?;
         let material = self.inherited(scope, scope.material(name, material)?);
         self.scene.emitters.push(Emitter {

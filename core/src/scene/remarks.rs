@@ -8,8 +8,8 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// All directions \[rad\], and what π is rounded to in files.
-const HALF_TURN: f32 = 3.142;
+/// All directions \[rad\]: π, also as files round it.
+const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
 
 impl SceneFile {
     /// What it says that can be run but is hardly meant, each by its path in the file.
@@ -28,9 +28,8 @@ impl SceneFile {
             add(format!("fabrics[{i}].elasticity"), odd_elasticity(Varied::exactly(fabric.elasticity)));
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
-            let (Spread::Uniform(cutoff) | Spread::Lecture(cutoff)) = emitter.spread;
             add(format!("emitters[{i}].elasticity"), odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed));
-            add(format!("emitters[{i}].spread"), odd_cutoff(cutoff));
+            add(format!("emitters[{i}].spread"), odd_spread(emitter.spread));
             let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
             let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
             add(format!("emitters[{i}].stop"), ended.map(nothing));
@@ -55,8 +54,9 @@ pub(super) fn odd_elasticity(Varied { mean, variance }: Varied) -> Option<String
     (least < 0.0).then(|| format!("{least} is below 0, which no hit can leave of a speed"))
 }
 
-/// What is odd about the angle within which births leave.
-pub(super) fn odd_cutoff(cutoff: f32) -> Option<String> {
+/// What is odd about the angle within which births leave. The lecture's recipe takes the sine of any.
+fn odd_spread(spread: Spread) -> Option<String> {
+    let Spread::Uniform(cutoff) = spread else { return None };
     (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
 }
 

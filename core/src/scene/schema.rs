@@ -4,29 +4,22 @@ use super::SceneFile;
 use super::json::compact_numbers;
 use alloc::string::String;
 use alloc::vec::Vec;
+use schemars::Schema;
+use schemars::transform::{RecursiveTransform, Transform};
 use serde_json::Value;
 
 /// The JSON Schema of scene files, as text.
 #[must_use]
 pub fn schema() -> String {
-    let mut schema = schemars::schema_for!(SceneFile).to_value();
-    describe(&mut schema);
+    let mut schema = schemars::schema_for!(SceneFile);
+    RecursiveTransform(describe).transform(&mut schema);
     compact_numbers(&serde_json::to_string_pretty(&schema).unwrap_or_default())
 }
 
-/// Puts every description into plain words. Schemas nest no deeper than the types they are of.
-fn describe(schema: &mut Value) {
-    match schema {
-        Value::Object(fields) => {
-            for (name, value) in fields {
-                match value {
-                    Value::String(text) if name == "description" => *text = plain(text),
-                    value => describe(value),
-                }
-            }
-        }
-        Value::Array(list) => list.iter_mut().for_each(describe),
-        _ => {}
+/// Puts the description into plain words.
+fn describe(schema: &mut Schema) {
+    if let Some(Value::String(text)) = schema.get_mut("description") {
+        *text = plain(text);
     }
 }
 
@@ -50,7 +43,14 @@ fn plain(comment: &str) -> String {
         }
         is_new = false;
     }
-    paragraphs.iter().map(|paragraph| unmarked(paragraph)).collect::<Vec<_>>().join("\n")
+    let words = paragraphs.iter().map(|paragraph| about_files(&unmarked(paragraph)));
+    words.filter(|words| !words.is_empty()).collect::<Vec<_>>().join("\n")
+}
+
+/// A paragraph without the sentences that name something of the program, which files do not have.
+fn about_files(paragraph: &str) -> String {
+    let sentences = paragraph.split_inclusive(". ").filter(|sentence| !sentence.contains("::"));
+    sentences.collect::<String>().trim_end().into()
 }
 
 /// A paragraph without backslashes, backticks and the targets of links.
@@ -96,7 +96,7 @@ mod tests {
     fn markup_is_left_out() {
         for (comment, words) in [
             ("Speed \\[m/s\\].", "Speed [m/s]."),
-            ("See [`Drag`](super::Drag), [`Force::add_to`]\nand [here](x).", "See Drag, Force::add_to and here."),
+            ("See [`Drag`](super::Drag)\nand [here](x). It is left out of [`Force::add_to`].", "See Drag and here."),
             ("In [0, sin c). It\nis `so`.", "In [0, sin c). It is so."),
             ("One\ntwo.\n\nThree.\n\n```\nlet x = [`1`];\n\n```\n\nFour.", "One two.\nThree.\nFour."),
             ("[a] b", "[a] b"),
@@ -112,7 +112,7 @@ mod tests {
                 Value::Object(fields) => fields.iter().for_each(|(name, value)| match value {
                     Value::String(text) if name == "description" => {
                         *count += 1;
-                        let has_markup = ["\\", "`", "](", "::]", "<"].iter().any(|mark| text.contains(mark));
+                        let has_markup = ["\\", "`", "](", "::", "<"].iter().any(|mark| text.contains(mark));
                         assert!(!has_markup && !text.is_empty(), "{text}");
                     }
                     value => look(value, count),
