@@ -7,6 +7,7 @@ use crate::meshes::Made;
 use crate::substeps::Substeps;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use pointmass::index::Structure;
+use pointmass::scene::Unknown;
 use pointmass::{Method, Response, rays};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -55,11 +56,22 @@ pub enum Command {
     Schema,
 }
 
+/// How a scene is read.
+#[derive(Clone, Copy, Debug, Default, ClapArgs)]
+pub struct Reading {
+    /// Pass over commands that .scn does not have, up to the next line that begins with one it has, with a warning each
+    #[arg(long)]
+    pub skip_unknown: bool,
+}
+
 /// How a scene is run.
 #[derive(Debug, ClapArgs)]
 pub struct World {
     /// The scene: .json or .scn
     pub scene: PathBuf,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: Reading,
     /// How many seconds; by default what the scene says, 10 for .scn
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub duration: Option<f64>,
@@ -71,7 +83,8 @@ pub struct World {
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<Method>,
     /// How forces between neighbours find them: brute, grid, hash, quadtree, octree, kd, bsp or bvh; by default what the
-    /// scene says, else grid
+    /// scene says, else grid. Sums over neighbours are rounded in its order: scenes with lennard_jones, power_law,
+    /// viscosity, or contacts by force or position end in other bits by another index
     #[arg(long, value_name = "NAME")]
     pub index: Option<Structure>,
     /// How particles that have a radius answer each other: impulse, force or position; by default what the scene says,
@@ -160,6 +173,9 @@ pub struct Render {
 pub struct Convert {
     /// The scene to read: .scn or .json
     pub from: PathBuf,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: Reading,
     /// The scene to write: .scn or .json
     #[arg(value_parser = scene_format)]
     pub to: (PathBuf, SceneFormat),
@@ -170,6 +186,9 @@ pub struct Convert {
 pub struct Check {
     /// The scene: .json or .scn
     pub scene: PathBuf,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: Reading,
     /// The step in seconds that is judged, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
     #[arg(long, value_name = "S", value_parser = step)]
     pub dt: Option<f64>,
@@ -194,6 +213,9 @@ pub struct Compare {
     /// The particles of a scene: .json or .scn, run to the time --at
     #[arg(long, value_name = "SCENE", conflicts_with = "distribution")]
     pub scene: Option<PathBuf>,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: Reading,
     /// When a scene's particles are taken, in seconds; by default at the end of its duration
     #[arg(long, value_name = "S", value_parser = seconds, requires = "scene")]
     pub at: Option<f64>,
@@ -257,6 +279,9 @@ pub struct Lab {
     /// A scene instead of the reference problems: .json or .scn
     #[arg(conflicts_with = "problems")]
     pub scene: Option<PathBuf>,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: Reading,
     /// Which reference problems
     #[arg(
         long,
@@ -286,6 +311,14 @@ pub struct Lab {
     /// Print the errors of every step
     #[arg(long)]
     pub detail: bool,
+}
+
+impl Reading {
+    /// What becomes of a command that `.scn` does not have.
+    #[must_use]
+    pub fn unknown(self) -> Unknown {
+        if self.skip_unknown { Unknown::Skip } else { Unknown::Refuse }
+    }
 }
 
 /// Integrators to try, each once.

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// If the scene cannot be used or the file cannot be written, which is then left as it was.
 pub fn convert(args: &args::Convert) -> Outcome {
-    let mut scene = load::scene(&args.from)?;
+    let mut scene = load::declared(&args.from, args.reading.unknown())?;
     scene.check().map_err(|error| error.in_file(&args.from.to_string_lossy()))?;
     let (path, format) = &args.to;
     rebase(&mut scene, folder(&args.from)?, folder(path)?);

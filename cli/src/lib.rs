@@ -11,6 +11,7 @@ pub mod compare;
 pub mod convert;
 pub mod draw;
 pub mod formats;
+mod grid;
 pub mod groups;
 pub mod lab;
 pub mod load;
@@ -24,6 +25,7 @@ pub mod report;
 pub mod run;
 mod stage;
 pub mod substeps;
+pub mod temporary;
 pub mod whole;
 mod words;
 pub mod world;
@@ -35,7 +37,8 @@ use std::process::ExitCode;
 /// What the command does: parses its arguments, does what they say, and turns the outcome into an exit code.
 #[must_use]
 pub fn main(peers: compare::Peers) -> ExitCode {
-    let args = Args::parse();
+    temporary::clean_up_when_interrupted();
+    let args = Args::try_parse().unwrap_or_else(|error| refuse(&error));
     let outcome = match &args.command {
         Command::Run(args) => run::run(args),
         Command::Render(args) => render::render(args),
@@ -54,6 +57,17 @@ pub fn main(peers: compare::Peers) -> ExitCode {
     }
 }
 
+/// Says what is wrong with the arguments, or helps, and ends the program. What is quoted may hold codes that terminals
+/// obey; then it goes without colours.
+fn refuse(error: &clap::Error) -> ! {
+    let is_harmless = |text: &str| harmless(text) == text;
+    if std::env::args_os().all(|argument| is_harmless(&argument.to_string_lossy())) {
+        error.exit();
+    }
+    eprint!("{}", harmless(&error.render().to_string()));
+    std::process::exit(error.exit_code());
+}
+
 /// What went wrong, as one line for a person.
 #[derive(Debug)]
 pub struct Failure(String);
@@ -66,7 +80,7 @@ impl Failure {
 
     /// A failure to read or write `path`.
     pub fn io(path: &std::path::Path, error: &std::io::Error) -> Self {
-        Self(format!("{}: {error}", path.display()))
+        Self(format!("{}: {error}{}", path.display(), hint(path, error)))
     }
 }
 
@@ -76,13 +90,38 @@ impl std::fmt::Display for Failure {
     }
 }
 
+/// Which file may be meant where there is none.
+pub(crate) fn hint(path: &std::path::Path, error: &std::io::Error) -> String {
+    let is_missing = error.kind() == std::io::ErrorKind::NotFound;
+    let alike = is_missing.then(|| load::alike(path)).flatten();
+    alike.map_or(String::new(), |name| format!("; did you mean {name}?"))
+}
+
+/// Text as a terminal may show it: names in it come from files and arguments, and may hold codes that terminals obey.
+/// Lines stay lines, and JSON stays the same JSON.
+#[must_use]
+pub fn harmless(text: &str) -> String {
+    let obeyed = |c: char| c != '\n' && (c.is_control() || is_bidirectional(c));
+    let mut harmless = String::with_capacity(text.len());
+    for c in text.chars() {
+        if obeyed(c) { harmless.push_str(&format!("\\u{:04x}", u32::from(c))) } else { harmless.push(c) }
+    }
+    harmless
+}
+
+/// Whether it changes the order in which letters are shown.
+fn is_bidirectional(c: char) -> bool {
+    matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 /// A message as one line of bounded length: names in it come from files, and may hold anything.
 fn one_line(message: &str) -> String {
     const LONGEST: usize = 600;
     let mut line: String = message
         .chars()
         .flat_map(|c| {
-            c.is_control().then(|| c.escape_debug()).into_iter().flatten().chain((!c.is_control()).then_some(c))
+            let escaped = c.is_control() || is_bidirectional(c);
+            escaped.then(|| c.escape_debug()).into_iter().flatten().chain((!escaped).then_some(c))
         })
         .take(LONGEST)
         .collect();
@@ -110,7 +149,7 @@ pub type Outcome<T = ()> = Result<T, Failure>;
 pub fn print(text: &str) -> Outcome {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure(format!("standard output: {error}")))
         }

@@ -3,11 +3,11 @@
 use crate::formats::SceneFormat;
 use crate::meshes::{self, MAX_BYTES};
 use crate::{Failure, Outcome, warn};
-use pointmass::scene::{Files, SceneFile, read_scn};
+use pointmass::scene::{Files, Reading, SceneError, SceneFile, Unknown, read_scn_with};
 use pointmass::shape::MeshBuf;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Files on disk, by path.
 #[derive(Debug)]
@@ -26,6 +26,10 @@ impl Files for Disk {
     fn exists(&mut self, path: &str) -> bool {
         Path::new(path).is_file()
     }
+
+    fn alike(&mut self, path: &str) -> Option<String> {
+        alike(Path::new(path))
+    }
 }
 
 /// Reads a scene file and prints its warnings.
@@ -33,18 +37,75 @@ impl Files for Disk {
 /// # Errors
 /// If it cannot be read, with file, line and column where there are such.
 pub fn scene(path: &Path) -> Outcome<SceneFile> {
-    let text = text(path)?;
-    let name = path.to_string_lossy();
-    let is_json = match SceneFormat::of(path) {
-        Some(format) => format == SceneFormat::Json,
-        None => text.trim_start().starts_with('{'),
-    };
-    if is_json {
-        return Ok(SceneFile::from_json(&name, &text)?);
-    }
-    let (scene, warnings) = read_scn(&name, &text, &mut Disk)?;
+    scene_with(path, Unknown::Refuse)
+}
+
+/// The same, which may pass over commands that are `unknown` in `.scn`.
+///
+/// # Errors
+/// As of [`scene`].
+pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
+    let Reading { scene, warnings, remarks } = read(path, unknown)?;
+    warn(&[warnings, remarks].concat());
+    Ok(scene)
+}
+
+/// The same for those who only translate it, without remarks on what it says.
+///
+/// # Errors
+/// As of [`scene`].
+pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
+    let Reading { scene, warnings, .. } = read(path, unknown)?;
     warn(&warnings);
     Ok(scene)
+}
+
+fn read(path: &Path, unknown: Unknown) -> Outcome<Reading> {
+    let format = SceneFormat::of(path);
+    if format.is_none() && path.is_file() {
+        let path = path.display();
+        return Err(Failure::new(format!("{path}: expected a scene, whose name ends in .json or .scn")));
+    }
+    let (text, name) = (text(path)?, path.to_string_lossy());
+    // A pipe has no name to tell by.
+    let is_json = format.map_or_else(|| text.trim_start().starts_with('{'), |format| format == SceneFormat::Json);
+    if !is_json {
+        return Ok(read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?);
+    }
+    let scene = SceneFile::from_json(&name, &text)?;
+    let remarks = scene.remarks().into_iter().map(|remark| format!("{name}:{remark}")).collect();
+    Ok(Reading { scene, warnings: Vec::new(), remarks })
+}
+
+/// How to go on where a command is unknown.
+fn hinted(error: SceneError) -> SceneError {
+    let is_unknown = error.message.starts_with("unknown command");
+    let hint = if is_unknown { "; --skip-unknown passes over such commands" } else { "" };
+    SceneError { message: error.message + hint, ..error }
+}
+
+/// The name of a file that differs from that of a missing one in capitals alone, from the first folder that does.
+pub(crate) fn alike(path: &Path) -> Option<String> {
+    let (mut found, mut shown) = (PathBuf::new(), PathBuf::new());
+    for part in path.components() {
+        let next = found.join(part);
+        if next.symlink_metadata().is_ok() {
+            found = next;
+            if shown.as_os_str().is_empty() {
+                continue;
+            }
+            shown.push(part);
+        } else {
+            let wanted = part.as_os_str().to_string_lossy().to_lowercase();
+            let folder = if found.as_os_str().is_empty() { Path::new(".") } else { &found };
+            let names = folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.file_name()));
+            let name = names.filter(|name| name.to_string_lossy().to_lowercase() == wanted).min()?;
+            found.push(&name);
+            shown.push(&name);
+        }
+    }
+    let is_other = found.is_file() && !shown.as_os_str().is_empty();
+    is_other.then(|| shown.display().to_string())
 }
 
 fn text(path: &Path) -> Outcome<String> {

@@ -1,34 +1,40 @@
 //! Files that appear under their name only once they are complete.
+//!
+//! Each is written under a passing name in the folder where it is going to be, and waits until all of a command are
+//! complete. What is no plain file, such as a pipe, gets all at once then.
 
+use crate::temporary::{PREFIX, Temporary, uninterrupted};
 use crate::{Failure, Outcome};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// A file in the making. Dropped, it is gone.
 #[derive(Debug)]
 pub struct WholeFile {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<File>,
+    temporary: Temporary,
+    target: PathBuf,
 }
 
 impl WholeFile {
-    /// Begins a file under a passing name in the folder of `path`.
+    /// Begins a file under a passing name in the folder of `path`, or of what that links to.
     ///
     /// # Errors
     /// If that folder does not exist, cannot be written to, or has a folder of that name.
     pub fn create(path: &Path) -> Outcome<Self> {
-        if path.is_dir() {
-            return Err(Failure::new(format!("{}: is a directory, expected the name of a file", path.display())));
-        }
+        let target = target_of(path)?;
+        // Nothing can lie beside a pipe in /dev.
+        let folder = if is_special(&target) { std::env::temp_dir() } else { folder_of(&target).to_path_buf() };
         let mut builder = tempfile::Builder::new();
         builder.prefix(PREFIX);
         // Temporary files are for their owner's eyes only, but this one is going to stay.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(existing_folder_of(path)?).map_err(|error| Failure::io(path, &error))?;
-        Ok(Self { path: path.to_path_buf(), file: BufWriter::new(file) })
+        let made = Temporary::new(|| builder.tempfile_in(folder)?.keep().map_err(|error| error.error));
+        let (file, temporary) = made.map_err(|error| Failure::io(path, &error))?;
+        Ok(Self { path: path.to_path_buf(), file: BufWriter::new(file), temporary, target })
     }
 
     /// What the file will be called.
@@ -42,7 +48,17 @@ impl WholeFile {
     /// # Errors
     /// If the system has no more handles.
     pub fn reopen(&self) -> io::Result<File> {
-        self.file.get_ref().as_file().try_clone()
+        self.file.get_ref().try_clone()
+    }
+
+    /// Nothing more is going to be written.
+    ///
+    /// # Errors
+    /// If what is left in the buffer cannot be.
+    pub fn close(self) -> Outcome<Written> {
+        let Self { path, file, temporary, target } = self;
+        file.into_inner().map_err(|error| Failure::io(&path, error.error()))?;
+        Ok(Written { passing: temporary.path().to_path_buf(), target, path, _kept: vec![temporary] })
     }
 
     /// Gives the file its name, in place of any older file that has it.
@@ -50,9 +66,7 @@ impl WholeFile {
     /// # Errors
     /// If what is left in the buffer cannot be written, or the file not be named.
     pub fn complete(self) -> Outcome {
-        let fail = |error: &io::Error| Failure::io(&self.path, error);
-        let file = self.file.into_inner().map_err(|error| fail(error.error()))?;
-        file.persist(&self.path).map(drop).map_err(|error| fail(&error.error))
+        publish(&[self.close()?])
     }
 }
 
@@ -63,6 +77,128 @@ impl Write for WholeFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
+    }
+}
+
+/// A file that is complete and waits for its name. Dropped, it is gone.
+#[derive(Debug)]
+pub struct Written {
+    /// Its passing name.
+    passing: PathBuf,
+    /// Where it will be.
+    target: PathBuf,
+    /// What it is called in messages.
+    path: PathBuf,
+    _kept: Vec<Temporary>,
+}
+
+/// Files that are numbered as they come, in a folder of their own until all are complete.
+#[derive(Debug)]
+pub(crate) struct Series {
+    waiting: Temporary,
+    /// The folder they will be in, if it was made for them.
+    _made: Option<Temporary>,
+    paths: Vec<PathBuf>,
+}
+
+impl Series {
+    /// Begins beside `path`.
+    ///
+    /// # Errors
+    /// If its folder is not there and not to be made, or cannot be written to.
+    pub(crate) fn create(path: &Path, may_make_folder: bool) -> Outcome<Self> {
+        let folder = folder_of(path);
+        let mut made = None;
+        if may_make_folder && !folder.is_dir() {
+            let make = || fs::create_dir(folder).map(|()| ((), folder.to_path_buf()));
+            made = Some(Temporary::new(make).map_err(|error| {
+                let (path, folder) = (path.display(), folder.display());
+                Failure::new(format!("cannot write {path}: the folder {folder} cannot be created: {error}"))
+            })?);
+        }
+        let folder = existing_folder_of(path)?;
+        let make = || Ok(((), tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder)?.keep()));
+        let ((), waiting) = Temporary::new(make).map_err(|error| Failure::io(path, &error))?;
+        Ok(Self { waiting, _made: made.map(|(_, made)| made), paths: Vec::new() })
+    }
+
+    /// A new file, which will be called `path`.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub(crate) fn next(&mut self, path: PathBuf) -> io::Result<File> {
+        // Who cleans up has to find all that there is.
+        let _uninterrupted = uninterrupted();
+        let file = File::create(self.waiting.path().join(self.paths.len().to_string()))?;
+        self.paths.push(path);
+        Ok(file)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.paths.len()
+    }
+
+    /// Nothing more is going to be written.
+    ///
+    /// # Errors
+    /// If something is in the way of one of them.
+    pub(crate) fn close(self) -> Outcome<Vec<Written>> {
+        let Self { waiting, _made, paths } = self;
+        let number = |(i, path): (usize, PathBuf)| {
+            let (passing, target) = (waiting.path().join(i.to_string()), target_of(&path)?);
+            Ok(Written { passing, target, path, _kept: Vec::new() })
+        };
+        let mut written = paths.into_iter().enumerate().map(number).collect::<Outcome<Vec<_>>>()?;
+        // The folders stay for as long as the first of them waits.
+        if let Some(first) = written.first_mut() {
+            first._kept.extend([Some(waiting), _made].into_iter().flatten());
+        }
+        Ok(written)
+    }
+}
+
+/// Gives all of them their names, or none of them if one cannot be written or something is in its way.
+///
+/// # Errors
+/// If that is so.
+pub(crate) fn publish(files: &[Written]) -> Outcome {
+    let fail = |file: &Written, error: &io::Error| Failure::io(&file.path, error);
+    for file in files {
+        file.prepare().map_err(|error| fail(file, &error))?;
+    }
+    let (special, plain): (Vec<_>, Vec<_>) = files.iter().partition(|file| is_special(&file.target));
+    // They may keep us waiting, so that one has to be able to interrupt them.
+    for file in special {
+        file.pour().map_err(|error| fail(file, &error))?;
+    }
+    let _uninterrupted = uninterrupted();
+    for (i, file) in plain.iter().enumerate() {
+        if let Err(error) = fs::rename(&file.passing, &file.target) {
+            let nothing = if i == 0 { "" } else { "; the files before it are there" };
+            return Err(Failure::new(format!("{}: {error}{nothing}", file.path.display())));
+        }
+    }
+    Ok(())
+}
+
+impl Written {
+    /// Brings it to the disk, with the mode of what it replaces.
+    fn prepare(&self) -> io::Result<()> {
+        if self.target.is_dir() {
+            return Err(io::Error::other("is a directory, and in the way of a file"));
+        }
+        let old = fs::metadata(&self.target).ok().filter(fs::Metadata::is_file);
+        old.map_or(Ok(()), |old| fs::set_permissions(&self.passing, old.permissions()))?;
+        File::open(&self.passing)?.sync_all()
+    }
+
+    /// Copies it into what is no plain file. That its reader has gone away is no error.
+    fn pour(&self) -> io::Result<()> {
+        let mut target = fs::OpenOptions::new().write(true).open(&self.target)?;
+        match io::copy(&mut File::open(&self.passing)?, &mut target) {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -89,17 +225,42 @@ impl<F: Copy> Outs<F> {
     ///
     /// # Errors
     /// If a text cannot be made or a file not be written.
-    pub fn write(mut self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
-        for (file, format) in &mut self.0 {
-            let written = file.write_all(text(*format)?.as_bytes());
+    pub fn write(self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
+        let write = |(mut file, format): (WholeFile, F)| {
+            let written = file.write_all(text(format)?.as_bytes());
             written.map_err(|error| Failure::io(file.path(), &error))?;
-        }
-        self.0.into_iter().try_for_each(|(file, _)| file.complete())
+            file.close()
+        };
+        publish(&self.0.into_iter().map(write).collect::<Outcome<Vec<_>>>()?)
     }
 }
 
-/// How passing names begin.
-pub(crate) const PREFIX: &str = ".pointmass-";
+/// Where what is written to `path` goes: links are followed, also those to what is not there yet.
+fn target_of(path: &Path) -> Outcome<PathBuf> {
+    /// Links that are followed; more are taken for a circle.
+    const MOST: usize = 40;
+    if path.is_dir() {
+        return Err(Failure::new(format!("{}: is a directory, expected the name of a file", path.display())));
+    }
+    let mut target = path.to_path_buf();
+    for _ in 0..MOST {
+        match fs::read_link(&target) {
+            // What a process has open is a link that leads nowhere.
+            Ok(_) if is_special(&target) => return Ok(target),
+            Ok(next) => target = folder_of(&target).join(next),
+            Err(_) => {
+                existing_folder_of(path)?;
+                return existing_folder_of(&target).map(|_| target.clone());
+            }
+        }
+    }
+    Err(Failure::new(format!("{}: links to itself", path.display())))
+}
+
+/// Whether it is there and no plain file: a pipe, a terminal, a device.
+fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|facts| !facts.is_file() && !facts.is_dir())
+}
 
 /// The folder a path is in, as it is named.
 #[must_use]

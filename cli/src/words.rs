@@ -16,11 +16,13 @@ pub(crate) fn say(text: &mut String, line: &str) {
     let _ = writeln!(text, "{}", line.trim_end());
 }
 
-/// Words in lines that can be read, behind a mark; what follows the first line stands further in.
+/// Letters that a line of a terminal has room for.
+pub(crate) const WIDTH: usize = 80;
+
+/// Words in lines that fit a terminal, behind a mark; what follows the first line stands further in.
 pub(crate) fn paragraph(text: &mut String, mark: &str, words: &str) {
-    const WIDTH: usize = 100;
     let mut line = mark.to_string();
-    for word in words.split_whitespace() {
+    for word in words.split_whitespace().flat_map(|word| pieces(word, WIDTH - 4)) {
         if line.chars().count() + 1 + word.chars().count() > WIDTH {
             say(text, &line);
             line = "   ".into();
@@ -29,6 +31,17 @@ pub(crate) fn paragraph(text: &mut String, mark: &str, words: &str) {
         line.push_str(word);
     }
     say(text, &line);
+}
+
+/// A word in pieces of so many letters at the most.
+fn pieces(word: &str, most: usize) -> impl Iterator<Item = &str> {
+    let mut rest = word;
+    std::iter::from_fn(move || {
+        let end = rest.char_indices().nth(most).map_or(rest.len(), |(end, _)| end);
+        let (piece, after) = rest.split_at(end);
+        rest = after;
+        (!piece.is_empty()).then_some(piece)
+    })
 }
 
 /// A number of things, in words that agree.

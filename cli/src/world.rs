@@ -8,7 +8,7 @@ use crate::substeps::{Pace, Substeps};
 use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::Limit;
-use pointmass::{Heap, Method, Observer, Report, Response, System, Time};
+use pointmass::{ForceKind, Heap, Method, Observer, Report, Response, System, Time};
 
 /// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
 const TOLERANCE: f64 = 1e-4;
@@ -36,7 +36,7 @@ impl World {
     /// # Errors
     /// If the scene cannot be used.
     pub fn load(args: &args::World) -> Outcome<Self> {
-        let mut file = load::scene(&args.scene)?;
+        let mut file = load::scene_with(&args.scene, args.reading.unknown())?;
         let run = &mut file.run;
         run.integrator = args.integrator.unwrap_or(run.integrator);
         if let Some(tolerance) = args.tolerance.filter(|_| run.integrator.chooses_steps()) {
@@ -71,7 +71,8 @@ impl World {
         let mut system = System::with(memory);
         system.start(&model.scene(), seed).map_err(|unfit| Failure::new(unfit.to_string()))?;
         let method = model.integrator.method;
-        let limit = if method.chooses_steps() { Limit::Unconditional } else { Bounds::of(&model).largest_step(method) };
+        let chosen = args.substeps == Substeps::Auto && !method.chooses_steps();
+        let limit = if chosen { Bounds::of(&model).largest_step(method) } else { Limit::Unconditional };
         let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
         let pace = Pace::new(args.substeps, limit, tolerance);
         Ok(Self { file, model, system, duration, dt, pace })
@@ -81,6 +82,23 @@ impl World {
     #[must_use]
     pub fn integrator(&self) -> Method {
         self.model.integrator.method
+    }
+
+    /// What is summed over neighbours in the order of the index: forces, and contacts by force or position.
+    #[must_use]
+    pub fn summed_by_index(&self) -> Vec<&'static str> {
+        let is_summed = |force: &&ForceKind| {
+            matches!(force, ForceKind::LennardJones(_) | ForceKind::PowerLaw(_) | ForceKind::Viscosity(_))
+        };
+        let mut names: Vec<_> = self.model.forces.0.iter().filter(is_summed).map(ForceKind::kind).collect();
+        let has_balls = self.model.has_balls();
+        names.extend(self.file.contacts.filter(|_| has_balls).and_then(|response| match response {
+            Response::Impulse(_) => None,
+            Response::Force(_) => Some("contacts by force"),
+            Response::Position(_) => Some("contacts by position"),
+        }));
+        names.dedup();
+        names
     }
 
     /// Warns of steps \[s\] that are going to explode in a run of some duration \[s\], unless they are divided as need be.

@@ -1,6 +1,7 @@
 //! What to change.
 
 use super::bounds::place;
+use super::contact::STEPS;
 use super::report::{Check, Stand};
 use super::words::{plain, time, typed};
 use crate::words::counted;
@@ -16,7 +17,7 @@ const PULL: f64 = 10.0;
 pub(crate) fn advise(check: &Check, model: &Model) -> Vec<String> {
     let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
     let mut advice = Vec::new();
-    match stand.every_pose.and(stand.drag) {
+    match stand.every_pose.and(stand.drag).and(stand.contact) {
         _ if stand.chooses_steps => advice.push(format!("{} chooses its own steps", stand.method)),
         limit if limit.admits(check.dt) => advice.push(fine(check, limit)),
         Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
@@ -39,7 +40,7 @@ fn fine(check: &Check, limit: Limit) -> String {
                 false => text,
             }
         }
-        _ => format!("neither springs nor drag limit the step of {method}: {step} or any other"),
+        _ => format!("neither springs nor drag nor contacts limit the step of {method}: {step} or any other"),
     }
 }
 
@@ -48,6 +49,9 @@ fn too_long(check: &Check, stand: &Stand, limit: f64) -> Vec<String> {
     let step = time(check.dt);
     let mut advice = vec![
         match stand.at_rest.and(stand.drag).admits(check.dt) {
+            true if !stand.contact.admits(check.dt) => {
+                format!("steps of {step} by {} are too long for contacts by force: hits add energy", stand.method)
+            }
             true => format!("steps of {step} by {} are not stable in every pose: they may explode", stand.method),
             false => format!("steps of {step} by {} explode", stand.method),
         },
@@ -124,6 +128,13 @@ fn world(check: &Check) -> Vec<String> {
         advice.push(format!(
             "steps longer than {} bend too much for their hits to be found within 0.1 mm",
             time(followed.step)
+        ));
+    }
+    if let Some(hit) = check.hit.filter(|hit| check.dt * STEPS > *hit) {
+        advice.push(format!(
+            "a hit lasts {}: take --dt {} or less for ten steps in it, as many as its bounce takes to be right",
+            time(hit),
+            typed(0.1 * hit)
         ));
     }
     if let Some(pair) = check.pair.as_ref().filter(|pair| check.dt * ORBIT > pair.period) {

@@ -1,5 +1,6 @@
 //! What bounds the step of a scene: its springs in every pose, and drag.
 
+use super::contact::Contact;
 use super::words::{plain, time};
 use pointmass::scene::Model;
 use pointmass::stability::{Limit, Mode, Poses};
@@ -13,6 +14,8 @@ pub(crate) struct Bounds {
     pub(crate) stiffest: Option<Part>,
     /// What drag slows down most.
     pub(crate) dragged: Option<Part>,
+    /// The balls that push each other apart most abruptly.
+    pub(crate) contact: Option<Contact>,
 }
 
 /// A part of a scene that bounds the step.
@@ -36,11 +39,17 @@ impl Bounds {
             poses: Poses::of(&particles, &model.springs, has_drag),
             stiffest: stiffest(model),
             dragged: if has_drag { dragged(model) } else { None },
+            contact: Contact::of(model),
         }
     }
 
     /// The largest stable step, whatever the springs' pose and whoever is born.
     pub(crate) fn largest_step(&self, method: Method) -> Limit {
+        self.lasting_step(method).and(self.contact_step(method))
+    }
+
+    /// That of springs and drag, which always act.
+    fn lasting_step(&self, method: Method) -> Limit {
         self.poses.largest_step(method).and(self.drag_step(method))
     }
 
@@ -49,12 +58,19 @@ impl Bounds {
         self.dragged.as_ref().map_or(Limit::Unconditional, |part| part.mode.largest_step(method))
     }
 
+    /// The largest step that contacts by force allow.
+    pub(crate) fn contact_step(&self, method: Method) -> Limit {
+        self.contact.as_ref().map_or(Limit::Unconditional, |contact| contact.largest_step(method))
+    }
+
     /// What to say of a run with this step \[s\] that takes this long \[s\].
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
+        if method.chooses_steps() {
+            return Vec::new();
+        }
         let culprit = || self.culprit(method).unwrap_or_default();
         let growth = self.growth(method, step);
-        match self.largest_step(method) {
-            _ if method.chooses_steps() => Vec::new(),
+        let mut warnings = match self.lasting_step(method) {
             Limit::Step(limit) if step > limit => vec![format!(
                 "steps of {} are beyond what {method} stands in every pose, {}, because of {}; try --substeps auto, or see \
                  `pointmass check`",
@@ -70,7 +86,9 @@ impl Bounds {
                 culprit()
             )],
             _ => Vec::new(),
-        }
+        };
+        warnings.extend(self.contact.as_ref().and_then(|contact| contact.warning(method, step)));
+        warnings
     }
 
     /// How fast the fastest oscillation that nothing damps grows \[1/s\].

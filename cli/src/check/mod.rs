@@ -1,10 +1,12 @@
 //! `pointmass check`: which steps a scene stands, what limits them, and what to change.
 //!
-//! `net` makes matrices of the springs, `modes` and `verlet` work out their oscillations at rest, `bounds` what holds in every pose, `world` what else has a
-//! time of its own; `report` is what it came to, which `advice` puts into words, and `text`, `plot` and `page` tell.
+//! `net` makes matrices of the springs, `modes` and `verlet` work out their oscillations at rest, `bounds` what holds in
+//! every pose, `contact` and `hit` what touching balls ask for, `world` what else has a time of its own; `report` is what it came to, which `advice` puts into words, and `text`, `plot` and `page` tell.
 
 mod advice;
 mod bounds;
+mod contact;
+mod hit;
 mod modes;
 mod net;
 mod page;
@@ -40,7 +42,8 @@ fn draw(
     method: Method,
 ) -> Outcome {
     let modes = spectrum.iter().flat_map(|spectrum| spectrum.modes.iter().copied());
-    let modes = modes.chain(check.dragged.iter().map(|part| part.mode)).collect();
+    let parts = check.dragged.iter().chain(&check.touching);
+    let modes = modes.chain(parts.map(|part| part.mode)).collect();
     let scenery = Scenery { check, modes, method };
     let text = match format {
         PlotFormat::Svg => plot::svg(&scenery)?,
@@ -60,7 +63,7 @@ fn wide(v: pointmass::Vec3) -> nalgebra::Vector3<f64> {
 /// # Errors
 /// If the scene cannot be used or a file cannot be written.
 pub fn check(args: &args::Check) -> Outcome {
-    let mut file = load::scene(&args.scene)?;
+    let mut file = load::scene_with(&args.scene, args.reading.unknown())?;
     let run = &mut file.run;
     run.integrator = args.integrator.unwrap_or(run.integrator);
     run.dt = args.dt.unwrap_or(run.dt);

@@ -1,19 +1,21 @@
 //! A check as a page that stands alone: no scripts, nothing from the network.
 
 use super::plot::{Scenery, svg};
-use super::text::{at_rest, facts, verdict};
-use super::words::{limit, time};
+use super::text::{facts, heads, limits, verdict};
+use super::words::time;
 use crate::Outcome;
 use crate::page::{STYLE, escape};
 use std::fmt::Write;
 
 /// What the figures mean.
-const NOTES: [&str; 4] = [
+const NOTES: [&str; 5] = [
     "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
     "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
      and other forces; what only drifts is left out.",
     "Every pose: the stiffness at each particle over its mass, as if all its springs pulled in one line, which no pose \
      exceeds near the springs' rest lengths. Springs that are damped more or less than others are taken at their worst.",
+    "Contact: hits of balls that push each other apart give back no more energy than they take, however the steps fall \
+     within them, nor does a ball grow restless among as many of its size as can touch it.",
     "Taut springs pull across themselves as well, and their damping does not act there: explicit Euler and the midpoint \
      method make that grow at any step, however slowly.",
 ];
@@ -38,14 +40,14 @@ pub(crate) fn html(scenery: &Scenery<'_>) -> Outcome<String> {
         let _ = writeln!(page, "<li>{}</li>", escape(advice));
     }
     page.push_str("</ul>\n<h2>The largest steps</h2>\n<div class=\"wide\"><table><tr><th></th>");
-    let head = ["at rest", "every pose", "drag", &format!("at {}", time(check.dt))];
-    head.iter().for_each(|name| page.push_str(&format!("<th>{}</th>", escape(name))));
+    let head = heads(check).into_iter().chain([format!("at {}", time(check.dt))]);
+    head.into_iter().for_each(|name| page.push_str(&format!("<th>{}</th>", escape(&name))));
     page.push_str("</tr>\n");
     for stand in &check.methods {
         let class = if stand.method == check.integrator { " class=\"best\"" } else { "" };
         let _ = write!(page, "<tr><td{class}>{}</td>", escape(&stand.method));
-        let cells = [at_rest(stand), limit(stand.every_pose), limit(stand.drag), verdict(stand)];
-        cells.iter().for_each(|cell| page.push_str(&format!("<td{class}>{}</td>", escape(cell))));
+        let cells = limits(check, stand).into_iter().chain([verdict(stand)]);
+        cells.into_iter().for_each(|cell| page.push_str(&format!("<td{class}>{}</td>", escape(&cell))));
         page.push_str("</tr>\n");
     }
     page.push_str("</table></div>\n<h2>Where methods are stable</h2>\n<div class=\"charts\">\n");

@@ -2,6 +2,7 @@
 
 use super::advice::advise;
 use super::bounds::{Bounds, Part, in_air};
+use super::contact::Contact;
 use super::modes::{How, Spectrum};
 use super::world::{Followed, Pair, Pull, fastest_pair, followed, not_judged, pulls};
 use pointmass::Method;
@@ -30,6 +31,9 @@ pub(crate) struct Check {
     pub(crate) stiffest: Option<Part>,
     /// What drag slows down most.
     pub(crate) dragged: Option<Part>,
+    /// The balls that push each other apart most abruptly, and how long a hit of them lasts.
+    pub(crate) touching: Option<Part>,
+    pub(crate) hit: Option<f64>,
     pub(crate) methods: Vec<Stand>,
     /// How long paths may be to be followed with full accuracy to what they hit.
     pub(crate) followed: Option<Followed>,
@@ -68,6 +72,8 @@ pub(crate) struct Stand {
     pub(crate) every_pose: Limit,
     /// The largest step that drag allows.
     pub(crate) drag: Limit,
+    /// The largest step in which contacts by force add no energy.
+    pub(crate) contact: Limit,
     /// Whether it stands the step that is judged.
     pub(crate) stable: bool,
     /// How fast an oscillation across taut springs may grow at that step.
@@ -91,6 +97,8 @@ impl Check {
             oscillations: spectrum.as_ref().map(oscillations),
             stiffest: bounds.stiffest,
             dragged: bounds.dragged,
+            hit: bounds.contact.as_ref().map(Contact::duration),
+            touching: bounds.contact.map(|contact| contact.part),
             methods,
             followed: followed(model),
             // An orbit that takes far longer than the run is none.
@@ -107,6 +115,7 @@ impl Check {
 fn stand(method: Method, bounds: &Bounds, spectrum: Option<&Spectrum>, dt: f64) -> Stand {
     let at_rest = spectrum.map_or(Limit::Unconditional, |spectrum| spectrum.largest_step(method));
     let (every_pose, drag) = (bounds.poses.largest_step(method), bounds.drag_step(method));
+    let contact = bounds.contact_step(method);
     Stand {
         method: method.to_string(),
         chooses_steps: method.chooses_steps(),
@@ -114,7 +123,8 @@ fn stand(method: Method, bounds: &Bounds, spectrum: Option<&Spectrum>, dt: f64) 
         estimated: spectrum.is_some_and(|spectrum| spectrum.is_estimate(method)),
         every_pose,
         drag,
-        stable: method.chooses_steps() || every_pose.and(drag).admits(dt),
+        contact,
+        stable: method.chooses_steps() || every_pose.and(drag).and(contact).admits(dt),
         growth_across: bounds.growth(method, dt),
     }
 }

@@ -14,25 +14,37 @@ pub(crate) fn text(check: &Check) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{name:>10}  {value}");
     }
-    let _ = writeln!(
-        text,
-        "\n{:18} {:>13} {:>13} {:>13}   at {}",
-        "largest step",
-        "at rest",
-        "every pose",
-        "drag",
-        time(check.dt)
-    );
+    let row = |name: &str, cells: &[String], end: &str| {
+        let cells: String = cells.iter().map(|cell| format!(" {cell:>13}")).collect();
+        format!("{name:18}{cells}   {end}")
+    };
+    let _ = writeln!(text, "\n{}", row("largest step", &heads(check), &format!("at {}", time(check.dt))));
     for stand in &check.methods {
         let mark = if stand.method == check.integrator { "*" } else { " " };
-        let (rest, [poses, drag]) = (at_rest(stand), [stand.every_pose, stand.drag].map(limit));
-        let _ = writeln!(text, "{mark} {:<16} {rest:>13} {poses:>13} {drag:>13}   {}", stand.method, verdict(stand));
+        let _ = writeln!(
+            text,
+            "{}",
+            row(&format!("{mark} {}", stand.method), &limits(check, stand), verdict(stand).as_str())
+        );
     }
     text.push('\n');
     for advice in &check.advice {
         paragraph(&mut text, "-", advice);
     }
     text
+}
+
+/// What bounds the steps; contacts only where some do.
+pub(crate) fn heads(check: &Check) -> Vec<String> {
+    let heads = ["at rest", "every pose", "drag"].into_iter().chain(check.touching.as_ref().map(|_| "contact"));
+    heads.map(str::to_string).collect()
+}
+
+/// The largest steps of a method, as `heads` names them.
+pub(crate) fn limits(check: &Check, stand: &Stand) -> Vec<String> {
+    let mut limits = vec![at_rest(stand), limit(stand.every_pose), limit(stand.drag)];
+    limits.extend(check.touching.as_ref().map(|_| limit(stand.contact)));
+    limits
 }
 
 /// What there is to know beside the table, each with its name.
@@ -56,6 +68,13 @@ pub(crate) fn facts(check: &Check) -> Vec<(&'static str, String)> {
     facts.extend(check.stiffest.as_ref().map(|part| ("stiffest", format!("{} {}", part.place, part.about))));
     let drag = check.dragged.as_ref();
     facts.extend(drag.map(|part| ("drag", format!("{} {}: {} /s", part.place, part.about, plain(part.mode.damping)))));
+    facts.extend(
+        check
+            .touching
+            .as_ref()
+            .zip(check.hit)
+            .map(|(part, hit)| ("contact", format!("{} {}; a hit lasts {}", part.place, part.about, time(hit)))),
+    );
     facts.extend(check.followed.as_ref().map(|followed| {
         let (step, g) = (time(followed.step), plain(followed.acceleration));
         (
@@ -88,7 +107,7 @@ fn oscillations(modes: &Oscillations) -> String {
 }
 
 /// The largest step at rest.
-pub(crate) fn at_rest(stand: &Stand) -> String {
+fn at_rest(stand: &Stand) -> String {
     if stand.estimated { format!("about {}", limit(stand.at_rest)) } else { limit(stand.at_rest) }
 }
 

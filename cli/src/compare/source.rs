@@ -93,6 +93,7 @@ fn from_file(path: &std::path::Path, format: crate::formats::PointsFormat, seed:
 fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outcome<Source> {
     let settings = args::World {
         scene: scene.to_path_buf(),
+        reading: args.reading,
         duration: args.at,
         dt: None,
         integrator: None,

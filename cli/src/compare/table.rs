@@ -2,6 +2,7 @@
 
 use super::study::{Case, Contestant, Study, Subject, names, series, workloads};
 use super::workload::Workload;
+use crate::grid::Grid;
 use crate::words::{counted, digits, paragraph, say, thousands};
 
 /// The whole answer.
@@ -36,41 +37,45 @@ pub(crate) fn heading(case: &Case) -> String {
 }
 
 fn overview(text: &mut String, case: &Case) {
-    say(text, &heading(case));
+    title(text, &heading(case));
     paragraph(text, " ", &case.about);
     paragraph(text, " ", &case.verified);
     let rounds = counted(case.rounds, "round");
     let mark = "* marks the best and what cannot be told apart from it";
     let units = case.subject.units();
-    say(text, &format!("  medians of {rounds} in {units}, and times the best; {mark}"));
-    let workloads = case.workloads();
-    let mut head = format!("  {:<10}", "");
-    workloads.iter().for_each(|workload| head.push_str(&format!(" {:>11}", workload.name())));
-    head.push_str("  bytes spread");
-    say(text, &head);
-    for one in case.contestants.iter().filter(|one| !one.figures.is_empty()) {
-        let mut row = format!("  {:<10}", one.name);
-        for &workload in &workloads {
-            let cell = one.figure(workload).map_or("-".to_string(), |figure| {
+    paragraph(text, " ", &format!("medians of {rounds} in {units}, and times the best; {mark}"));
+    let measured = || case.contestants.iter().filter(|one| !one.figures.is_empty());
+    let mut grid = Grid::of(measured().map(|one| one.name.as_str()));
+    for workload in case.workloads() {
+        let cell = |one: &Contestant| {
+            one.figure(workload).map_or("-".to_string(), |figure| {
                 let mark = if figure.ties { '*' } else { ' ' };
                 format!("{} {:>4}{mark}", digits(figure.median), ratio(figure.ratio))
-            });
-            row.push_str(&format!(" {cell:>11}"));
-        }
-        let bytes = one.build.bytes_each.map_or("-".into(), |bytes| format!("{bytes:.0}"));
-        let spread = one.figures.iter().fold(0.0f64, |most, figure| most.max(figure.spread));
-        say(text, &format!("{row} {bytes:>6} {:>4.0} %", spread * 100.0));
+            })
+        };
+        grid.column(workload.name(), 11, measured().map(cell));
     }
+    let bytes = |one: &Contestant| one.build.bytes_each.map_or("-".into(), |bytes| format!("{bytes:.0}"));
+    grid.column("bytes", 6, measured().map(bytes));
+    let spread = |one: &Contestant| one.figures.iter().fold(0.0f64, |most, figure| most.max(figure.spread));
+    grid.column("spread", 6, measured().map(|one| format!("{:.0} %", spread(one) * 100.0)));
+    grid.write(text);
     for one in &case.contestants {
         if let Some(why) = &one.left_out {
-            say(text, &format!("  {:<10}  left out: {why}", one.name));
+            paragraph(text, &format!("  {:<10}  left out:", one.name), why);
         }
     }
-    unlike(case).iter().for_each(|line| say(text, &format!("  {line}")));
+    unlike(case).iter().for_each(|line| paragraph(text, " ", line));
     say(text, "");
     if case.subject == Subject::Mesh {
         work(text, case);
     }
+}
+
+/// Words that stand over a table.
+fn title(text: &mut String, words: &str) {
+    let (first, rest) = words.split_once(' ').unwrap_or((words, ""));
+    paragraph(text, first, rest);
 }
 
 /// Who finds other first hits than ours, and how often.
@@ -86,23 +91,22 @@ pub(crate) fn unlike(case: &Case) -> Vec<String> {
 
 /// What every query looked at, and how deep the structures are.
 fn work(text: &mut String, case: &Case) {
-    let queries: Vec<_> = case.workloads().into_iter().filter(|workload| workload.is_query()).collect();
-    say(text, "  nodes visited and triangles tested, for each query; counted, so the same on every machine");
-    let mut head = format!("  {:<10}", "");
-    queries.iter().for_each(|workload| head.push_str(&format!(" {:>13}", workload.name())));
-    say(text, &format!("{head} {:>9} {:>6} {:>8}", "nodes", "depth", "fullest"));
-    for one in case.contestants.iter().filter(|one| one.build.nodes.is_some()) {
-        let mut row = format!("  {:<10}", one.name);
-        for &workload in &queries {
+    let about = "nodes visited and triangles tested, for each query; counted, so the same on every machine";
+    paragraph(text, " ", about);
+    let counted = || case.contestants.iter().filter(|one| one.build.nodes.is_some());
+    let mut grid = Grid::of(counted().map(|one| one.name.as_str()));
+    for workload in case.workloads().into_iter().filter(|workload| workload.is_query()) {
+        let cell = |one: &Contestant| {
             let counters = one.figure(workload).and_then(|figure| figure.visits.zip(figure.tests));
-            let cell =
-                counters.map_or("-".into(), |(visits, tests)| format!("{} {:>6}", digits(visits), digits(tests)));
-            row.push_str(&format!(" {cell:>13}"));
-        }
-        let [nodes, depth, fullest] =
-            [one.build.nodes, one.build.depth, one.build.fullest].map(|count| count.map_or("-".into(), thousands));
-        say(text, &format!("{row} {nodes:>9} {depth:>6} {fullest:>8}"));
+            counters.map_or("-".into(), |(visits, tests)| format!("{} {:>6}", digits(visits), digits(tests)))
+        };
+        grid.column(workload.name(), 12, counted().map(cell));
     }
+    let shown = |count: Option<usize>| count.map_or("-".into(), thousands);
+    grid.column("nodes", 7, counted().map(|one| shown(one.build.nodes)));
+    grid.column("depth", 7, counted().map(|one| shown(one.build.depth)));
+    grid.column("fullest", 7, counted().map(|one| shown(one.build.fullest)));
+    grid.write(text);
     say(text, "");
 }
 
@@ -116,32 +120,23 @@ pub(crate) fn ratio(ratio: f64) -> String {
 }
 
 fn details(text: &mut String, case: &Case, workload: Workload) {
-    say(text, &format!("  {}: {}", workload.name(), workload.describe()));
+    paragraph(text, &format!("  {}:", workload.name()), workload.describe());
     let each = match case.subject {
         Subject::Points => ["nodes/pt", "tests/pt", "found/pt"],
         Subject::Mesh => ["nodes/q", "tests/q", "hits/q"],
     };
-    let mut line = format!("  {:<10}", "");
-    ["median ns", "min", "spread", "x best"]
-        .iter()
-        .chain(&each)
-        .for_each(|name| line.push_str(&format!(" {name:>10}")));
-    say(text, &line);
-    for (one, figure) in case.ranking(workload) {
-        let counter = |counter: Option<f64>| counter.map_or("-".into(), digits);
-        let cells = [
-            digits(figure.median),
-            digits(figure.min),
-            format!("{:.0} %", figure.spread * 100.0),
-            ratio(figure.ratio),
-            counter(figure.visits),
-            counter(figure.tests),
-            counter(figure.found),
-        ];
-        let mut line = format!("  {:<10}", one.name);
-        cells.iter().for_each(|cell| line.push_str(&format!(" {cell:>10}")));
-        say(text, &line);
-    }
+    let ranking = case.ranking(workload);
+    let mut grid = Grid::of(ranking.iter().map(|(one, _)| one.name.as_str()));
+    let counter = |counter: Option<f64>| counter.map_or("-".into(), digits);
+    let figures = || ranking.iter().map(|(_, figure)| figure);
+    grid.column("median ns", 8, figures().map(|figure| digits(figure.median)));
+    grid.column("min", 8, figures().map(|figure| digits(figure.min)));
+    grid.column("spread", 8, figures().map(|figure| format!("{:.0} %", figure.spread * 100.0)));
+    grid.column("x best", 8, figures().map(|figure| ratio(figure.ratio)));
+    grid.column(each[0], 8, figures().map(|figure| counter(figure.visits)));
+    grid.column(each[1], 8, figures().map(|figure| counter(figure.tests)));
+    grid.column(each[2], 8, figures().map(|figure| counter(figure.found)));
+    grid.write(text);
     say(text, "");
 }
 
@@ -151,28 +146,27 @@ fn growth(text: &mut String, study: &Study) {
         Subject::Points => "time",
         Subject::Mesh => "time of the build, and of a query,",
     };
-    for (title, cases) in series(&study.cases) {
-        let of: Vec<_> = study.growth.iter().filter(|growth| growth.of == title).collect();
+    for (name, cases) in series(&study.cases) {
+        let of: Vec<_> = study.growth.iter().filter(|growth| growth.of == name).collect();
         let (Some(first), Some(last)) = (cases.first(), cases.last()) else { continue };
         if of.is_empty() {
             continue;
         }
         let (from, to) = (thousands(first.n), thousands(last.n));
         let things = subject.things();
-        say(text, &format!("{title}: {what} grows from {from} to {to} {things} with this power of their number"));
-        let workloads = workloads(cases.iter().copied());
-        let mut head = format!("  {:<10}", "");
-        workloads.iter().for_each(|workload| head.push_str(&format!(" {:>8}", workload.name())));
-        say(text, &head);
-        let grows = |name: &&str| of.iter().any(|growth| growth.name == *name);
-        for name in names(cases.iter().copied()).into_iter().filter(grows) {
-            let mut row = format!("  {name:<10}");
-            for workload in &workloads {
-                let growth = of.iter().find(|growth| growth.name == name && growth.workload == *workload);
-                row.push_str(&format!(" {:>8}", growth.map_or("-".into(), |growth| format!("{:.2}", growth.exponent))));
-            }
-            say(text, &row);
+        let about = format!("{name}: {what} grows from {from} to {to} {things} with this power of their number");
+        title(text, &about);
+        let grows = |one: &&str| of.iter().any(|growth| growth.name == *one);
+        let rows: Vec<_> = names(cases.iter().copied()).into_iter().filter(grows).collect();
+        let mut grid = Grid::of(rows.iter().copied());
+        for workload in workloads(cases.iter().copied()) {
+            let cell = |row: &&str| {
+                let growth = of.iter().find(|growth| growth.name == *row && growth.workload == workload);
+                growth.map_or("-".into(), |growth| format!("{:.2}", growth.exponent))
+            };
+            grid.column(workload.name(), 8, rows.iter().map(cell));
         }
+        grid.write(text);
         say(text, "");
     }
 }
@@ -182,7 +176,7 @@ fn crossovers(text: &mut String, study: &Study) {
     if !leading.is_empty() {
         say(text, "The lead changes");
         for crossover in &leading {
-            say(text, &format!("  {}", crossover.text(study.subject())));
+            paragraph(text, " ", &crossover.text(study.subject()));
         }
         say(text, "");
     }
@@ -204,10 +198,10 @@ impl super::study::Crossover {
 }
 
 fn advice(text: &mut String, study: &Study) {
-    for (title, cases) in series(&study.cases) {
+    for (name, cases) in series(&study.cases) {
         let Some(largest) = cases.last() else { continue };
-        say(text, &format!("Advice for {title}, {} {}", thousands(largest.n), largest.subject.things()));
-        for advice in study.advice.iter().filter(|advice| advice.of == title) {
+        title(text, &format!("Advice for {name}, {} {}", thousands(largest.n), largest.subject.things()));
+        for advice in study.advice.iter().filter(|advice| advice.of == name) {
             let what = advice.workload.map_or("all round", Workload::name);
             paragraph(text, &format!("  {what}:"), &advice.text);
         }

@@ -195,6 +195,7 @@ fn phases() -> Vec<Particle> {
 fn from_file(path: &Path, args: &args::Lab) -> Outcome<Problem> {
     let world = World::load(&args::World {
         scene: path.to_path_buf(),
+        reading: args.reading,
         duration: args.duration,
         dt: None,
         integrator: None,

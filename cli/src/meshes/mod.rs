@@ -91,7 +91,7 @@ fn reader(extension: &str) -> Result<Reader, Fault> {
 }
 
 fn bytes_of(path: &Path) -> Result<Vec<u8>, Fault> {
-    let unreadable = |error: std::io::Error| Fault::new(format!("can't be read: {error}"));
+    let unreadable = |error: std::io::Error| Fault::new(format!("can't be read: {error}{}", crate::hint(path, &error)));
     let file = File::open(path).map_err(unreadable)?;
     let facts = file.metadata().map_err(unreadable)?;
     if facts.is_dir() {

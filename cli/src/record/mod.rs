@@ -6,7 +6,7 @@ mod xyz;
 
 use crate::clock::nanoseconds;
 use crate::formats::RecordFormat;
-use crate::whole::WholeFile;
+use crate::whole::{WholeFile, Written, publish};
 use crate::{Failure, Outcome};
 use pointmass::{Columns, Heap, System};
 use serde::Serialize;
@@ -70,13 +70,8 @@ pub(crate) struct Recorder {
 trait Writer {
     fn record(&mut self, frame: &Frame) -> std::io::Result<()>;
 
-    /// Whether nothing stands in the way of `finish`.
-    fn check(&self) -> Outcome {
-        Ok(())
-    }
-
-    /// Puts what was recorded where it belongs.
-    fn finish(self: Box<Self>) -> Outcome;
+    /// What was recorded, to be put where it belongs.
+    fn close(self: Box<Self>) -> Outcome<Vec<Written>>;
 }
 
 impl Recorder {
@@ -96,7 +91,7 @@ impl Recorder {
 
     /// Puts all that was recorded where it belongs, or none of it.
     pub(crate) fn finish(recorders: Vec<Self>) -> Outcome {
-        recorders.iter().try_for_each(|recorder| recorder.writer.check())?;
-        recorders.into_iter().try_for_each(|recorder| recorder.writer.finish())
+        let written = recorders.into_iter().map(|recorder| recorder.writer.close()).collect::<Outcome<Vec<_>>>()?;
+        publish(&written.into_iter().flatten().collect::<Vec<_>>())
     }
 }

@@ -1,61 +1,44 @@
 //! PLY point clouds, binary, one file a record.
 
 use super::{Frame, Row, Writer};
-use crate::whole::{PREFIX, existing_folder_of};
-use crate::{Failure, Outcome};
+use crate::Outcome;
+use crate::whole::{Series, Written};
 use ply_rs_bw::ply::{
     Addable, DefaultElement, ElementDef, Encoding, Ply as Cloud, Property, PropertyDef, PropertyType, ScalarType,
 };
 use ply_rs_bw::writer::Writer as CloudWriter;
-use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use tempfile::TempDir;
 
 pub(super) struct Ply {
     path: PathBuf,
-    /// Clouds wait in a folder of their own until all are complete.
-    waiting: TempDir,
-    count: u32,
+    series: Series,
 }
 
 impl Ply {
     pub(super) fn new(path: &Path) -> Outcome<Self> {
-        let waiting = TempDir::with_prefix_in(PREFIX, existing_folder_of(path)?);
-        let waiting = waiting.map_err(|error| Failure::io(path, &error))?;
-        Ok(Self { path: path.to_path_buf(), waiting, count: 0 })
+        Ok(Self { path: path.to_path_buf(), series: Series::create(path, false)? })
     }
-}
 
-impl Ply {
     /// What record number `i` will be called.
-    fn numbered(&self, i: u32) -> PathBuf {
-        PathBuf::from(format!("{}_{i:06}.ply", self.path.with_extension("").to_string_lossy()))
+    fn numbered(&self, i: usize) -> PathBuf {
+        let mut name = self.path.with_extension("").into_os_string();
+        name.push(format!("_{i:06}.ply"));
+        name.into()
     }
 }
 
 impl Writer for Ply {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
-        let mut out = BufWriter::new(File::create(self.waiting.path().join(self.count.to_string()))?);
+        let path = self.numbered(self.series.len());
+        let mut out = BufWriter::new(self.series.next(path)?);
         let mut cloud = cloud(frame);
         CloudWriter::new().write_ply(&mut out, &mut cloud).map_err(io::Error::other)?;
-        self.count += 1;
         out.flush()
     }
 
-    fn check(&self) -> Outcome {
-        match (0..self.count).map(|i| self.numbered(i)).find(|path| path.is_dir()) {
-            Some(path) => Err(Failure::new(format!("{}: is a directory, and in the way of a record", path.display()))),
-            None => Ok(()),
-        }
-    }
-
-    fn finish(self: Box<Self>) -> Outcome {
-        for i in 0..self.count {
-            let path = self.numbered(i);
-            fs::rename(self.waiting.path().join(i.to_string()), &path).map_err(|error| Failure::io(&path, &error))?;
-        }
-        Ok(())
+    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
+        self.series.close()
     }
 }
 

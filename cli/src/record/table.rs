@@ -1,7 +1,7 @@
 //! Tables: CSV and lines of JSON, with the same columns.
 
 use super::{Frame, Writer};
-use crate::whole::WholeFile;
+use crate::whole::{WholeFile, Written};
 use crate::{Failure, Outcome};
 use std::io::{self, Write};
 
@@ -25,9 +25,10 @@ impl Writer for Csv {
         frame.rows.iter().try_for_each(|row| self.writer.serialize(row)).map_err(io::Error::from)
     }
 
-    fn finish(self: Box<Self>) -> Outcome {
+    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
         let file = self.writer.into_inner();
-        file.map_err(|error| Failure::new(format!("the table cannot be written: {}", error.error())))?.complete()
+        let file = file.map_err(|error| Failure::new(format!("the table cannot be written: {}", error.error())))?;
+        Ok(vec![file.close()?])
     }
 }
 
@@ -50,7 +51,7 @@ impl Writer for Jsonl {
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Outcome {
-        self.file.complete()
+    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
+        Ok(vec![self.file.close()?])
     }
 }

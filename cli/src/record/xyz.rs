@@ -2,7 +2,7 @@
 
 use super::{Frame, Row, Writer};
 use crate::Outcome;
-use crate::whole::WholeFile;
+use crate::whole::{WholeFile, Written};
 use std::io::{self, Write};
 
 pub(super) struct Xyz {
@@ -30,7 +30,7 @@ impl Writer for Xyz {
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Outcome {
-        self.file.complete()
+    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
+        Ok(vec![self.file.close()?])
     }
 }

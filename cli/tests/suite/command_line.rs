@@ -323,3 +323,33 @@ fn a_response_where_nothing_has_a_radius_is_remarked_on() {
     folder.write("ball.json", r#"{"particles": [{"radius": 0.1}]}"#);
     assert!(folder.run("run ball.json --steps 1 --response impulse").warnings().is_empty());
 }
+
+#[test]
+fn what_the_index_decides_is_told() {
+    let mut random = 1u32;
+    let mut unit = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(random >> 8) / 16_777_216.0
+    };
+    let mut ball =
+        || serde_json::json!({"position": [unit(), unit(), unit()], "velocity": [unit(), 0, unit()], "radius": 0.05});
+    let balls: Vec<_> = (0..200).map(|_| ball()).collect();
+    let folder = Folder::new();
+    for (what, word) in [
+        (r#""contacts": {"impulse": {}}"#, None),
+        (r#""contacts": {"position": {}}"#, Some("contacts by position")),
+        (r#""contacts": {"force": {"stiffness": 10}}"#, Some("contacts by force")),
+        (r#""forces": [{"viscosity": {"coefficient": 1, "reach": 0.3}}]"#, Some("viscosity")),
+        (r#""forces": [{"lennard_jones": {"epsilon": 1e-3, "sigma": 0.1, "cutoff": 0.3}}]"#, Some("lennard_jones")),
+        (r#""forces": [{"power_law": {"strength": 1e-3, "exponent": 2, "reach": 0.3}}]"#, Some("power_law")),
+    ] {
+        folder.write("a.json", format!(r#"{{{what}, "particles": {}}}"#, serde_json::Value::from(balls.clone())));
+        let run = |index: &str| folder.run(&format!("run a.json --steps 20 --index {index} --report json")).report();
+        let (brute, kd) = (run("brute"), run("kd"));
+        assert_eq!(brute["hash"] != kd["hash"], word.is_some(), "{what}");
+        assert_eq!(brute["summed_by_index"][0].as_str(), word, "{brute}");
+        let text = folder.run("run a.json --steps 2").stdout;
+        assert_eq!(text.contains("another --index ends in other bits"), word.is_some(), "{text}");
+    }
+    assert!(folder.run("run --help").stdout.contains("other bits"));
+}

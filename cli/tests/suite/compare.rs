@@ -237,3 +237,42 @@ fn the_command_line_says_what_it_wants() {
     let answer = folder.run("compare --n 50 --peers");
     assert!(answer.error().contains("cargo run --release -p pointmass-peers -- compare --peers"));
 }
+
+#[test]
+fn tables_fit_eighty_columns() {
+    let folder = Folder::with(
+        "a_very_long_name_of_a_file_with_points_that_goes_on_and_on_until_it_ends.csv",
+        "x,y,z\n1,2,3\n4,5,6\n7,8,8\n",
+    );
+    let peers = if cfg!(feature = "peers") { "--peers" } else { "" };
+    for args in [
+        "--distribution uniform,plummer --n 300,900 --repeat 3 --detail",
+        "--points a_very_long_name_of_a_file_with_points_that_goes_on_and_on_until_it_ends.csv --repeat 3",
+        "--queries ray --triangles 100,400 --segments 50 --repeat 3 --detail",
+        "--queries count --n 300 --repeat 3",
+    ] {
+        let answer = folder.run(&format!("compare {args} {peers}"));
+        assert_eq!(answer.code, 0, "{answer:?}");
+        for line in answer.stdout.lines() {
+            assert!(line.chars().count() <= 80, "{args}: {} columns: {line}", line.chars().count());
+        }
+        for name in ["brute", "kd", "bytes", "spread"] {
+            assert!(answer.stdout.contains(name), "{args}: no {name}: {}", answer.stdout);
+        }
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn clouds_of_points_are_no_larger_than_other_files() {
+    let folder = Folder::with(
+        "small.ply",
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n1 1 1\n",
+    );
+    // Only its length is real.
+    let file = std::fs::File::create(folder.path("large.ply")).expect("a file");
+    file.set_len((256 << 20) + 1).expect("a sparse file");
+    let error = folder.run("compare --points large.ply --repeat 1").error().to_string();
+    assert!(error.starts_with("large.ply: is larger than 256 MiB"), "{error}");
+    assert_eq!(folder.run("compare --points small.ply --repeat 1 --structures kd").code, 0);
+}

@@ -9,11 +9,15 @@ mod conversion;
 mod course;
 mod fuzz;
 mod lab;
+#[cfg(unix)]
+mod outputs;
 mod random;
 mod recordings;
+mod remarks;
 mod robustness;
 mod round_trip;
 mod scenes;
 mod scn;
 mod sinks;
 mod tool;
+mod touching;

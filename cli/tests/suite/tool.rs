@@ -108,6 +108,12 @@ impl Folder {
         self.command(Command::new(PROGRAM).args(args.split_whitespace()))
     }
 
+    /// Runs the program with these arguments.
+    #[track_caller]
+    pub(crate) fn run_with(&self, args: &[&str]) -> Answer {
+        self.command(Command::new(PROGRAM).args(args))
+    }
+
     /// The report of a run that goes well and without a warning.
     #[track_caller]
     pub(crate) fn report(&self, args: &str) -> Value {

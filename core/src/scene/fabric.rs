@@ -18,7 +18,7 @@ use glam::Vec3;
 pub struct Fabric {
     /// Its form.
     pub form: Form,
-    /// Its mass \[kg\], the same for every particle.
+    /// The mass of all of it \[kg\], of which every particle has an equal share.
     pub mass: f32,
     /// Its springs, at rest in this form.
     pub threads: Threads,

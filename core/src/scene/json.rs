@@ -55,17 +55,10 @@ fn plain(message: &str) -> String {
     message.to_string()
 }
 
-/// The JSON Schema of scene files, as text.
-#[cfg(feature = "schema")]
-#[must_use]
-pub fn schema() -> String {
-    compact_numbers(&serde_json::to_string_pretty(&schemars::schema_for!(SceneFile)).unwrap_or_default())
-}
-
 /// Puts lists of plain numbers on one line: a vector is read as one thing.
 ///
 /// The pretty printer puts every bracket and every entry at the end or on a line of its own, and no string spans lines.
-fn compact_numbers(text: &str) -> String {
+pub(super) fn compact_numbers(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut lines = text.lines();
     while let Some(line) = lines.next() {

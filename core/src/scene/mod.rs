@@ -21,7 +21,11 @@ mod json;
 mod model;
 #[cfg(feature = "alloc")]
 mod read;
+#[cfg(feature = "alloc")]
+mod remarks;
 mod rules;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod scn;
 #[cfg(feature = "alloc")]
 mod write;
@@ -33,13 +37,13 @@ pub use fabric::{Fabric, Form, Gas};
 #[cfg(feature = "alloc")]
 pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
-#[cfg(feature = "schema")]
-pub use json::schema;
 #[cfg(feature = "alloc")]
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
-pub use read::{Files, beside, read_scn};
+pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use rules::{Scene, Unfit};
+#[cfg(feature = "schema")]
+pub use schema::schema;
 #[cfg(feature = "alloc")]
 pub use write::write_scn;
 

@@ -1,7 +1,8 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
 use super::check::{MAX_GROUPS, MAX_MATERIALS};
-use super::scn::{Command, Index, Located, Place, ScnError, Source, commands};
+use super::remarks::{odd_elasticity, odd_ends};
+use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands};
 use super::{Camera, Group, Item, Light, Material, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
@@ -31,6 +32,33 @@ pub trait Files {
 
     /// Whether there is such a file.
     fn exists(&mut self, path: &str) -> bool;
+
+    /// The name of a file that differs from this in capitals alone, where there is one.
+    fn alike(&mut self, path: &str) -> Option<String> {
+        let _ = path;
+        None
+    }
+}
+
+/// A scene that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// What it says.
+    pub scene: SceneFile,
+    /// What is not as it was written, or not there.
+    pub warnings: Vec<String>,
+    /// What can be run but is hardly meant: what [`SceneFile::remarks`] finds, with line and column.
+    pub remarks: Vec<String>,
+}
+
+/// What becomes of a command that `.scn` does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unknown {
+    /// It is an error.
+    #[default]
+    Refuse,
+    /// It is passed over with a warning, up to the next line that begins with a command.
+    Skip,
 }
 
 /// No files at all: for scenes that name none.
@@ -55,8 +83,20 @@ impl Files for () {
 /// # Errors
 /// If anything in it is unknown, out of range, cut off or missing: with file, line and column.
 pub fn read_scn(path: &str, text: &str, files: &mut dyn Files) -> Result<(SceneFile, Vec<String>), SceneError> {
+    let Reading { scene, warnings, .. } = read_scn_with(path, text, files, Unknown::Refuse)?;
+    Ok((scene, warnings))
+}
+
+/// The same, which may pass over commands that are `unknown`, and remarks on what is hardly meant.
+///
+/// # Errors
+/// As of [`read_scn`].
+pub fn read_scn_with(path: &str, text: &str, files: &mut dyn Files, unknown: Unknown) -> Result<Reading, SceneError> {
     let mut reader = Reader {
         files,
+        unknown,
+        skipped: 0,
+        remarks: Vec::new(),
         root: path,
         scene: SceneFile::new(),
         gravity: None,
@@ -68,7 +108,12 @@ pub fn read_scn(path: &str, text: &str, files: &mut dyn Files) -> Result<(SceneF
     let gravity = reader.gravity.map(ForceKind::Gravity);
     let always = [ForceKind::Drag(Drag {}), ForceKind::MutualGravity(MutualGravity::NEWTON)];
     reader.scene.forces = gravity.into_iter().chain(always).collect();
-    Ok((reader.scene, reader.warnings))
+    if reader.skipped > 0 {
+        let (count, s) = (reader.skipped, if reader.skipped == 1 { "" } else { "s" });
+        reader.warnings.insert(0, format!("{path}: {count} unknown command{s} passed over"));
+    }
+    let Reader { scene, warnings, remarks, .. } = reader;
+    Ok(Reading { scene, warnings, remarks })
 }
 
 /// The path of `name`, which the file at `path` names: relative to its folder, with `.` and `..` resolved.
@@ -95,10 +140,14 @@ pub fn beside(path: &str, name: &str) -> String {
 
 struct Reader<'a> {
     files: &'a mut dyn Files,
+    unknown: Unknown,
+    /// Commands passed over.
+    skipped: usize,
     root: &'a str,
     scene: SceneFile,
     gravity: Option<Gravity>,
     warnings: Vec<String>,
+    remarks: Vec<String>,
     /// The files being read, the outermost first.
     open: Vec<String>,
     includes: usize,
@@ -173,11 +222,17 @@ impl Reader<'_> {
             base,
             groups: Vec::new(),
         };
-        for command in commands(text) {
-            let located = command.map_err(|error: ScnError<'_>| {
-                SceneError::at(path, error.place.line as usize, error.place.column as usize, error)
-            })?;
-            self.command(&mut scope, located)?;
+        let mut commands = commands(text);
+        while let Some(command) = commands.next() {
+            match command {
+                Ok(located) => self.command(&mut scope, located)?,
+                Err(error) if error.problem == Problem::UnknownCommand && self.unknown == Unknown::Skip => {
+                    commands.resume_after(error.place);
+                    self.skipped += 1;
+                    self.warnings.push(format!("{} is passed over", place_of(path, error)));
+                }
+                Err(error) => return Err(place_of(path, error)),
+            }
         }
         if let Some(&(_, place)) = scope.groups.last() {
             return Err(scope.error(place, "begin", "the file ends before its 'end'"));
@@ -192,6 +247,8 @@ impl Reader<'_> {
         let scene = &mut self.scene;
         match command {
             Command::Particle { mut particle, material } => {
+                let odd = odd_elasticity(Varied::exactly(particle.elasticity)).filter(|_| !particle.fixed);
+                self.remark(scope, place, name, odd, "elasticity");
                 particle.material = self.inherited(scope, scope.material(name, material)?);
                 scope.particles.push(self.scene.particles.len() as u32);
                 self.scene.particles.push(particle);
@@ -202,6 +259,7 @@ impl Reader<'_> {
                 self.scene.sinks.push(Sink { shape, intensity, ca, la, qa, softening });
             }
             Command::Spring { ends, rest_length, ks, kd } => {
+                self.remark(scope, place, name, odd_ends(ends.map(|end| end.value)), "ends");
                 scope.springs.push((ends, Spring { kd, ..Spring::new([0; 2], rest_length, ks) }));
             }
             Command::Gravity(acceleration) => self.gravity = Some(Gravity { acceleration }),
@@ -242,6 +300,8 @@ impl Reader<'_> {
 
     fn source(&mut self, scope: &Scope<'_>, place: Place, name: &str, source: Source<'_>) -> Result<(), SceneError> {
         let Source { newborn, material, rate, velocity, angle_cutoff, shape } = source;
+        let odd = odd_elasticity(Varied::exactly(newborn.elasticity)).filter(|_| !newborn.fixed);
+        self.remark(scope, place, name, odd, "elasticity");
         let shape = self.shape(scope, place, name, &shape)?;
         let material = self.inherited(scope, scope.material(name, material)?);
         self.scene.emitters.push(Emitter {
@@ -290,10 +350,23 @@ impl Reader<'_> {
     fn texture(&mut self, scope: &Scope<'_>, place: Place, file: &str) -> String {
         let texture = scope.named(file);
         if !self.files.exists(&beside(self.root, &texture)) {
-            let error = scope.error(place, "material", format!("there is no texture file '{file}'"));
+            let error = scope.error(place, "material", self.missing("texture", file, &texture));
             self.warnings.push(error.to_string());
         }
         texture
+    }
+
+    /// That a file is not there, and whether another is, whose name differs in capitals.
+    fn missing(&mut self, kind: &str, shown: &str, relative: &str) -> String {
+        let hint = self.files.alike(&beside(self.root, relative)).map(|name| format!("; did you mean {name}?"));
+        format!("there is no {kind} file '{shown}'{}", hint.unwrap_or_default())
+    }
+
+    /// Warns of what is odd about an argument.
+    fn remark(&mut self, scope: &Scope<'_>, place: Place, name: &str, odd: Option<String>, argument: &str) {
+        if let Some(odd) = odd {
+            self.remarks.push(scope.error(place, name, format!("{argument}: {odd}")).to_string());
+        }
     }
 
     fn include(&mut self, scope: &Scope<'_>, place: Place, file: &str) -> Result<(), SceneError> {
@@ -332,7 +405,7 @@ impl Reader<'_> {
             if self.files.exists(&path) {
                 Ok(mesh)
             } else {
-                Err(scope.error(place, name, format!("there is no mesh file '{path}'")))
+                Err(scope.error(place, name, self.missing("mesh", &path, &mesh)))
             }
         })
     }
@@ -358,6 +431,11 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// An error in a file.
+fn place_of(path: &str, error: ScnError<'_>) -> SceneError {
+    SceneError::at(path, error.place.line as usize, error.place.column as usize, error)
 }
 
 fn colored([ambient, diffuse, specular, transmission, emission]: [[f32; 3]; 5]) -> Material {

@@ -103,6 +103,10 @@ pub fn load(path: &Path, format: PointsFormat) -> Outcome<Cloud> {
         return Err(Failure::new(format!("{}: is a directory, expected a file of points", path.display())));
     }
     let file = File::open(path).map_err(|error| Failure::io(path, &error))?;
+    let length = file.metadata().map_or(0, |facts| facts.len());
+    if format == PointsFormat::Ply {
+        ply::check_size(length).map_err(|fault| Failure::new(format!("{}{fault}", path.display())))?;
+    }
     let cloud = read(BufReader::with_capacity(1 << 18, file), format)
         .map_err(|fault| Failure::new(format!("{}{fault}", path.display())))?;
     if cloud.points.len() < 2 {

@@ -1,9 +1,10 @@
 //! PLY point clouds and meshes, text and binary of both byte orders: the vertices are the points.
 
 use super::{Fault, Rows};
+use crate::meshes::MAX_BYTES;
 use crate::meshes::ply::{Skipped, split};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 
 /// The position of a vertex; planar if it has no z.
 struct Vertex([f64; 3]);
@@ -30,10 +31,22 @@ impl PropertyAccess for Vertex {
     }
 }
 
+/// Refuses what is larger than any file that is read whole.
+pub(super) fn check_size(bytes: u64) -> Result<(), Fault> {
+    let limit = MAX_BYTES >> 20;
+    match bytes > MAX_BYTES {
+        true => {
+            Err(Fault::new(format!("is larger than {limit} MiB, the most that is read of this format; thin it out")))
+        }
+        false => Ok(()),
+    }
+}
+
 pub(super) fn read(mut file: impl BufRead) -> Result<Rows, Fault> {
     // The library that reads the elements wants to see where they end.
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes)?;
+    file.by_ref().take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    check_size(bytes.len() as u64)?;
     let (header, mut payload) = split(&bytes)?;
     let has = |axis: &str| header.elements.get("vertex").is_some_and(|vertex| vertex.properties.contains_key(axis));
     if !has("x") || !has("y") {

@@ -122,6 +122,49 @@ pub struct Commands<'a> {
     failed: bool,
 }
 
+/// The names of all commands.
+const NAMES: [&str; 23] = [
+    "particle",
+    "particle_source",
+    "particle_sink",
+    "particle_spring",
+    "particle_gravity",
+    "tri",
+    "box",
+    "sphere",
+    "cylinder",
+    "cone",
+    "mesh",
+    "line",
+    "begin",
+    "end",
+    "material",
+    "dir_light",
+    "point_light",
+    "spot_light",
+    "area_light",
+    "camera",
+    "ambient",
+    "background",
+    "include",
+];
+
+impl Commands<'_> {
+    /// Goes on after an unknown command, which stands at `place`, at the next line that begins with a command: a known one,
+    /// or a word that may be the name of another and stands no further in. What lies between, such as arguments, is passed
+    /// over.
+    pub fn resume_after(&mut self, place: Place) {
+        self.failed = false;
+        let is_name = |word: &str| {
+            word.starts_with(|c: char| c.is_ascii_alphabetic())
+                && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        };
+        self.lexer.skip_to_line_of(|word, column| {
+            NAMES.contains(&word) || (is_name(word) && column <= place.column as usize)
+        });
+    }
+}
+
 impl<'a> Iterator for Commands<'a> {
     type Item = Result<Located<'a>, ScnError<'a>>;
 
@@ -321,6 +364,34 @@ mod tests {
         let all: std::vec::Vec<_> = commands(text).collect();
         assert_eq!(all.len(), 1);
         assert_eq!(all[0].as_ref().expect("gravity").command, Command::Gravity(-Vec3::Y));
+    }
+
+    #[test]
+    fn every_name_is_a_command() {
+        for name in NAMES {
+            let problem = commands(name).find_map(Result::err).map(|error| error.problem);
+            assert!(problem != Some(Problem::UnknownCommand), "{name}");
+        }
+        assert!(commands("player").find_map(Result::err).is_some_and(|e| e.problem == Problem::UnknownCommand));
+    }
+
+    #[test]
+    fn what_is_unknown_ends_where_a_line_begins_with_a_command() {
+        let text = "player 1 camera 2\n  3 # box\n\n red 4 end\n\t background 1 0 0\nenemy 1\nboss.off\nboss\rambient 0 1 0 \
+                    player";
+        let mut commands = commands(text);
+        let (mut found, mut unknown) = (std::vec::Vec::new(), std::vec::Vec::new());
+        while let Some(command) = commands.next() {
+            match command {
+                Ok(located) => found.push((located.name, located.place.line)),
+                Err(error) => {
+                    unknown.push(error.word);
+                    commands.resume_after(error.place);
+                }
+            }
+        }
+        assert_eq!(found, [("background", 5), ("ambient", 8)]);
+        assert_eq!(unknown, ["player", "enemy", "boss", "player"]);
     }
 
     #[test]

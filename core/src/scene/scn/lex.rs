@@ -111,6 +111,19 @@ impl<'a> Lexer<'a> {
         (!word.is_empty()).then_some((word, place))
     }
 
+    /// Goes to the next line that begins with a word which is wanted in its column, or to the end.
+    pub(super) fn skip_to_line_of(&mut self, is_wanted: impl Fn(&str, usize) -> bool) {
+        while let Some(end) = self.rest.find(['\n', '\r']) {
+            self.skip(end + 1);
+            let line = self.rest.trim_start_matches(|c: char| c.is_whitespace() && c != '\n' && c != '\r');
+            let column = 1 + self.rest[..self.rest.len() - line.len()].chars().count();
+            if line.split(char::is_whitespace).next().is_some_and(|word| is_wanted(word, column)) {
+                return;
+            }
+        }
+        self.skip(self.rest.len());
+    }
+
     /// The next word as the argument `what`.
     pub(super) fn word(&mut self, what: &'static str) -> Result<(&'a str, Place), ScnError<'a>> {
         self.next().ok_or_else(|| self.error(self.place, "", Problem::Missing(what)))

@@ -1,0 +1,135 @@
+//! What contacts by force ask of the step: springs between balls that touch.
+
+use super::bounds::{Part, place};
+use super::hit;
+use super::words::{plain, time, typed};
+use pointmass::force::Penalty;
+use pointmass::scene::Model;
+use pointmass::stability::{Limit, Mode};
+use pointmass::{Emitter, Method};
+
+/// The largest Σ cos² of the angles between a line and the ways to all that touch a ball of their size: two before and
+/// behind it, and five at 60° around each.
+const CROWD: f64 = 4.5;
+
+/// Steps that a hit should have at least.
+pub(crate) const STEPS: f64 = 7.5;
+
+/// The contact of a scene that bounds the step most.
+pub(crate) struct Contact {
+    pub(crate) part: Part,
+    /// How contacts swing: of two balls, and of one among as many as may touch it.
+    swings: Vec<Mode>,
+    /// How fast friction stops the slip of two.
+    slip: Option<Mode>,
+}
+
+/// A ball of the start or of an emitter.
+#[derive(Clone, Copy)]
+struct Ball {
+    /// Whether it is of an emitter, and its number or that of the emitter.
+    from: (bool, usize),
+    mass: f64,
+    fixed: bool,
+}
+
+impl Contact {
+    /// None where no balls push each other apart.
+    pub(crate) fn of(model: &Model) -> Option<Self> {
+        let balls = balls(model);
+        let penalty = model.forces.2.first()?;
+        let (mut free, fixed): (Vec<&Ball>, Vec<&Ball>) = balls.iter().partition(|ball| !ball.fixed);
+        free.sort_by(|a, b| a.mass.total_cmp(&b.mass));
+        let lightest = *free.first()?;
+        let wall = fixed.into_iter().min_by(|a, b| a.mass.total_cmp(&b.mass));
+        let others: Vec<_> = free.get(1).copied().into_iter().chain(wall).collect();
+        let born = model.emitters.iter().any(|emitter| widest(emitter) > 0.0);
+        let crowd = if born { CROWD } else { CROWD.min(balls.len() as f64 - 1.0) };
+        let pairs = others.iter().map(|other| swing(penalty, lightest, other));
+        let mode = pairs.clone().max_by(|a, b| a.omega2.total_cmp(&b.omega2))?;
+        let most = |mode: Mode| Mode { omega2: crowd * mode.omega2, damping: crowd * mode.damping };
+        let crowded = pairs.clone().map(most).filter(|_| crowd > 1.0);
+        let swings = pairs.chain(crowded).collect();
+        let slips = penalty.friction.sliding > 0.0;
+        // Slowly, friction brakes as what would just not let the contact swing.
+        let slip = slips.then(|| Mode { omega2: 0.0, damping: 2.0 * mode.omega2.sqrt() });
+        let Penalty { stiffness, damping, .. } = *penalty;
+        let about = format!(
+            "({}) touching {} ({}): stiffness {stiffness}, damping {damping}",
+            told(lightest),
+            named(model, others[0]),
+            told(others[0])
+        );
+        Some(Self { part: Part { place: named(model, lightest), spring: None, about, mode }, swings, slip })
+    }
+
+    /// The largest step in which hits add no energy, and lasting contacts do not grow.
+    pub(crate) fn largest_step(&self, method: Method) -> Limit {
+        let swings = self.swings.iter().map(|&mode| hit::largest_step(method, mode));
+        let slip = self.slip.iter().map(|mode| mode.largest_step(method));
+        swings.chain(slip).fold(Limit::Unconditional, Limit::and)
+    }
+
+    /// What to say of steps \[s\] that do hits no justice.
+    pub(crate) fn warning(&self, method: Method, step: f64) -> Option<String> {
+        let (steps, hit) = (time(step), self.duration());
+        let Part { place, about, .. } = &self.part;
+        match self.largest_step(method) {
+            Limit::Step(limit) if step > limit => Some(format!(
+                "steps of {steps} are too long for contacts by force: beyond {} hits by {method} add energy, because of \
+                 {place} {about}; try --substeps auto, or see `pointmass check`",
+                time(limit)
+            )),
+            _ if step * STEPS > hit => Some(format!(
+                "steps of {steps} are coarse for contacts by force: a hit lasts {}, and its bounce comes out wrong, because \
+                 of {place} {about}; try --dt {}",
+                time(hit),
+                typed(0.1 * hit)
+            )),
+            _ => None,
+        }
+    }
+
+    /// How long a hit lasts \[s\]: half a swing.
+    pub(crate) fn duration(&self) -> f64 {
+        let Mode { omega2, damping } = self.part.mode;
+        std::f64::consts::PI / (omega2 - 0.25 * damping * damping).max(0.1 * omega2).sqrt()
+    }
+}
+
+/// All that have a radius; of an emitter two, since one may touch the next.
+fn balls(model: &Model) -> Vec<Ball> {
+    let start = model.particles.iter().enumerate().filter(|(_, particle)| particle.radius > 0.0);
+    let start = start.map(|(i, p)| Ball { from: (false, i), mass: f64::from(p.mass), fixed: p.fixed });
+    let births = model.emitters.iter().enumerate().filter(|(_, emitter)| widest(emitter) > 0.0);
+    let births = births.flat_map(|(i, emitter)| {
+        let mass = f64::from(emitter.mass.mean) - f64::from(emitter.mass.variance.abs());
+        [Ball { from: (true, i), mass, fixed: emitter.fixed }; 2]
+    });
+    start.chain(births).collect()
+}
+
+fn widest<M>(emitter: &Emitter<M>) -> f32 {
+    emitter.radius.mean + emitter.radius.variance.abs()
+}
+
+/// How two swing against each other while they touch.
+fn swing(penalty: &Penalty, ball: &Ball, other: &Ball) -> Mode {
+    let inverse = 1.0 / ball.mass + if other.fixed { 0.0 } else { 1.0 / other.mass };
+    // Its damping counts what is fixed by the mass it has, if it has any.
+    let reduced = if other.mass > 0.0 { ball.mass * other.mass / (ball.mass + other.mass) } else { ball.mass };
+    let stiffness = f64::from(penalty.stiffness);
+    let damping = 2.0 * f64::from(penalty.damping) * (stiffness * reduced).sqrt();
+    Mode { omega2: stiffness * inverse, damping: damping * inverse }
+}
+
+fn named(model: &Model, ball: &Ball) -> String {
+    match ball.from {
+        (false, i) => place(model, 0, i),
+        (true, i) => format!("emitters[{i}]"),
+    }
+}
+
+fn told(ball: &Ball) -> String {
+    if ball.fixed { "fixed".into() } else { format!("{} kg", plain(ball.mass)) }
+}

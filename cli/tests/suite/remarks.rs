@@ -1,0 +1,203 @@
+//! What can be run and is hardly meant, told by name; unknown commands, and files that are called otherwise.
+
+use crate::scenes::{ONE, TRIANGLE};
+use crate::tool::Folder;
+
+/// The warnings of the commands that do what a scene says.
+#[track_caller]
+fn warned(folder: &Folder, scene: &str, words: &[&str]) {
+    for args in [
+        format!("run {scene} --steps 2"),
+        format!("render {scene} --duration 0 --size 8x8 --out o.png"),
+        format!("check {scene}"),
+        format!("lab {scene} --duration 0.1 --integrators verlet"),
+    ] {
+        let answer = folder.run(&args);
+        let warnings = answer.warnings();
+        for word in words {
+            assert!(warnings.iter().any(|warning| warning.contains(word)), "{args} does not say {word}: {warnings:?}");
+        }
+    }
+}
+
+#[test]
+fn json_that_is_hardly_meant_is_remarked_on_by_name() {
+    let shape = r#""shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}"#;
+    let sheet = r#"{"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [2, 2]}}"#;
+    let emitter = |rest: &str| format!(r#"{{"emitters": [{{{shape}, "rate": 1, {rest}}}]}}"#);
+    let folder = Folder::new();
+    for (text, words) in [
+        (r#"{"particles": [{}, {"elasticity": 1.01}]}"#.into(), "a.json:particles[1].elasticity: 1.01 is above 1"),
+        (r#"{"particles": [{"elasticity": -0.1}]}"#.into(), "a.json:particles[0].elasticity: -0.1 is below 0"),
+        (emitter(r#""elasticity": {"mean": 0.75, "variance": 0.5}"#), "a.json:emitters[0].elasticity: 1.25 is above"),
+        (emitter(r#""elasticity": {"mean": 0.25, "variance": 0.5}"#), "a.json:emitters[0].elasticity: -0.25 is below"),
+        (emitter(r#""spread": {"uniform": 3.2}"#), "a.json:emitters[0].spread: 3.2 rad is not from 0 to π"),
+        (emitter(r#""spread": {"uniform": -1}"#), "a.json:emitters[0].spread: -1 rad is not from 0 to π"),
+        (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
+        (
+            r#"{"particles": [{}, {}], "springs": [{"ends": [1, 1], "rest_length": 1, "ks": 1}]}"#.into(),
+            "a.json:springs[0].ends: the spring joins particle 1 to itself",
+        ),
+        (
+            format!(r#"{{"fabrics": [{{"form": {sheet}, "mass": 1, "elasticity": 2, "threads": {{"bend": {{"ks": 1}}}}}}]}}"#),
+            "a.json:fabrics[0].elasticity: 2 is above 1",
+        ),
+        (
+            r#"{"materials": [{"grip": {"friction": {"resting": 0.1, "sliding": 0.2}}}]}"#.into(),
+            "a.json:materials[0].grip.friction.resting: 0.1 is below sliding, 0.2",
+        ),
+        (
+            r#"{"particles": [{"radius": 1}], "contacts": {"force": {"stiffness": 1, "friction": {"resting": 0, "sliding": 1}}}}"#
+                .into(),
+            "a.json:contacts.force.friction.resting: 0 is below sliding, 1",
+        ),
+    ] {
+        folder.write("a.json", &text);
+        warned(&folder, "a.json", &[words]);
+    }
+    let fine =
+        r#""elasticity": {"mean": 0.5, "variance": 0.5}, "spread": {"uniform": 3.14159274}, "start": 1, "stop": 2"#;
+    folder.write("a.json", emitter(fine));
+    folder.run("run a.json --steps 2").fine();
+}
+
+#[test]
+fn scn_that_is_hardly_meant_is_remarked_on_where_it_stands() {
+    let text = "\nparticle 0 0 0 0 0 0 1 0 0 1.5 0 -1\n particle_source 1 0 0 -1 0 -1  1 1 4  sphere 0 0 0 1\n\
+                particle_spring 0 0 1 1 1";
+    let folder = Folder::with("a.scn", text);
+    warned(
+        &folder,
+        "a.scn",
+        &[
+            "a.scn:2:1: particle: elasticity: 1.5 is above 1",
+            "a.scn:3:2: particle_source: elasticity: -1 is below 0",
+            "a.scn:4:1: particle_spring: ends: the spring joins particle 0 to itself",
+        ],
+    );
+}
+
+#[test]
+fn unknown_commands_are_skipped_on_request_and_counted() {
+    let text =
+        format!("player 0 1 2\n   jump 5\n  # box\n\n  7 particle 8\nenemy 3 sphere\n{ONE}boss\n  {ONE}player 1");
+    let folder = Folder::with("a.scn", &text);
+    for args in ["run a.scn --steps 1", "check a.scn", "convert a.scn o.json", "lab a.scn", "compare --scene a.scn"] {
+        let error = folder.run(args).error().to_string();
+        assert!(
+            error.starts_with("a.scn:1:1: unknown command 'player'") && error.contains("--skip-unknown"),
+            "{error}"
+        );
+    }
+    let expected = [
+        "a.scn: 4 unknown commands passed over",
+        "a.scn:1:1: unknown command 'player' is passed over",
+        "a.scn:6:1: unknown command 'enemy' is passed over",
+        "a.scn:8:1: unknown command 'boss' is passed over",
+        "a.scn:10:1: unknown command 'player' is passed over",
+    ];
+    for args in [
+        "run a.scn --steps 1 --report json",
+        "render a.scn --duration 0 --size 8x8 --out o.png",
+        "check a.scn",
+        "convert a.scn o.json",
+        "compare --scene a.scn --at 0 --n 2 --repeat 1 --structures kd",
+    ] {
+        let answer = folder.run(&format!("{args} --skip-unknown"));
+        assert_eq!(answer.warnings(), expected, "{args}");
+        if args.starts_with("run") {
+            assert_eq!(answer.report()["live"], 2);
+        }
+    }
+    // In an included file too, with its name.
+    folder.write("in/b.scn", "ambient 0 0 0\ncoin 3");
+    folder.write("b.scn", "include in/b.scn");
+    assert!(
+        folder
+            .run("run b.scn --steps 1 --skip-unknown")
+            .warnings()
+            .contains(&"in/b.scn:2:1: unknown command 'coin' is passed over")
+    );
+    // A shape that is unknown is an error all the same.
+    folder.write("c.scn", "particle_sink 1 1 1 1 torus 0 0 0 1");
+    folder.run("run c.scn --skip-unknown").error();
+}
+
+#[test]
+fn a_file_in_other_letters_is_suggested() {
+    let folder = Folder::with("cube.off", TRIANGLE);
+    folder.write("Parts/Cube.OFF", TRIANGLE);
+    for (text, meant) in [
+        ("mesh -1 Cube.off", "; did you mean cube.off?"),
+        ("particle_sink 1 1 0 0 mesh CUBE.OFF", "; did you mean cube.off?"),
+        ("mesh -1 parts/cube.off", "; did you mean Parts/Cube.OFF?"),
+        ("include A.SCN", "; did you mean a.scn?"),
+    ] {
+        folder.write("a.scn", text);
+        let answer = folder.run("run a.scn --steps 1");
+        assert!(answer.error().ends_with(meant), "{text}: {answer:?}");
+    }
+    folder.write("a.json", r#"{"scenery": [{"shape": {"mesh": "Cube.off"}}]}"#);
+    for (args, meant) in [
+        ("run a.json --steps 1", "; did you mean cube.off?"),
+        ("run A.json", "; did you mean a.json?"),
+        ("check Parts/../A.json", "; did you mean a.json?"),
+        ("compare --mesh CUBE.off --repeat 1", "; did you mean cube.off?"),
+    ] {
+        assert!(folder.run(args).error().ends_with(meant), "{args}: {:?}", folder.run(args));
+    }
+    folder.write("a.scn", "mesh -1 cub.off");
+    assert!(!folder.run("run a.scn").error().contains("did you mean"));
+}
+
+#[test]
+fn what_is_called_like_no_scene_is_none() {
+    let folder = Folder::with("README.md", ONE);
+    folder.write("scene", "{}");
+    for args in
+        ["run README.md", "check README.md", "render scene --out o.gif", "convert scene o.json", "lab README.md"]
+    {
+        let answer = folder.run(args);
+        assert!(answer.error().contains("expected a scene, whose name ends in .json or .scn"), "{args}: {answer:?}");
+    }
+    if cfg!(unix) {
+        // What comes through a pipe has no name.
+        folder.write("a.json", r#"{"particles": [{}]}"#);
+        folder.write("a.scn", ONE);
+        for name in ["a.json", "a.scn"] {
+            folder.shell(&format!("cat {name} | $POINTMASS run /dev/stdin --steps 1")).fine();
+        }
+    }
+}
+
+#[test]
+fn no_name_reaches_a_terminal_with_codes_in_it() {
+    let folder = Folder::new();
+    for odd in ["a\u{1b}[31m", "b\u{9b}31m", "c\u{7}\r", "d\u{202e}"] {
+        folder.write(&format!("{odd}.json"), r#"{"particles": [{"elasticity": 2}, {"position": [1, 0, 0]}]}"#);
+        folder.write(&format!("{odd}.csv"), "x,y,z\n1,2,3\n4,5,6\n");
+        let scene = format!("{odd}.json");
+        for args in [
+            &["run", &scene, "--steps", "1"][..],
+            &["run", &scene, "--steps", "1", "--report", "json"],
+            &["check", &scene],
+            &["check", &scene, "--report", "json"],
+            &["run", &format!("{odd}.off")],
+            &["run", &format!("no{scene}")],
+            &["run", &scene, "--out", odd],
+            &["render", &scene, "--out", odd],
+            &["compare", "--points", &format!("{odd}.csv"), "--repeat", "1", "--structures", "kd"],
+            &["compare", "--scene", &scene, "--at", "0", "--repeat", "1", "--structures", "kd"],
+            &["lab", &scene, "--duration", "0.1", "--integrators", "verlet"],
+            &["lab", odd],
+        ] {
+            let answer = folder.run_with(args);
+            let said = answer.stdout.clone() + &answer.stderr;
+            let codes = |c: &char| c.is_control() && *c != '\n' || *c == '\u{202e}';
+            assert!(!said.is_empty() && said.chars().find(codes).is_none(), "{args:?}: {said:?}");
+            if args.contains(&"json") {
+                assert_eq!(answer.report()["scene"], *scene, "{said}");
+            }
+        }
+    }
+}

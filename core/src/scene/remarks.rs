@@ -1,0 +1,71 @@
+//! What a declared scene can say, but hardly means.
+
+use super::SceneFile;
+use crate::collide::Response;
+use crate::emit::{Spread, Varied};
+use crate::force::Friction;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// All directions \[rad\]: π, also as files round it.
+const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
+
+impl SceneFile {
+    /// What it says that can be run but is hardly meant, each by its path in the file.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        let mut add = |at: String, remark: Option<String>| remarks.extend(remark.map(|text| format!("{at}: {text}")));
+        // What is fixed hits nothing.
+        for (i, particle) in self.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed) {
+            add(format!("particles[{i}].elasticity"), odd_elasticity(Varied::exactly(particle.elasticity)));
+        }
+        for (i, spring) in self.springs.iter().enumerate() {
+            add(format!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
+        }
+        for (i, fabric) in self.fabrics.iter().enumerate() {
+            add(format!("fabrics[{i}].elasticity"), odd_elasticity(Varied::exactly(fabric.elasticity)));
+        }
+        for (i, emitter) in self.emitters.iter().enumerate() {
+            add(format!("emitters[{i}].elasticity"), odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed));
+            add(format!("emitters[{i}].spread"), odd_spread(emitter.spread));
+            let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
+            let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
+            add(format!("emitters[{i}].stop"), ended.map(nothing));
+        }
+        if let Some(Response::Force(penalty)) = self.contacts {
+            add("contacts.force.friction.resting".into(), odd_friction(penalty.friction));
+        }
+        for (i, material) in self.materials.iter().enumerate() {
+            let friction = material.grip.friction.unwrap_or(Friction::NONE);
+            add(format!("materials[{i}].grip.friction.resting"), odd_friction(friction));
+        }
+        remarks
+    }
+}
+
+/// What is odd about a share of the speed that hits leave.
+pub(super) fn odd_elasticity(Varied { mean, variance }: Varied) -> Option<String> {
+    let (least, most) = (mean - variance.abs(), mean + variance.abs());
+    if most > 1.0 {
+        return Some(format!("{most} is above 1, so hits add energy"));
+    }
+    (least < 0.0).then(|| format!("{least} is below 0, which no hit can leave of a speed"))
+}
+
+/// What is odd about the angle within which births leave. The lecture's recipe takes the sine of any.
+fn odd_spread(spread: Spread) -> Option<String> {
+    let Spread::Uniform(cutoff) = spread else { return None };
+    (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
+}
+
+/// What is odd about the ends of a spring.
+pub(super) fn odd_ends([a, b]: [i64; 2]) -> Option<String> {
+    (a == b).then(|| format!("the spring joins particle {a} to itself, so it does nothing"))
+}
+
+fn odd_friction(Friction { resting, sliding }: Friction) -> Option<String> {
+    let odd = resting < sliding;
+    odd.then(|| format!("{resting} is below sliding, {sliding}, though what rests is held more than what slides"))
+}
