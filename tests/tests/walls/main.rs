@@ -3,6 +3,7 @@
 mod balls;
 mod blocks;
 mod bounces;
+mod elastic;
 mod heights;
 mod moving;
 mod poison;
