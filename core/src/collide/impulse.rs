@@ -3,7 +3,7 @@
 use super::contacts::{Contacts, Passage};
 use super::flight::Flight;
 use super::grip::of_two;
-use super::meeting::{At, Touch, first_touch};
+use super::meeting::{Touch, first_touch};
 use super::path::{Path, between};
 use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
 use crate::index::{Arrange, SpatialIndex};
@@ -244,10 +244,10 @@ impl Melee<'_> {
         let from = self.instant(own.since.max(its.since));
         let (touch, curved) = self.touch(row, other, [&from_on(path, from), &from_on(&self.path(other), from)]);
         let end = self.end;
-        (touch.map_or(NEVER, |at| self.units(between([from, end], at.time))), curved)
+        (touch.map_or(NEVER, |at| self.units(between([from, end], at))), curved)
     }
 
-    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<At>, bool) {
+    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<f32>, bool) {
         let reach = self.radius[row] + self.radius[other];
         first_touch(&path.seen_from(its), reach, self.slack(row, other))
     }
@@ -290,7 +290,7 @@ impl Melee<'_> {
         let mut paths = whole.map(|path| from_on(&path, now));
         if let Some(at) = at {
             for (path, whole) in paths.iter_mut().zip(&whole) {
-                path.x0 = at.on(whole);
+                path.x0 = whole.at(at);
             }
         }
         let waits = rows.map(|row| self.clocks.clock(row).waits != 0);
