@@ -9,7 +9,8 @@ use crate::particles::Id;
 use crate::report::Report;
 use crate::retire::Fate;
 use crate::scene::Scene;
-use crate::shape::{Hit, Segment};
+use crate::shape::{Hit, Ride, Segment};
+use crate::time::Time;
 use glam::Vec3;
 
 /// How many times a particle may bounce in one step before it waits at the surface.
@@ -17,6 +18,9 @@ const MAX_BOUNCES: u32 = 8;
 
 /// How many times a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;
+
+/// How far what rests may be from its surface \[slacks\]: it is set off by two, and from corners by more.
+const LAIN: f32 = 8.0;
 
 /// How many times the instant of a hit is looked for on the path. Newton's method takes three to six; halving, where it
 /// fails, comes within 10 µs of a step of a second.
@@ -163,28 +167,44 @@ impl Flight<'_> {
         let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, acceleration.dot(beside - place));
-        let pressing = -acceleration.dot(normal);
+        let ride = self.ride(&meeting.hit, beside, during);
+        let drive = acceleration - ride.map_or(Vec3::ZERO, |ride| ride.acceleration);
+        let pressing = -drive.dot(normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
-        let slip = before - surface - normal * incoming;
-        let slip = slip + feel.friction.answer(slip, outgoing - incoming);
+        let came = before - surface - normal * incoming;
+        let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
         let (time, closing, after) = (during[0], max(-incoming, 0.0), surface + slip + normal * outgoing);
         self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, time });
         if !rests {
             return Path::onward(beside, surface + slip + normal * onward, acceleration, during);
         }
-        let drive = acceleration + normal * pressing;
+        let drive = drive + normal * pressing;
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(rest);
-        // What was at rest and stays so has not moved at all: falling onto the surface anew each step, it would creep.
-        let rested = path.v0 == surface && slip == Vec3::ZERO && end == Vec3::ZERO;
-        let x0 = if rested { path.x0 + surface * (path.duration() - rest) } else { beside };
+        let stays = slip == Vec3::ZERO && end == Vec3::ZERO;
+        if let Some(ride) = ride {
+            // What falls from where it was set off to goes along the surface meanwhile, which friction would have kept it from.
+            let fell = -incoming / pressing;
+            let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
+            let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
+            return Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity + end, during };
+        }
+        let stays = stays && has_lain(path, meeting, place);
+        let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
         Path { x0, v0: after, x1: x0 + surface * rest + way, v1: surface + end, during }
     }
 
+    /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.
+    fn ride(&self, hit: &Hit, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
+        let below = beside - hit.normal * (LAIN * hit.slack);
+        let seat = Segment { from: beside, to: below, radius: self.radius, during };
+        if hit.velocity == Vec3::ZERO { None } else { self.scene.colliders.ride(&seat) }
+    }
+
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
-    /// way there is free; else as far back on the path as is free, at last where the chord begins. A surface that moves
-    /// takes what is back on the path along to the instant of the hit.
+    /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
+    /// to. A surface that moves takes what is back on the path along to the instant of the hit.
     fn set_off(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Vec3 {
         let Meeting { chord, hit, begun, time: s, .. } = meeting;
         let now = path.instant(*s);
@@ -208,8 +228,17 @@ impl Flight<'_> {
             }
             back *= 4.0;
         }
-        taken(chord.from, *begun)
+        self.scene.colliders.carry(chord.from, self.radius, [chord.during[0], now])
     }
+}
+
+/// Whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface. Falling
+/// onto it anew each step, it has not moved at all; else it would creep.
+fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
+    let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
+    let near = LAIN * meeting.hit.slack;
+    let off = path.x0 + surface * elapsed - place;
+    off.dot(off) <= near * near && length(path.v0 - surface) * elapsed <= near
 }
 
 /// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.

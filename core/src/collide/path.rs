@@ -52,10 +52,13 @@ impl Path {
         self.x0 + (c1 + (c2 + c3 * s) * s) * s
     }
 
-    /// The velocity at a fraction of the time \[m/s\].
+    /// The velocity at a fraction of the time \[m/s\]. Where the cubic bends as the ends' velocities do not say, as with the
+    /// two Euler methods, it is theirs in between: what a hit takes in before and after adds up to the step's.
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
         let (steady, excess) = (self.v0 + (self.v1 - self.v0) * s, self.excess());
-        if excess == Vec3::ZERO { steady } else { steady + excess * (6.0 * s * (1.0 - s) / self.duration()) }
+        let bend = (self.v1 - self.v0) * (0.5 * self.duration());
+        let is_smooth = excess != Vec3::ZERO && excess.dot(excess) < 0.0625 * bend.dot(bend);
+        if is_smooth { steady + excess * (6.0 * s * (1.0 - s) / self.duration()) } else { steady }
     }
 
     /// How much farther it leads than a parabola with the velocities of its ends. What is within the rounding of the ends is

@@ -7,5 +7,6 @@ mod elastic;
 mod heights;
 mod moving;
 mod poison;
+mod riding;
 mod scenes;
 mod tunnels;
