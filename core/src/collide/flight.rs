@@ -13,9 +13,6 @@ use crate::shape::{Hit, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
-/// How many times a particle may bounce in one step before it waits at the surface.
-const MAX_BOUNCES: u32 = 8;
-
 /// How many times a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;
 
@@ -89,7 +86,7 @@ impl Flight<'_> {
     }
 
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
-        for _ in 0..MAX_BOUNCES {
+        for _ in 0..self.scene.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
                 return Arrival { position: path.x1, velocity: path.v1, fate: Fate::Lives };
             };
