@@ -59,6 +59,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         colliders: &(ground, box_),
         grips: &[],
         contacts: &(),
+        max_bounces: Scene::EMPTY.max_bounces,
         sinks: &sink,
         integrator: Method::Rk4.integrator(),
         index: &(),

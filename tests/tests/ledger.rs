@@ -109,8 +109,7 @@ fn what_should_conserve_leaves_rounding() {
     let falling = Scene { start: &start, forces: &Gravity::EARTH, integrator: &Verlet, ..Scene::EMPTY };
     let bouncing = Scene { start: &elastic, colliders: &inside, ..falling };
     let flying = Scene { forces: &(), ..bouncing };
-    // A place of a hit may be off by the 0.1 mm that paths are followed to: that times the weight is no rounding.
-    for (scene, bound) in [(falling, 5e-6), (bouncing, 1e-4), (flying, 5e-6)] {
+    for (scene, bound) in [(falling, 5e-6), (bouncing, 5e-6), (flying, 5e-6)] {
         let (books, share) = books(&scene, 20, 1.0 / 240.0);
         assert!(share < bound && books.restitution.abs() < 1e-6 * books.opening.abs(), "{share} {books:?}");
     }

@@ -1,22 +1,27 @@
 //! One particle's way through a step: hit by hit.
 
 use super::grip::on_surface;
-use super::path::{MAX_CHORDS, Path, between};
+use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
-use crate::math::{clamp, length, max, unit};
+use crate::math::{length, max, min, sqrt, unit};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
 use crate::report::Report;
 use crate::retire::Fate;
 use crate::scene::Scene;
-use crate::shape::{Hit, Segment};
+use crate::shape::{Hit, Ride, Segment};
+use crate::time::Time;
 use glam::Vec3;
-
-/// How many times a particle may bounce in one step before it waits at the surface.
-const MAX_BOUNCES: u32 = 8;
 
 /// How many times a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;
+
+/// How far what rests may be from its surface \[slacks\]: it is set off by two, and from corners by more.
+const LAIN: f32 = 8.0;
+
+/// How many times the instant of a hit is looked for on the path. Newton's method takes three to six; halving, where it
+/// fails, comes within 10 µs of a step of a second.
+const MAX_LOOKS: u32 = 16;
 
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
 pub(super) const RESTING: f32 = 0.25;
@@ -32,8 +37,9 @@ pub(super) struct Arrival {
 pub(super) struct Meeting {
     /// The fraction of the whole path before it.
     pub(super) time: f32,
-    /// The chord on which it lies, and where there.
+    /// The chord along which it was found, and the fraction of the path before that.
     chord: Segment,
+    begun: f32,
     hit: Hit,
     /// What it meets removes it.
     pub(super) is_sink: bool,
@@ -57,8 +63,7 @@ pub(super) struct Flight<'a> {
 impl Meeting {
     /// The end in a sink.
     pub(super) fn arrival(&self, path: &Path) -> Arrival {
-        let velocity = path.v0 + (path.v1 - path.v0) * self.time;
-        Arrival { position: self.chord.at(self.hit.time), velocity, fate: Fate::Sink }
+        Arrival { position: path.at(self.time), velocity: path.velocity(self.time), fate: Fate::Sink }
     }
 }
 
@@ -81,7 +86,7 @@ impl Flight<'_> {
     }
 
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
-        for _ in 0..MAX_BOUNCES {
+        for _ in 0..self.scene.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
                 return Arrival { position: path.x1, velocity: path.v1, fate: Fate::Lives };
             };
@@ -95,24 +100,52 @@ impl Flight<'_> {
         Arrival { position, velocity: path.v0, fate: Fate::Lives }
     }
 
-    /// The first hit along the path's chords. A sink wins over a collider in the same place.
+    /// The first hit along the path's chords, at its instant on the path itself.
     pub(super) fn first_meeting(&mut self, path: &Path) -> Option<Meeting> {
         let chords = path.chords();
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
         }
         let chords = chords.min(MAX_CHORDS);
-        for (chord, i) in path.pieces(chords, self.radius).zip(0_u8..) {
-            let (wall, sink) = (self.scene.colliders.first_hit(&chord), self.scene.sinks.first_hit(&chord));
-            let is_sink = match (&wall, &sink) {
-                (Some(wall), Some(sink)) => sink.time <= wall.time,
-                (_, sink) => sink.is_some(),
-            };
-            if let Some(hit) = if is_sink { sink } else { wall } {
-                return Some(Meeting { time: (f32::from(i) + hit.time) / chords as f32, chord, hit, is_sink });
-            }
+        let whole = chords as f32;
+        path.pieces(chords, self.radius).zip(0_u8..).find_map(|(chord, i)| {
+            let (hit, is_sink) = self.first_hit(&chord)?;
+            let begun = f32::from(i) / whole;
+            let meeting = Meeting { time: (f32::from(i) + hit.time) / whole, chord, begun, hit, is_sink };
+            Some(self.on_path(path, meeting, f32::from(i + 1) / whole))
+        })
+    }
+
+    /// What a straight piece first meets, and whether that is a sink, which wins over a collider in the same place.
+    fn first_hit(&self, piece: &Segment) -> Option<(Hit, bool)> {
+        let (wall, sink) = (self.scene.colliders.first_hit(piece), self.scene.sinks.first_hit(piece));
+        let is_sink = match (&wall, &sink) {
+            (Some(wall), Some(sink)) => sink.time <= wall.time,
+            (_, sink) => sink.is_some(),
+        };
+        Some((if is_sink { sink } else { wall }?, is_sink))
+    }
+
+    /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
+    /// touches the surface. A place far along the surface from that on the chord asks for the surface there.
+    fn on_path(&self, path: &Path, meeting: Meeting, end: f32) -> Meeting {
+        let Meeting { chord, begun, hit, .. } = meeting;
+        let time = crossing(path, &hit, chord.at(hit.time), [begun, meeting.time, end]);
+        let aside = path.at(time) - chord.at(hit.time);
+        if !(length(aside) > 16.0 * hit.slack) {
+            return Meeting { time, ..meeting };
         }
-        None
+        let reach = (end - begun) * (1.0 / 16.0);
+        let [from, to] = [max(time - reach, begun), min(time + reach, end)];
+        let piece = path.piece([from, to], self.radius);
+        match self.first_hit(&piece) {
+            Some((near, is_sink)) if is_sink == meeting.is_sink && near.normal.dot(hit.normal) > 0.0 => {
+                let found = from + (to - from) * near.time;
+                let time = crossing(path, &near, piece.at(near.time), [from, found, to]);
+                Meeting { time, hit: near, ..meeting }
+            }
+            _ => Meeting { time, ..meeting },
+        }
     }
 
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
@@ -124,64 +157,117 @@ impl Flight<'_> {
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
         let acceleration = path.acceleration();
-        let before = path.v0 + (path.v1 - path.v0) * meeting.time;
+        let (place, before) = (path.at(meeting.time), path.velocity(meeting.time));
         let incoming = (before - surface).dot(normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * feel.elasticity } else { incoming };
-        let pressing = -acceleration.dot(normal);
-        let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * outgoing < RESTING * self.dt * pressing);
-        let outgoing = if rests { 0.0 } else { outgoing };
-        let slip = before - surface - normal * incoming;
-        let slip = slip + feel.friction.answer(slip, outgoing - incoming);
-        let velocity = surface + slip + normal * outgoing;
+        let beside = self.set_off(path, meeting, place);
+        // Whoever is set off from the surface has come there with the speed that is left so high.
+        let onward = slowed(outgoing, acceleration.dot(beside - place));
+        let ride = self.ride(&meeting.hit, beside, during);
+        let drive = acceleration - ride.map_or(Vec3::ZERO, |ride| ride.acceleration);
+        let pressing = -drive.dot(normal);
+        let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
+        let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
+        let came = before - surface - normal * incoming;
+        let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
-        let (place, time, closing) = (meeting.chord.at(meeting.hit.time), during[0], max(-incoming, 0.0));
-        self.observer.hit(&Impact {
-            id,
-            row,
-            other: None,
-            mass,
-            place,
-            normal,
-            closing,
-            before,
-            after: velocity,
-            time,
-        });
+        let (time, closing, after) = (during[0], max(-incoming, 0.0), surface + slip + normal * outgoing);
+        self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, time });
         if !rests {
-            return Path::onward(self.set_off(meeting), velocity, acceleration, during);
+            return Path::onward(beside, surface + slip + normal * onward, acceleration, during);
         }
-        let drive = acceleration + normal * pressing;
+        let drive = drive + normal * pressing;
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(rest);
-        // What was at rest and stays so has not moved at all: falling onto the surface anew each step, it would creep.
-        let rested = path.v0 == surface && slip == Vec3::ZERO && end == Vec3::ZERO;
-        let x0 = if rested { path.x0 + surface * (path.duration() - rest) } else { self.set_off(meeting) };
-        Path { x0, v0: velocity, x1: x0 + surface * rest + way, v1: surface + end, during }
+        let stays = slip == Vec3::ZERO && end == Vec3::ZERO;
+        if let Some(ride) = ride {
+            // What falls from where it was set off to goes along the surface meanwhile, which friction would have kept it from.
+            let fell = -incoming / pressing;
+            let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
+            let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
+            return Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity + end, during };
+        }
+        let stays = stays && has_lain(path, meeting, place);
+        let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
+        Path { x0, v0: after, x1: x0 + surface * rest + way, v1: surface + end, during }
+    }
+
+    /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.
+    fn ride(&self, hit: &Hit, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
+        let below = beside - hit.normal * (LAIN * hit.slack);
+        let seat = Segment { from: beside, to: below, radius: self.radius, during };
+        if hit.velocity == Vec3::ZERO { None } else { self.scene.colliders.ride(&seat) }
     }
 
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
-    /// way there is free; else as far back on the path as is free, at last its beginning. A surface that moves takes
-    /// what is back on the path along to the instant of the hit.
-    fn set_off(&self, meeting: &Meeting) -> Vec3 {
-        let Meeting { chord, hit, .. } = meeting;
-        let [start, end] = chord.during;
-        let (moves, ride) = (hit.velocity != Vec3::ZERO, hit.velocity * (end - start).seconds());
-        let taken = |point: Vec3, time: f32| if moves { point + ride * (hit.time - time) } else { point };
+    /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
+    /// to. A surface that moves takes what is back on the path along to the instant of the hit.
+    fn set_off(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Vec3 {
+        let Meeting { chord, hit, begun, time: s, .. } = meeting;
+        let now = path.instant(*s);
+        let span = (now - chord.during[0]).seconds();
+        let (moves, share) = (hit.velocity != Vec3::ZERO, max(s - begun, f32::MIN_POSITIVE));
+        let taken = |point: Vec3, time: f32| {
+            if moves { point + hit.velocity * (span * ((s - time) / share)) } else { point }
+        };
         let free = |segment: Segment| self.scene.colliders.first_hit(&segment).is_none();
-        let closing = max((ride - chord.step()).dot(hit.normal), f32::MIN_POSITIVE);
-        let beside = chord.at(hit.time) + hit.normal * (2.0 * hit.slack);
-        let now = between(chord.during, hit.time);
-        let mut back = 2.0 * hit.slack / closing;
+        let closing = max((hit.velocity - path.velocity(*s)).dot(hit.normal), f32::MIN_POSITIVE);
+        let beside = place + hit.normal * (2.0 * hit.slack);
+        // As a fraction of the path, like all its instants.
+        let mut back = 2.0 * hit.slack / (closing * path.duration());
         // At a rim or in a corner another surface may be nearer than the slack of this one.
         for _ in 0..MAX_RETREATS {
-            let time = clamp(hit.time - back, 0.0, 1.0);
-            let before = taken(chord.at(time), time);
-            if free(Segment { to: before, during: [start, now], ..*chord }) {
+            let time = max(s - back, *begun);
+            let before = taken(path.at(time), time);
+            if free(Segment { to: before, during: [chord.during[0], now], ..*chord }) {
                 let aside = Segment { from: before, to: beside, during: [now; 2], ..*chord };
                 return if free(aside) { beside } else { before };
             }
             back *= 4.0;
         }
-        taken(chord.from, 0.0)
+        self.scene.colliders.carry(chord.from, self.radius, [chord.during[0], now])
     }
+}
+
+/// Whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface. Falling
+/// onto it anew each step, it has not moved at all; else it would creep.
+fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
+    let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
+    let near = LAIN * meeting.hit.slack;
+    let off = path.x0 + surface * elapsed - place;
+    off.dot(off) <= near * near && length(path.v0 - surface) * elapsed <= near
+}
+
+/// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.
+fn slowed(speed: f32, work: f32) -> f32 {
+    let square = speed * speed + 2.0 * work;
+    // The change by itself, whose rounding is much less than that of the whole.
+    if square > 0.0 { speed + 2.0 * work / (speed + sqrt(square)) } else { 0.0 }
+}
+
+/// When a path crosses the plane that touches the surface at a place where it would be hit after a fraction of the path,
+/// from the side of the normal to the other, between two others. It begins at the end: where the path bends toward the
+/// surface, Newton's method comes from there to the crossing and never to where the path has left the surface before.
+fn crossing(path: &Path, hit: &Hit, place: Vec3, [begun, found, end]: [f32; 3]) -> f32 {
+    let drift = hit.velocity.dot(hit.normal) * path.duration();
+    let [c1, c2, c3] = path.coefficients().map(|c| c.dot(hit.normal));
+    let (c0, c1) = ((path.x0 - place).dot(hit.normal) + drift * found, c1 - drift);
+    let (mut low, mut high, mut s) = (begun, end, end);
+    for _ in 0..MAX_LOOKS {
+        let height = c0 + (c1 + (c2 + c3 * s) * s) * s;
+        let slope = c1 + (2.0 * c2 + 3.0 * c3 * s) * s;
+        if height > 0.0 {
+            low = s;
+        } else {
+            high = s;
+        }
+        let newton = s - height / slope;
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let moved = (next - s).abs();
+        s = next;
+        if !(moved > f32::EPSILON * end) {
+            break;
+        }
+    }
+    s
 }

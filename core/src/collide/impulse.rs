@@ -1,9 +1,10 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
 use super::contacts::{Contacts, Passage};
+use super::each_by_itself;
 use super::flight::Flight;
 use super::grip::of_two;
-use super::meeting::{At, Touch, first_touch};
+use super::meeting::{Touch, first_touch};
 use super::path::{Path, between};
 use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
 use crate::index::{Arrange, SpatialIndex};
@@ -22,16 +23,18 @@ use glam::Vec3;
 /// time, and goes on from there.
 ///
 /// Nothing passes through anything however fast, momentum is exact to rounding, and with elasticities of one so is energy.
-/// A particle that has met 32 times in a step waits where it is for the step's end (counted in `caps.bounces`): that is
-/// what happens in a dense heap, where every touch is a meeting; for heaps use [`Projection`](crate::Projection).
+/// A particle that has met four times as often as [`Scene::max_bounces`](crate::Scene::max_bounces) says waits where it is for
+/// the step's end (counted in `caps.bounces`), as does one that finds others near it some ten thousand times: that is what
+/// happens in a dense heap, where every touch is a meeting; for heaps use [`Projection`](crate::Projection).
 /// Whichever index the scene has, the answer is the same to the bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Impulse {}
 
-/// How often a particle may meet something in one step.
-const MAX_TURNS: u32 = 32;
+/// How many others a particle may find near it in one step, each time that it looks what comes next: some thousand times
+/// what a heap takes. After as many again nobody is looked for where it waits.
+const MAX_FOUND: u32 = 1 << 16;
 
 /// Vectors a particle for its clock and for where it was at the step's beginning.
 const COLUMNS: usize = 4;
@@ -43,6 +46,10 @@ impl Contacts for Impulse {
 
     #[inline(never)]
     fn follow(&self, passage: Passage<'_, '_>) {
+        // Points meet nobody.
+        if !passage.view.memory.radius[..passage.view.len()].iter().any(|&radius| radius > 0.0) {
+            return each_by_itself(passage);
+        }
         let Passage { view, scene, old, dt, end, report, observer } = passage;
         let (len, capacity) = (view.len(), view.capacity());
         let Slices {
@@ -193,8 +200,14 @@ impl Melee<'_> {
             self.clocks.set(row, Clock { until: NEVER, ..clock });
             return;
         }
-        if clock.turns > MAX_TURNS && clock.waits == 0 {
+        // Whom one meets has to be met in turn: four times as many of these as of bounces off colliders.
+        let most = self.scene.max_bounces.saturating_mul(4);
+        if (clock.turns > most || clock.found > MAX_FOUND) && clock.waits == 0 {
             self.wait(row);
+        }
+        if clock.found > 2 * MAX_FOUND {
+            self.clocks.set(row, Clock { until: NEVER, ..*self.clocks.clock(row) });
+            return;
         }
         let clock = *self.clocks.clock(row);
         let path = self.path(row);
@@ -206,11 +219,20 @@ impl Melee<'_> {
         if let Some(meeting) = meeting {
             (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
         }
-        let mut curved = false;
+        let (middle, reach) = (hull.center(), hull.radius() + self.widest + self.leash);
+        let (mut curved, mut found) = (false, 0_u32);
+        let home = self.home;
         let mut consider = |other: usize| {
+            // As an index defines who is near, whether there is one or not.
+            let offset = home[other] - middle;
+            found += u32::from(offset.dot(offset) <= reach * reach);
+            // Of several at one instant a wall comes first, then the lowest row: whatever order they are looked at in. Nobody
+            // is met before the path begins.
+            if next.until <= clock.since && (next.partner == WALL || next.partner <= other as u32) {
+                return;
+            }
             let (until, bent) = self.first_touch(row, other, &path);
             curved |= bent;
-            // Of several at one instant a wall comes first, then the lowest row: whatever order they are looked at in.
             let earlier =
                 until < next.until || (until == next.until && next.partner != WALL && (other as u32) < next.partner);
             if until != NEVER && earlier {
@@ -220,14 +242,15 @@ impl Melee<'_> {
         };
         match near {
             Some(index) => {
-                let (middle, half) = (hull.center(), hull.radius());
-                index.within(middle, half + self.widest + self.leash, &mut |others| {
+                index.within(middle, reach, &mut |others| {
                     others.iter().for_each(|&other| consider(other as usize));
                 });
             }
-            None => (0..self.home.len()).for_each(consider),
+            None => (0..self.home.len()).for_each(&mut consider),
         }
-        self.report.caps.chords += u64::from(curved);
+        // How a path bends after a meeting at its very beginning is nobody's concern.
+        self.report.caps.chords += u64::from(curved && next.until > clock.since);
+        next.found = clock.found.saturating_add(found);
         self.clocks.set(row, next);
     }
 
@@ -244,10 +267,10 @@ impl Melee<'_> {
         let from = self.instant(own.since.max(its.since));
         let (touch, curved) = self.touch(row, other, [&from_on(path, from), &from_on(&self.path(other), from)]);
         let end = self.end;
-        (touch.map_or(NEVER, |at| self.units(between([from, end], at.time))), curved)
+        (touch.map_or(NEVER, |at| self.units(between([from, end], at))), curved)
     }
 
-    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<At>, bool) {
+    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<f32>, bool) {
         let reach = self.radius[row] + self.radius[other];
         first_touch(&path.seen_from(its), reach, self.slack(row, other))
     }
@@ -290,7 +313,7 @@ impl Melee<'_> {
         let mut paths = whole.map(|path| from_on(&path, now));
         if let Some(at) = at {
             for (path, whole) in paths.iter_mut().zip(&whole) {
-                path.x0 = at.on(whole);
+                path.x0 = whole.at(at);
             }
         }
         let waits = rows.map(|row| self.clocks.clock(row).waits != 0);

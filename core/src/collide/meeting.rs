@@ -6,32 +6,14 @@ use super::path::{MAX_CHORDS, Path};
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use glam::Vec3;
 
-/// Where on a path two balls come to touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct At {
-    /// The fraction of the time.
-    pub(super) time: f32,
-    /// The chord, of how many.
-    chord: f32,
-    chords: f32,
-    /// The fraction of the chord.
-    part: f32,
-}
+/// How many times the instant of a touch is looked for on the path, as that of a hit.
+const MAX_LOOKS: u32 = 16;
 
-impl At {
-    /// The place there of one of the two, on the chords along which the touch was sought, so that they really touch.
-    pub(super) fn on(&self, path: &Path) -> Vec3 {
-        let end = |i: f32| if i == self.chords { path.x1 } else { path.at(i / self.chords) };
-        let from = end(self.chord);
-        from + (end(self.chord + 1.0) - from) * self.part
-    }
-}
-
-/// Where on a path, of one ball as seen from the other, they come within `reach`, the sum of their radii; and whether it is so
-/// curved that it would take more chords than there are.
+/// After which fraction of a path, of one ball as seen from the other, they come within `reach`, the sum of their radii; and
+/// whether it is so curved that it would take more chords than there are.
 ///
 /// Balls that overlap already meet at once if they come closer still. What stays within `slack` of a touch is none.
-pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<At>, bool) {
+pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, bool) {
     let hull = path.hull(0.0);
     // By the distance, not by a box: what an index has not found near is not near here either.
     let way = high(low(Vec3::ZERO, hull.max), hull.min);
@@ -41,14 +23,16 @@ pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<At>, b
     let chords = path.chords();
     let count = chords.min(MAX_CHORDS);
     let touch = path.pieces(count, 0.0).zip(0_u8..).find_map(|(piece, i)| {
-        let part = along_chord(piece.from, piece.step(), reach, slack)?;
-        let (chord, chords) = (f32::from(i), count as f32);
-        Some(At { time: (chord + part) / chords, chord, chords, part })
+        let parts = along_chord(piece.from, piece.step(), reach, slack)?;
+        let begun = f32::from(i) / count as f32;
+        let [found, nearest] = parts.map(|part| (f32::from(i) + part) / count as f32);
+        Some(on_path(path, reach, [begun, found, nearest]))
     });
     (touch, chords > MAX_CHORDS)
 }
 
-fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<f32> {
+/// The fractions of a chord at which it comes within reach and is nearest.
+fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<[f32; 2]> {
     let (square, closing) = (step.dot(step), -offset.dot(step));
     if !(closing > 0.0 && square > 0.0) {
         return None;
@@ -59,13 +43,44 @@ fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<f32> 
         return None;
     }
     if offset.dot(offset) <= reach * reach {
-        return Some(0.0);
+        return Some([0.0, nearest]);
     }
     // From the point of nearest approach of the whole line back: no difference of large squares.
     let middle = closing / square;
     let closest = offset + step * middle;
     let half = sqrt(max(reach * reach - closest.dot(closest), 0.0) / square);
-    Some(clamp(middle - half, 0.0, 1.0))
+    Some([clamp(middle - half, 0.0, nearest), nearest])
+}
+
+/// When balls that a chord has found to touch do so on the path itself, before they are nearest. Balls that overlap and come
+/// closer touch at once; those that part first touch when they have come back.
+fn on_path(path: &Path, reach: f32, [begun, found, nearest]: [f32; 3]) -> f32 {
+    let at = |s: f32| (path.at(s), path.velocity(s));
+    let ((offset, velocity), (last, _)) = (at(begun), at(nearest));
+    let parts = offset.dot(velocity) >= 0.0;
+    let overlaps = offset.dot(offset) <= reach * reach;
+    if (overlaps && !parts) || !(last.dot(last) < reach * reach) {
+        return found;
+    }
+    let (mut low, mut high, mut s) = (begun, nearest, if parts { nearest } else { found });
+    for _ in 0..MAX_LOOKS {
+        let (offset, velocity) = at(s);
+        let distance = length(offset);
+        let (left, slope) = (distance - reach, offset.dot(velocity) * path.duration() / distance);
+        if left > 0.0 {
+            low = s;
+        } else {
+            high = s;
+        }
+        let newton = s - left / slope;
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let moved = (next - s).abs();
+        s = next;
+        if !(moved > f32::EPSILON * nearest) {
+            break;
+        }
+    }
+    s
 }
 
 /// Two balls that touch: from the second to the first.
@@ -156,11 +171,11 @@ mod tests {
         let during = [Time::ZERO, Time::from_seconds(1.0)];
         let way = |x0: Vec3, v: Vec3| Path { x0, v0: v, x1: x0 + v, v1: v, during };
         let (at, _) = first_touch(&way(Vec3::X * 5.0, Vec3::X * -4.0), 2.0, 1e-6);
-        assert!((at.expect("they meet").time - 0.75).abs() < 1e-6);
+        assert!((at.expect("they meet") - 0.75).abs() < 1e-6);
         assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -2.0), 2.0, 1e-6).0, None);
-        assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -1e4), 2.0, 1e-6).0.map(|at| at.time > 0.0), Some(true));
+        assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -1e4), 2.0, 1e-6).0.map(|at| at > 0.0), Some(true));
         assert_eq!(first_touch(&way(Vec3::X * 1.9, Vec3::X), 2.0, 1e-6).0, None);
-        assert_eq!(first_touch(&way(Vec3::X * 1.9, -Vec3::X), 2.0, 1e-6).0.map(|at| at.time), Some(0.0));
+        assert_eq!(first_touch(&way(Vec3::X * 1.9, -Vec3::X), 2.0, 1e-6).0, Some(0.0));
         assert_eq!(first_touch(&way(Vec3::new(5.0, 2.0, 0.0), Vec3::X * -9.0), 2.0, 1e-6).0, None);
     }
 }

@@ -5,7 +5,7 @@ use crate::shape::{Aabb, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
-/// How far a path's chords may stray from it \[m\], unless that takes more than `MAX_CHORDS` of them.
+/// How far the chords along which hits are found may stray from a path \[m\], unless that takes more than `MAX_CHORDS`.
 pub(crate) const CHORD_ERROR: f32 = 1e-4;
 
 /// How many chords a path is followed along at the most.
@@ -52,21 +52,35 @@ impl Path {
         self.x0 + (c1 + (c2 + c3 * s) * s) * s
     }
 
-    fn coefficients(&self) -> [Vec3; 3] {
-        let duration = self.duration();
-        let (way, m0, m1) = (self.x1 - self.x0, self.v0 * duration, self.v1 * duration);
-        [m0, way * 3.0 - m0 * 2.0 - m1, m0 + m1 - way * 2.0]
+    /// The velocity at a fraction of the time \[m/s\]. Where the cubic bends as the ends' velocities do not say, as with the
+    /// two Euler methods, it is theirs in between: what a hit takes in before and after adds up to the step's.
+    pub(super) fn velocity(&self, s: f32) -> Vec3 {
+        let (steady, excess) = (self.v0 + (self.v1 - self.v0) * s, self.excess());
+        let bend = (self.v1 - self.v0) * (0.5 * self.duration());
+        let is_smooth = excess != Vec3::ZERO && excess.dot(excess) < 0.0625 * bend.dot(bend);
+        if is_smooth { steady + excess * (6.0 * s * (1.0 - s) / self.duration()) } else { steady }
+    }
+
+    /// How much farther it leads than a parabola with the velocities of its ends. What is within the rounding of the ends is
+    /// nothing: as a velocity it would be noise.
+    fn excess(&self) -> Vec3 {
+        let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * (0.5 * self.duration());
+        let rounding = (self.x0.abs() + self.x1.abs()) * f32::EPSILON;
+        Vec3::select(excess.abs().cmple(rounding), Vec3::ZERO, excess)
+    }
+
+    /// Those of the powers of s in `at`, from the first on \[m\].
+    pub(super) fn coefficients(&self) -> [Vec3; 3] {
+        let (duration, excess) = (self.duration(), self.excess());
+        [self.v0 * duration, (self.v1 - self.v0) * (0.5 * duration) + excess * 3.0, excess * -2.0]
     }
 
     /// Its rest from a fraction of the time on, as a path of its own.
     pub(super) fn rest(&self, s: f32) -> Self {
-        let duration = self.duration();
-        if !(s > 0.0 && duration > 0.0) {
+        if !(s > 0.0 && self.duration() > 0.0) {
             return *self;
         }
-        let [c1, c2, c3] = self.coefficients();
-        let v0 = (c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s) / duration;
-        Self { x0: self.at(s), v0, during: [self.instant(s), self.during[1]], ..*self }
+        Self { x0: self.at(s), v0: self.velocity(s), during: [self.instant(s), self.during[1]], ..*self }
     }
 
     /// How it runs as seen from another during the same time.
@@ -102,6 +116,17 @@ impl Path {
         let ratio = bend / (8.0 * CHORD_ERROR);
         // The cast rounds down and saturates.
         if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1) } else { 1 }
+    }
+
+    /// The straight line between two fractions of its time, for a ball.
+    pub(super) fn piece(&self, [from, to]: [f32; 2], radius: f32) -> Segment {
+        let end = |s: f32| match s {
+            0.0 => (self.x0, self.during[0]),
+            1.0 => (self.x1, self.during[1]),
+            s => (self.at(s), self.instant(s)),
+        };
+        let ((from, start), (to, end)) = (end(from), end(to));
+        Segment { from, to, radius, during: [start, end] }
     }
 
     /// Its pieces, so many, for a ball: each begins where and when the one before ends.

@@ -21,8 +21,8 @@ pub(super) struct Clock {
     pub(super) row: u32,
     /// Not zero: it has met as much as it may, and waits where it is for the step's end.
     pub(super) waits: u32,
-    /// What makes three vectors of it.
-    pub(super) spare: u32,
+    /// How many others it has found near it.
+    pub(super) found: u32,
 }
 
 /// Of an instant: nothing will happen.

@@ -115,6 +115,10 @@ impl SceneFile {
             let message = format!("has to be from zero to below 2^31 s, not {:?} s", run.duration);
             return Err(SceneError::value("run.duration", message));
         }
+        if !(1..=10_000).contains(&run.max_bounces) {
+            let message = format!("has to be from 1 to 10000, not {}", run.max_bounces);
+            return Err(SceneError::value("run.max_bounces", message));
+        }
         let tuning = &run.tuning;
         for (name, value) in
             [("tolerance", tuning.tolerance), ("smallest", tuning.smallest), ("residual", tuning.residual)]

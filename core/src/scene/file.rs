@@ -84,6 +84,9 @@ pub struct Run {
     pub index: Structure,
     /// How paths find what they run into among the triangles of a mesh.
     pub collision_index: rays::Structure,
+    /// How often a particle may bounce in one step before it waits for its end, from 1 to 10000. By `impulse` it may meet
+    /// others four times as often.
+    pub max_bounces: u32,
     /// The seed of all randomness.
     pub seed: u64,
     /// Particles alive at once.
@@ -266,6 +269,7 @@ impl Default for Run {
             tuning: Tuning::DEFAULT,
             index: Structure::Grid,
             collision_index: rays::Structure::Bvh,
+            max_bounces: 8,
             seed: 1,
             capacity: 65_536,
         }

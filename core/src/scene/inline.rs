@@ -131,6 +131,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             sinks: &self.forces.3,
             grips: &[],
             contacts: &(),
+            max_bounces: Scene::EMPTY.max_bounces,
             integrator: &Rk4,
             index: &(),
         }

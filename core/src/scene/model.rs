@@ -37,6 +37,8 @@ pub struct Model {
     pub grips: Vec<Grip>,
     /// What is drawn.
     pub scenery: Vec<Solid>,
+    /// How often a particle may bounce in one step.
+    pub max_bounces: u32,
     /// The method.
     pub integrator: Tuned,
     /// How forces find neighbours.
@@ -117,6 +119,7 @@ impl Model {
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
             index: file.run.index,
+            max_bounces: file.run.max_bounces,
             fabrics: start.fabrics,
         })
     }
@@ -139,6 +142,7 @@ impl Model {
             sinks: &self.forces.1,
             grips: &self.grips,
             contacts: self.contacts.as_ref().map_or(&(), |response| response as &dyn Contacts),
+            max_bounces: self.max_bounces,
             integrator: &self.integrator,
             index: &self.index,
         }

@@ -33,6 +33,9 @@ pub struct Scene<'a> {
     pub grips: &'a [Grip],
     /// How those that have a radius answer each other.
     pub contacts: &'a dyn Contacts,
+    /// How often a particle may bounce in one step before it waits at the surface for its end, which is counted in
+    /// `caps.bounces`: by default 8 times. By [`Impulse`](crate::Impulse) it may meet others and colliders four times as often.
+    pub max_bounces: u32,
     /// How they are moved.
     pub integrator: &'a dyn Integrator,
     /// How forces find the neighbours of a particle: `()` by looking at all others.
@@ -56,6 +59,7 @@ impl Scene<'_> {
         sinks: &(),
         grips: &[],
         contacts: &(),
+        max_bounces: 8,
         integrator: &Symplectic,
         index: &(),
     };

@@ -78,14 +78,16 @@ impl Writer {
             self.warn("about: kept as a comment");
         }
         if scene.run != Run::default() {
-            let Run { duration, dt, integrator, tuning, index, collision_index, seed, capacity } = &scene.run;
+            let Run { duration, dt, integrator, tuning, index, collision_index, max_bounces, seed, capacity } =
+                &scene.run;
             self.line(format_args!(
                 "# run with --duration {duration} --dt {dt} --integrator {integrator} --seed {seed} --capacity {capacity}"
             ));
             self.warn("run: .scn has no settings of a run; they are kept as a comment");
             let usual = Run::default();
-            if (*tuning, *index, *collision_index) != (usual.tuning, usual.index, usual.collision_index) {
-                self.warn("run: its tuning and its indices are left out");
+            let left_out = (*tuning, *index, *collision_index, *max_bounces);
+            if left_out != (usual.tuning, usual.index, usual.collision_index, usual.max_bounces) {
+                self.warn("run: its tuning, its indices and its max_bounces are left out");
             }
         }
     }

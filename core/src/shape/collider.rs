@@ -34,6 +34,13 @@ pub trait Collider: Sync {
         point
     }
 
+    /// Where a particle that rests is taken by what moves: `seat` leads from it into what it rests on, as that is at its
+    /// first instant, and lasts for as long as it rides. None by default, and where the seat meets nothing that moves.
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        let _ = seat;
+        None
+    }
+
     /// Visits colliders that together are its image under a map that is no similarity, as far as they may be near
     /// `bounds`, each with the number of its face. Balls ask for them, which such a map would make other than round.
     ///
@@ -92,6 +99,17 @@ pub struct Contact {
     pub velocity: Vec3,
     /// Number of its material in the scene, if it has one.
     pub material: Option<u16>,
+}
+
+/// Where what moves takes a particle that rests on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ride {
+    /// Where the particle is in the end \[m\].
+    pub place: Vec3,
+    /// How the surface under it moves then \[m/s\].
+    pub velocity: Vec3,
+    /// How that changes in the beginning \[m/s²\].
+    pub acceleration: Vec3,
 }
 
 impl Hit {
@@ -164,6 +182,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
         (**self).carry(point, radius, during)
     }
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        (**self).ride(seat)
+    }
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         (**self).image(map, bounds, visit);
     }
@@ -188,6 +209,10 @@ impl<T: Collider> Collider for [T] {
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
         self.iter().fold(point, |point, c| c.carry(point, radius, during))
     }
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        let bounds = seat.bounds();
+        self.iter().filter(|c| c.may_touch(&bounds)).find_map(|c| c.ride(seat))
+    }
     fn is_empty(&self) -> bool {
         self.iter().all(Collider::is_empty)
     }
@@ -209,6 +234,9 @@ macro_rules! lists {
             }
             fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
                 self.as_slice().carry(point, radius, during)
+            }
+            fn ride(&self, seat: &Segment) -> Option<Ride> {
+                self.as_slice().ride(seat)
             }
             fn is_empty(&self) -> bool {
                 self.iter().all(Collider::is_empty)
@@ -248,6 +276,11 @@ macro_rules! tuples {
                 let ($($name,)+) = self;
                 $(let point = $name.carry(point, radius, during);)+
                 point
+            }
+            fn ride(&self, seat: &Segment) -> Option<Ride> {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                None$(.or_else(|| $name.ride(seat)))+
             }
             fn is_empty(&self) -> bool {
                 #[allow(non_snake_case)]

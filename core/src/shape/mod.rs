@@ -20,7 +20,7 @@ mod triangle;
 
 pub use aabb::Aabb;
 pub(crate) use collider::earlier;
-pub use collider::{Collider, Contact, Hit, Segment};
+pub use collider::{Collider, Contact, Hit, Ride, Segment};
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;

@@ -1,6 +1,6 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment};
+use super::{Aabb, Affine, Collider, Contact, Hit, Ride, Segment};
 use crate::math::{clamp, high, largest, length, low, max, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::TAU;
@@ -108,8 +108,18 @@ impl Motion {
     /// How what is at `point` at an instant moves \[m/s\].
     fn velocity(&self, point: Vec3, instant: Time) -> Vec3 {
         let (_, cos) = self.sway(instant);
-        let around = unit(self.axis).cross(point - self.pose(instant).place) * (TAU * self.spin);
-        around + self.swing * (TAU * self.frequency * cos) + self.drift
+        self.around(point - self.pose(instant).place) + self.swing * (TAU * self.frequency * cos) + self.drift
+    }
+
+    /// How its velocity changes there: toward the axis about which it turns, and toward the middle of its swing \[m/s²\].
+    fn acceleration(&self, point: Vec3, instant: Time) -> Vec3 {
+        let ((sin, _), pace) = (self.sway(instant), TAU * self.frequency);
+        self.around(self.around(point - self.pose(instant).place)) - self.swing * (pace * pace * sin)
+    }
+
+    /// The axis' turning crossed with a vector \[1/s\].
+    fn around(&self, v: Vec3) -> Vec3 {
+        unit(self.axis).cross(v) * (TAU * self.spin)
     }
 
     /// Into how many pieces a segment has to be cut to be straight enough where the motion is none: a chord strays by
@@ -145,6 +155,11 @@ impl Pose {
     /// A point in the frame of what moves.
     fn local(&self, point: Vec3) -> Vec3 {
         self.turn.transpose() * (point - self.place) + self.pivot
+    }
+
+    /// A point of that frame in the world.
+    fn world(&self, point: Vec3) -> Vec3 {
+        self.turn * (point - self.pivot) + self.place
     }
 }
 
@@ -234,7 +249,22 @@ impl<C: Collider> Collider for Moving<C> {
             return point;
         }
         let [start, end] = during.map(|instant| motion.pose(instant));
-        end.turn * (start.local(point) - end.pivot) + end.place
+        end.world(start.local(point))
+    }
+
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        let Some(motion) = &self.motion else { return self.collider.ride(seat) };
+        let [start, end] = seat.during;
+        let (pose, then) = (motion.pose(start), motion.pose(end));
+        let from = pose.local(seat.from);
+        let local = Segment { from, to: pose.local(seat.to), radius: seat.radius, during: [start; 2] };
+        let hit = self.collider.first_hit(&local)?;
+        let touch = from - hit.normal * seat.radius;
+        Some(Ride {
+            place: then.world(from),
+            velocity: motion.velocity(then.world(touch), end),
+            acceleration: motion.acceleration(pose.world(touch), start),
+        })
     }
 
     /// Of what stands still.

@@ -1,5 +1,7 @@
 //! Particles that have a radius meet each other: by impulse, by force, by position.
 
+mod bounds;
+mod elastic;
 mod events;
 mod fast;
 mod force;

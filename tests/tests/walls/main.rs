@@ -3,8 +3,10 @@
 mod balls;
 mod blocks;
 mod bounces;
+mod elastic;
 mod heights;
 mod moving;
 mod poison;
+mod riding;
 mod scenes;
 mod tunnels;

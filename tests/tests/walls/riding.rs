@@ -1,0 +1,147 @@
+//! What rests on scenery that moves goes where that takes it, for as long as friction can hold it.
+
+use pointmass::force::Friction;
+use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Disc, Motion, Moving, Placed};
+use pointmass::{Gravity, Grip, Method, Particle, Scene, Time, Vec3};
+use pointmass_tests::{f64s, gap, run, started};
+
+const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+
+/// Where particles are after `seconds`, on a surface with this coefficient of friction.
+fn after(collider: &dyn Collider, mu: f32, start: &[Particle], method: Method, rate: f64, seconds: f64) -> Vec<Vec3> {
+    let grips = [Grip { elasticity: Some(0.0), friction: Some(Friction { resting: mu, sliding: mu }) }];
+    let start: Vec<Particle> = start.iter().map(|p| Particle { material: Some(0), elasticity: 0.0, ..*p }).collect();
+    let (forces, integrator) = (&Gravity::EARTH, method.integrator());
+    let scene = Scene { start: &start, forces, colliders: collider, grips: &grips, integrator, ..Scene::EMPTY };
+    let mut system = started(&scene, start.len(), 0);
+    run(&mut system, &scene, 1.0 / rate, (rate * seconds) as u32);
+    system.particles().position.to_vec()
+}
+
+fn turning(pivot: Vec3, spin: f32) -> Moving<Disc> {
+    let disc = Disc { center: pivot, normal: Vec3::Y, radius: 5.0 };
+    Moving::new(disc, &EVERYWHERE, Motion { pivot, spin, ..Motion::STILL })
+}
+
+#[test]
+fn on_a_disc_that_spins_it_stays_where_it_is() {
+    for (pivot, spin, distance) in [
+        (Vec3::ZERO, 0.25f32, 1.0f32),
+        (Vec3::new(3.0, 1.0, -2.0), -0.25, 1.0),
+        (Vec3::new(0.5, 0.0, 0.25), 0.15, 3.0),
+        (Vec3::new(0.5, 0.0, 0.25), 0.5, 0.4),
+    ] {
+        let disc = turning(pivot, spin);
+        let omega = core::f64::consts::TAU * f64::from(spin);
+        let start: Vec<Particle> = [0.0f32, 0.1]
+            .into_iter()
+            .map(|radius| Particle {
+                position: pivot + Vec3::X * distance + Vec3::Y * (radius + 1e-6),
+                velocity: Vec3::Z * (-omega as f32 * distance),
+                radius,
+                ..Particle::REST
+            })
+            .collect();
+        for rate in [10.0, 60.0, 1000.0] {
+            // Explicit Euler lifts off: in every other step it falls by nothing.
+            let methods = Method::ALL.iter().filter(|&&m| m != Method::Euler && (rate < 100.0 || m == Method::Rk4));
+            for &method in methods {
+                for (row, x) in after(&disc, 0.5, &start, method, rate, 20.0).into_iter().enumerate() {
+                    let x = x - pivot;
+                    let away = f64::from(x.x).hypot(f64::from(x.z));
+                    assert!(
+                        (away / f64::from(distance) - 1.0).abs() < 2e-3,
+                        "{method}, {rate}/s, {row}: at {away}, not {distance}"
+                    );
+                    let angle = (-omega * 20.0).sin_cos();
+                    let turned = [angle.1, angle.0].map(|x| x * f64::from(distance));
+                    let off = (f64::from(x.x) - turned[0]).hypot(f64::from(x.z) - turned[1]);
+                    assert!(off < 0.02 * f64::from(distance), "{method}, {rate}/s, {row}: {x}, not {turned:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn on_a_disc_that_spins_too_fast_it_slips() {
+    // ω² R beyond µ g, by a tenth; and short of it by a tenth.
+    let omega = core::f32::consts::TAU * 0.25;
+    for (share, slips) in [(1.1f32, true), (0.9, false)] {
+        let mu = omega * omega / (share * 9.80665);
+        let start = [Particle { position: Vec3::new(1.0, 1e-6, 0.0), velocity: Vec3::Z * -omega, ..Particle::REST }];
+        for rate in [10.0, 60.0, 1000.0] {
+            for method in [Method::Verlet, Method::Rk4, Method::Symplectic] {
+                let x = after(&turning(Vec3::ZERO, 0.25), mu, &start, method, rate, 3.0)[0];
+                let away = x.x.hypot(x.z);
+                assert_eq!(away > 1.05, slips, "{method}, {rate}/s, µ {mu}: at {away}");
+            }
+        }
+    }
+}
+
+#[test]
+fn on_whatever_moves_it_goes_along() {
+    // A slab that lies level, or turned about z by 15 degrees, and moves in some way.
+    let level = Affine::IDENTITY;
+    let (sin, cos) = 15f32.to_radians().sin_cos();
+    let tilt = Affine {
+        linear: pointmass::Mat3::from_cols(Vec3::new(cos, sin, 0.0), Vec3::new(-sin, cos, 0.0), Vec3::Z),
+        shift: Vec3::ZERO,
+    };
+    let slab = Cuboid { min: Vec3::new(-4.0, -0.5, -4.0), max: Vec3::new(4.0, 0.0, 4.0) };
+    let motions = [
+        Motion { drift: Vec3::new(1.0, 0.25, -0.5), ..Motion::STILL },
+        Motion { swing: Vec3::new(0.3, 0.05, -0.1), frequency: 0.4, ..Motion::STILL },
+        Motion { swing: Vec3::Y * 0.1, frequency: 0.7, phase: 0.25, ..Motion::STILL },
+        Motion {
+            pivot: Vec3::new(1.0, 0.0, 1.0),
+            spin: 0.2,
+            drift: Vec3::X * 0.5,
+            swing: Vec3::Z * 0.2,
+            frequency: 0.3,
+            ..Motion::STILL
+        },
+        // It rocks too slowly to throw off anything: a turn in 100 s about a level axis.
+        Motion { axis: Vec3::Z, spin: -0.01, pivot: Vec3::Y * -1.0, ..Motion::STILL },
+    ];
+    for map in [level, tilt] {
+        let placed = Placed::new(slab, map).expect("it only turns");
+        for (i, motion) in motions.iter().enumerate() {
+            let moving = Moving::new(&placed, &EVERYWHERE, *motion);
+            let speed = |x: Vec3| {
+                let h = Time::from_seconds(1e-2);
+                (motion.at(h).point(x) - motion.at(Time::ZERO).point(x)) * 100.0
+            };
+            let start: Vec<Particle> = [0.0f32, 0.1]
+                .into_iter()
+                .map(|radius| {
+                    let local = motion.at(Time::ZERO).point(map.point(Vec3::new(0.8, radius + 1e-6, -0.4)));
+                    Particle {
+                        position: local,
+                        velocity: speed(map.point(Vec3::new(0.8, 0.0, -0.4))),
+                        radius,
+                        ..Particle::REST
+                    }
+                })
+                .collect();
+            for rate in [10.0, 60.0, 400.0] {
+                for method in [Method::Verlet, Method::Rk4, Method::Symplectic] {
+                    for (begun, x) in start.iter().zip(after(&moving, 0.9, &start, method, rate, 5.0)) {
+                        let first = motion.at(Time::ZERO);
+                        let back = first.inverse().expect("it only moves").point(begun.position);
+                        let there = motion.at(Time::from_seconds(5.0)).point(back);
+                        let off = gap(f64s(x), f64s(there));
+                        // A ball has the speed of what it touches, which where the slab rocks is not that of its centre.
+                        let rocks = if i == 4 { 0.32 * f64::from(begun.radius) } else { 0.0 };
+                        assert!(
+                            off < 1e-2 + rocks,
+                            "motion {i}, {method}, {rate}/s, radius {}: {off} from {there}",
+                            begun.radius
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
