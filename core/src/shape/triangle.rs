@@ -153,6 +153,9 @@ const LARGE: f32 = 1e6;
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 const UNDERFLOW: f32 = 8.0 * f32::MIN_POSITIVE;
 
+/// How many times the usual slack the place of a hit may be wrong by, before it is computed without error.
+const ROUGH: f32 = 4.0;
+
 /// On which sides of a triangle's plane the ends of a path lie: the products of its normal with the ways there.
 struct Sides {
     normal: Vec3,
@@ -186,11 +189,10 @@ impl Sides {
         min(self.before.abs(), self.after.abs()) > self.doubt
     }
 
-    /// Whether that moves the plane by more than a few times the `slack` of a hit.
+    /// How far from the plane's true place along a path they tell that it is met \[m\].
     #[inline(always)]
-    fn is_rough(&self, slack: f32) -> bool {
-        let room = 4.0 * slack;
-        !(self.doubt * self.doubt <= room * room * self.normal.dot(self.normal))
+    fn error(&self, segment: &Segment) -> f32 {
+        self.doubt * length(segment.step()) / (self.before - self.after).abs()
     }
 }
 
@@ -235,17 +237,17 @@ impl Triangle {
         if !sides.is_sure() {
             sides = Sides::exact(self.corners, segment);
         }
-        let mut meeting = crossing(sides.normal, sides.before, sides.after)?;
+        let (time, normal) = crossing(sides.normal, sides.before, sides.after)?;
         if !self.is_passed(segment) {
             return None;
         }
-        let slack = segment.slack(size(self));
-        if sides.is_rough(slack) {
+        let (slack, error) = (segment.slack(size(self)), sides.error(segment));
+        if !(error <= ROUGH * slack) {
             let sides = Sides::exact(self.corners, segment);
-            meeting = crossing(sides.normal, sides.before, sides.after)?;
+            let (time, normal) = crossing(sides.normal, sides.before, sides.after)?;
+            return Some(Hit::new(time, unit(normal), slack));
         }
-        let (time, normal) = meeting;
-        Some(Hit::new(time, unit(normal), slack))
+        Some(Hit::new(time, unit(normal), max(error, slack)))
     }
 
     /// Whether the line through a segment passes inside, edges included.

@@ -5,6 +5,7 @@ mod blocks;
 mod bounces;
 mod heights;
 mod moving;
+mod needles;
 mod poison;
 mod scenes;
 mod tunnels;
