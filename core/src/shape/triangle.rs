@@ -87,7 +87,7 @@ impl Collider for Triangle {
         // Products of several lengths are beyond all numbers: everything is brought to about one, which keeps all digits.
         let scale = power_to_one(reach);
         let (from, to, radius) = (segment.from * scale, segment.to * scale, segment.radius * scale);
-        let near = Self { corners: self.corners.map(|corner| corner * scale) };
+        let near = self.scaled(scale);
         let hit = near.met(&Segment { from, to, radius, ..*segment })?;
         Some(Hit { slack: hit.slack / scale, ..hit })
     }
@@ -204,6 +204,11 @@ fn permanent(x: Vec3, y: Vec3) -> Vec3 {
 }
 
 impl Triangle {
+    /// The same, so many times as large.
+    pub(super) fn scaled(&self, scale: f32) -> Self {
+        Self { corners: self.corners.map(|corner| corner * scale) }
+    }
+
     /// A vector along its normal, of no particular length, and whether rounding is so small against it that it may be
     /// computed as usual: in a sliver nearly nothing is left of the difference of two products.
     #[inline]

@@ -16,12 +16,12 @@ fn coord(v: Vec3) -> Coord3D<f64> {
     Coord3D { x, y, z }
 }
 
-/// Whether a point lies inside, by how often a way out crosses the surface, without any rounding. The surface itself
-/// belongs to the outside.
-fn is_inside(mesh: &Closed, point: Vec3, random: &mut Random) -> bool {
+/// Whether a point lies inside, by how often a way out crosses the surface, without any rounding; nothing, if it lies on
+/// the surface.
+fn is_inside(mesh: &Closed, point: Vec3, random: &mut Random) -> Option<bool> {
     let (low, high) = bounds(mesh);
     if point.cmplt(low).any() || point.cmpgt(high).any() {
-        return false;
+        return Some(false);
     }
     'way: loop {
         let out = (low + high) * 0.5 + random.direction() * ((high - low).length() * 3.0 + mesh.size);
@@ -41,11 +41,11 @@ fn is_inside(mesh: &Closed, point: Vec3, random: &mut Random) -> bool {
                 continue 'way;
             }
             if before == 0.0 {
-                return false;
+                return None;
             }
             crossed = !crossed;
         }
-        return crossed;
+        return Some(crossed);
     }
 }
 
@@ -79,7 +79,8 @@ fn flight(mesh: &Closed, random: &mut Random) -> Particle {
         let steps = [64.0, 64.0, 30.0, 1e4][random.word() as usize % 4];
         let velocity = (target + way * over - from) * steps;
         let radius = if random.unit() < 0.7 { 0.0 } else { mesh.size * random.magnitude(1e-5, 0.1) };
-        if !is_inside(mesh, from, random) {
+        // What begins on the surface may leave it to the side of the normal, wherever that points.
+        if is_inside(mesh, from, random) == Some(false) {
             return Particle { position: from, velocity, radius, elasticity: random.unit(), ..Particle::REST };
         }
     }
@@ -104,7 +105,7 @@ fn storm(flights: usize, seed: u64) -> (usize, u64) {
         for step in 1..=4 {
             system.step(&scene, Time::from_ticks(1 << 26));
             for (row, &x) in system.particles().position.iter().enumerate() {
-                if is_inside(&closed, x, &mut random) {
+                if is_inside(&closed, x, &mut random) == Some(true) {
                     inside += 1;
                     println!("{} of {} m, {structure}, step {step}: {:?} at {x}", closed.name, closed.size, start[row]);
                     break;
