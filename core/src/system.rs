@@ -92,9 +92,10 @@ impl<B: Storage> System<B> {
         let now = self.status.time;
         self.status.hint = Time::ZERO;
         let given = self.view().spawn(particle, now);
+        let totals = &mut self.status.totals;
         match given {
-            Ok(_) => self.status.totals.born += 1,
-            Err(Full) => self.status.totals.refused += 1,
+            Ok(_) => totals.born = totals.born.saturating_add(1),
+            Err(Full) => totals.refused = totals.refused.saturating_add(1),
         }
         given
     }

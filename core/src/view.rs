@@ -83,7 +83,7 @@ impl View<'_> {
         for particle in scene.start {
             match self.spawn(particle, Time::ZERO) {
                 Ok(_) => report.initial += 1,
-                Err(Full) => report.refused += 1,
+                Err(Full) => report.refused = report.refused.saturating_add(1),
             }
         }
         self.status.start = self.status.taken;

@@ -3,6 +3,7 @@
 pub mod busy;
 pub mod emitting;
 pub mod fields;
+pub mod needles;
 pub mod points;
 pub mod solids;
 pub mod surfaces;

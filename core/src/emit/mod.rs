@@ -87,7 +87,7 @@ impl Births<'_> {
         let serial = tally.serial;
         tally.serial = serial.wrapping_add(1);
         if self.view.is_full() {
-            self.report.refused += 1;
+            self.report.refused = self.report.refused.saturating_add(1);
             self.observer.refused(1, at);
             return Err(Full);
         }

@@ -2,6 +2,7 @@
 
 use super::header::{Boxes, HEADER, Header, UNIT};
 use super::near::Gathered;
+use super::nearest::{Closest, square_to};
 use super::probe::{Best, Probe};
 use super::tree::MOST;
 use super::{Pieces, Structure, TooSmall};
@@ -165,7 +166,8 @@ fn choose<P: Pieces + ?Sized>(pieces: &P, bounds: &Aabb, room: usize) -> (Frame,
     }
     let mut frame = Frame::new(bounds, side);
     let grow = |frame: &Frame| Frame::new(bounds, min(frame.side * 1.25, f32::MAX));
-    while frame.count() > cells {
+    // A side that cannot grow any more has to do.
+    while frame.count() > cells && frame.side < f32::MAX {
         frame = grow(&frame);
     }
     let mut crowded = 0;
@@ -177,7 +179,7 @@ fn choose<P: Pieces + ?Sized>(pieces: &P, bounds: &Aabb, room: usize) -> (Frame,
         frame.count() + boxes(pieces).map(|(_, bounds)| places(&bounds)).sum::<usize>() <= room
     };
     while frame.count() > 1 && !fits(&frame) {
-        frame = grow(&frame);
+        frame = if frame.side < f32::MAX { grow(&frame) } else { Frame { cells: [1; 3], ..frame } };
         crowded += 1;
     }
     (frame, crowded)
@@ -257,4 +259,47 @@ pub(super) fn near<P: Pieces + ?Sized>(words: &[u32], pieces: &P, bounds: &Aabb,
         found.cost.visits += 1;
         grid.pieces(cell).iter().for_each(|&piece| found.ask(pieces, bounds, piece as usize));
     });
+}
+
+/// Goes outward from the point's own cell along each axis, and leaves out slices, rows and cells that are too far away.
+pub(super) fn nearest<P: Pieces + ?Sized, F: Fn(usize) -> Vec3>(words: &[u32], closest: &mut Closest<'_, P, F>) {
+    let Some(grid) = Grid::of(words) else {
+        return;
+    };
+    let (frame, point) = (grid.frame, closest.point);
+    if frame.count() == 1 {
+        return grid.pieces(0).iter().for_each(|&piece| closest.ask(piece as usize));
+    }
+    let mut bounds = Aabb { min: glam::Vec3::NEG_INFINITY, max: glam::Vec3::INFINITY };
+    let own: [usize; 3] = core::array::from_fn(|axis| frame.cell(axis, point[axis]));
+    let outward = |axis: usize| {
+        let count = frame.cells[axis] as usize;
+        (0..count)
+            .flat_map(move |i| [own[axis].checked_add(i), own[axis].checked_sub(i + 1)])
+            .flatten()
+            .filter(move |&i| i < count)
+    };
+    for z in outward(2) {
+        (bounds.min.z, bounds.max.z) = frame.planes(2, z);
+        (bounds.min.y, bounds.max.y) = (f32::NEG_INFINITY, f32::INFINITY);
+        (bounds.min.x, bounds.max.x) = (f32::NEG_INFINITY, f32::INFINITY);
+        if square_to(point, &bounds) > closest.square {
+            continue;
+        }
+        for y in outward(1) {
+            (bounds.min.y, bounds.max.y) = frame.planes(1, y);
+            (bounds.min.x, bounds.max.x) = (f32::NEG_INFINITY, f32::INFINITY);
+            if square_to(point, &bounds) > closest.square {
+                continue;
+            }
+            for x in outward(0) {
+                (bounds.min.x, bounds.max.x) = frame.planes(0, x);
+                if square_to(point, &bounds) > closest.square {
+                    continue;
+                }
+                closest.cost.visits += 1;
+                grid.pieces(frame.number([x, y, z])).iter().for_each(|&piece| closest.ask(piece as usize));
+            }
+        }
+    }
 }

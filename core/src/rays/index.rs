@@ -2,9 +2,11 @@
 
 use super::header::{Boxes, Header};
 use super::near::{in_order, meets};
+use super::nearest::Closest;
 use super::probe::{Best, Probe};
 use super::{Cost, Pieces, Stats, Structure, grid, tree};
 use crate::shape::{Aabb, Hit, Segment};
+use glam::Vec3;
 
 /// What a structure sorted into words, ready to be asked. Copying it copies a reference.
 ///
@@ -113,6 +115,24 @@ impl<'w> Index<'w> {
             Structure::Grid => in_order(|found| grid::near(self.words, pieces, bounds, found), visit),
             _ => in_order(|found| tree::near(self.words, pieces, bounds, found), visit),
         }
+    }
+
+    /// The place nearest to `point`, of those that `place` says each piece has nearest to it, held in the pieces' boxes;
+    /// of several as near that of the lowest number. None, if there are none or all are so far away that the square of
+    /// the distance is beyond an `f32`.
+    pub fn nearest<P: Pieces + ?Sized>(
+        &self,
+        pieces: &P,
+        point: Vec3,
+        place: impl Fn(usize) -> Vec3,
+    ) -> (Option<Vec3>, Cost) {
+        let mut closest = Closest::new(pieces, point, place);
+        match self.structure_for(pieces) {
+            Structure::Brute => (0..pieces.count()).for_each(|piece| closest.ask(piece)),
+            Structure::Grid => grid::nearest(self.words, &mut closest),
+            _ => tree::nearest(self.words, &mut closest),
+        }
+        closest.found()
     }
 
     fn structure_for<P: Pieces + ?Sized>(&self, pieces: &P) -> Structure {

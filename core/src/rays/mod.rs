@@ -39,6 +39,7 @@ mod header;
 mod index;
 mod kd;
 mod near;
+mod nearest;
 mod octree;
 mod pieces;
 mod probe;

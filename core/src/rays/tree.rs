@@ -6,8 +6,10 @@
 use super::Pieces;
 use super::header::{HEADER, Header, UNIT};
 use super::near::Gathered;
+use super::nearest::Closest;
 use super::probe::{Best, Probe};
 use crate::shape::Aabb;
+use glam::Vec3;
 use wide::f32x8;
 
 /// At most so many children has a node.
@@ -76,6 +78,17 @@ impl Node {
             let below = low.simd_le(f32x8::splat(bounds.max[axis])).to_bitmask();
             met & below & high.simd_ge(f32x8::splat(bounds.min[axis])).to_bitmask()
         })
+    }
+
+    /// The squares of the distances from a point to its children's boxes, by the same operations as to one.
+    fn squares(&self, point: Vec3) -> [f32; WIDE] {
+        let gap = |axis: usize| {
+            let (low, high) = (f32x8::new(self.planes[axis]), f32x8::new(self.planes[axis + 3]));
+            let center = f32x8::splat(point[axis]);
+            (low - center).fast_max(center - high).fast_max(f32x8::ZERO)
+        };
+        let [x, y, z] = [gap(0), gap(1), gap(2)];
+        (x * x + y * y + z * z).to_array()
     }
 
     /// The node at a unit.
@@ -212,6 +225,35 @@ pub(super) fn near<P: Pieces + ?Sized>(words: &[u32], pieces: &P, bounds: &Aabb,
                 NOTHING => {}
                 PIECE => found.ask(pieces, bounds, (child & NUMBER) as usize),
                 _ => drop(waiting.push(child)),
+            }
+        }
+    }
+}
+
+/// Goes down to the nearest child first.
+pub(super) fn nearest<P: Pieces + ?Sized, F: Fn(usize) -> Vec3>(words: &[u32], closest: &mut Closest<'_, P, F>) {
+    let body = body(words);
+    let mut waiting = heapless::Vec::<(f32, u32), WAITING>::new();
+    let _ = waiting.push((0.0, 0));
+    while let Some((square, child)) = waiting.pop() {
+        if square > closest.square {
+            continue;
+        }
+        if child & NOTHING == RUN {
+            run(body, child & NUMBER).for_each(|piece| closest.ask(piece));
+            continue;
+        }
+        let Some(node) = Node::at(body, child) else {
+            continue;
+        };
+        closest.cost.visits += 1;
+        let first = waiting.len();
+        for (&child, square) in node.children.iter().zip(node.squares(closest.point)) {
+            match child & NOTHING {
+                NOTHING => {}
+                PIECE => closest.ask((child & NUMBER) as usize),
+                _ if square <= closest.square => insert(&mut waiting, first, (square, child)),
+                _ => {}
             }
         }
     }

@@ -5,6 +5,7 @@
 //! ball fits are the same solid, smaller by the radius, which the path leaves where the ball touches.
 
 use super::convex::{self, Convex};
+use super::sliver::Sliver;
 use super::sphere::circle_span;
 use super::{Affine, Collider, Contact, Hit, Segment, earlier};
 use crate::math::{clamp, length, max, unit};
@@ -151,18 +152,23 @@ pub(super) fn gap_to_line(point: Vec3, from: Vec3, along: Vec3) -> Vec3 {
 /// Where a segment of a ball or a point first meets a triangle, from either side.
 #[inline]
 pub(super) fn on_triangle(triangle: &super::Triangle, segment: &Segment, center: Option<Hit>) -> Option<Hit> {
-    let [a, b, c] = triangle.corners;
+    let [a, ..] = triangle.corners;
     let slack = segment.slack(super::triangle::size(triangle));
     if !(segment.radius > slack) {
         return center;
     }
     // Most triangles are out of reach of the ball all along.
-    let normal = (b - a).cross(c - a);
+    let (normal, is_plain) = triangle.normal();
     let (before, after) = (normal.dot(segment.from - a), normal.dot(segment.to - a));
     let reach = segment.radius + slack;
     let far = reach * reach * normal.dot(normal);
     if before * after > 0.0 && before * before > far && after * after > far {
         return center;
     }
-    earlier(approach(triangle, segment, slack), center)
+    let ball = if is_plain {
+        approach(triangle, segment, slack)
+    } else {
+        approach(&Sliver::new(triangle, normal), segment, slack)
+    };
+    earlier(ball, center)
 }

@@ -1,7 +1,7 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
 use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
-use crate::math::{high, largest, length, max};
+use crate::math::{high, largest, max, power_to_one};
 use crate::rays::{Index, Pieces, Unsound};
 #[cfg(feature = "alloc")]
 use crate::rays::{Structure, TooSmall};
@@ -188,17 +188,11 @@ impl Surface for Mesh<'_> {
         face(self.vertices, triangle).sample(u)
     }
 
-    /// Looks at every triangle.
+    /// Through its index: of places as near that of the lowest triangle. The point itself, if there are no triangles, or
+    /// all are farther than squares can tell.
     fn nearest(&self, point: Vec3) -> Vec3 {
-        let mut best = (f32::INFINITY, point);
-        for face in self.faces() {
-            let candidate = face.nearest(point);
-            let distance = length(candidate - point);
-            if distance < best.0 {
-                best = (distance, candidate);
-            }
-        }
-        best.1
+        let place = |piece| self.face(piece).map_or(point, |face: Triangle| face.nearest(point));
+        self.index.nearest(self, point, place).0.unwrap_or(point)
     }
 
     fn bounds(&self) -> Aabb {
@@ -326,11 +320,13 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BadMesh> {
 /// Of a triangle's area in that of the largest; 2³⁶, so that 2²⁸ triangles cannot overflow the sum.
 const UNIT: f32 = 68_719_476_736.0;
 
-/// Fills in running sums of areas; where all are zero (or overflow) every triangle counts alike.
+/// Fills in running sums of areas; where all are zero every triangle counts alike.
 fn sum_areas(vertices: &[Vec3], triangles: &[[u32; 3]], areas: &mut [u64]) {
-    let size = |t| face(vertices, t).area();
+    // With the largest coordinate about one, no area is beyond an `f32`, whatever the vertices.
+    let scale = power_to_one(vertices.iter().fold(0.0, |most, vertex| max(largest(*vertex), most)));
+    let size = |t| face(vertices, t).scaled(scale).area();
     let greatest = triangles.iter().map(size).fold(0.0, max);
-    let usable = greatest > 0.0 && greatest < f32::INFINITY;
+    let usable = greatest > 0.0;
     let mut sum = 0;
     for (triangle, slot) in triangles.iter().zip(areas) {
         sum += if usable { (size(triangle) / greatest * UNIT) as u64 } else { 1 };
@@ -345,7 +341,7 @@ fn face(vertices: &[Vec3], triangle: &[u32; 3]) -> Triangle {
 #[cfg(all(test, feature = "alloc"))]
 mod tests {
     use super::*;
-    use crate::math::unit;
+    use crate::math::{length, unit};
     use crate::rng::Stream;
     use alloc::vec;
 

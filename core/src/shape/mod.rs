@@ -8,6 +8,7 @@ mod convex;
 mod cuboid;
 mod cylinder;
 mod disc;
+mod exact;
 mod heightfield;
 mod line;
 mod mesh;
@@ -15,6 +16,7 @@ mod moving;
 mod place;
 mod plane;
 mod revolve;
+mod sliver;
 mod sphere;
 mod triangle;
 

@@ -1,9 +1,11 @@
 //! One triangle, and the arithmetic that meshes share with it.
 
 use super::ball::{self, Filled, gap_to_line};
+use super::exact::{Lattice, cross, volume};
 use super::plane::crossing;
+use super::sliver::Sliver;
 use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface};
-use crate::math::{clamp, largest, length, max, power_to_one, sqrt, unit};
+use crate::math::{clamp, high, largest, length, max, min, power_to_one, sqrt, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -26,11 +28,15 @@ impl Surface for Triangle {
     fn sample(&self, u: [f32; 3]) -> Spot {
         let [a, b, c] = self.corners;
         let s = sqrt(u[1]);
-        Spot { point: a * (1.0 - s) + b * (s * (1.0 - u[2])) + c * (s * u[2]), normal: unit((b - a).cross(c - a)) }
+        Spot { point: a * (1.0 - s) + b * (s * (1.0 - u[2])) + c * (s * u[2]), normal: unit(self.normal().0) }
     }
 
     /// Ericson, "Real-Time Collision Detection", 5.1.5.
     fn nearest(&self, p: Vec3) -> Vec3 {
+        let (normal, is_plain) = self.normal();
+        if !is_plain {
+            return p - Sliver::new(self, normal).gap(p);
+        }
         let [a, b, c] = self.corners;
         let (ab, ac, ap) = (b - a, c - a, p - a);
         let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -81,15 +87,15 @@ impl Collider for Triangle {
         // Products of several lengths are beyond all numbers: everything is brought to about one, which keeps all digits.
         let scale = power_to_one(reach);
         let (from, to, radius) = (segment.from * scale, segment.to * scale, segment.radius * scale);
-        let near = Self { corners: self.corners.map(|corner| corner * scale) };
+        let near = self.scaled(scale);
         let hit = near.met(&Segment { from, to, radius, ..*segment })?;
         Some(Hit { slack: hit.slack / scale, ..hit })
     }
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
-        let [a, b, c] = self.corners;
-        let gap = self.gap(center);
-        let normal = if gap == Vec3::ZERO { unit((b - a).cross(c - a)) } else { unit(gap) };
+        let (across, is_plain) = self.normal();
+        let gap = if is_plain { self.gap(center) } else { Sliver::new(self, across).gap(center) };
+        let normal = if gap == Vec3::ZERO { unit(across) } else { unit(gap) };
         ball::lean(center, gap, normal, reach, visit);
     }
 
@@ -141,7 +147,85 @@ pub(super) fn size(triangle: &Triangle) -> f32 {
 const SMALL: f32 = 1e-6;
 const LARGE: f32 = 1e6;
 
+/// By how much of its permanent a determinant of three differences may be wrong (Shewchuk, "Adaptive Precision
+/// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997: 7 half units and a little), and by how much
+/// products too small for all digits may be.
+const ROUNDING: f32 = 4.0 * f32::EPSILON;
+const UNDERFLOW: f32 = 8.0 * f32::MIN_POSITIVE;
+
+/// How many times the usual slack the place of a hit may be wrong by, before it is computed without error.
+const ROUGH: f32 = 4.0;
+
+/// On which sides of a triangle's plane the ends of a path lie: the products of its normal with the ways there.
+struct Sides {
+    normal: Vec3,
+    before: f32,
+    after: f32,
+    /// How wrong those products may be.
+    doubt: f32,
+}
+
+impl Sides {
+    #[inline(always)]
+    fn rounded([a, b, c]: [Vec3; 3], segment: &Segment) -> Self {
+        let (x, y, from, to) = (b - a, c - a, segment.from - a, segment.to - a);
+        let normal = x.cross(y);
+        let doubt = permanent(x, y).dot(high(from.abs(), to.abs())) * ROUNDING + UNDERFLOW;
+        Self { normal, before: normal.dot(from), after: normal.dot(to), doubt }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exact([a, b, c]: [Vec3; 3], segment: &Segment) -> Self {
+        let lattice = Lattice::new([a, b, c, segment.from, segment.to]);
+        let normal = cross(lattice.way(0, 1), lattice.way(0, 2));
+        let [before, after] = [3, 4].map(|end| volume(normal, lattice.way(0, end)));
+        Self { normal: lattice.direction(normal), before, after, doubt: 0.0 }
+    }
+
+    /// Whether the signs of both are right.
+    #[inline(always)]
+    fn is_sure(&self) -> bool {
+        min(self.before.abs(), self.after.abs()) > self.doubt
+    }
+
+    /// How far from the plane's true place along a path they tell that it is met \[m\].
+    #[inline(always)]
+    fn error(&self, segment: &Segment) -> f32 {
+        self.doubt * length(segment.step()) / (self.before - self.after).abs()
+    }
+}
+
+/// The vector product with all its products counted as above zero.
+#[inline(always)]
+fn permanent(x: Vec3, y: Vec3) -> Vec3 {
+    let [x, y] = [x.abs(), y.abs()];
+    Vec3::new(x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x)
+}
+
 impl Triangle {
+    /// The same, so many times as large.
+    pub(super) fn scaled(&self, scale: f32) -> Self {
+        Self { corners: self.corners.map(|corner| corner * scale) }
+    }
+
+    /// A vector along its normal, of no particular length, and whether rounding is so small against it that it may be
+    /// computed as usual: in a sliver nearly nothing is left of the difference of two products.
+    #[inline]
+    pub(super) fn normal(&self) -> (Vec3, bool) {
+        let [a, b, c] = self.corners;
+        let (x, y) = (b - a, c - a);
+        let (normal, most) = (x.cross(y), permanent(x, y));
+        if 64.0 * normal.dot(normal) > most.dot(most) { (normal, true) } else { (self.exact_normal(), false) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exact_normal(&self) -> Vec3 {
+        let lattice = Lattice::new(self.corners);
+        unit(lattice.direction(cross(lattice.way(0, 1), lattice.way(0, 2))))
+    }
+
     /// Where the path of a point or a ball first meets it.
     #[inline]
     fn met(&self, segment: &Segment) -> Option<Hit> {
@@ -150,23 +234,31 @@ impl Triangle {
     }
 
     /// Where the path of a point crosses it.
+    ///
+    /// Which sides its ends lie on and what it passes inside are told without error: of all triangles of a closed mesh,
+    /// however thin, one is crossed by whatever gets in.
     fn crossed(&self, segment: &Segment) -> Option<Hit> {
-        let [a, b, c] = self.corners;
-        let normal = (b - a).cross(c - a);
-        let (before, after) = (normal.dot(segment.from - a), normal.dot(segment.to - a));
-        let slack = segment.slack(size(self));
-        // A path toward the plane that ends within rounding of it has met it. Else one that ends beside an edge could
-        // be judged to pass one triangle there and, by its continuation, the other.
-        let met = after * after <= slack * slack * normal.dot(normal) && before.abs() > after.abs();
-        let (time, normal) = crossing(normal, before, if met { 0.0 } else { after })?;
-        self.is_passed(segment).then(|| Hit::new(time, unit(normal), slack))
+        let mut sides = Sides::rounded(self.corners, segment);
+        if !sides.is_sure() {
+            sides = Sides::exact(self.corners, segment);
+        }
+        let (time, normal) = crossing(sides.normal, sides.before, sides.after)?;
+        if !self.is_passed(segment) {
+            return None;
+        }
+        let (slack, error) = (segment.slack(size(self)), sides.error(segment));
+        if !(error <= ROUGH * slack) {
+            let sides = Sides::exact(self.corners, segment);
+            let (time, normal) = crossing(sides.normal, sides.before, sides.after)?;
+            return Some(Hit::new(time, unit(normal), slack));
+        }
+        Some(Hit::new(time, unit(normal), max(error, slack)))
     }
 
-    /// Whether the line through a segment passes inside, edges included (Woop, Benthin, Wald, "Watertight Ray/Triangle
-    /// Intersection", JCGT 2013).
+    /// Whether the line through a segment passes inside, edges included.
     ///
-    /// The corners are shorn along the line into a plane, where an edge function is a difference of two products: its
-    /// sign is never wrong, and for the other triangle at the edge it is just the opposite.
+    /// The corners are shorn along the line into a plane, where an edge function is a difference of two products
+    /// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).
     fn is_passed(&self, segment: &Segment) -> bool {
         let step = segment.step();
         let size = step.abs();
@@ -180,10 +272,26 @@ impl Triangle {
         let (shear_x, shear_y) = (step[x] / step[z], step[y] / step[z]);
         let shorn = |corner: Vec3| {
             let offset = corner - segment.from;
-            (offset[x] - shear_x * offset[z], offset[y] - shear_y * offset[z])
+            (offset[x] - shear_x * offset[z], offset[y] - shear_y * offset[z], offset[z].abs())
         };
-        let [(ax, ay), (bx, by), (cx, cy)] = self.corners.map(shorn);
-        let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0)
+        let [(ax, ay, az), (bx, by, bz), (cx, cy, cz)] = self.corners.map(shorn);
+        let sides = [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax];
+        // A shorn coordinate is off by 2 half units of its own and 6 of what was shorn off, an edge function by four
+        // times that and 4 half units of products, of the largest of each.
+        let wide = [ax, ay, bx, by, cx, cy].into_iter().fold(0.0, |most, x| max(x.abs(), most));
+        let doubt = f32::EPSILON * wide * (8.0 * wide + 16.0 * max(az, max(bz, cz))) + UNDERFLOW;
+        let (left, right) = (sides.iter().any(|&side| side > doubt), sides.iter().any(|&side| side < -doubt));
+        let is_sure = (left && right) || sides.iter().all(|side| side.abs() > doubt);
+        if is_sure { left != right } else { self.is_passed_exactly(segment) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn is_passed_exactly(&self, segment: &Segment) -> bool {
+        let [a, b, c] = self.corners;
+        let lattice = Lattice::new([segment.from, segment.to, a, b, c]);
+        let [a, b, c] = [2, 3, 4].map(|corner| lattice.way(0, corner));
+        let sides = [(c, b), (a, c), (b, a)].map(|(p, q)| volume(cross(p, q), lattice.way(0, 1)));
+        sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0)
     }
 }

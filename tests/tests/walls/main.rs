@@ -6,6 +6,7 @@ mod bounces;
 mod elastic;
 mod heights;
 mod moving;
+mod needles;
 mod poison;
 mod riding;
 mod scenes;
