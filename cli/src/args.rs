@@ -101,8 +101,8 @@ pub struct World {
     /// How many particles may live at once, what finds no room is refused and counted; by default what the scene says
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=500_000_000))]
     pub capacity: Option<u32>,
-    /// Divide every step into N sub-steps, or `auto`: into as few as springs and drag need to be stable and --tolerance
-    /// asks, at most 1024
+    /// Divide every step into N sub-steps, or `auto`: into as few as springs, drag and contacts need to be stable and
+    /// --tolerance asks, at most 1024
     #[arg(long, value_name = "N|auto", default_value = "1", value_parser = substeps)]
     pub substeps: Substeps,
     /// With --substeps auto, how far a step may end, in metres and at any particle, from where half as many sub-steps

@@ -1,7 +1,7 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
 use super::check::{MAX_GROUPS, MAX_MATERIALS};
-use super::remarks::{odd_elasticity, odd_ends};
+use super::remarks::{MOST, odd_elasticity, odd_ends};
 use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands};
 use super::{Camera, Group, Item, Light, Material, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
@@ -229,7 +229,9 @@ impl Reader<'_> {
                 Err(error) if error.problem == Problem::UnknownCommand && self.unknown == Unknown::Skip => {
                     commands.resume_after(error.place);
                     self.skipped += 1;
-                    self.warnings.push(format!("{} is passed over", place_of(path, error)));
+                    if self.skipped <= MOST {
+                        self.warnings.push(format!("{} is passed over", place_of(path, error)));
+                    }
                 }
                 Err(error) => return Err(place_of(path, error)),
             }
@@ -364,7 +366,7 @@ impl Reader<'_> {
 
     /// Warns of what is odd about an argument.
     fn remark(&mut self, scope: &Scope<'_>, place: Place, name: &str, odd: Option<String>, argument: &str) {
-        if let Some(odd) = odd {
+        if let Some(odd) = odd.filter(|_| self.remarks.len() < MOST) {
             self.remarks.push(scope.error(place, name, format!("{argument}: {odd}")).to_string());
         }
     }

@@ -7,39 +7,49 @@ use crate::force::Friction;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
+use core::fmt::Arguments;
 
 /// All directions \[rad\]: π, also as files round it.
 const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
 
+/// As many as are told: a large file may have one in every line.
+pub(super) const MOST: usize = 1000;
+
 impl SceneFile {
-    /// What it says that can be run but is hardly meant, each by its path in the file.
+    /// What it says that can be run but is hardly meant, each by its path in the file; the first thousand.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
-        let mut add = |at: String, remark: Option<String>| remarks.extend(remark.map(|text| format!("{at}: {text}")));
+        let mut add = |at: Arguments<'_>, remark: Option<String>| {
+            let told = remark.filter(|_| remarks.len() < MOST);
+            remarks.extend(told.map(|text| format!("{at}: {text}")));
+        };
         // What is fixed hits nothing.
         for (i, particle) in self.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed) {
-            add(format!("particles[{i}].elasticity"), odd_elasticity(Varied::exactly(particle.elasticity)));
+            add(format_args!("particles[{i}].elasticity"), odd_elasticity(Varied::exactly(particle.elasticity)));
         }
         for (i, spring) in self.springs.iter().enumerate() {
-            add(format!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
+            add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
         }
         for (i, fabric) in self.fabrics.iter().enumerate() {
-            add(format!("fabrics[{i}].elasticity"), odd_elasticity(Varied::exactly(fabric.elasticity)));
+            add(format_args!("fabrics[{i}].elasticity"), odd_elasticity(Varied::exactly(fabric.elasticity)));
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
-            add(format!("emitters[{i}].elasticity"), odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed));
-            add(format!("emitters[{i}].spread"), odd_spread(emitter.spread));
+            add(
+                format_args!("emitters[{i}].elasticity"),
+                odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed),
+            );
+            add(format_args!("emitters[{i}].spread"), odd_spread(emitter.spread));
             let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
             let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
-            add(format!("emitters[{i}].stop"), ended.map(nothing));
+            add(format_args!("emitters[{i}].stop"), ended.map(nothing));
         }
         if let Some(Response::Force(penalty)) = self.contacts {
-            add("contacts.force.friction.resting".into(), odd_friction(penalty.friction));
+            add(format_args!("contacts.force.friction.resting"), odd_friction(penalty.friction));
         }
         for (i, material) in self.materials.iter().enumerate() {
             let friction = material.grip.friction.unwrap_or(Friction::NONE);
-            add(format!("materials[{i}].grip.friction.resting"), odd_friction(friction));
+            add(format_args!("materials[{i}].grip.friction.resting"), odd_friction(friction));
         }
         remarks
     }
@@ -47,11 +57,13 @@ impl SceneFile {
 
 /// What is odd about a share of the speed that hits leave.
 pub(super) fn odd_elasticity(Varied { mean, variance }: Varied) -> Option<String> {
+    /// What sums of decimals may be off by.
+    const ROUNDING: f32 = 1e-6;
     let (least, most) = (mean - variance.abs(), mean + variance.abs());
-    if most > 1.0 {
+    if most > 1.0 + ROUNDING {
         return Some(format!("{most} is above 1, so hits add energy"));
     }
-    (least < 0.0).then(|| format!("{least} is below 0, which no hit can leave of a speed"))
+    (least < -ROUNDING).then(|| format!("{least} is below 0, which no hit can leave of a speed"))
 }
 
 /// What is odd about the angle within which births leave. The lecture's recipe takes the sine of any.
