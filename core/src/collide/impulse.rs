@@ -330,7 +330,10 @@ impl Melee<'_> {
         let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, feel, slack };
-        let Answer { velocity: after, way, ends } = touch.answer(self.dt.seconds(), (self.end - now).seconds());
+        let Answer { velocity: after, way, ends, slid } = touch.answer(self.dt.seconds(), (self.end - now).seconds());
+        if let Some(slid) = &slid {
+            self.observer.slid(slid);
+        }
         self.report.contacts += 1;
         let closing = max((velocity[1] - velocity[0]).dot(normal), 0.0);
         for i in 0..2 {
@@ -349,6 +352,7 @@ impl Melee<'_> {
                 closing,
                 before: velocity[i],
                 after: after[i],
+                surface: Vec3::ZERO,
                 time: now,
             });
             self.clocks.set(row, Clock { turns: clock.turns + 1, since: until, ..clock });

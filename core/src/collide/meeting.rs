@@ -5,6 +5,7 @@ use super::grip::Feel;
 use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
+use crate::observe::Sliding;
 use glam::Vec3;
 
 /// How many times the instant of a touch is looked for on the path, as that of a hit.
@@ -132,7 +133,7 @@ impl Touch {
                 (v + a * (0.5 * rest)) * rest
             };
             let ends = [0, 1].map(|i| velocity[i] + self.acceleration[i] * rest);
-            return Answer { velocity, way: [end(0), end(1)], ends };
+            return Answer { velocity, way: [end(0), end(1)], ends, slid: None };
         }
         let slip = came + braked;
         let drive = acceleration + n * pressing;
@@ -146,8 +147,11 @@ impl Touch {
         let middle = |of: [Vec3; 2]| of[0] * (wb / (wa + wb)) + of[1] * (wa / (wa + wb));
         let (steady, pull) = (middle(velocity), middle(self.acceleration));
         let common = (steady + pull * (0.5 * rest)) * rest;
+        let along = [drive, way, slip, end];
+        let slid = Some(Sliding { mass: 1.0 / (wa + wb), raised: Vec3::ZERO, world: along, along });
         let (ways, ends) = (share(way), share(end));
-        Answer { velocity, way: ways.map(|way| common + way), ends: ends.map(|end| steady + pull * rest + end) }
+        let way = ways.map(|way| common + way);
+        Answer { velocity, way, ends: ends.map(|end| steady + pull * rest + end), slid }
     }
 }
 
@@ -159,6 +163,8 @@ pub(super) struct Answer {
     /// How far they go in the rest of the step \[m\], and their velocities at its end.
     pub(super) way: [Vec3; 2],
     pub(super) ends: [Vec3; 2],
+    /// How they slide along each other, if they stay in touch.
+    pub(super) slid: Option<Sliding>,
 }
 
 #[cfg(test)]
@@ -194,7 +200,7 @@ mod tests {
             acceleration: [Vec3::X * -10.0, Vec3::ZERO],
             ..head_on(0.5, [1.0, 1.0])
         };
-        let Answer { velocity, way, ends } = touch.answer(0.1, 0.1);
+        let Answer { velocity, way, ends, .. } = touch.answer(0.1, 0.1);
         assert_eq!((velocity[0], way[0], ends[0]), (velocity[1], way[1], ends[1]));
         assert!((ends[0] - velocity[0] - Vec3::X * -0.5).length() < 1e-6);
     }
