@@ -209,11 +209,14 @@ fn method_effort(effort: &pointmass::Effort) -> String {
 
 /// The books, a row an entry; what is nothing is left out.
 fn accounts(books: &Books) -> Vec<(&'static str, String)> {
-    let Books { opening, emission, restitution, breaking, deletion, outside, remainder, closing, .. } = *books;
+    let Books { opening, emission, restitution, friction, scenery, breaking, .. } = *books;
+    let Books { deletion, outside, remainder, closing, .. } = *books;
     let mut entries = vec![("at first", opening), ("born", emission)];
     entries.extend(books.work.iter().copied());
     entries.extend([
         ("lost in hits", restitution),
+        ("friction", friction),
+        ("moving scenery", scenery),
         ("springs that broke", breaking),
         ("died", deletion),
         ("from outside", outside),

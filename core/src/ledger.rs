@@ -1,7 +1,7 @@
 //! The ledger: where energy went, in double precision.
 
 use crate::force::{Entry, Force, Springs, State};
-use crate::observe::{Impact, Observer, Phase};
+use crate::observe::{Impact, Observer, Phase, Sliding};
 use crate::scene::Scene;
 use crate::storage::Storage;
 use crate::system::System;
@@ -42,8 +42,8 @@ pub struct Ledger<'a> {
     /// The old, as they were when last seen on their way through the step, and the power of each force then.
     from: Snapshot,
     powers: Vec<Entry>,
-    /// What hits have taken since the last phase.
-    struck: f64,
+    /// What hits have taken since the last phase, friction, and the work of scenery that moves.
+    struck: [f64; 3],
 }
 
 /// The old particles at an instant.
@@ -66,13 +66,18 @@ pub struct Books {
     pub work: Vec<(&'static str, f64)>,
     /// Lost in hits by elasticities below one.
     pub restitution: f64,
+    /// Lost by dry friction on colliders and, by [`Impulse`](crate::Impulse), of particles on each other: in hits and while
+    /// they slide. (Contacts by position are not booked: what they take is in the remainder.)
+    pub friction: f64,
+    /// The work of scenery that moves on what it hits, lifts and drags along.
+    pub scenery: f64,
     /// Set free, or taken along, by springs that broke.
     pub breaking: f64,
     /// Gone with particles that died.
     pub deletion: f64,
     /// Brought in or taken out between steps, by the program's own hand.
     pub outside: f64,
-    /// The error of the method, of the response to hits, and of rounding.
+    /// The error of the method and of rounding, and what contacts by position do.
     pub remainder: f64,
     /// Kinetic and potential energy now.
     pub closing: f64,
@@ -89,14 +94,16 @@ impl Books {
     #[must_use]
     pub fn total(&self) -> f64 {
         let work: f64 = self.work.iter().map(|(_, work)| work).sum();
-        self.emission + work + self.restitution + self.breaking + self.deletion + self.outside + self.remainder
+        let causes = self.emission + self.restitution + self.friction + self.scenery + self.breaking + self.deletion;
+        work + causes + self.outside + self.remainder
     }
 
     /// Energy that changed hands: the scale for the remainder.
     #[must_use]
     pub fn turnover(&self) -> f64 {
         let work: f64 = self.work.iter().map(|(_, work)| work.abs()).sum();
-        let others = [self.emission, self.restitution, self.breaking, self.deletion, self.outside];
+        let Self { emission, restitution, friction, scenery, breaking, deletion, outside, .. } = *self;
+        let others = [emission, restitution, friction, scenery, breaking, deletion, outside];
         work + others.iter().map(|x| x.abs()).sum::<f64>()
     }
 
@@ -134,7 +141,7 @@ impl<'a> Ledger<'a> {
             old: system.len(),
             from: Snapshot::default(),
             powers: Vec::new(),
-            struck: 0.0,
+            struck: [0.0; 3],
         }
     }
 
@@ -152,6 +159,13 @@ impl<'a> Ledger<'a> {
             return 0.0;
         }
         now - core::mem::replace(&mut self.energy, now)
+    }
+
+    fn strike(&mut self, changes: [f64; 3]) {
+        // One beyond all numbers goes at the end of the step, and takes its energy with it.
+        if changes.iter().all(|change| change.is_finite()) {
+            self.struck.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change);
+        }
     }
 
     fn powers(&self, state: &State<'_>) -> Vec<Entry> {
@@ -254,8 +268,11 @@ impl Observer for Ledger<'_> {
             }
             Phase::Collide => {
                 let (change, struck) = (self.change(state), core::mem::take(&mut self.struck));
-                self.books.restitution += struck;
-                self.books.remainder += change - struck;
+                let [restitution, friction, scenery] = struck;
+                self.books.restitution += restitution;
+                self.books.friction += friction;
+                self.books.scenery += scenery;
+                self.books.remainder += change - restitution - friction - scenery;
             }
             Phase::Delete => {
                 let change = self.change(state);
@@ -265,7 +282,29 @@ impl Observer for Ledger<'_> {
         self.books.closing = self.energy;
     }
 
+    /// As seen from the surface the speed along the normal is restitution's and that along it friction's.
     fn hit(&mut self, hit: &Impact) {
-        self.struck += 0.5 * f64::from(hit.mass) * (square(hit.after) - square(hit.before));
+        let half = 0.5 * f64::from(hit.mass);
+        let [before, after] = [hit.before, hit.after].map(|v| v - hit.surface);
+        let normal = |v: Vec3| dot(v, hit.normal) * dot(v, hit.normal);
+        let restitution = half * (normal(after) - normal(before));
+        let friction = half * (square(after) - square(before)) - restitution;
+        let whole = half * (square(hit.after) - square(hit.before));
+        self.strike([restitution, friction, whole - restitution - friction]);
     }
+
+    /// What forces do not account for: along the surface friction, and in the world the surface's work as well.
+    fn slid(&mut self, slide: &Sliding) {
+        let mass = f64::from(slide.mass);
+        let gained =
+            |[pull, way, first, last]: [Vec3; 4]| mass * (0.5 * (square(last) - square(first)) - dot(pull, way));
+        let friction = gained(slide.along);
+        // What it falls through to touch is given back, and was lost in the hit.
+        let raised = -mass * dot(slide.world[0], slide.raised);
+        self.strike([raised, friction, gained(slide.world) - friction]);
+    }
+}
+
+fn dot(a: Vec3, b: Vec3) -> f64 {
+    a.to_array().into_iter().zip(b.to_array()).map(|(a, b)| f64::from(a) * f64::from(b)).sum()
 }

@@ -63,7 +63,7 @@ pub use integrate::{
 pub use ledger::{Books, Ledger};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
-pub use observe::{Impact, Observer, Passing, Phase};
+pub use observe::{Impact, Observer, Passing, Phase, Sliding};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use report::{Caps, Died, Effort, Report};
 pub use retire::{Cause, Fate};

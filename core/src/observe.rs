@@ -18,6 +18,11 @@ pub trait Observer {
         let _ = hit;
     }
 
+    /// A particle that has come to rest on a surface slides along it, or stays and is carried, for the rest of the step.
+    fn slid(&mut self, slide: &Sliding) {
+        let _ = slide;
+    }
+
     /// A particle was born.
     fn born(&mut self, birth: &Passing) {
         let _ = birth;
@@ -77,8 +82,24 @@ pub struct Impact {
     pub before: Vec3,
     /// Its velocity after \[m/s\].
     pub after: Vec3,
+    /// How the collider moves there \[m/s\]; zero for another particle.
+    pub surface: Vec3,
     /// The instant.
     pub time: Time,
+}
+
+/// How something goes on that rests on a surface: in the world, and as seen from the surface, along which friction acts. Of
+/// two particles that rest on each other it tells their motion toward each other, once, with their reduced mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sliding {
+    /// The mass \[kg\].
+    pub mass: f32,
+    /// How far it has been set off from where it touched \[m\].
+    pub raised: Vec3,
+    /// What forces give it \[m/s²\], how far it goes \[m\], and its velocities at the beginning and the end \[m/s\].
+    pub world: [Vec3; 4],
+    /// The same along the surface, as seen from there.
+    pub along: [Vec3; 4],
 }
 
 /// A particle that has just been born, or is just about to be removed.

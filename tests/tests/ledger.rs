@@ -1,10 +1,10 @@
 //! The ledger closes: what is left over is the method's own error.
 
-use pointmass::force::{Coulomb, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
-use pointmass::shape::{Cuboid, Plane};
+use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
+use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
 use pointmass::{
-    Adaptive, Books, Drag, Emitter, Force, Gravity, Heap, Ledger, Measures, Method, MutualGravity, Particle, Rk4,
-    Scene, Sheet, Size, Spring, System, Thread, Threads, Time, Varied, Vec3, Verlet,
+    Adaptive, Books, Drag, Emitter, Force, Gravity, Grip, Heap, Impulse, Ledger, Measures, Method, MutualGravity,
+    Particle, Rk4, Scene, Sheet, Size, Spring, System, Thread, Threads, Time, Varied, Vec3, Verlet,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, point};
@@ -188,4 +188,110 @@ fn one_beyond_all_numbers_does_not_spoil_the_books() {
     assert_eq!(system.totals().died.nonfinite, 1);
     let books = ledger.books();
     assert!(books.total().is_finite() && books.deletion < -1e59 && books.closing < 1.0, "{books:?}");
+}
+
+const GRIP: [Grip; 1] = [Grip { elasticity: None, friction: Some(Friction { resting: 0.4, sliding: 0.3 }) }];
+
+#[test]
+fn friction_has_its_line() {
+    // 5 m/s on level ground: all of 12.5 J, by sliding alone and after a lossy impact, on a slope, and against the floor of a room.
+    let (sin, cos) = 0.2f32.sin_cos();
+    let slopes = [Vec3::Y, Vec3::new(sin, cos, 0.0)];
+    for method in [Method::Midpoint, Method::Verlet, Method::Rk4] {
+        for normal in slopes {
+            for (radius, down) in [(0.0f32, 0.0f32), (0.1, -3.0)] {
+                let velocity = Vec3::new(cos, -sin, 0.0) * if normal == Vec3::Y { 0.0 } else { 5.0 } + Vec3::Z * 5.0;
+                let block = Particle {
+                    position: normal * (radius + 1e-6),
+                    velocity: velocity + normal * down,
+                    radius,
+                    elasticity: 0.5,
+                    material: Some(0),
+                    ..Particle::REST
+                };
+                let ground = Plane { point: Vec3::ZERO, normal };
+                let start = [block];
+                let scene = Scene {
+                    start: &start,
+                    forces: &Gravity::EARTH,
+                    colliders: &ground,
+                    grips: &GRIP,
+                    integrator: &method,
+                    ..Scene::EMPTY
+                };
+                for h in [1.0 / 60.0, 1.0 / 240.0] {
+                    let (books, share) = books(&scene, 1, h);
+                    assert!(books.friction < -4.0 && books.scenery.abs() < 1e-4, "{method}: {books:?}");
+                    assert!(share < 1e-5 && (down < 0.0) == (books.restitution < -1.0), "{method}, {share}: {books:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_scenery_lifts_and_drags_along_has_its_line() {
+    let slab = Cuboid { min: Vec3::new(-9.0, -1.0, -9.0), max: Vec3::new(9.0, 0.0, 9.0) };
+    let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+    // Lifted by 2 m: its weight times that, and its speed. Dragged up to 2 m/s: as much is lost as is gained.
+    for (drift, gained, lost) in [(Vec3::Y * 2.0, 2.0 * 9.80665 * 2.0 + 4.0, 0.0), (Vec3::X * 2.0, 8.0, -4.0)] {
+        let moving = Moving::new(slab, &all, Motion { drift, ..Motion::STILL });
+        let start =
+            [Particle { position: Vec3::Y * 1e-6, mass: 2.0, elasticity: 0.0, material: Some(0), ..Particle::REST }];
+        let scene = Scene {
+            start: &start,
+            forces: &Gravity::EARTH,
+            colliders: &moving,
+            grips: &GRIP,
+            integrator: &Verlet,
+            ..Scene::EMPTY
+        };
+        let (books, share) = books(&scene, 1, 1.0 / 60.0);
+        // What it brings to rest at once is lost in the hit: half of what that takes.
+        let sum = books.scenery + books.restitution + books.friction;
+        assert!((books.friction - lost).abs() < 0.01 * gained, "{books:?}");
+        let hit = if drift.y > 0.0 { -4.0 } else { 0.0 };
+        assert!(
+            (books.scenery - gained + hit).abs() < 0.02 * gained && (sum - gained - lost).abs() < 0.02 * gained,
+            "{books:?}"
+        );
+        assert!(share < 2e-4, "{share}: {books:?}");
+    }
+    // A block that rides on a disc that spins: nothing comes and nothing goes but what friction needs to begin with.
+    let disc = Moving::new(slab, &all, Motion { spin: 0.15, ..Motion::STILL });
+    let start =
+        [Particle { position: Vec3::new(1.0, 1e-6, 0.0), elasticity: 0.0, material: Some(0), ..Particle::REST }];
+    let scene = Scene {
+        start: &start,
+        forces: &Gravity::EARTH,
+        colliders: &disc,
+        grips: &GRIP,
+        integrator: &Rk4,
+        ..Scene::EMPTY
+    };
+    let (books, share) = books(&scene, 1, 1.0 / 240.0);
+    assert!(books.scenery > 0.3 && books.friction < -0.3 && share < 1e-3, "{share}: {books:?}");
+}
+
+#[test]
+fn friction_of_hard_balls_has_its_line() {
+    let ball = |x: f32, y: f32, v: f32| Particle {
+        position: Vec3::new(x, y, 0.0),
+        velocity: Vec3::X * v,
+        radius: 0.5,
+        mass: 1.5 + v,
+        elasticity: 0.7,
+        material: Some(0),
+        ..Particle::REST
+    };
+    // A glancing hit, and a ball that slides down another that is fixed.
+    let pair = [ball(-2.0, 0.6, 4.0), ball(0.0, 0.0, 0.0)];
+    let perched =
+        [Particle { fixed: true, ..ball(0.0, 0.0, 0.0) }, Particle { elasticity: 0.0, ..ball(0.6, 0.8, 0.0) }];
+    let hitting = Scene { start: &pair, grips: &GRIP, contacts: &Impulse {}, integrator: &Verlet, ..Scene::EMPTY };
+    let sliding = Scene { start: &perched, forces: &Gravity::EARTH, ..hitting };
+    for (name, scene, least, bound) in [("hit", hitting, -0.5, 1e-5), ("slide", sliding, -0.05, 1e-3)] {
+        let (books, share) = books(&scene, 2, 1.0 / 240.0);
+        assert!(books.friction < least && books.scenery.abs() < 1e-4 && share < bound, "{name} {share}: {books:?}");
+    }
 }

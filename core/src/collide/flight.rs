@@ -4,7 +4,7 @@ use super::grip::on_surface;
 use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
 use crate::math::{length, max, min, sqrt, unit};
-use crate::observe::{Impact, Observer};
+use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::report::Report;
 use crate::retire::Fate;
@@ -173,23 +173,27 @@ impl Flight<'_> {
         let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
         let (time, closing, after) = (during[0], max(-incoming, 0.0), surface + slip + normal * outgoing);
-        self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, time });
+        self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         if !rests {
             return Path::onward(beside, surface + slip + normal * onward, acceleration, during);
         }
         let drive = drive + normal * pressing;
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(rest);
         let stays = slip == Vec3::ZERO && end == Vec3::ZERO;
-        if let Some(ride) = ride {
+        let onward = if let Some(ride) = ride {
             // What falls from where it was set off to goes along the surface meanwhile, which friction would have kept it from.
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
             let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
-            return Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity + end, during };
-        }
-        let stays = stays && has_lain(path, meeting, place);
-        let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
-        Path { x0, v0: after, x1: x0 + surface * rest + way, v1: surface + end, during }
+            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity + end, during }
+        } else {
+            let stays = stays && has_lain(path, meeting, place);
+            let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
+            Path { x0, v0: after, x1: x0 + surface * rest + way, v1: surface + end, during }
+        };
+        let world = [acceleration, onward.x1 - onward.x0, onward.v0, onward.v1];
+        self.observer.slid(&Sliding { mass, raised: onward.x0 - place, world, along: [drive, way, slip, end] });
+        onward
     }
 
     /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.

@@ -4,7 +4,7 @@ use super::contacts::{Contacts, Passage};
 use super::each_by_itself;
 use super::flight::Flight;
 use super::grip::of_two;
-use super::meeting::{Touch, first_touch};
+use super::meeting::{Answer, Touch, first_touch};
 use super::path::{Path, between};
 use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
 use crate::index::{Arrange, SpatialIndex};
@@ -328,9 +328,12 @@ impl Melee<'_> {
         let material = rows.map(|row| self.material[row].checked_sub(1));
         let feel = of_two(self.scene.grips, rows.map(|row| self.elasticity[row]), material);
         let acceleration = paths.map(|path| path.acceleration());
-        let touch = Touch { normal, velocity, acceleration, inverse_mass, feel };
-        let rest = (self.end - now).seconds();
-        let (after, acceleration) = touch.answer(self.dt.seconds(), rest);
+        let slack = self.slack(row, other);
+        let touch = Touch { normal, velocity, acceleration, inverse_mass, feel, slack };
+        let Answer { velocity: after, way, ends, slid } = touch.answer(self.dt.seconds(), (self.end - now).seconds());
+        if let Some(slid) = &slid {
+            self.observer.slid(slid);
+        }
         self.report.contacts += 1;
         let closing = max((velocity[1] - velocity[0]).dot(normal), 0.0);
         for i in 0..2 {
@@ -349,10 +352,12 @@ impl Melee<'_> {
                 closing,
                 before: velocity[i],
                 after: after[i],
+                surface: Vec3::ZERO,
                 time: now,
             });
             self.clocks.set(row, Clock { turns: clock.turns + 1, since: until, ..clock });
-            let onward = Path::onward(paths[i].x0, after[i], acceleration[i], paths[i].during);
+            let Path { x0, during, .. } = paths[i];
+            let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during };
             self.go(row, &onward);
             // Where one waits and does not get away, the other cannot go on either.
             let blocked = waits[1 - i] && after[i].dot(normal) < 0.0;

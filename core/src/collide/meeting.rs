@@ -3,7 +3,9 @@
 use super::flight::RESTING;
 use super::grip::Feel;
 use super::path::{MAX_CHORDS, Path};
+use super::slide::Slide;
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
+use crate::observe::Sliding;
 use glam::Vec3;
 
 /// How many times the instant of a touch is looked for on the path, as that of a hit.
@@ -92,6 +94,8 @@ pub(super) struct Touch {
     /// Zero for what is fixed; not both.
     pub(super) inverse_mass: [f32; 2],
     pub(super) feel: Feel,
+    /// What rounding may do to their distance \[m\].
+    pub(super) slack: f32,
 }
 
 impl Touch {
@@ -101,31 +105,66 @@ impl Touch {
         if normal == Vec3::ZERO { -unit(velocity[0] - velocity[1]) } else { normal }
     }
 
-    /// Velocities and accelerations after it: the impulse turns the approach round and scales it by the elasticity, and
-    /// brakes the slip by Coulomb's law, as if the balls could not spin. What would bounce for less than a part of the
-    /// step stays in touch, and presses on as one for the `rest` of the step.
+    /// What it does to both: the impulse turns the approach round and scales it by the elasticity, and brakes the slip by
+    /// Coulomb's law, as if the balls could not spin. What would bounce for less than a part of the step stays in touch for the
+    /// `rest` of it: presses on as one, and slides along or stays like what rests on a surface.
     ///
     /// Both get the same impulse, so that momentum is what it was, but for the rounding of two sums.
-    pub(super) fn answer(&self, dt: f32, rest: f32) -> ([Vec3; 2], [Vec3; 2]) {
+    pub(super) fn answer(&self, dt: f32, rest: f32) -> Answer {
         let (n, [a, b], [wa, wb]) = (self.normal, self.velocity, self.inverse_mass);
         let relative = a - b;
         let incoming = relative.dot(n);
-        let pressing = -(self.acceleration[0] - self.acceleration[1]).dot(n);
+        let acceleration = self.acceleration[0] - self.acceleration[1];
+        let pressing = -acceleration.dot(n);
         let outgoing = if incoming < 0.0 { -incoming * self.feel.elasticity } else { incoming };
         let rests = pressing > 0.0 && 2.0 * outgoing < RESTING * dt * pressing;
         let outgoing = if rests { 0.0 } else { outgoing };
-        let slip = relative - n * incoming;
-        // The friction of what stays in touch is taken at once.
-        let press = outgoing - incoming + if rests { pressing * rest } else { 0.0 };
-        let change = n * (outgoing - incoming) + self.feel.friction.answer(slip, press);
-        let share = |by: f32| change * (by / (wa + wb));
-        let mut acceleration = self.acceleration;
-        if rests {
-            acceleration[0] += n * (pressing * (wa / (wa + wb)));
-            acceleration[1] -= n * (pressing * (wb / (wa + wb)));
+        let friction = self.feel.friction;
+        let came = relative - n * incoming;
+        let braked = friction.answer(came, outgoing - incoming);
+        let change = n * (outgoing - incoming) + braked;
+        // Each gets its share of what happens between them.
+        let share = |between: Vec3| [between * (wa / (wa + wb)), between * (-wb / (wa + wb))];
+        let [da, db] = share(change);
+        let velocity = [a + da, b + db];
+        if !rests {
+            let end = |i: usize| {
+                let (v, a) = (velocity[i], self.acceleration[i]);
+                (v + a * (0.5 * rest)) * rest
+            };
+            let ends = [0, 1].map(|i| velocity[i] + self.acceleration[i] * rest);
+            return Answer { velocity, way: [end(0), end(1)], ends, slid: None };
         }
-        ([a + share(wa), b - share(wb)], acceleration)
+        let slip = came + braked;
+        let drive = acceleration + n * pressing;
+        let (mut way, end) = Slide { velocity: slip, drive, pressing, friction }.after(rest);
+        // What falls through the rounding of a touch goes along it meanwhile, which friction would have kept it from.
+        let fell = -incoming / pressing;
+        let stays = slip == Vec3::ZERO && end == Vec3::ZERO;
+        if stays && incoming < 0.0 && -incoming * fell < 16.0 * self.slack {
+            way -= came * (0.5 * fell);
+        }
+        let middle = |of: [Vec3; 2]| of[0] * (wb / (wa + wb)) + of[1] * (wa / (wa + wb));
+        let (steady, pull) = (middle(velocity), middle(self.acceleration));
+        let common = (steady + pull * (0.5 * rest)) * rest;
+        let along = [drive, way, slip, end];
+        let slid = Some(Sliding { mass: 1.0 / (wa + wb), raised: Vec3::ZERO, world: along, along });
+        let (ways, ends) = (share(way), share(end));
+        let way = ways.map(|way| common + way);
+        Answer { velocity, way, ends: ends.map(|end| steady + pull * rest + end), slid }
     }
+}
+
+/// What becomes of two balls that have touched.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answer {
+    /// Their velocities right after it \[m/s\].
+    pub(super) velocity: [Vec3; 2],
+    /// How far they go in the rest of the step \[m\], and their velocities at its end.
+    pub(super) way: [Vec3; 2],
+    pub(super) ends: [Vec3; 2],
+    /// How they slide along each other, if they stay in touch.
+    pub(super) slid: Option<Sliding>,
 }
 
 #[cfg(test)]
@@ -137,20 +176,20 @@ mod tests {
     fn head_on(elasticity: f32, inverse_mass: [f32; 2]) -> Touch {
         let feel = Feel { elasticity, friction: Friction::NONE };
         let velocity = [Vec3::new(-3.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)];
-        Touch { normal: Vec3::X, velocity, acceleration: [Vec3::ZERO; 2], inverse_mass, feel }
+        Touch { normal: Vec3::X, velocity, acceleration: [Vec3::ZERO; 2], inverse_mass, feel, slack: 1e-6 }
     }
 
     #[test]
     fn equal_balls_swap_what_is_along_the_line_of_centres() {
-        let (after, _) = head_on(1.0, [0.5, 0.5]).answer(0.1, 0.1);
+        let after = head_on(1.0, [0.5, 0.5]).answer(0.1, 0.1).velocity;
         assert_eq!(after, [Vec3::new(1.0, 1.0, 0.0), Vec3::new(-3.0, 0.0, 0.0)]);
-        let (after, _) = head_on(0.0, [0.5, 0.5]).answer(0.1, 0.1);
+        let after = head_on(0.0, [0.5, 0.5]).answer(0.1, 0.1).velocity;
         assert_eq!(after, [Vec3::new(-1.0, 1.0, 0.0), Vec3::new(-1.0, 0.0, 0.0)]);
     }
 
     #[test]
     fn what_is_fixed_stays() {
-        let (after, _) = head_on(1.0, [1.0, 0.0]).answer(0.1, 0.1);
+        let after = head_on(1.0, [1.0, 0.0]).answer(0.1, 0.1).velocity;
         assert_eq!(after, [Vec3::new(5.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)]);
     }
 
@@ -161,9 +200,9 @@ mod tests {
             acceleration: [Vec3::X * -10.0, Vec3::ZERO],
             ..head_on(0.5, [1.0, 1.0])
         };
-        let (velocity, acceleration) = touch.answer(0.1, 0.1);
-        assert_eq!(velocity[0], velocity[1]);
-        assert_eq!(acceleration, [Vec3::X * -5.0; 2]);
+        let Answer { velocity, way, ends, .. } = touch.answer(0.1, 0.1);
+        assert_eq!((velocity[0], way[0], ends[0]), (velocity[1], way[1], ends[1]));
+        assert!((ends[0] - velocity[0] - Vec3::X * -0.5).length() < 1e-6);
     }
 
     #[test]

@@ -10,3 +10,4 @@ mod impulse;
 mod meetings;
 mod poison;
 mod position;
+mod resting;
