@@ -5,6 +5,7 @@ mod blocks;
 mod bounces;
 mod heights;
 mod moving;
+mod nearest;
 mod needles;
 mod poison;
 mod scenes;
