@@ -50,6 +50,7 @@ mod tests;
 mod tree;
 
 pub use index::{Index, Unsound};
+pub(crate) use nearest::{Closest, square_to};
 pub use pieces::{Pieces, Solids};
 pub(crate) use probe::{Best, Probe};
 pub use structure::{Structure, UnknownStructure};

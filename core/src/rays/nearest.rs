@@ -6,26 +6,26 @@ use crate::shape::Aabb;
 use glam::Vec3;
 
 /// The nearest place so far; of several as near that of the lowest number.
-pub(super) struct Closest<'a, P: ?Sized, F> {
+pub(crate) struct Closest<'a, P: ?Sized, F> {
     pub(super) pieces: &'a P,
-    pub(super) point: Vec3,
+    pub(crate) point: Vec3,
     /// The nearest place of a piece.
     place: F,
     /// The square of its distance \[m²\].
-    pub(super) square: f32,
+    pub(crate) square: f32,
     number: usize,
     found: Option<Vec3>,
     pub(super) cost: Cost,
 }
 
 impl<'a, P: Pieces + ?Sized, F: Fn(usize) -> Vec3> Closest<'a, P, F> {
-    pub(super) fn new(pieces: &'a P, point: Vec3, place: F) -> Self {
+    pub(crate) fn new(pieces: &'a P, point: Vec3, place: F) -> Self {
         let (square, number, found, cost) = (f32::INFINITY, usize::MAX, None, Cost::default());
         Self { pieces, point, place, square, number, found, cost }
     }
 
     /// Asks a piece, whose answer is held in its own box: so it is never nearer than any box around that.
-    pub(super) fn ask(&mut self, piece: usize) {
+    pub(crate) fn ask(&mut self, piece: usize) {
         let bounds = self.pieces.box_of(piece);
         if !(bounds.min.is_finite() && bounds.max.is_finite()) || square_to(self.point, &bounds) > self.square {
             return;
@@ -39,7 +39,7 @@ impl<'a, P: Pieces + ?Sized, F: Fn(usize) -> Vec3> Closest<'a, P, F> {
         }
     }
 
-    pub(super) fn found(self) -> (Option<Vec3>, Cost) {
+    pub(crate) fn found(self) -> (Option<Vec3>, Cost) {
         (self.found, self.cost)
     }
 }
@@ -47,7 +47,7 @@ impl<'a, P: Pieces + ?Sized, F: Fn(usize) -> Vec3> Closest<'a, P, F> {
 /// The square of the distance from a point to a box, never more than to a place inside: the same operations, which
 /// rounding keeps in order.
 #[inline(always)]
-pub(super) fn square_to(point: Vec3, bounds: &Aabb) -> f32 {
+pub(crate) fn square_to(point: Vec3, bounds: &Aabb) -> f32 {
     let gap = high(high(bounds.min - point, point - bounds.max), Vec3::ZERO);
     gap.dot(gap)
 }

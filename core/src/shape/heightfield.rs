@@ -1,8 +1,8 @@
 //! Ground: heights over a grid of x and z, borrowed (`HeightField`) or owned (`HeightFieldBuf`).
 
 use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
-use crate::math::{clamp, floor, largest, length, max, min};
-use crate::rays::{Best, Pieces, Probe};
+use crate::math::{clamp, floor, largest, max, min, power_to_one};
+use crate::rays::{Best, Closest, Pieces, Probe, square_to};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -18,9 +18,16 @@ pub struct HeightField<'a> {
     columns: usize,
     heights: &'a [f32],
     bounds: Aabb,
-    /// The area of its largest cell \[m²\].
+    /// The area of its largest cell, of the field scaled so that its largest coordinate is about one.
     largest: f32,
+    /// Running sums of the cells' weights; empty, unless lent.
+    sums: &'a [u64],
+    /// The lowest and the highest place of each block of cells, row by row \[m\]; empty, unless lent.
+    blocks: &'a [[f32; 2]],
 }
+
+/// Cells along each side of a block.
+const BLOCK: usize = 16;
 
 /// Why numbers do not make a height field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,9 +77,75 @@ impl<'a> HeightField<'a> {
         if !(spacing > 0.0 && apart && bounds.min.is_finite() && bounds.max.is_finite()) {
             return Err(BadHeights::Spacing);
         }
-        let mut field = Self { origin, spacing, columns, heights, bounds, largest: 0.0 };
+        let mut field = Self { origin, spacing, columns, heights, bounds, largest: 0.0, sums: &[], blocks: &[] };
         field.largest = field.cells().map(|(i, j)| field.cell_area(i, j)).fold(0.0, max);
         Ok(field)
+    }
+
+    /// How many words `with_sums` needs.
+    #[must_use]
+    pub fn cell_count(&self) -> usize {
+        self.count() / 2
+    }
+
+    /// How many pairs `with_blocks` needs.
+    #[must_use]
+    pub fn block_count(&self) -> usize {
+        let [across, along] = self.blocks_across();
+        across * along
+    }
+
+    /// The same with memory for sums of areas, one word a cell, so that a birth no longer looks at every cell. Memory of
+    /// another length is left alone.
+    #[must_use]
+    pub fn with_sums(self, sums: &'a mut [u64]) -> Self {
+        if sums.len() != self.cell_count() {
+            return self;
+        }
+        let mut sum = 0;
+        for ((i, j), slot) in self.cells().zip(&mut *sums) {
+            sum += self.weight(i, j);
+            *slot = sum;
+        }
+        Self { sums, ..self }
+    }
+
+    /// The same with memory for the heights of blocks of 16 × 16 cells, so that the search for the nearest place passes over most
+    /// of them. Memory of another length is left alone.
+    #[must_use]
+    pub fn with_blocks(self, blocks: &'a mut [[f32; 2]]) -> Self {
+        if blocks.len() != self.block_count() {
+            return self;
+        }
+        for (block, slot) in blocks.iter_mut().enumerate() {
+            *slot = [f32::INFINITY, f32::NEG_INFINITY];
+            let [columns, rows] = self.block(block);
+            for row in rows.start..=rows.end {
+                for column in columns.start..=columns.end {
+                    let y = self.vertex(column, row).y;
+                    *slot = [min(slot[0], y), max(slot[1], y)];
+                }
+            }
+        }
+        Self { blocks, ..self }
+    }
+
+    fn blocks_across(&self) -> [usize; 2] {
+        self.size().map(|count| (count - 1).div_ceil(BLOCK))
+    }
+
+    /// The columns and rows of the cells of a block.
+    fn block(&self, block: usize) -> [Range<usize>; 2] {
+        let [across, _] = self.blocks_across();
+        let [columns, rows] = self.size();
+        let span = |n: usize, count: usize| n * BLOCK..((n + 1) * BLOCK).min(count - 1);
+        [span(block % across, columns), span(block / across, rows)]
+    }
+
+    /// A box around some cells whose places are between two heights.
+    fn box_around(&self, [columns, rows]: [Range<usize>; 2], [low, high]: [f32; 2]) -> Aabb {
+        let (a, b) = (self.vertex(columns.start, rows.start), self.vertex(columns.end, rows.end));
+        Aabb { min: Vec3::new(a.x, low, a.z), max: Vec3::new(b.x, high, b.z) }
     }
 
     /// Columns and rows of heights.
@@ -107,8 +180,15 @@ impl<'a> HeightField<'a> {
         (0..rows - 1).flat_map(move |j| (0..columns - 1).map(move |i| (i, j)))
     }
 
+    /// Of the scaled field.
     fn cell_area(&self, column: usize, row: usize) -> f32 {
-        self.triangles(column, row).iter().map(Surface::area).sum()
+        self.halves(column, row).iter().sum()
+    }
+
+    /// The areas of a cell's triangles, of the scaled field: no area is beyond an `f32`, whatever the heights.
+    fn halves(&self, column: usize, row: usize) -> [f32; 2] {
+        let scale = power_to_one(self.reach());
+        self.triangles(column, row).map(|triangle| triangle.scaled(scale).area())
     }
 
     /// The number of a triangle.
@@ -148,6 +228,20 @@ impl<'a> HeightField<'a> {
         }
     }
 
+    /// Asks the triangles of a block that may be near enough.
+    fn look<F: Fn(usize) -> Vec3>(&self, block: usize, closest: &mut Closest<'_, Self, F>) {
+        let [columns, rows] = self.block(block);
+        for row in rows {
+            for column in columns.clone() {
+                let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.vertex(column + i, row + j));
+                if square_to(closest.point, &Aabb::around(corners)) <= closest.square {
+                    closest.ask(self.face(column, row, 0) as usize);
+                    closest.ask(self.face(column, row, 1) as usize);
+                }
+            }
+        }
+    }
+
     /// The share of the largest cell's area in units of 2⁻³².
     fn weight(&self, column: usize, row: usize) -> u64 {
         let share = self.cell_area(column, row) / self.largest;
@@ -159,59 +253,50 @@ impl<'a> HeightField<'a> {
 impl Surface for HeightField<'_> {
     /// Looks at every cell.
     fn area(&self) -> f32 {
-        self.cells().map(|(i, j)| self.cell_area(i, j)).sum()
+        self.cells().flat_map(|(i, j)| self.triangles(i, j)).map(|triangle| triangle.area()).sum()
     }
 
-    /// Looks at every cell, twice.
+    /// Looks at every cell, twice, unless it has sums.
     fn sample(&self, u: [f32; 3]) -> Spot {
-        let total: u64 = self.cells().map(|(i, j)| self.weight(i, j)).sum();
+        let total = match self.sums.last() {
+            Some(&total) => total,
+            None => self.cells().map(|(i, j)| self.weight(i, j)).sum(),
+        };
         let target = ((u128::from((u[0] * 16_777_216.0) as u32) * u128::from(total)) >> 24) as u64;
-        let mut sum = 0;
-        for (i, j) in self.cells() {
+        // Whatever is before the cell that is found need not be added again.
+        let first = self.sums.partition_point(|&sum| sum <= target);
+        let mut sum = first.checked_sub(1).and_then(|before| self.sums.get(before)).copied().unwrap_or(0);
+        let across = self.columns - 1;
+        for (i, j) in (first..self.cell_count()).map(|cell| (cell % across, cell / across)) {
             let weight = self.weight(i, j);
             if target < sum + weight {
                 // What is left of the number says which half.
                 let [a, b] = self.triangles(i, j);
-                let rest = (target - sum) as f32 / weight as f32 * (a.area() + b.area());
-                return if rest < a.area() { a } else { b }.sample(u);
+                let [first, second] = self.halves(i, j);
+                let rest = (target - sum) as f32 / weight as f32 * (first + second);
+                return if rest < first { a } else { b }.sample(u);
             }
             sum += weight;
         }
         Spot { point: self.vertex(0, 0), normal: Vec3::Y }
     }
 
-    /// Looks at rings of cells around the point until the next are too far away.
+    /// Looks first where the nearest block of cells is, then at all cells that may be as near.
     fn nearest(&self, point: Vec3) -> Vec3 {
-        let [columns, rows] = self.size();
-        let own = |axis: usize, count: usize| {
-            let cell = floor((point[axis] - self.origin[axis]) / self.spacing);
-            clamp(cell, 0.0, (count - 2) as f32) as usize
+        let mut closest = Closest::new(self, point, |piece| self.triangle(piece).nearest(point));
+        let square = |block: usize| {
+            let heights = self.blocks.get(block).copied().unwrap_or([self.bounds.min.y, self.bounds.max.y]);
+            square_to(point, &self.box_around(self.block(block), heights))
         };
-        let (column, row) = (own(0, columns), own(2, rows));
-        let mut best = (f32::INFINITY, self.vertex(column, row));
-        for ring in 0..columns.max(rows) {
-            // Whatever is in the ring is beyond all cells within it.
-            if (ring as f32 - 1.0) * self.spacing > best.0 {
-                break;
-            }
-            let (low, high) = (row.saturating_sub(ring), (row + ring).min(rows - 2));
-            for j in low..=high {
-                let (left, right) = (column.saturating_sub(ring), (column + ring).min(columns - 2));
-                // Of the rows between the first and the last only both ends are new.
-                let is_edge = j + ring == row || j == row + ring;
-                let stride = if is_edge || right <= left { 1 } else { right - left };
-                for i in (left..=right).step_by(stride) {
-                    for triangle in self.triangles(i, j) {
-                        let candidate = triangle.nearest(point);
-                        let distance = length(candidate - point);
-                        if distance < best.0 {
-                            best = (distance, candidate);
-                        }
-                    }
-                }
+        let nearer = |best: (f32, usize), block| if square(block) < best.0 { (square(block), block) } else { best };
+        let (_, first) = (0..self.block_count()).fold((f32::INFINITY, 0), nearer);
+        self.look(first, &mut closest);
+        for block in (0..self.block_count()).filter(|&block| block != first) {
+            if square(block) <= closest.square {
+                self.look(block, &mut closest);
             }
         }
-        best.1
+        closest.found().0.unwrap_or(self.vertex(0, 0))
     }
 
     fn bounds(&self) -> Aabb {
@@ -313,7 +398,9 @@ impl Collider for HeightField<'_> {
 #[cfg_attr(feature = "serde", serde(try_from = "Heights", into = "Heights"))]
 pub struct HeightFieldBuf {
     heights: alloc::sync::Arc<[f32]>,
-    /// The same with no heights of its own.
+    sums: alloc::sync::Arc<[u64]>,
+    blocks: alloc::sync::Arc<[[f32; 2]]>,
+    /// The same with no memory of its own.
     grid: HeightField<'static>,
 }
 
@@ -339,7 +426,7 @@ impl HeightFieldBuf {
     /// The same, borrowed.
     #[must_use]
     pub fn view(&self) -> HeightField<'_> {
-        HeightField { heights: &self.heights, ..self.grid }
+        HeightField { heights: &self.heights, sums: &self.sums, blocks: &self.blocks, ..self.grid }
     }
 }
 
@@ -351,8 +438,11 @@ impl TryFrom<Heights> for HeightFieldBuf {
     /// As `HeightField::new`.
     fn try_from(file: Heights) -> Result<Self, BadHeights> {
         let field = HeightField::new(file.origin, file.spacing, file.columns as usize, &file.heights)?;
-        let grid = HeightField { heights: &[], ..field };
-        Ok(Self { grid, heights: file.heights.into() })
+        let mut sums = alloc::vec![0; field.cell_count()];
+        let mut blocks = alloc::vec![[0.0; 2]; field.block_count()];
+        let field = field.with_sums(&mut sums).with_blocks(&mut blocks);
+        let grid = HeightField { heights: &[], sums: &[], blocks: &[], ..field };
+        Ok(Self { grid, heights: file.heights.into(), sums: sums.into(), blocks: blocks.into() })
     }
 }
 

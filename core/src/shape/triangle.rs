@@ -21,8 +21,10 @@ pub struct Triangle {
 
 impl Surface for Triangle {
     fn area(&self) -> f32 {
-        let [a, b, c] = self.corners;
-        0.5 * length((b - a).cross(c - a))
+        // Of one about as large as one, so that no product is beyond an `f32`.
+        let scale = power_to_one(size(self));
+        let [a, b, c] = self.corners.map(|corner| corner * scale);
+        0.5 * length((b - a).cross(c - a)) / scale / scale
     }
 
     fn sample(&self, u: [f32; 3]) -> Spot {

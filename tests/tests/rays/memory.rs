@@ -92,3 +92,20 @@ fn words_may_be_a_constant() {
         assert_eq!(hit.map(|hit| hit.face), face);
     }
 }
+
+#[test]
+fn a_grid_of_the_largest_extent_is_built_in_the_least_memory() {
+    for end in [f32::MAX, f32::MAX / 2.0, 1e38] {
+        let vertices = [Vec3::splat(-end), Vec3::splat(end), Vec3::new(end, -end, 0.0), Vec3::ZERO];
+        let triangles = [[0, 1, 2], [0, 3, 2], [1, 2, 3]];
+        for vertices in [vertices, vertices.map(|v| v.max(Vec3::ZERO))] {
+            let mesh = Mesh::new(&vertices, &triangles, &mut []).expect("it is a mesh");
+            for words in 0..400 {
+                let mut memory = vec![0; words];
+                if let Ok(index) = Structure::Grid.build(&mesh, &mut memory) {
+                    assert!(index.is_of(&mesh));
+                }
+            }
+        }
+    }
+}

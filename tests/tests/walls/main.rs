@@ -6,6 +6,7 @@ mod bounces;
 mod elastic;
 mod heights;
 mod moving;
+mod nearest;
 mod needles;
 mod poison;
 mod riding;
