@@ -28,7 +28,9 @@ pub(crate) fn text(scene: &JsValue) -> Result<String, JsError> {
     }
     let text = JSON::stringify(scene).map_err(|error| {
         let why = error.dyn_ref::<js_sys::Error>().and_then(|error| JsValue::from(error.message()).as_string());
-        JsError::new(&format!("the scene has no JSON: {}", why.unwrap_or_default()))
+        // Engines draw a picture of what is circular, on further lines.
+        let why = why.as_deref().and_then(|why| why.lines().next()).unwrap_or("it cannot be written");
+        JsError::new(&format!("the scene has no JSON: {why}"))
     })?;
     long(&text)
 }
