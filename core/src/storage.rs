@@ -149,14 +149,21 @@ macro_rules! storage {
             /// Fresh memory of the given size.
             ///
             /// # Errors
-            /// If there is not so much.
+            /// If there is not so much: nothing has been written then, and all is given back.
             pub fn try_new(size: Size) -> Result<Self, alloc::collections::TryReserveError> {
-                Ok(Self {
-                    $($p: zeros($p_zero, size.particles)?,)+
-                    $($e: zeros($e_zero, size.emitters)?,)+
-                    $($s: zeros($s_zero, size.springs.saturating_mul(2))?,)+
-                    $($w: zeros($w_zero, size.particles.saturating_mul(size.columns))?,)+
-                })
+                let Size { particles, emitters, springs, columns } = size;
+                let (ends, work) = (springs.saturating_mul(2), particles.saturating_mul(columns));
+                let mut new = Self {
+                    $($p: reserved(particles)?,)+
+                    $($e: reserved(emitters)?,)+
+                    $($s: reserved(ends)?,)+
+                    $($w: reserved(work)?,)+
+                };
+                $(new.$p.resize(particles, $p_zero);)+
+                $(new.$e.resize(emitters, $e_zero);)+
+                $(new.$s.resize(ends, $s_zero);)+
+                $(new.$w.resize(work, $w_zero);)+
+                Ok(new)
             }
         }
 
@@ -237,10 +244,9 @@ storage! {
 }
 
 #[cfg(feature = "alloc")]
-fn zeros<T: Clone>(zero: T, len: usize) -> Result<alloc::vec::Vec<T>, alloc::collections::TryReserveError> {
+fn reserved<T>(len: usize) -> Result<alloc::vec::Vec<T>, alloc::collections::TryReserveError> {
     let mut column = alloc::vec::Vec::new();
     column.try_reserve_exact(len)?;
-    column.resize(len, zero);
     Ok(column)
 }
 
@@ -298,5 +304,20 @@ mod tests {
     fn a_particle_takes_the_bytes_that_the_readme_says() {
         let one = size_of::<Inline<1001, 0, 0, 4>>() - size_of::<Inline<1, 0, 0, 4>>();
         assert_eq!(one, 1000 * (87 + 4 * 12));
+    }
+
+    #[cfg(feature = "alloc")]
+    #[test]
+    fn memory_that_is_not_there_is_an_error() {
+        let size = Size { particles: 7, emitters: 3, springs: 5, columns: 2 };
+        for more in [usize::MAX, usize::MAX / 2, usize::MAX / 64, isize::MAX as usize / 12] {
+            assert!(Heap::try_new(Size { particles: more, ..size }).is_err(), "{more} particles");
+            assert!(Heap::try_new(Size { emitters: more, ..size }).is_err(), "{more} emitters");
+            assert!(Heap::try_new(Size { springs: more, ..size }).is_err(), "{more} springs");
+            assert!(Heap::try_new(Size { columns: more, ..size }).is_err(), "{more} columns");
+        }
+        let heap = Heap::try_new(size).expect("a little memory");
+        assert_eq!(heap.columns().size(), size);
+        assert_eq!(heap.columns().size(), Heap::new(size).columns().size());
     }
 }

@@ -23,6 +23,11 @@ impl<B> System<B> {
         Self { memory, status: Status::NEW }
     }
 
+    /// The memory it lives in; rows beyond the living hold nothing of meaning.
+    pub const fn memory(&self) -> &B {
+        &self.memory
+    }
+
     /// Particles alive.
     pub const fn len(&self) -> usize {
         self.status.len

@@ -31,7 +31,7 @@ export function run(pointmass, scenes) {
       time: fountain.time,
       length: now.length,
       sameMemory: first.buffer === now.buffer && first[0] === now[0] && first[2] === now[2],
-      finite: now.every(Number.isFinite),
+      finite: now.subarray(0, 3 * fountain.count).every(Number.isFinite),
       ids: new Set(fountain.ids()).size,
       colors: fountain.colors().length,
       speeds: fountain.velocities().length,
@@ -56,7 +56,7 @@ function balls(World) {
     ],
   }));
   world.stepTo(2);
-  const result = { radii: [...world.radii()], speeds: [...world.velocities()], report: JSON.parse(world.report()) };
+  const result = { radii: [...world.radii()].slice(0, world.count), speeds: [...world.velocities()].slice(0, 3 * world.count), report: JSON.parse(world.report()) };
   world.free();
   return result;
 }

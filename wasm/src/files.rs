@@ -1,18 +1,33 @@
 //! Files for scenes that name others: in a browser there is no disk to find them on.
 
+use crate::memory::room;
+use js_sys::{Float32Array, JsString, Uint32Array};
 use pointmass::Vec3;
 use pointmass::scene::Files as SceneFiles;
 use pointmass::shape::MeshBuf;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 
 /// What a scene refers to by name: meshes, and texts it includes. Fill it before loading the scene.
 #[wasm_bindgen]
 #[derive(Clone, Debug, Default)]
 pub struct Files {
-    texts: BTreeMap<String, String>,
-    meshes: BTreeMap<String, MeshBuf>,
+    texts: BTreeMap<String, Rc<str>>,
+    meshes: BTreeMap<String, Rc<MeshBuf>>,
+    /// Bytes of text that have been read.
+    read: usize,
 }
+
+/// Bytes of text that a scene may have in all, each include counted: two files that include the next twice grow without
+/// measure.
+pub(crate) const MOST_TEXT: usize = 32 << 20;
+
+/// Vertices or triangles that a mesh may have.
+const MOST_CORNERS: u32 = 1 << 23;
+
+/// Bytes that a vertex and a triangle of a mesh take at most, with an index over them.
+const EACH: usize = 512;
 
 #[wasm_bindgen]
 impl Files {
@@ -24,38 +39,117 @@ impl Files {
     }
 
     /// A text that scenes include under this name.
+    ///
+    /// # Errors
+    /// If it is too long.
     #[wasm_bindgen(js_name = addText)]
-    pub fn add_text(&mut self, name: String, text: String) {
-        self.texts.insert(name, text);
+    pub fn add_text(&mut self, name: &JsString, text: &JsString) -> Result<(), JsError> {
+        let (name, text) = (short(name)?, long(text)?);
+        self.texts.insert(name, text.into());
+        Ok(())
     }
 
     /// A mesh that scenes name so: coordinates (three to a vertex) and indices (three to a triangle).
     ///
     /// # Errors
-    /// If the lists are no multiple of three long, a coordinate is not finite or an index out of range.
+    /// If the lists are no multiple of three long, a coordinate is not finite or an index out of range, or they are too
+    /// long.
     #[wasm_bindgen(js_name = addMesh)]
-    pub fn add_mesh(&mut self, name: String, coordinates: &[f32], indices: &[u32]) -> Result<(), JsError> {
-        let ((vertices, a), (triangles, b)) = (coordinates.as_chunks::<3>(), indices.as_chunks::<3>());
-        if !(a.is_empty() && b.is_empty()) {
-            return Err(JsError::new(&format!("{name}: coordinates and indices have to come in threes")));
+    pub fn add_mesh(
+        &mut self,
+        name: &JsString,
+        coordinates: &Float32Array,
+        indices: &Uint32Array,
+    ) -> Result<(), JsError> {
+        let name = short(name)?;
+        let refuse = |what: &str| JsError::new(&format!("{name}: {what}"));
+        if !(coordinates.is_instance_of::<Float32Array>() && indices.is_instance_of::<Uint32Array>()) {
+            return Err(refuse("coordinates have to be a Float32Array, and indices a Uint32Array"));
         }
-        let vertices = vertices.iter().copied().map(Vec3::from).collect();
-        let mesh = MeshBuf::new(vertices, triangles.to_vec());
-        self.meshes.insert(name.clone(), mesh.map_err(|error| JsError::new(&format!("{name}: {error}")))?);
+        let (vertices, triangles) = (coordinates.length() / 3, indices.length() / 3);
+        if coordinates.length() % 3 != 0 || indices.length() % 3 != 0 {
+            return Err(refuse("coordinates and indices have to come in threes"));
+        }
+        if vertices.max(triangles) > MOST_CORNERS {
+            return Err(refuse(&format!("a mesh may have {MOST_CORNERS} vertices and as many triangles")));
+        }
+        room(EACH * (vertices + triangles) as usize, &name)?;
+        let vertices = coordinates.to_vec().as_chunks::<3>().0.iter().copied().map(Vec3::from).collect();
+        let mesh = MeshBuf::new(vertices, indices.to_vec().as_chunks::<3>().0.to_vec());
+        let mesh = mesh.map_err(|error| refuse(&error.to_string()))?;
+        self.meshes.insert(name.clone(), mesh.into());
         Ok(())
+    }
+
+    /// The same files once more: a world takes a copy of what it is given. It costs next to nothing.
+    #[wasm_bindgen(js_name = clone, skip_typescript)]
+    #[must_use]
+    pub fn copy(&self) -> Self {
+        self.clone()
+    }
+}
+
+impl Files {
+    /// How many vertices and triangles a mesh has; none, if it is not there.
+    pub(crate) fn corners(&self, name: &str) -> usize {
+        self.meshes.get(name).map_or(0, |mesh| mesh.vertices().len() + mesh.triangles().len())
     }
 }
 
 impl SceneFiles for Files {
     fn text(&mut self, path: &str) -> Result<String, String> {
-        self.texts.get(path).cloned().ok_or_else(|| format!("no text '{path}' was added to the files"))
+        let Some(text) = self.texts.get(path) else {
+            return Err(match self.meshes.contains_key(path) {
+                true => format!("'{path}' was added to the files as a mesh; a text is added by addText"),
+                false => format!("no text '{path}' was added to the files"),
+            });
+        };
+        self.read = self.read.saturating_add(text.len());
+        if self.read > MOST_TEXT {
+            return Err(format!("'{path}' makes more than {} MiB of text, includes counted", MOST_TEXT >> 20));
+        }
+        Ok(text.to_string())
     }
 
     fn mesh(&mut self, path: &str) -> Result<MeshBuf, String> {
-        self.meshes.get(path).cloned().ok_or_else(|| format!("no mesh '{path}' was added to the files"))
+        let Some(mesh) = self.meshes.get(path) else {
+            return Err(match self.texts.contains_key(path) {
+                true => format!(
+                    "'{path}' was added to the files as a text; a mesh is added by addMesh, as coordinates and indices"
+                ),
+                false => format!("no mesh '{path}' was added to the files"),
+            });
+        };
+        Ok((**mesh).clone())
     }
 
     fn exists(&mut self, path: &str) -> bool {
         self.meshes.contains_key(path) || self.texts.contains_key(path)
     }
+}
+
+/// A name.
+fn short(name: &JsString) -> Result<String, JsError> {
+    const LONGEST: u32 = 4096;
+    match name.as_string() {
+        _ if name.is_string() && name.length() > LONGEST => {
+            Err(JsError::new(&format!("a name of a file may have {LONGEST} characters")))
+        }
+        Some(name) => Ok(name),
+        None => Err(JsError::new("the name of a file has to be a string")),
+    }
+}
+
+/// A text, as UTF-8.
+pub(crate) fn long(text: &JsString) -> Result<String, JsError> {
+    if !text.is_string() {
+        return Err(JsError::new("a text has to be a string"));
+    }
+    let length = text.length() as usize;
+    if length > MOST_TEXT {
+        return Err(JsError::new(&format!("the text has {length} characters; at most {MOST_TEXT} are read")));
+    }
+    // A UTF-16 unit becomes three bytes at most, in memory that grows once.
+    room(6 * length, "the text")?;
+    Ok(String::from(text))
 }

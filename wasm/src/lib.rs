@@ -3,21 +3,25 @@
 //! ```js
 //! import init, { World } from "pointmass";
 //! await init();
-//! const world = new World(text);               // .json or .scn
-//! for (let frame = 1; frame <= 600; frame++) {
-//!   world.stepTo(frame / 60);
+//! const world = new World(scene);              // an object, or a text: .json or .scn
+//! const start = performance.now();
+//! requestAnimationFrame(function frame(now) {
+//!   world.stepTo(Math.max(0, now - start) / 1000);
 //!   draw(world.positions(), world.count);      // Float32Array: x, y, z by x, y, z
-//! }
-//! world.free();
+//!   requestAnimationFrame(frame);
+//! });
 //! ```
 
+mod arguments;
 mod files;
+mod memory;
 
 pub use files::Files;
 
+use arguments::{capacity, seconds, seed, text};
 use js_sys::{Float32Array, Uint8Array, Uint32Array};
 use pointmass::scene::{Model, SceneFile, read_scn};
-use pointmass::{Heap, System, Time};
+use pointmass::{Heap, Storage, System};
 use wasm_bindgen::prelude::*;
 
 /// The version of this package.
@@ -39,25 +43,36 @@ pub struct World {
 
 #[wasm_bindgen]
 impl World {
-    /// Loads a scene from its text, JSON or `.scn`, with the files it names.
+    /// Loads a scene: an object as JSON has it, its text, or a text in `.scn`; with the files it names.
     ///
     /// `capacity` is how many particles may live at once and `seed` that of all randomness; by default both are what
     /// the scene says.
     ///
     /// # Errors
-    /// If the scene cannot be used: one line with the place and what was expected.
+    /// If the scene cannot be used, with the place and what was expected, or there is not enough memory.
     #[wasm_bindgen(constructor)]
-    pub fn new(text: &str, files: Option<Files>, capacity: Option<u32>, seed: Option<u64>) -> Result<World, JsError> {
-        let mut files = files.unwrap_or_default();
+    pub fn new(
+        #[wasm_bindgen(unchecked_param_type = "string | object")] scene: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "Files | null")] files: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | null")] capacity: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | bigint | null")] seed: &JsValue,
+    ) -> Result<World, JsError> {
+        let mut files = arguments::files(files)?;
+        let text = text(scene)?;
+        let (capacity, seed) = (self::capacity(capacity)?, self::seed(seed)?);
+        memory::room_to_read(&text)?;
         let (file, warnings) = if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
-            (SceneFile::from_json("scene", text)?, Vec::new())
+            (SceneFile::from_json("scene", &text)?, Vec::new())
         } else {
-            read_scn("scene", text, &mut files)?
+            read_scn("scene", &text, &mut files)?
         };
+        memory::room_to_weave(&file, &files)?;
         let model = Model::load(&file, "scene", &mut files)?;
         let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(model.particles.len() as u32));
-        let system = System::with(Heap::new(model.size(capacity as usize)));
-        let mut world = Self { model, system, seed: seed.unwrap_or(file.run.seed), warnings };
+        let heap = Heap::try_new(model.size(capacity as usize)).map_err(|_| {
+            JsError::new(&format!("there is not enough memory for {capacity} particles: take a smaller capacity"))
+        })?;
+        let mut world = Self { model, system: System::with(heap), seed: seed.unwrap_or(file.run.seed), warnings };
         world.restart()?;
         Ok(world)
     }
@@ -71,15 +86,24 @@ impl World {
     }
 
     /// Moves the world on by `seconds`.
-    pub fn step(&mut self, seconds: f64) {
-        self.system.step(&self.model.scene(), Time::from_seconds_f64(seconds));
+    ///
+    /// # Errors
+    /// If that is no finite number, or below zero.
+    pub fn step(&mut self, seconds: f64) -> Result<(), JsError> {
+        let dt = self::seconds("step", seconds)?;
+        self.system.step(&self.model.scene(), dt);
+        Ok(())
     }
 
     /// Moves the world on, in one step, to the instant `seconds`; not back. Stepping to n / 60 does not drift.
+    ///
+    /// # Errors
+    /// If that is no finite number, or below zero.
     #[wasm_bindgen(js_name = stepTo)]
-    pub fn step_to(&mut self, seconds: f64) {
-        let dt = Time::from_seconds_f64(seconds) - self.system.time();
+    pub fn step_to(&mut self, seconds: f64) -> Result<(), JsError> {
+        let dt = self::seconds("stepTo", seconds)? - self.system.time();
         self.system.step(&self.model.scene(), dt);
+        Ok(())
     }
 
     /// The instant it has reached \[s\].
@@ -105,32 +129,34 @@ impl World {
 
     /// Positions \[m\], three numbers a particle: a view into the module's memory, not a copy.
     ///
-    /// It shows the state after every step, `count` particles of it, until the module's memory grows: loading another
-    /// world may do that, stepping never does.
+    /// It has room for `capacity` particles; the first `count` are alive, and what is behind them means nothing. It stays
+    /// where it is while the world lives, and `step`, `stepTo` and `restart` do not detach it. All else may make the
+    /// module's memory grow, other worlds and files above all: its length is zero then, and it has to be asked for anew.
+    /// That costs next to nothing, so a loop may do it every frame.
     #[must_use]
     pub fn positions(&self) -> Float32Array {
-        view(bytemuck::cast_slice(self.system.particles().position))
+        view(bytemuck::cast_slice(self.system.memory().columns().position))
     }
 
     /// Velocities \[m/s\], as `positions`.
     #[must_use]
     pub fn velocities(&self) -> Float32Array {
-        view(bytemuck::cast_slice(self.system.particles().velocity))
+        view(bytemuck::cast_slice(self.system.memory().columns().velocity))
     }
 
     /// Radii \[m\], one number a particle, zero for points: a view as `positions`.
     #[must_use]
     pub fn radii(&self) -> Float32Array {
-        view(self.system.particles().radius)
+        view(self.system.memory().columns().radius)
     }
 
-    /// Colours, four bytes a particle: red, green, blue, opacity. A copy.
+    /// Colours of the living, four bytes a particle: red, green, blue, opacity. A copy.
     #[must_use]
     pub fn colors(&self) -> Uint8Array {
         Uint8Array::from(self.system.particles().color.as_flattened())
     }
 
-    /// Which particle is in which row: numbers unique over the run, from 0. A copy.
+    /// Which of the living is in which row: numbers unique over the run, from 0. A copy.
     #[must_use]
     pub fn ids(&self) -> Uint32Array {
         Uint32Array::from(self.system.particles().serial)

@@ -1,0 +1,32 @@
+// A program against the package's types: it has to compile, and what is marked must not.
+import init, { Files, World, version } from "pointmass";
+
+export async function main(draw: (positions: Float32Array, count: number) => void): Promise<string> {
+  await init();
+  const files = new Files();
+  files.addText("part.scn", "particle 0 0 0  0 0 0  1");
+  files.addMesh("nozzle", new Float32Array(9), new Uint32Array([0, 1, 2]));
+  const worlds: World[] = [
+    new World("particle 0 0 0"),
+    new World({ particles: [] }, files),
+    new World({}, null, 10, 7),
+    new World({}, undefined, undefined, 7n),
+  ];
+  for (const world of worlds) {
+    world.step(1 / 60);
+    world.stepTo(1);
+    world.restart();
+    draw(world.positions(), world.count);
+    draw(world.velocities(), world.capacity);
+    draw(world.radii(), world.time);
+    const [colors, ids]: [Uint8Array, Uint32Array] = [world.colors(), world.ids()];
+    const said: string[] = [world.hash(), world.report(), ...world.warnings];
+    draw(new Float32Array(colors.length + ids.length), said.length);
+    world.free();
+  }
+  // @ts-expect-error: a number is no scene.
+  new World(7);
+  // @ts-expect-error: a capacity is a number.
+  new World({}, files, "10");
+  return version();
+}

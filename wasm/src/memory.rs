@@ -1,0 +1,47 @@
+//! What must not run out: WebAssembly cannot go on after an allocation that fails, so room is made sure of before.
+
+use crate::files::Files;
+use pointmass::scene::{Form, SceneFile};
+use wasm_bindgen::JsError;
+
+/// Bytes that an object of a scene takes at most, from its text to the running world, while lists of it grow.
+const OBJECT: usize = 1536;
+
+/// Bytes that a particle of a fabric takes at most, with its springs.
+const WOVEN: usize = 2048;
+
+/// Makes sure that so many bytes are to be had, for `what`.
+///
+/// # Errors
+/// If they are not.
+pub(crate) fn room(bytes: usize, what: &str) -> Result<(), JsError> {
+    let mut probe = Vec::<u8>::new();
+    let found = probe.try_reserve_exact(bytes);
+    // An allocation that nobody looks at would be optimised away.
+    std::hint::black_box(&mut probe);
+    found.map_err(|_| JsError::new(&format!("there is not enough memory for {what}")))
+}
+
+/// Makes sure of the memory that reading a scene takes.
+///
+/// # Errors
+/// If there is not so much.
+pub(crate) fn room_to_read(text: &str) -> Result<(), JsError> {
+    let objects = text.bytes().filter(|&byte| byte == b'{').count();
+    room(objects.saturating_mul(OBJECT).saturating_add(text.len().saturating_mul(12)), "the scene")
+}
+
+/// Makes sure of the memory that the fabrics of a scene take.
+///
+/// # Errors
+/// If there is not so much.
+pub(crate) fn room_to_weave(file: &SceneFile, files: &Files) -> Result<(), JsError> {
+    let particles = file.fabrics.iter().map(|fabric| match &fabric.form {
+        Form::Sheet(sheet) => {
+            sheet.cells.iter().fold(1_usize, |product, &n| product.saturating_mul((n as usize).saturating_add(1)))
+        }
+        Form::Mesh(name) => files.corners(name),
+    });
+    let particles = particles.fold(0_usize, usize::saturating_add);
+    room(particles.saturating_mul(WOVEN), "the fabrics of the scene")
+}
