@@ -23,6 +23,7 @@ pub mod render;
 pub mod report;
 pub mod run;
 mod stage;
+mod stall;
 pub mod substeps;
 pub mod whole;
 mod words;

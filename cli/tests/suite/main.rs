@@ -16,4 +16,5 @@ mod round_trip;
 mod scenes;
 mod scn;
 mod sinks;
+mod stall;
 mod tool;

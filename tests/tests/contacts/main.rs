@@ -3,6 +3,7 @@
 mod events;
 mod fast;
 mod force;
+mod friction;
 mod gas;
 mod impulse;
 mod meetings;
