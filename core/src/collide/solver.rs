@@ -4,7 +4,7 @@
 use super::contacts::Stage;
 use super::flight::RESTING;
 use super::grip::{of_two, on_surface};
-use super::touch::{Touch, hold_back};
+use super::touch::{Touch, aside, hold_back, passed};
 use crate::math::{largest, length, max, min, sqrt, unit};
 use crate::shape::Contact;
 use glam::Vec3;
@@ -444,27 +444,4 @@ impl Pass<'_> {
         }
         bounce
     }
-}
-
-/// What of a vector lies along a surface.
-#[inline(always)]
-fn aside(v: Vec3, normal: Vec3) -> Vec3 {
-    v - normal * v.dot(normal)
-}
-
-/// The normal at the first touch of two, one of which was at `from` and is at `to` as seen from the other, if they touched on
-/// the way and do no longer.
-fn passed(from: Vec3, to: Vec3, reach: f32) -> Option<Vec3> {
-    let step = to - from;
-    let (square, closing) = (step.dot(step), -from.dot(step));
-    if !(closing > 0.0 && closing < square) {
-        return None;
-    }
-    let middle = from + step * (closing / square);
-    let rest = reach * reach - middle.dot(middle);
-    if !(rest > 0.0) || from.dot(from) < reach * reach {
-        return None;
-    }
-    let touch = middle - step * sqrt(rest / square);
-    Some(touch / max(length(touch), f32::MIN_POSITIVE))
 }

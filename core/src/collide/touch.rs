@@ -2,7 +2,7 @@
 
 use super::grip::Feel;
 use crate::force::Friction;
-use crate::math::{length, max, min};
+use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
 
 /// What two that touch do to each other in a sub-step.
@@ -69,4 +69,27 @@ pub(super) fn hold_back(taken: Vec3, drift: Vec3, h: f32) -> Vec3 {
     let back = taken * (0.5 * h) - drift;
     let (far, most) = (length(back), length(taken) * h);
     if far > most { back * (most / far) } else { back }
+}
+
+/// What of a vector lies along a surface.
+#[inline(always)]
+pub(super) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
+    v - normal * v.dot(normal)
+}
+
+/// The normal at the first touch of two, one of which was at `from` and is at `to` as seen from the other, if they touched on
+/// the way and do no longer.
+pub(super) fn passed(from: Vec3, to: Vec3, reach: f32) -> Option<Vec3> {
+    let step = to - from;
+    let (square, closing) = (step.dot(step), -from.dot(step));
+    if !(closing > 0.0 && closing < square) {
+        return None;
+    }
+    let middle = from + step * (closing / square);
+    let rest = reach * reach - middle.dot(middle);
+    if !(rest > 0.0) || from.dot(from) < reach * reach {
+        return None;
+    }
+    let touch = middle - step * sqrt(rest / square);
+    Some(touch / max(length(touch), f32::MIN_POSITIVE))
 }
