@@ -24,6 +24,7 @@ pub mod render;
 pub mod report;
 pub mod run;
 mod stage;
+mod stall;
 pub mod substeps;
 pub mod temporary;
 pub mod whole;

@@ -155,7 +155,7 @@ impl Summary {
             ("no longer finite", self.died.nonfinite),
         ];
         push_counts(&mut rows, "died", &died);
-        let Caps { bounces, chords, springs, contacts, unfit } = self.caps;
+        let Caps { bounces, chords, springs, contacts, stalled, unfit } = self.caps;
         push_counts(&mut rows, "refused", &[("found no room; raise --capacity", self.refused)]);
         push_counts(&mut rows, "hits", &[("", self.hits)]);
         push_counts(&mut rows, "contacts", &[("", self.contacts)]);
@@ -165,6 +165,7 @@ impl Summary {
             ("paths with too many chords", chords),
             ("springs without an end", springs),
             ("contacts without room", contacts),
+            ("steps of particles lost to rounding", stalled),
             ("steps that did not fit", unfit),
         ];
         push_counts(&mut rows, "bounds met", &caps);

@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use crate::record::{Frame, Recorder};
 use crate::report::{Effort, Summary};
 use crate::world::World;
-use crate::{Outcome, print};
+use crate::{Outcome, print, stall, warn};
 use pointmass::Ledger;
 use std::time::Instant;
 
@@ -53,6 +53,9 @@ pub fn run(args: &args::Run) -> Outcome {
         progress.step(world.system.len());
     }
     progress.finish();
+    // How many sub-steps particles have made, those of each step being as many on average.
+    let substeps = effort.particle_steps as f64 * world.pace.told().total as f64 / (effort.steps as f64).max(1.0);
+    warn(stall::told(world.system.totals(), substeps).as_slice());
 
     let mut summary = Summary::of(&args.world.scene, &world, effort);
     summary.group_errors = args.group_error.then(|| groups::errors(&world));

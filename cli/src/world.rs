@@ -4,6 +4,7 @@ use crate::args;
 use crate::check::Bounds;
 use crate::load::{self, Disk};
 use crate::stage::size;
+use crate::stall;
 use crate::substeps::{Pace, Substeps};
 use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
@@ -104,7 +105,9 @@ impl World {
     /// Warns of steps \[s\] that are going to explode in a run of some duration \[s\], unless they are divided as need be.
     pub fn warn_of_steps(&self, step: f64, duration: f64) {
         if let Substeps::Fixed(n) = self.pace.substeps() {
-            warn(&Bounds::of(&self.model).warnings(self.integrator(), step / f64::from(n), duration));
+            let step = step / f64::from(n);
+            warn(&Bounds::of(&self.model).warnings(self.integrator(), step, duration));
+            warn(stall::foreseen(&self.model, step, duration).as_slice());
         }
     }
 

@@ -38,6 +38,7 @@ pub mod scene;
 pub mod shape;
 #[cfg(feature = "std")]
 pub mod stability;
+mod stall;
 mod storage;
 mod system;
 mod time;

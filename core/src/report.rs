@@ -87,6 +87,9 @@ pub struct Caps {
     pub springs: u64,
     /// Two that were near each other, or a particle and a face, found no room in the list of contacts.
     pub contacts: u64,
+    /// Times that a particle's step was lost to rounding: along some axis it moves, but the step's way is less than half the
+    /// distance to the next number there. No part of the system's hash.
+    pub stalled: u64,
     /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
     pub unfit: u64,
 }
@@ -103,7 +106,7 @@ macro_rules! add_fields {
 }
 add_fields! {
     Died { lifetime sink density chance nonfinite }
-    Caps { bounces chords springs contacts unfit }
+    Caps { bounces chords springs contacts stalled unfit }
     Effort { evaluations accepted rejected solves iterations capped }
 }
 
@@ -145,14 +148,14 @@ impl Report {
         contacts: 0,
         broken: 0,
         effort: Effort::NONE,
-        caps: Caps { bounces: 0, chords: 0, springs: 0, contacts: 0, unfit: 0 },
+        caps: Caps { bounces: 0, chords: 0, springs: 0, contacts: 0, stalled: 0, unfit: 0 },
     };
 
-    /// Every counter of what happened, in a fixed order.
+    /// Every counter of what happened that the state does not tell, in a fixed order.
     pub(crate) fn counters(&self) -> [u64; 16] {
         let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
         let Died { lifetime, sink, density, chance, nonfinite } = died;
-        let Caps { bounces, chords, springs, contacts: near, unfit } = caps;
+        let Caps { bounces, chords, springs, contacts: near, stalled: _, unfit } = caps;
         [
             initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, contacts, broken, bounces,
             chords, springs, near, unfit,

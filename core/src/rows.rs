@@ -60,7 +60,7 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
 }
 
 #[inline(always)]
-fn flat(column: &[Vec3]) -> &[f32] {
+pub(crate) fn flat(column: &[Vec3]) -> &[f32] {
     bytemuck::cast_slice(column)
 }
 

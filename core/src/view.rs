@@ -11,6 +11,7 @@ use crate::report::Report;
 use crate::retire::{Fate, retire};
 use crate::rows::each_row_with;
 use crate::scene::Scene;
+use crate::stall;
 use crate::storage::{Slices, Storage};
 use crate::time::Time;
 use glam::Vec3;
@@ -111,6 +112,11 @@ impl View<'_> {
             scene.contacts.follow(Passage { view: &mut *self, scene, old, dt, end, report, observer });
         }
         observer.after(Phase::Collide, &self.state(scene));
+        // The steps that were made of this one: sub-steps of contacts, and those that a method chose.
+        let steps = u64::from(scene.contacts.substeps()).max(report.effort.accepted);
+        let len = self.len();
+        let h = dt.seconds() / steps as f32;
+        report.caps.stalled += stall::count(&self.memory.position[..len], &self.memory.velocity[..len], h);
         let before = report.died.total();
         retire(self, scene.springs, end, report, observer);
         if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {
@@ -273,7 +279,11 @@ impl View<'_> {
         m.slot[row] = slot;
         m.serial[row] = serial;
         m.position[row] = particle.position;
-        m.velocity[row] = if particle.fixed { Vec3::ZERO } else { particle.velocity };
+        // Who has a number that cannot be used is taken out at the step's end, whichever it is. Any lifetime can be: one
+        // that is no number or beyond all is for ever.
+        let is_sound = Particle { lifetime: 0.0, ..*particle }.is_sound();
+        let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
+        m.velocity[row] = if is_sound { velocity } else { Vec3::NAN };
         m.radius[row] = particle.radius;
         m.mass[row] = particle.mass;
         m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };

@@ -4,8 +4,8 @@ use core::cell::Cell;
 use pointmass::emit::Tally;
 use pointmass::shape::Plane;
 use pointmass::{
-    Columns, Drag, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices, Spring, Storage,
-    System, Time, Vec3,
+    Columns, Drag, Emitter, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices, Spring,
+    Storage, System, Time, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, often, started};
@@ -53,6 +53,58 @@ fn what_is_not_a_number_is_removed_and_harms_nobody() {
                 assert_eq!(places, expected, "{method}: beside {bad:?}");
                 assert_eq!(totals.died.nonfinite, 1, "{method}: {bad:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn whoever_has_an_attribute_that_cannot_be_used_is_taken_out() {
+    let bad = [
+        Particle { mass: f32::INFINITY, ..Particle::REST },
+        Particle { mass: 0.0, ..Particle::REST },
+        Particle { mass: -1.0, ..Particle::REST },
+        Particle { mass: 1e-42, ..Particle::REST },
+        Particle { mass: -5.0, fixed: true, ..Particle::REST },
+        Particle { mass: f32::NAN, fixed: true, ..Particle::REST },
+        Particle { radius: f32::INFINITY, ..Particle::REST },
+        Particle { radius: -0.1, ..Particle::REST },
+        Particle { drag: f32::NAN, ..Particle::REST },
+        Particle { charge: f32::INFINITY, ..Particle::REST },
+        Particle { elasticity: f32::NEG_INFINITY, ..Particle::REST },
+    ];
+    for &method in Method::ALL {
+        for bad in bad {
+            let start = [Particle::REST, bad, Particle { lifetime: f32::INFINITY, ..Particle::REST }];
+            let scene = Scene { start: &start, integrator: method.integrator(), ..Scene::EMPTY };
+            let mut system = started(&scene, 3, 0);
+            let report = system.step(&scene, Time::from_seconds(0.01));
+            assert_eq!((report.died.nonfinite, system.len()), (1, 2), "{method}: {bad:?}");
+        }
+    }
+}
+
+#[test]
+fn births_whose_range_goes_beyond_what_can_be_used_do_not_live_on() {
+    let wide = |mean: f32, variance: f32| pointmass::Varied { mean, variance };
+    let usual = || Emitter::new(pointmass_tests::point(Vec3::ZERO), 1000.0);
+    let emitters = [
+        Emitter { mass: wide(3e38, 3e38), ..usual() },
+        Emitter { mass: wide(1.0, 3.0), ..usual() },
+        Emitter { radius: wide(3e38, 3e38), ..usual() },
+        Emitter { radius: wide(0.0, 1.0), ..usual() },
+        Emitter { drag: wide(3e38, 3e38), ..usual() },
+        Emitter { charge: wide(-3e38, 3e38), ..usual() },
+    ];
+    for (number, emitter) in emitters.iter().enumerate() {
+        let scene = Scene { emitters: emitter, ..Scene::EMPTY };
+        let mut system = started(&scene, 200, 5);
+        let report = system.step(&scene, Time::from_seconds(0.1));
+        assert!(report.born >= 99 && report.died.nonfinite > 10, "{number}: {report:?}");
+        let p = system.particles();
+        for row in 0..system.len() {
+            let (mass, radius) = (p.mass[row], p.radius[row]);
+            assert!(mass > 0.0 && mass < f32::INFINITY && (0.0..f32::INFINITY).contains(&radius), "{mass} {radius}");
+            assert!(p.drag[row].is_finite() && p.charge[row].is_finite());
         }
     }
 }

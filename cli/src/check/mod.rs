@@ -25,7 +25,7 @@ use crate::args::{self, Report};
 use crate::formats::PlotFormat;
 use crate::load::{self, Disk};
 use crate::whole::WholeFile;
-use crate::{Failure, Outcome, print};
+use crate::{Failure, Outcome, print, stall};
 use modes::Spectrum;
 use plot::Scenery;
 use pointmass::Method;
@@ -70,7 +70,8 @@ pub fn check(args: &args::Check) -> Outcome {
     let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
     let plot =
         args.plot.as_ref().map(|(path, format)| WholeFile::create(path).map(|file| (file, *format))).transpose()?;
-    let (check, spectrum) = Check::of(&args.scene, &model, &file.run);
+    let (mut check, spectrum) = Check::of(&args.scene, &model, &file.run);
+    check.advice.extend(stall::foreseen(&model, file.run.dt, file.run.duration));
     if let Some((file, format)) = plot {
         draw(file, format, &check, spectrum.as_ref(), model.integrator.method)?;
     }

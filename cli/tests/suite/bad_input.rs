@@ -269,6 +269,18 @@ fn balls_contacts_and_motion_that_are_wrong() {
             format!(r#"{{"emitters": [{{{sphere}, "radius": {{"mean": 1, "variance": 2}}}}]}}"#),
             "a.json:emitters[0].radius: must not be below zero, the variance counted in",
         ),
+        (
+            format!(r#"{{"emitters": [{{{sphere}, "fixed": true, "mass": -5}}]}}"#),
+            "a.json:emitters[0].mass: must not be below zero, the variance counted in",
+        ),
+        (
+            format!(r#"{{"emitters": [{{{sphere}, "mass": {{"mean": 3e38, "variance": 2e38}}}}]}}"#),
+            "a.json:emitters[0].mass: 3e38 ± 2e38 goes beyond the range",
+        ),
+        (
+            format!(r#"{{"emitters": [{{{sphere}, "lifetime": {{"mean": -3e38, "variance": -2e38}}}}]}}"#),
+            "a.json:emitters[0].lifetime: -3e38 ± -2e38 goes beyond",
+        ),
         (ball(r#""contacts": "impulse""#), "a.json:1:55: a name alone, where its settings should follow"),
         (
             ball(r#""contacts": {"glue": {}}"#),

@@ -19,5 +19,6 @@ mod round_trip;
 mod scenes;
 mod scn;
 mod sinks;
+mod stall;
 mod tool;
 mod touching;

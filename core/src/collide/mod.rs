@@ -11,6 +11,7 @@ mod queue;
 mod response;
 mod slide;
 mod solver;
+mod touch;
 
 pub use contacts::{Contacts, Passage, Stage};
 pub use grip::Grip;

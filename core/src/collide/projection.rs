@@ -8,13 +8,18 @@ use glam::Vec3;
 /// Contacts held by position, for heaps: the step is cut into sub-steps, and in each the integrator moves everything, then
 /// whatever overlaps is moved apart, with friction and elasticity, and velocities follow.
 ///
+/// Friction is Coulomb's: it takes up to the coefficient times the change of velocity by which the contact presses in the
+/// sub-step, bounces counted in, whichever the method and however deep the overlap. What it holds at rest on scenery or on
+/// something fixed stays where it is, to the bit.
+///
 /// XPBD with one iteration for each of many small steps (Macklin et al., "Small Steps in Physics Simulation", SCA 2019; Müller
 /// et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020). A softness in m/N is the same
 /// however many sub-steps there are.
 ///
 /// Of two that rest on each other the lower one gives way less (Macklin et al., "Unified Particle Physics for Real-Time
 /// Applications", SIGGRAPH 2014, section 5.3), so that overlap hardly grows with the height of a heap; momentum is exact for all
-/// that meet faster than gravity makes them in a step, and where nothing drives them. Balls do not spin. Hits and contacts of this kind are counted
+/// that meet faster than gravity makes them in a step, and where nothing drives them. In a heap a contact therefore presses by
+/// less than the weight above it, and friction holds it by as much less. Balls do not spin. Hits and contacts of this kind are counted
 /// in every sub-step, and [`Observer`](crate::Observer)s are not told of them.
 ///
 /// Contacts are gone through in an order that comes from the scene's index: with another structure the answer is as good, but

@@ -3,9 +3,9 @@
 
 use super::contacts::Stage;
 use super::flight::RESTING;
-use super::grip::{Feel, of_two, on_surface};
-use crate::force::Friction;
-use crate::math::{length, max, min, sqrt, unit};
+use super::grip::{of_two, on_surface};
+use super::touch::{Touch, aside, hold_back, passed};
+use crate::math::{largest, length, max, min, sqrt, unit};
 use crate::shape::Contact;
 use glam::Vec3;
 
@@ -19,8 +19,8 @@ const MARGIN: f32 = 0.1;
 const SETTLING: u32 = 4;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
-/// Vectors a particle takes: a place and two velocities of before, pairs, faces, and marks.
-pub(super) const HELD: usize = 3 + PAIR_COLUMNS + 5 * FACES + 1;
+/// Vectors a particle takes: a place and two velocities of before, a drift, pairs, faces, and marks.
+pub(super) const HELD: usize = 4 + PAIR_COLUMNS + 5 * FACES + 1;
 const PAIR_COLUMNS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>());
 
 /// Two that may touch in the step, and what they do to each other then.
@@ -28,15 +28,9 @@ const PAIR_COLUMNS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>
 #[repr(C)]
 struct Pair {
     rows: [u32; 2],
-    /// How far the sub-step moved them apart \[m\]; zero: they did not touch.
-    moved: f32,
-    /// As far as velocities follow: what the sub-step did is undone, but overlap of before gives no more speed than
-    /// weight does in a step, so that it cannot throw anything, however short a sub-step is.
-    felt: f32,
-    /// How much slip friction can still take in this sub-step \[m/s\].
-    grip: f32,
-    elasticity: f32,
-    friction: [f32; 2],
+    /// By how much the lower one counts as heavier, as a share: above zero if that is the second, below if the first.
+    lean: f32,
+    touch: Touch,
 }
 
 /// A face that a particle may touch in the step.
@@ -48,10 +42,7 @@ struct Face {
     /// Of the plane from the origin along the normal \[m\]; it goes with the velocity.
     offset: f32,
     velocity: Vec3,
-    moved: f32,
-    felt: f32,
-    elasticity: f32,
-    friction: [f32; 2],
+    touch: Touch,
     spare: [u32; 2],
 }
 
@@ -72,6 +63,7 @@ struct Held<'a> {
     x: &'a mut [Vec3],
     v: &'a mut [Vec3],
     pushed: &'a mut [Vec3],
+    drift: &'a mut [Vec3],
     pairs: &'a mut [Pair],
     faces: &'a mut [Face],
     /// Whether a particle has been moved by a contact in this step.
@@ -84,12 +76,13 @@ impl<'a> Held<'a> {
         let (x, rest) = memory.split_at_mut(capacity);
         let (v, rest) = rest.split_at_mut(capacity);
         let (pushed, rest) = rest.split_at_mut(capacity);
+        let (drift, rest) = rest.split_at_mut(capacity);
         let (pairs, rest) = rest.split_at_mut(PAIR_COLUMNS * capacity);
         let pairs = bytemuck::cast_slice_mut::<Vec3, u32>(pairs);
         let whole = pairs.len() - pairs.len() % (size_of::<Pair>() / 4);
         let (faces, marks) = rest.split_at_mut(5 * FACES * capacity);
         let (pairs, faces) = (bytemuck::cast_slice_mut(&mut pairs[..whole]), bytemuck::cast_slice_mut(faces));
-        Self { x, v, pushed, pairs, faces, marks: bytemuck::cast_slice_mut(marks) }
+        Self { x, v, pushed, drift, pairs, faces, marks: bytemuck::cast_slice_mut(marks) }
     }
 }
 
@@ -136,9 +129,8 @@ pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
             return;
         };
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
-        let Feel { elasticity, friction } = of_two(grips, [elasticity[a], elasticity[b]], of_both);
-        let friction = [friction.resting, friction.sliding];
-        *place = Pair { rows: [row, other], moved: 0.0, felt: 0.0, grip: 0.0, elasticity, friction };
+        let touch = Touch::new(of_two(grips, [elasticity[a], elasticity[b]], of_both));
+        *place = Pair { rows: [row, other], lean: 0.0, touch };
         lists.pairs += 1;
     };
     let words = (3 * stage.scene.index.columns() * len).min(scratch.len());
@@ -192,10 +184,9 @@ fn gather_faces(stage: &mut Stage<'_>, seconds: f32) {
             };
             stage.lists.faces += 1;
             let Contact { point, normal, velocity, material, .. } = *contact;
-            let Feel { elasticity, friction } = on_surface(stage.scene.grips, elasticity, own, material);
-            let friction = [friction.resting, friction.sliding];
+            let touch = Touch::new(on_surface(stage.scene.grips, elasticity, own, material));
             let (row, offset) = (row as u32, normal.dot(point));
-            *place = Face { row, normal, offset, velocity, moved: 0.0, felt: 0.0, elasticity, friction, spare: [0; 2] };
+            *place = Face { row, normal, offset, velocity, touch, spare: [0; 2] };
         });
     }
 }
@@ -209,17 +200,21 @@ pub(super) fn begin<'h>(held: &'h mut [Vec3], position: &[Vec3], velocity: &[Vec
     [&x[..len], &v[..len]]
 }
 
-/// Moves what overlaps apart, lets velocities follow, then answers the approach by the elasticity.
+/// Moves what overlaps apart, lets velocities follow, then answers the approach by the elasticity and the slip by friction.
 pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
     let h = stage.h.seconds();
     if !(h > 0.0) {
         return;
     }
-    let Held { x, v, pushed, pairs, faces, marks } = Held::of(stage.held);
+    let Held { x, v, pushed, drift, pairs, faces, marks } = Held::of(stage.held);
     let (pairs, faces) = (&mut pairs[..stage.lists.pairs], &mut faces[..stage.lists.faces]);
     pushed[..stage.velocity.len()].copy_from_slice(stage.velocity);
     let len = stage.velocity.len();
-    let driven = stage.velocity.iter().zip(&v[..len]).map(|(now, before)| *now - *before);
+    let (x, v, drift) = (&x[..len], &v[..len], &mut drift[..len]);
+    for (row, drift) in drift.iter_mut().enumerate() {
+        *drift = stage.position[row] - x[row] - (v[row] + stage.velocity[row]) * (0.5 * h);
+    }
+    let driven = stage.velocity.iter().zip(v).map(|(now, before)| *now - *before);
     // What is no longer finite must not reach the others before it is taken out.
     let driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
     let mut pass = Pass {
@@ -228,6 +223,7 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
         x0: x,
         v0: v,
         pushed,
+        drift,
         position: stage.position,
         velocity: stage.velocity,
         radius: stage.radius,
@@ -245,15 +241,15 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
         pass.move_apart(pair, stage.lists.fast);
     }
     let is_last = stage.piece + 1 == stage.pieces;
-    for _ in 0..if is_last { SETTLING } else { 1 } {
-        faces.iter().filter(|face| face.moved > 0.0).for_each(|face| pass.answer_face(face));
-        pairs.iter_mut().rev().filter(|pair| pair.moved > 0.0).for_each(|pair| pass.answer_pair(pair));
+    for sweep in 0..if is_last { SETTLING } else { 1 } {
+        faces.iter_mut().filter(|face| face.touch.is_on()).for_each(|face| pass.answer_face(face, sweep == 0));
+        pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()).for_each(|pair| pass.answer_pair(pair, sweep == 0));
     }
-    for pair in pairs.iter().filter(|pair| pair.moved > 0.0) {
+    for pair in pairs.iter().filter(|pair| pair.touch.is_on()) {
         pair.rows.iter().for_each(|&row| marks[row as usize] = 1);
         stage.report.contacts += 1;
     }
-    for face in faces.iter().filter(|face| face.moved > 0.0) {
+    for face in faces.iter().filter(|face| face.touch.is_on()) {
         marks[face.row as usize] = 1;
         stage.report.hits += 1;
     }
@@ -266,6 +262,9 @@ struct Pass<'a> {
     v0: &'a [Vec3],
     /// As the integrator left it.
     pushed: &'a [Vec3],
+    /// How far positions are from where the mean of the velocities before and now leads \[m\]: by half of what forces do in
+    /// the sub-step with methods of first order, hardly with others. Contacts take out what lies in their way.
+    drift: &'a mut [Vec3],
     position: &'a mut [Vec3],
     velocity: &'a mut [Vec3],
     radius: &'a [f32],
@@ -287,8 +286,9 @@ impl Pass<'_> {
         let [a, b] = pair.rows.map(|row| row as usize);
         let (d, reach) = (self.position[a] - self.position[b], self.radius[a] + self.radius[b]);
         let square = d.dot(d);
-        pair.moved = 0.0;
-        let (normal, overlap) = if square < reach * reach {
+        pair.touch.end();
+        let slack = self.slack(a, reach);
+        let (normal, overlap) = if square < (reach + slack) * (reach + slack) {
             let distance = sqrt(square);
             // Of two in one place the one with the higher row goes up.
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
@@ -299,37 +299,47 @@ impl Pass<'_> {
         } else {
             return;
         };
-        if !(overlap > 0.0) {
+        let closing = max((self.velocity[b] - self.velocity[a]).dot(normal), 0.0);
+        // Who touches by rounding alone does so only to press.
+        if !(overlap > 0.0 || overlap > -slack && closing > 0.0) {
             return;
         }
-        let way = (self.position[a] - self.x0[a]) - (self.position[b] - self.x0[b]);
-        let (wa, wb) = self.weights([a, b], normal, way.dot(normal) * self.rate);
-        let inverse = 1.0 / (wa + wb);
-        pair.moved = overlap * ((wa + wb) / (wa + wb + self.softness));
-        let (held, left) = held_back(pair.friction, way, normal, pair.moved);
-        pair.grip = left * self.rate;
-        let closing = max((self.velocity[b] - self.velocity[a]).dot(normal), 0.0);
-        pair.felt = min(pair.moved, (closing + self.calm) * self.h);
-        let change = (normal * pair.moved + held) * inverse;
-        let felt = change * (pair.felt / max(pair.moved, f32::MIN_POSITIVE));
-        self.shift(a, change * wa, felt * wa);
-        self.shift(b, change * -wb, felt * -wb);
+        let calm = (self.pushed[a] - self.pushed[b]).dot(normal).abs() <= self.calm;
+        pair.lean = if calm { SUPPORT * normal.dot(self.up) } else { 0.0 };
+        let (wa, wb) = self.weights(pair);
+        let moved = max(overlap, 0.0) * ((wa + wb) / (wa + wb + self.softness));
+        let felt = min(moved * self.rate, closing + self.calm);
+        pair.touch.begin(felt);
+        let share = normal * (1.0 / (wa + wb));
+        self.position[a] += share * (moved * wa);
+        self.position[b] -= share * (moved * wb);
+        self.velocity[a] += share * (felt * wa);
+        self.velocity[b] -= share * (felt * wb);
+        let drift = share * (self.drift[a] - self.drift[b]).dot(normal);
+        self.drift[a] -= drift * wa;
+        self.drift[b] += drift * wb;
     }
 
     fn move_from_face(&mut self, face: &mut Face) {
         let row = face.row as usize;
-        let w = self.inverse_mass[row];
-        let overlap = self.radius[row] - (self.position[row].dot(face.normal) - face.offset);
-        face.moved = 0.0;
-        if !(overlap > 0.0) {
+        let (w, radius) = (self.inverse_mass[row], self.radius[row]);
+        let overlap = radius - (self.position[row].dot(face.normal) - face.offset);
+        face.touch.end();
+        let closing = max((face.velocity - self.velocity[row]).dot(face.normal), 0.0);
+        if !(overlap > 0.0 || overlap > -self.slack(row, radius) && closing > 0.0) {
             return;
         }
-        face.moved = overlap * (w / (w + self.softness));
-        let way = self.position[row] - self.x0[row] - face.velocity * self.h;
-        let closing = max((face.velocity - self.velocity[row]).dot(face.normal), 0.0);
-        face.felt = min(face.moved, (closing + self.calm) * self.h);
-        let change = face.normal * face.moved + held_back(face.friction, way, face.normal, face.moved).0;
-        self.shift(row, change, change * (face.felt / max(face.moved, f32::MIN_POSITIVE)));
+        let moved = max(overlap, 0.0) * (w / (w + self.softness));
+        let felt = min(moved * self.rate, closing + self.calm);
+        face.touch.begin(felt);
+        self.position[row] += face.normal * moved;
+        self.velocity[row] += face.normal * felt;
+        self.drift[row] = aside(self.drift[row], face.normal);
+    }
+
+    /// How far apart two may be by rounding that touch \[m\].
+    fn slack(&self, row: usize, reach: f32) -> f32 {
+        4.0 * f32::EPSILON * (largest(self.position[row]) + reach)
     }
 
     /// By how much each of two gives way. Of two that rest on each other the lower one counts as heavier: then a heap carries
@@ -337,94 +347,101 @@ impl Pass<'_> {
     /// for Real-Time Applications", SIGGRAPH 2014, section 5.3). Of two that meet faster than they could by their weight in a
     /// step each counts as it is.
     #[inline(always)]
-    fn weights(&self, [a, b]: [usize; 2], normal: Vec3, parting: f32) -> (f32, f32) {
-        let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
-        let steep = SUPPORT * normal.dot(self.up);
-        if parting.abs() > self.calm {
-            (wa, wb)
-        } else if steep > 0.0 {
-            (wa, wb * (1.0 - steep))
-        } else {
-            (wa * (1.0 + steep), wb)
-        }
+    fn weights(&self, Pair { rows: [a, b], lean, .. }: &Pair) -> (f32, f32) {
+        let (wa, wb) = (self.inverse_mass[*a as usize], self.inverse_mass[*b as usize]);
+        if *lean > 0.0 { (wa, wb * (1.0 - lean)) } else { (wa * (1.0 + lean), wb) }
     }
 
     #[inline(always)]
-    fn shift(&mut self, row: usize, change: Vec3, felt: Vec3) {
-        self.position[row] += change;
-        self.velocity[row] += felt * self.rate;
-    }
-
-    #[inline(always)]
-    fn answer_pair(&mut self, pair: &mut Pair) {
+    fn answer_pair(&mut self, pair: &mut Pair, first: bool) {
         let [a, b] = pair.rows.map(|row| row as usize);
         let d = self.position[a] - self.position[b];
         let normal = d * (1.0 / max(length(d), f32::MIN_POSITIVE));
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        let change = self.change(pair.elasticity, &along, pair.felt);
-        let (wa, wb) = self.weights([a, b], normal, along(self.pushed));
+        let bounce = self.bounce(pair.touch.elasticity, &along);
+        let change = pair.touch.press(bounce, along(self.velocity));
+        let (wa, wb) = self.weights(pair);
         let share = normal * (change / (wa + wb));
         self.velocity[a] += share * wa;
         self.velocity[b] -= share * wb;
-        if pair.grip > 0.0 {
-            let relative = self.velocity[a] - self.velocity[b];
-            let slip = relative - normal * relative.dot(normal);
-            let change = Friction { resting: 1.0, sliding: 1.0 }.answer(slip, pair.grip);
-            pair.grip -= length(change);
-            let share = change * (1.0 / (wa + wb));
-            self.velocity[a] += share * wa;
-            self.velocity[b] -= share * wb;
+        if !pair.touch.has_friction() {
+            return;
+        }
+        let whole = wa + wb;
+        let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
+        let weight = (wa + wb) / whole;
+        let inverse = 1.0 / (wa + wb);
+        let slip = aside(self.velocity[a] - self.velocity[b], normal);
+        let taken = pair.touch.hold(slip, weight);
+        let share = taken * inverse;
+        self.velocity[a] += share * wa;
+        self.velocity[b] -= share * wb;
+        if first {
+            let drift = aside(self.drift[a] - self.drift[b], normal);
+            let back = hold_back(taken, drift, self.h);
+            let (share, drift) = (back * inverse, (back - taken * (0.5 * self.h)) * inverse);
+            self.position[a] += share * wa;
+            self.position[b] -= share * wb;
+            self.drift[a] += drift * wa;
+            self.drift[b] -= drift * wb;
+            if taken == -slip && bounce == 0.0 && wa * wb == 0.0 {
+                let reach = self.radius[a] + self.radius[b];
+                let gap = length(self.x0[a] - self.x0[b]) - reach;
+                let [row, other] = if wa > 0.0 { [a, b] } else { [b, a] };
+                let way = self.position[other] - self.x0[other];
+                let touched = gap.abs() <= self.slack(a, reach);
+                self.keep(row, self.velocity[other], touched && self.v0[row] == self.v0[other], way);
+            }
         }
     }
 
-    fn answer_face(&mut self, face: &Face) {
-        let row = face.row as usize;
-        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
-        let change = self.change(face.elasticity, &along, face.felt);
-        self.velocity[row] += face.normal * change;
+    fn answer_face(&mut self, face: &mut Face, first: bool) {
+        let (row, normal) = (face.row as usize, face.normal);
+        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
+        let bounce = self.bounce(face.touch.elasticity, &along);
+        let change = face.touch.press(bounce, along(self.velocity));
+        self.velocity[row] += normal * change;
+        if !face.touch.has_friction() {
+            return;
+        }
+        let slip = aside(self.velocity[row] - face.velocity, normal);
+        let taken = face.touch.hold(slip, 1.0);
+        self.velocity[row] += taken;
+        if first {
+            let back = hold_back(taken, aside(self.drift[row], normal), self.h);
+            self.position[row] += back;
+            self.drift[row] += back - taken * (0.5 * self.h);
+            if taken == -slip && bounce == 0.0 {
+                let way = face.velocity * self.h;
+                let gap = (self.x0[row] + way).dot(normal) - face.offset - self.radius[row];
+                let touched = gap.abs() <= self.slack(row, self.radius[row]);
+                self.keep(row, face.velocity, touched && self.v0[row] == face.velocity, way);
+            }
+        }
     }
 
-    /// How the speed at which two part has to change: to the elastic answer to their approach, or to none where the
-    /// bounce would be over within a part of the step. It takes back no more than the contact has given, so that it never pulls.
+    /// Gives what friction holds the velocity of what holds it. What was at rest on that and stays so has gone its way and no
+    /// other: rounding would let it creep.
+    #[inline(never)]
+    fn keep(&mut self, row: usize, velocity: Vec3, rests: bool, way: Vec3) {
+        self.velocity[row] = velocity;
+        if rests {
+            self.position[row] = self.x0[row] + way;
+        }
+    }
+
+    /// The speed at which two are to part: the elastic answer to their approach, or none where the bounce would be over
+    /// within a part of the step.
     #[inline(always)]
-    fn change(&self, elasticity: f32, along: &impl Fn(&[Vec3]) -> f32, felt: f32) -> f32 {
+    fn bounce(&self, elasticity: f32, along: &impl Fn(&[Vec3]) -> f32) -> f32 {
         let approach = along(self.pushed);
-        let mut bounce = max(-approach * elasticity, 0.0);
+        let bounce = max(-approach * elasticity, 0.0);
         if bounce > 0.0 {
             let pressing = max(along(self.v0) - approach, 0.0) * self.rate;
             if 2.0 * bounce < RESTING * self.long * pressing {
-                bounce = 0.0;
+                return 0.0;
             }
         }
-        max(bounce - along(self.velocity), -felt * self.rate)
+        bounce
     }
-}
-
-/// What friction takes of a `way` gone along a surface while something was pressed onto it by so much, and how much more it
-/// could have taken.
-#[inline(always)]
-fn held_back([resting, sliding]: [f32; 2], way: Vec3, normal: Vec3, pressed: f32) -> (Vec3, f32) {
-    if resting + sliding == 0.0 {
-        return (Vec3::ZERO, 0.0);
-    }
-    let slip = way - normal * way.dot(normal);
-    let taken = Friction { resting, sliding }.answer(slip, pressed);
-    (taken, max(max(resting, sliding) * pressed - length(taken), 0.0))
-}
-
-/// The normal at the first touch of two, one of which was at `from` and is at `to` as seen from the other, if they touched on
-/// the way and do no longer.
-fn passed(from: Vec3, to: Vec3, reach: f32) -> Option<Vec3> {
-    let step = to - from;
-    let (square, closing) = (step.dot(step), -from.dot(step));
-    if !(closing > 0.0 && closing < square) {
-        return None;
-    }
-    let middle = from + step * (closing / square);
-    let rest = reach * reach - middle.dot(middle);
-    if !(rest > 0.0) || from.dot(from) < reach * reach {
-        return None;
-    }
-    let touch = middle - step * sqrt(rest / square);
-    Some(touch / max(length(touch), f32::MIN_POSITIVE))
 }

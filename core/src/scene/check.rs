@@ -179,9 +179,17 @@ impl SceneFile {
         ];
         for (name, Varied { mean, variance }) in varied {
             finite(&format!("{at}.{name}"), &[*mean, *variance])?;
+            if !(mean - variance).is_finite() || !(mean + variance).is_finite() {
+                let message = format!("{mean:?} ± {variance:?} goes beyond the range of a 32-bit float");
+                return Err(SceneError::value(format!("{at}.{name}"), message));
+            }
         }
-        if !emitter.fixed && !(mass.mean - mass.variance.abs() > 3e-39) {
+        let lightest = mass.mean - mass.variance.abs();
+        if !emitter.fixed && !(lightest > 3e-39) {
             return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the variance counted in"));
+        }
+        if !(lightest >= 0.0) {
+            return Err(SceneError::value(format!("{at}.mass"), "must not be below zero, the variance counted in"));
         }
         if !(radius.mean - radius.variance.abs() >= 0.0) {
             return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the variance counted in"));

@@ -5,6 +5,7 @@ mod elastic;
 mod events;
 mod fast;
 mod force;
+mod friction;
 mod gas;
 mod impulse;
 mod meetings;

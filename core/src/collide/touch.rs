@@ -1,0 +1,95 @@
+//! Two that touch in a sub-step: what presses them, and Coulomb's friction by just that.
+
+use super::grip::Feel;
+use crate::force::Friction;
+use crate::math::{length, max, min, sqrt};
+use glam::Vec3;
+
+/// What two that touch do to each other in a sub-step.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Touch {
+    /// By how much the contact has changed the speed at which they part \[m/s\]; below zero: they do not touch.
+    pressed: f32,
+    /// How much slip friction has taken \[m/s\].
+    held: f32,
+    pub(super) elasticity: f32,
+    resting: f32,
+    sliding: f32,
+}
+
+impl Touch {
+    pub(super) fn new(Feel { elasticity, friction: Friction { resting, sliding } }: Feel) -> Self {
+        Self { pressed: -1.0, held: 0.0, elasticity, resting, sliding }
+    }
+
+    /// Whether the two touch in this sub-step.
+    pub(super) fn is_on(&self) -> bool {
+        self.pressed >= 0.0
+    }
+
+    pub(super) fn has_friction(&self) -> bool {
+        self.resting + self.sliding > 0.0
+    }
+
+    pub(super) fn end(&mut self) {
+        self.pressed = -1.0;
+    }
+
+    /// They touch, and have been given this speed apart.
+    pub(super) fn begin(&mut self, pressed: f32) {
+        (self.pressed, self.held) = (pressed, 0.0);
+    }
+
+    /// How the speed at which they part has to change to be `wanted`. It takes back no more than the contact has given, so
+    /// that it never pulls.
+    pub(super) fn press(&mut self, wanted: f32, parting: f32) -> f32 {
+        let change = max(wanted - parting, -self.pressed);
+        self.pressed += change;
+        change
+    }
+
+    /// What friction takes of a slip \[m/s\]: all that it can by what presses, which counts `weight` times.
+    pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
+        let speed = length(slip);
+        let left = |share: f32| max(share * self.pressed * weight - self.held, 0.0);
+        let taken = if speed <= left(self.resting) { speed } else { min(speed, left(self.sliding)) };
+        if !(taken > 0.0) {
+            return Vec3::ZERO;
+        }
+        self.held += taken;
+        if taken < speed { slip * (-taken / speed) } else { -slip }
+    }
+}
+
+/// How far friction moves two along their surface that has `taken` so much of their slip in a sub-step of `h`: as a steady
+/// force does, and back over what the integrator has drifted, so that what was at rest and stays so has not moved, whatever
+/// the method.
+pub(super) fn hold_back(taken: Vec3, drift: Vec3, h: f32) -> Vec3 {
+    let back = taken * (0.5 * h) - drift;
+    let (far, most) = (length(back), length(taken) * h);
+    if far > most { back * (most / far) } else { back }
+}
+
+/// What of a vector lies along a surface.
+#[inline(always)]
+pub(super) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
+    v - normal * v.dot(normal)
+}
+
+/// The normal at the first touch of two, one of which was at `from` and is at `to` as seen from the other, if they touched on
+/// the way and do no longer.
+pub(super) fn passed(from: Vec3, to: Vec3, reach: f32) -> Option<Vec3> {
+    let step = to - from;
+    let (square, closing) = (step.dot(step), -from.dot(step));
+    if !(closing > 0.0 && closing < square) {
+        return None;
+    }
+    let middle = from + step * (closing / square);
+    let rest = reach * reach - middle.dot(middle);
+    if !(rest > 0.0) || from.dot(from) < reach * reach {
+        return None;
+    }
+    let touch = middle - step * sqrt(rest / square);
+    Some(touch / max(length(touch), f32::MIN_POSITIVE))
+}

@@ -1,0 +1,85 @@
+//! Motion that rounding swallows: steps so short, so far from the origin, that positions stay where they are.
+
+use crate::rows::flat;
+use glam::Vec3;
+
+/// A speed from which on motion counts \[m/s\], wherever it is.
+const NOTABLE: f32 = 1.0 / 128.0;
+/// The same as a share of the coordinate \[1/s\]: for worlds of small things.
+const SHARE: f32 = 1.0 / 4096.0;
+/// Rows that are looked at together.
+const BLOCK: usize = 16;
+
+/// How many of these particles stall in steps of `h` \[s\]: one of their coordinates would move at a notable speed and stays
+/// where it is, as the step's way is less than half the distance of two numbers there.
+pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
+    let mut stalled = 0;
+    for (x, v) in position.chunks(BLOCK).zip(velocity.chunks(BLOCK)) {
+        // Hardly ever is there one: whole blocks are passed by, in a loop that compilers make vectors of.
+        let mut any = 0;
+        for (&x, &v) in flat(x).iter().zip(flat(v)) {
+            any |= u32::from(is_swallowed(x, v, h));
+        }
+        if any > 0 {
+            let stalls = |(x, v): &(&Vec3, &Vec3)| (0..3).any(|axis| is_swallowed(x[axis], v[axis], h));
+            stalled += x.iter().zip(v).filter(stalls).count() as u64;
+        }
+    }
+    stalled
+}
+
+/// Whether a coordinate moves, at a speed that counts, and is where it was after a step.
+#[inline(always)]
+fn is_swallowed(x: f32, v: f32, h: f32) -> bool {
+    let (speed, share) = (v.abs(), x.abs() * SHARE);
+    let counts = (speed > share) | (speed > NOTABLE);
+    // Without shortcuts, so that the loop has no branches. What is not finite is nowhere.
+    (x + v * h == x)
+        & (h > 0.0)
+        & counts
+        & (speed > f32::MIN_POSITIVE)
+        & (share < f32::INFINITY)
+        & (speed < f32::INFINITY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stalls(x: f32, v: f32, h: f32) -> bool {
+        count(&[Vec3::new(0.0, x, 0.0)], &[Vec3::new(0.0, v, 0.0)], h) == 1
+    }
+
+    #[test]
+    fn what_rounding_swallows_stalls_and_nothing_else_does() {
+        for (x, v, h) in
+            [(1e3, 1.0, 2e-5), (-1e3, 1.0, 2e-5), (1e6, -1.0, 1.0 / 60.0), (1e-3, 1e-6, 2e-5), (2e11, 3e4, 0.1)]
+        {
+            assert!(stalls(x, v, h), "{x} {v} {h}");
+        }
+        // At rest, hardly moving, far beyond the next number, in no time, nowhere.
+        for (x, v, h) in [
+            (1e3, 0.0, 2e-5),
+            (0.0, 0.0, 2e-5),
+            (1e3, 1e-3, 1.0 / 60.0),
+            (1.0, 1e-5, 1.0 / 720.0),
+            (1e3, 10.0, 1.0 / 60.0),
+            (1e3, 1.0, 0.0),
+            (0.0, 1e-44, 0.01),
+            (f32::INFINITY, 1.0, 0.01),
+            (1e3, f32::NAN, 0.01),
+            (f32::NAN, 1.0, 0.01),
+        ] {
+            assert!(!stalls(x, v, h), "{x} {v} {h}");
+        }
+    }
+
+    #[test]
+    fn each_particle_counts_once_wherever_its_row() {
+        for len in 0..3 * BLOCK {
+            let position: std::vec::Vec<Vec3> =
+                (0..len).map(|i| Vec3::splat(if i % 3 == 0 { 1e3 } else { 1.0 })).collect();
+            assert_eq!(count(&position, &std::vec![Vec3::ONE; len], 2e-5), len.div_ceil(3) as u64);
+        }
+    }
+}
