@@ -38,11 +38,11 @@ fn is_inside(mesh: &Closed, point: Vec3, random: &mut Random) -> Option<bool> {
             if edges.iter().any(|&e| e > 0.0) && edges.iter().any(|&e| e < 0.0) {
                 continue;
             }
-            if edges.contains(&0.0) {
-                continue 'way;
-            }
             if before == 0.0 {
                 return None;
+            }
+            if edges.contains(&0.0) {
+                continue 'way;
             }
             crossed = !crossed;
         }
