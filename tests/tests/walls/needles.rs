@@ -29,19 +29,20 @@ fn is_inside(mesh: &Closed, point: Vec3, random: &mut Random) -> Option<bool> {
         let mut crossed = false;
         for t in &mesh.triangles {
             let [a, b, c] = t.map(|i| coord(mesh.vertices[i as usize]));
-            let before = orient3d(a, b, c, from);
-            if before * orient3d(a, b, c, to) > 0.0 {
+            let (before, after) = (orient3d(a, b, c, from), orient3d(a, b, c, to));
+            // Corners that rounding has brought onto a line enclose nothing.
+            if before * after > 0.0 || (before == 0.0 && after == 0.0) {
                 continue;
             }
             let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| orient3d(from, to, p, q));
             if edges.iter().any(|&e| e > 0.0) && edges.iter().any(|&e| e < 0.0) {
                 continue;
             }
-            if edges.contains(&0.0) {
-                continue 'way;
-            }
             if before == 0.0 {
                 return None;
+            }
+            if edges.contains(&0.0) {
+                continue 'way;
             }
             crossed = !crossed;
         }
