@@ -88,7 +88,7 @@ pub(crate) fn seed(seed: &JsValue) -> Result<Option<u64>, JsError> {
 /// # Errors
 /// If it is no finite number, or below zero.
 pub(crate) fn seconds(what: &str, seconds: f64) -> Result<Time, JsError> {
-    if seconds >= 0.0 && seconds < f64::INFINITY {
+    if (0.0..f64::INFINITY).contains(&seconds) {
         return Ok(Time::from_seconds_f64(seconds));
     }
     Err(JsError::new(&format!("{what} has to be given a finite number of seconds, zero or more, not {seconds}")))

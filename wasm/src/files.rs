@@ -67,7 +67,7 @@ impl Files {
             return Err(refuse("coordinates have to be a Float32Array, and indices a Uint32Array"));
         }
         let (vertices, triangles) = (coordinates.length() / 3, indices.length() / 3);
-        if coordinates.length() % 3 != 0 || indices.length() % 3 != 0 {
+        if !(coordinates.length().is_multiple_of(3) && indices.length().is_multiple_of(3)) {
             return Err(refuse("coordinates and indices have to come in threes"));
         }
         if vertices.max(triangles) > MOST_CORNERS {
