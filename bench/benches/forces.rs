@@ -8,7 +8,7 @@ use pointmass_bench::{cloud, started};
 
 fn forces(c: &mut Criterion) {
     let shape = Shape::<Mesh<'_>>::Sphere(Sphere { center: Vec3::ZERO, radius: 0.5 });
-    let sink = Sink { shape, intensity: 1.0, ca: 1.0, la: 0.0, qa: 1.0, softening: 0.0 };
+    let sink = Sink { shape, group: None, intensity: 1.0, ca: 1.0, la: 0.0, qa: 1.0, softening: 0.0 };
     let mut group = c.benchmark_group("forces");
     let mut measure = |name: &str, particles: &[Particle], springs: &[Spring], elements: u64, force: &dyn Force| {
         let scene = Scene { start: particles, springs, ..Scene::EMPTY };

@@ -31,6 +31,10 @@ pub struct Burst {
 pub struct Emitter<M> {
     /// Where births lie, uniformly by area.
     pub shape: Shape<M>,
+    /// The group of a scene file whose transform applies to the shape, the direction and the velocity; a [`Model`](crate::Model)
+    /// has applied it.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub group: Option<u32>,
     /// Births per second.
     #[cfg_attr(feature = "serde", serde(default))]
     pub rate: f32,
@@ -124,6 +128,7 @@ impl<M> Emitter<M> {
     pub const fn new(shape: Shape<M>, rate: f32) -> Self {
         Self {
             shape,
+            group: None,
             rate,
             burst: None,
             start: 0.0,

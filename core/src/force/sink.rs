@@ -18,6 +18,9 @@ use glam::Vec3;
 pub struct Sink<M> {
     /// Its surface.
     pub shape: Shape<M>,
+    /// The group of a scene file whose transform applies to the surface; a [`Model`](crate::Model) has applied it.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub group: Option<u32>,
     /// Strength of the pull \[N, if `ca` has no unit\]; below zero it repels.
     pub intensity: f32,
     /// Constant term: it keeps the force finite at the surface.
@@ -115,7 +118,7 @@ mod tests {
         for (ca, la, qa) in terms.into_iter().chain(bare) {
             let shape = Shape::<Mesh<'_>>::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
             for softening in [0.0f32, 0.25, 2.0].into_iter().filter(|&s| ca > 0.0 || s > 0.0) {
-                let sink = Sink { shape: shape.clone(), intensity: 10.0, ca, la, qa, softening };
+                let sink = Sink { shape: shape.clone(), group: None, intensity: 10.0, ca, la, qa, softening };
                 let n = 100_000;
                 let pull = |x: f64| {
                     let d = libm::hypot(x, f64::from(softening));

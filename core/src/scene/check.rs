@@ -68,11 +68,13 @@ impl SceneFile {
         self.check_fabrics()?;
         for (i, emitter) in self.emitters.iter().enumerate() {
             self.check_emitter(&format!("emitters[{i}]"), emitter)?;
+            self.check_group(&format!("emitters[{i}]"), emitter.group)?;
         }
         for (i, sink) in self.sinks.iter().enumerate() {
             finite(&format!("sinks[{i}]"), &[sink.intensity, sink.ca, sink.la, sink.qa])?;
             zero_or_more(&format!("sinks[{i}].softening"), sink.softening)?;
             check_shape(&format!("sinks[{i}].shape"), &sink.shape)?;
+            self.check_group(&format!("sinks[{i}]"), sink.group)?;
         }
         for (i, force) in self.forces.iter().enumerate() {
             check_force(&format!("forces[{i}]"), force)?;
@@ -236,15 +238,20 @@ impl SceneFile {
                 let message = "its numbers have to be finite, and its axis to have a direction if it turns";
                 return Err(SceneError::value(format!("{at}.motion"), message));
             }
-            if item.group.is_some_and(|group| group as usize >= self.groups.len()) {
-                let count = self.groups.len();
-                return Err(SceneError::value(
-                    format!("{at}.group"),
-                    format!("is out of range; there are {count}, from 0"),
-                ));
-            }
+            self.check_group(&at, item.group)?;
         }
         Ok(())
+    }
+
+    fn check_group(&self, at: &str, group: Option<u32>) -> Checked {
+        let count = self.groups.len();
+        match group {
+            Some(group) if group as usize >= count => {
+                let message = format!("{group} is out of range; there are {count}, from 0");
+                Err(SceneError::value(format!("{at}.group"), message))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn check_look(&self) -> Checked {

@@ -164,8 +164,8 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
             }
             Command::Source(source) => self.source(source),
             Command::Sink(sink) => {
-                let Sink { intensity, ca, la, qa, softening, .. } = sink;
-                let sink = Sink { shape: plain(&sink.shape)?, intensity, ca, la, qa, softening };
+                let Sink { group, intensity, ca, la, qa, softening, .. } = sink;
+                let sink = Sink { shape: plain(&sink.shape)?, group, intensity, ca, la, qa, softening };
                 self.scene.forces.3.push(sink).map_err(|_| "too many sinks for this array")
             }
             Command::Spring { ends, rest_length, ks, kd } => {

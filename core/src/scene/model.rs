@@ -73,13 +73,21 @@ impl Model {
         let mut emitters = Vec::with_capacity(file.emitters.len());
         for (i, emitter) in file.emitters.iter().enumerate() {
             let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
-            emitters.push(with_shape(emitter, shape, file));
+            let to_world = placement(file, emitter.group);
+            let shape = shape.moved(&to_world, file.run.collision_index);
+            let shape = shape.map_err(|message| {
+                SceneError::value(format!("emitters[{i}].group"), message).in_file(path)
+            })?;
+            emitters.push(with_shape(emitter, shape, &to_world, file));
         }
         let mut sinks = Vec::with_capacity(file.sinks.len());
         for (i, sink) in file.sinks.iter().enumerate() {
             let shape = meshes.shape(&format!("sinks[{i}].shape"), &sink.shape)?;
+            let shape = shape.moved(&placement(file, sink.group), file.run.collision_index);
+            let shape =
+                shape.map_err(|message| SceneError::value(format!("sinks[{i}].group"), message).in_file(path))?;
             let Sink { intensity, ca, la, qa, softening, .. } = *sink;
-            sinks.push(Sink { shape, intensity, ca, la, qa, softening });
+            sinks.push(Sink { shape, group: None, intensity, ca, la, qa, softening });
         }
         let mut scenery = Vec::with_capacity(file.scenery.len());
         for (i, item) in file.scenery.iter().enumerate() {
@@ -172,9 +180,6 @@ struct Meshes<'a> {
     index: rays::Structure,
 }
 
-/// Triangles that are looked at sooner than an index of them.
-const FEW: usize = 8;
-
 impl Meshes<'_> {
     fn shape(&mut self, at: &str, shape: &Shape<String>) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
         shape.with_mesh(|name| self.load(at, name))
@@ -186,8 +191,7 @@ impl Meshes<'_> {
         }
         let mesh = self.files.mesh(&beside(self.path, name));
         let mesh = mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?;
-        let few = mesh.triangles().len() <= FEW;
-        let mesh = Arc::new(if few { mesh } else { mesh.indexed(self.index) });
+        let mesh = Arc::new(mesh.organised(self.index));
         self.loaded.insert(name.to_string(), mesh.clone());
         Ok(mesh)
     }
@@ -263,14 +267,22 @@ fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<
     own.or_else(|| Some(file.materials.get(usize::from(material?))?.color()))
 }
 
-fn with_shape(emitter: &Emitter<String>, shape: Shape<Arc<MeshBuf>>, file: &SceneFile) -> Emitter<Arc<MeshBuf>> {
+fn with_shape(
+    emitter: &Emitter<String>,
+    shape: Shape<Arc<MeshBuf>>,
+    to_world: &Affine,
+    file: &SceneFile,
+) -> Emitter<Arc<MeshBuf>> {
     let Emitter { rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } = *emitter;
     let Emitter {
         radius, mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_variance, ..
     } = *emitter;
+    let material = material.or_else(|| file.material_of(emitter.group));
     let color = color(file, own, material);
+    let (direction, velocity) = (direction.map(|d| to_world.linear * d), to_world.linear * velocity);
     Emitter {
         shape,
+        group: None,
         rate,
         burst,
         start,

@@ -256,9 +256,9 @@ impl Reader<'_> {
                 self.scene.particles.push(particle);
             }
             Command::Source(source) => self.source(scope, place, name, source)?,
-            Command::Sink(Sink { shape, intensity, ca, la, qa, softening }) => {
+            Command::Sink(Sink { shape, group, intensity, ca, la, qa, softening }) => {
                 let shape = self.shape(scope, place, name, &shape)?;
-                self.scene.sinks.push(Sink { shape, intensity, ca, la, qa, softening });
+                self.scene.sinks.push(Sink { shape, group, intensity, ca, la, qa, softening });
             }
             Command::Spring { ends, rest_length, ks, kd } => {
                 self.remark(scope, place, name, odd_ends(ends.map(|end| end.value)), "ends");

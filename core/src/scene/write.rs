@@ -259,6 +259,7 @@ impl Writer {
 
     fn source(&mut self, index: usize, emitter: &Emitter<String>) {
         let at = format!("emitters[{index}]");
+        self.warn_of_group(&at, emitter.group);
         let Some(shape) = self.shape(&at, &emitter.shape, false) else { return };
         let cutoff = match emitter.spread {
             Spread::Lecture(cutoff) | Spread::Uniform(cutoff @ 0.0) => cutoff,
@@ -293,7 +294,15 @@ impl Writer {
         self.line(format_args!("particle_source {mass} {fixed} {rest} {material} {motion} {shape}"));
     }
 
+    /// Sources and sinks of `.scn` stand where they say, in whichever group.
+    fn warn_of_group(&mut self, at: &str, group: Option<u32>) {
+        if group.is_some() {
+            self.warn(format!("{at}.group: .scn transforms scenery only; it is left out"));
+        }
+    }
+
     fn sink(&mut self, index: usize, sink: &Sink<String>) {
+        self.warn_of_group(&format!("sinks[{index}]"), sink.group);
         if sink.softening != 0.0 {
             self.warn(format!("sinks[{index}].softening: .scn has none; it is left out"));
         }

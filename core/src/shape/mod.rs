@@ -12,6 +12,8 @@ mod exact;
 mod heightfield;
 mod line;
 mod mesh;
+#[cfg(feature = "alloc")]
+mod moved;
 mod moving;
 mod place;
 mod plane;

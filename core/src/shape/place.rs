@@ -77,11 +77,21 @@ impl Affine {
     }
 
     /// How much longer all lengths become, and within which share of them; `None` unless it keeps all shapes.
-    fn scale(&self) -> Option<[f32; 2]> {
+    pub(super) fn scale(&self) -> Option<[f32; 2]> {
         let [x, y, z] = self.lengths();
         let (least, most) = (min(min(x, y), z), max(max(x, y), z));
         let error = max((most - least) / most, self.skew());
         (error <= EVEN).then_some([(x + y + z) * (1.0 / 3.0), error])
+    }
+
+    /// How much wider and higher what is round about the y axis and upright becomes, the latter below zero if it is turned
+    /// upside down; `None` unless it stays round and upright.
+    #[cfg(feature = "alloc")]
+    pub(super) fn upright(&self) -> Option<[f32; 2]> {
+        let (lengths, _) = self.stretch()?;
+        let up = unit(self.linear.y_axis).y;
+        let stands = 1.0 - up.abs() <= EVEN * EVEN;
+        (stands && is_even(lengths.x, lengths.z)).then_some([0.5 * (lengths.x + lengths.z), lengths.y * up])
     }
 
     /// It as a scaling along the axes, and what then turns and moves; `None` if right angles do not stay right.

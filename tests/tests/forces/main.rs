@@ -16,7 +16,7 @@ const UNIT: MutualGravity = MutualGravity { constant: 1.0, softening: 0.0, ..Mut
 
 /// The lecture's sink, about the origin.
 fn sink(shape: Form) -> Sink<pointmass::shape::Mesh<'static>> {
-    Sink { shape, intensity: 10.0, ca: 1.0, la: 0.5, qa: 0.25, softening: 0.0 }
+    Sink { shape, group: None, intensity: 10.0, ca: 1.0, la: 0.5, qa: 0.25, softening: 0.0 }
 }
 
 /// The forces \[N\] on all particles of a system.
