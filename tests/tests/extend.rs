@@ -318,6 +318,7 @@ fn memory() {
         sinks: &(),
         grips: &[],
         contacts: &(),
+        max_bounces: 8,
         integrator: &Leapfrog,
         index: &(),
     };

@@ -132,8 +132,8 @@ fn on_whatever_moves_it_goes_along() {
                         let back = first.inverse().expect("it only moves").point(begun.position);
                         let there = motion.at(Time::from_seconds(5.0)).point(back);
                         let off = gap(f64s(x), f64s(there));
-                        // A ball has the speed of what it touches, which where the slab rocks is not that of its centre.
-                        let rocks = if i == 4 { 0.32 * f64::from(begun.radius) } else { 0.0 };
+                        // A ball has the speed of what it touches, which where the slab turns about another axis than its normal is not that of its centre.
+                        let rocks = if i >= 3 { 1.5 * f64::from(begun.radius) } else { 0.0 };
                         assert!(
                             off < 1e-2 + rocks,
                             "motion {i}, {method}, {rate}/s, radius {}: {off} from {there}",
