@@ -376,7 +376,15 @@ pub(crate) fn any_scene() -> impl Strategy<Value = SceneFile> {
         for (shape, group) in items {
             let group = group.checked_rem(scene.groups.len() as u32);
             scene.scenery.insert(0, Item { shape: shape.clone(), material: None, group, motion: None });
-            scene.sinks.push(Sink { shape, group: None, intensity: softness, ca: 1.0, la: glow, qa: 0.0, softening: glow });
+            scene.sinks.push(Sink {
+                shape,
+                group: None,
+                intensity: softness,
+                ca: 1.0,
+                la: glow,
+                qa: 0.0,
+                softening: glow,
+            });
         }
         if let Some(first) = scene.particles.first_mut() {
             first.color = Some(color);

@@ -89,7 +89,15 @@ fn everything() -> SceneFile {
     emitters[4] = source(emitters[4].shape.clone(), 0.0, Particle { mass: 0.0, fixed: true, ..still }, 0.0, 0.0);
     emitters.push(source(disc(v(0.0, -5.0, 0.0)), 0.0, still, -1.0, 0.0));
     let mut sinks: Vec<_> = [vec![cube], shapes("../c.stl"), vec![disc(Vec3::X)]].concat();
-    let sinks = sinks.drain(..).map(|shape| Sink { shape, group: None, intensity: 1.0, ca: 2.0, la: 3.0, qa: 4.0, softening: 0.0 });
+    let sinks = sinks.drain(..).map(|shape| Sink {
+        shape,
+        group: None,
+        intensity: 1.0,
+        ca: 2.0,
+        la: 3.0,
+        qa: 4.0,
+        softening: 0.0,
+    });
     let mut sinks: Vec<_> = sinks.collect();
     sinks[1].intensity = -1.0;
     let (unit, two) = (Sphere { center: Vec3::ZERO, radius: 1.0 }, (Vec3::ZERO, 1.0, 2.0));

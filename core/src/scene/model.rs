@@ -75,9 +75,8 @@ impl Model {
             let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
             let to_world = placement(file, emitter.group);
             let shape = shape.moved(&to_world, file.run.collision_index);
-            let shape = shape.map_err(|message| {
-                SceneError::value(format!("emitters[{i}].group"), message).in_file(path)
-            })?;
+            let shape =
+                shape.map_err(|message| SceneError::value(format!("emitters[{i}].group"), message).in_file(path))?;
             emitters.push(with_shape(emitter, shape, &to_world, file));
         }
         let mut sinks = Vec::with_capacity(file.sinks.len());

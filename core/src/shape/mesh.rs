@@ -78,14 +78,6 @@ impl<'a> Mesh<'a> {
         Ok(Self { bounds: Aabb::around(vertices.iter().copied()), vertices, triangles, areas, index: Index::BRUTE })
     }
 
-    /// The same with an index of its triangles, if they are more than a few.
-    #[must_use]
-    pub(crate) fn organised(self, structure: Structure) -> Self {
-        /// Triangles that are looked at sooner than an index of them.
-        const FEW: usize = 8;
-        if self.triangles.len() <= FEW { self } else { self.indexed(structure) }
-    }
-
     /// The same with an index of its triangles, built before, perhaps at another time: paths no longer look at all of
     /// them. Looks at each triangle once.
     ///
@@ -138,6 +130,14 @@ impl MeshBuf {
         let mut areas = alloc::vec![0; triangles.len()];
         sum_areas(&vertices, &triangles, &mut areas);
         Ok(Self { bounds, vertices, triangles, areas, index: alloc::vec::Vec::new() })
+    }
+
+    /// The same with an index of its triangles, if they are more than a few.
+    #[must_use]
+    pub(crate) fn organised(self, structure: Structure) -> Self {
+        /// Triangles that are looked at sooner than an index of them.
+        const FEW: usize = 8;
+        if self.triangles.len() <= FEW { self } else { self.indexed(structure) }
     }
 
     /// The same with an index of its triangles, so that paths no longer look at all of them.

@@ -88,7 +88,8 @@ fn mesh(
         triangles.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
     }
     let vertices = vertices.into_iter().map(|vertex| map.point(vertex)).collect();
-    let mesh = MeshBuf::new(vertices, triangles).map_err(|_| "its groups move it beyond the range of a 32-bit float")?;
+    let mesh =
+        MeshBuf::new(vertices, triangles).map_err(|_| "its groups move it beyond the range of a 32-bit float")?;
     Ok(Shape::Mesh(Arc::new(mesh.organised(index))))
 }
 
@@ -113,7 +114,8 @@ mod tests {
         let (center, radius, height) = (Vec3::new(0.3, -0.2, 0.5), 0.7, 1.1);
         let corners = [center, center + Vec3::X, center + Vec3::new(0.2, 0.9, 0.4)];
         let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner + center).to_vec();
-        let mesh = MeshBuf::new(vertices, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].to_vec()).expect("a tetrahedron");
+        let mesh =
+            MeshBuf::new(vertices, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].to_vec()).expect("a tetrahedron");
         [
             Shape::Triangle(Triangle { corners }),
             Shape::Plane(Plane { point: center, normal: Vec3::new(0.1, 1.0, 0.3) }),
@@ -145,7 +147,7 @@ mod tests {
         let mut moved_shapes = 0;
         for shape in shapes() {
             for map in maps() {
-                let Ok(moved) = shape.moved(&map, Structure::default()) else { continue };
+                let Ok(moved) = shape.moved(&map, Structure::Bvh) else { continue };
                 moved_shapes += 1;
                 let placed = Placed::new(shape.clone(), map).expect("it can be undone");
                 for i in 0..200 {
@@ -169,7 +171,7 @@ mod tests {
     fn births_lie_on_the_image_and_leave_it_outward() {
         for shape in shapes().into_iter().filter(|shape| !matches!(shape, Shape::Plane(_))) {
             for map in maps() {
-                let Ok(moved) = shape.moved(&map, Structure::default()) else { continue };
+                let Ok(moved) = shape.moved(&map, Structure::Bvh) else { continue };
                 let back = map.inverse().expect("it can be undone");
                 for i in 0..100u8 {
                     let u = [0.13, 0.29, 0.61].map(|step| (f32::from(i) * step) % 1.0);
@@ -181,7 +183,10 @@ mod tests {
                         let out = back.point(spot.point + spot.normal * 1e-2) - Vec3::new(0.3, -0.2, 0.5);
                         let on = there - Vec3::new(0.3, -0.2, 0.5);
                         let convex_center = Vec3::splat(0.05);
-                        assert!((out - convex_center).length() > (on - convex_center).length() - 5e-3, "{shape:?} {map:?}");
+                        assert!(
+                            (out - convex_center).length() > (on - convex_center).length() - 5e-3,
+                            "{shape:?} {map:?}"
+                        );
                     }
                 }
             }
@@ -193,12 +198,12 @@ mod tests {
         let [_, _, sphere, circle, .., cylinder, cone] = shapes();
         let [_, _, tilted, _, squashed] = maps();
         for shape in [&sphere, &circle] {
-            assert!(shape.moved(&squashed, Structure::default()).is_err());
-            assert!(shape.moved(&tilted, Structure::default()).is_ok());
+            assert!(shape.moved(&squashed, Structure::Bvh).is_err());
+            assert!(shape.moved(&tilted, Structure::Bvh).is_ok());
         }
         for shape in [&cylinder, &cone] {
-            assert!(shape.moved(&squashed, Structure::default()).is_ok());
-            assert!(shape.moved(&tilted, Structure::default()).is_err());
+            assert!(shape.moved(&squashed, Structure::Bvh).is_ok());
+            assert!(shape.moved(&tilted, Structure::Bvh).is_err());
         }
     }
 }

@@ -192,7 +192,15 @@ impl<'a> Lexer<'a> {
             "particle_sink" => {
                 let intensity = self.float("the intensity")?;
                 let [ca, la, qa] = [self.float("ca")?, self.float("la")?, self.float("qa")?];
-                Command::Sink(crate::force::Sink { group: None, intensity, ca, la, qa, softening: 0.0, shape: self.any_shape()? })
+                Command::Sink(crate::force::Sink {
+                    group: None,
+                    intensity,
+                    ca,
+                    la,
+                    qa,
+                    softening: 0.0,
+                    shape: self.any_shape()?,
+                })
             }
             "particle_spring" => Command::Spring {
                 ends: [self.index("the first particle")?, self.index("the second particle")?],
