@@ -244,14 +244,13 @@ fn tables_fit_eighty_columns() {
         "a_very_long_name_of_a_file_with_points_that_goes_on_and_on_until_it_ends.csv",
         "x,y,z\n1,2,3\n4,5,6\n7,8,8\n",
     );
-    let peers = if cfg!(feature = "peers") { "--peers" } else { "" };
     for args in [
         "--distribution uniform,plummer --n 300,900 --repeat 3 --detail",
         "--points a_very_long_name_of_a_file_with_points_that_goes_on_and_on_until_it_ends.csv --repeat 3",
         "--queries ray --triangles 100,400 --segments 50 --repeat 3 --detail",
         "--queries count --n 300 --repeat 3",
     ] {
-        let answer = folder.run(&format!("compare {args} {peers}"));
+        let answer = folder.run(&format!("compare {args}"));
         assert_eq!(answer.code, 0, "{answer:?}");
         for line in answer.stdout.lines() {
             assert!(line.chars().count() <= 80, "{args}: {} columns: {line}", line.chars().count());

@@ -251,6 +251,7 @@ fn sink() -> impl Strategy<Value = Sink<String>> {
     let shape = prop_oneof![6 => common_shape(), 1 => circle()];
     (shape, uniform4(number())).prop_map(|(shape, [intensity, ca, la, qa])| Sink {
         shape,
+        group: None,
         intensity,
         ca,
         la,
@@ -347,14 +348,15 @@ fn run() -> impl Strategy<Value = Run> {
         iterations,
         ..Tuning::DEFAULT
     });
-    (0.0f64..1e6, 1e-6f64..10.0, method, (tuning, indices), any::<u64>(), any::<u32>()).prop_map(
-        |(duration, dt, integrator, (tuning, (index, collision_index)), seed, capacity)| Run {
+    (0.0f64..1e6, 1e-6f64..10.0, method, (tuning, indices, 1u32..=10_000), any::<u64>(), any::<u32>()).prop_map(
+        |(duration, dt, integrator, (tuning, (index, collision_index), max_bounces), seed, capacity)| Run {
             duration,
             dt,
             integrator,
             tuning,
             index,
             collision_index,
+            max_bounces,
             seed,
             capacity,
         },
