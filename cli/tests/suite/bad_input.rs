@@ -311,6 +311,29 @@ fn balls_contacts_and_motion_that_are_wrong() {
 }
 
 #[test]
+fn groups_of_emitters_and_sinks_that_are_wrong() {
+    let tilted = "[1, 0, 0, 0], [0, 0.8, -0.6, 0], [0, 0.6, 0.8, 0], [0, 0, 0, 1]";
+    let squashed = "[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]";
+    let sphere = r#"{"sphere": {"center": [9, 0, 0], "radius": 1}}"#;
+    let cone = r#"{"cone": {"center": [0, 0, 0], "radius": 1, "height": 1}}"#;
+    let scene = |matrix: &str, kind: &str, shape: &str, group: u8| {
+        let pull = if kind == "sinks" { r#", "intensity": 1, "ca": 1, "la": 0, "qa": 0"# } else { "" };
+        format!(r#"{{"groups": [{{"matrix": [{matrix}]}}], "{kind}": [{{"group": {group}, "shape": {shape}{pull}}}]}}"#)
+    };
+    let cases = [
+        (scene(tilted, "emitters", sphere, 1), "a.json:emitters[0].group: 1 is out of range; there are 1, from 0"),
+        (scene(tilted, "sinks", sphere, 7), "a.json:sinks[0].group: 7 is out of range; there are 1, from 0"),
+        (scene(squashed, "emitters", sphere, 0), "a.json:emitters[0].group: its groups squash what is round: put a mesh"),
+        (scene(tilted, "sinks", cone, 0), "a.json:sinks[0].group: its groups tilt or squash what stands upright: put a"),
+    ];
+    let folder = Folder::new();
+    for (text, error) in cases {
+        folder.write("a.json", &text);
+        refused_by(&folder, "a.json", error, &["run", "render", "check"]);
+    }
+}
+
+#[test]
 fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
     // A list, where there should be an object with names.
     for text in ["[]", "[null]", r#"{"run": 1}"#, r#"{"particles": {}}"#, r#"{"camera": 1}"#] {
