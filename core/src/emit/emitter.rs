@@ -31,7 +31,7 @@ pub struct Burst {
 pub struct Emitter<M> {
     /// Where births lie, uniformly by area.
     pub shape: Shape<M>,
-    /// The group of a scene file whose transform applies to the shape, the direction and the velocity; a [`Model`](crate::Model)
+    /// The group of a scene file whose transform applies to the shape, the direction and the velocity; a `Model`
     /// has applied it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u32>,

@@ -18,7 +18,7 @@ use glam::Vec3;
 pub struct Sink<M> {
     /// Its surface.
     pub shape: Shape<M>,
-    /// The group of a scene file whose transform applies to the surface; a [`Model`](crate::Model) has applied it.
+    /// The group of a scene file whose transform applies to the surface; a `Model` has applied it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u32>,
     /// Strength of the pull \[N, if `ca` has no unit\]; below zero it repels.
