@@ -238,7 +238,7 @@ impl<C: Collider> Collider for Moving<C> {
         self.collider.contacts(pose.local(center), reach, at, &mut |contact| {
             let normal = pose.turn * contact.normal;
             let point = center - normal * contact.distance;
-            let velocity = pose.turn * contact.velocity + motion.velocity(point, at);
+            let velocity = pose.turn * contact.velocity + motion.velocity(center, at);
             visit(&Contact { point, normal, velocity, ..*contact });
         });
     }
@@ -258,13 +258,10 @@ impl<C: Collider> Collider for Moving<C> {
         let (pose, then) = (motion.pose(start), motion.pose(end));
         let from = pose.local(seat.from);
         let local = Segment { from, to: pose.local(seat.to), radius: seat.radius, during: [start; 2] };
-        let hit = self.collider.first_hit(&local)?;
-        let touch = from - hit.normal * seat.radius;
-        Some(Ride {
-            place: then.world(from),
-            velocity: motion.velocity(then.world(touch), end),
-            acceleration: motion.acceleration(pose.world(touch), start),
-        })
+        self.collider.first_hit(&local)?;
+        let place = then.world(from);
+        let (velocity, acceleration) = (motion.velocity(place, end), motion.acceleration(seat.from, start));
+        Some(Ride { place, velocity, acceleration })
     }
 
     /// Of what stands still.
@@ -285,7 +282,7 @@ fn in_world(motion: &Motion, segment: &Segment, piece: &Segment, hit: Hit, time:
     let pose = motion.pose(instant);
     let normal = pose.turn * hit.normal;
     let center = segment.at(hit.time);
-    let velocity = motion.velocity(center - normal * segment.radius, instant);
+    let velocity = motion.velocity(center, instant);
     // How far the piece strays from the path toward the surface, and what turning and moving round.
     let strays = (pose.local(center) - piece.at(time)).dot(hit.normal).abs();
     let rounding = segment.slack(largest(motion.pivot) + largest(pose.place));
