@@ -85,6 +85,16 @@ impl Flight<'_> {
         Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..path }
     }
 
+    /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
+    /// past what it is pressed onto, and meet that only a step later.
+    pub(super) fn pressed_on(&mut self, path: Path) -> Path {
+        let pressed = path.caught_up();
+        match self.first_meeting(&pressed) {
+            Some(meeting) if !meeting.is_sink && has_touched(&pressed, &meeting) => pressed,
+            _ => path,
+        }
+    }
+
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..self.scene.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
@@ -240,6 +250,15 @@ fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     let near = LAIN * meeting.hit.slack;
     let off = path.x0 + surface * elapsed - place;
     off.dot(off) <= near * near && length(path.v0 - surface) * elapsed <= near
+}
+
+/// Whether a path begins within rounding of the surface that it hits, and hardly leaves it before.
+fn has_touched(path: &Path, meeting: &Meeting) -> bool {
+    let Hit { normal, velocity: surface, slack, .. } = meeting.hit;
+    let elapsed = path.duration() * meeting.time;
+    let off = (path.x0 + surface * elapsed - path.at(meeting.time)).dot(normal);
+    let left = (path.v0 - surface).dot(normal) * elapsed;
+    max(off.abs(), left.abs()) <= LAIN * slack
 }
 
 /// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.

@@ -5,6 +5,7 @@ mod flight;
 mod grip;
 mod impulse;
 mod meeting;
+mod melee;
 mod path;
 mod projection;
 mod queue;
@@ -56,7 +57,12 @@ fn each_by_itself(passage: Passage<'_, '_>) {
         let mut flight =
             Flight { scene, id, row, radius, mass, elasticity, material, dt: dt.seconds(), report, observer };
         let before = flight.report.hits;
-        let end = flight.follow(if row >= old { flight.let_go(path) } else { path });
+        let path = match path {
+            path if row >= old => flight.let_go(path),
+            path if path.lags() => flight.pressed_on(path),
+            path => path,
+        };
+        let end = flight.follow(path);
         if has_moved && end.fate == Fate::Lives && report.hits == before {
             continue;
         }

@@ -6,7 +6,9 @@ use super::flight::RESTING;
 use super::grip::{of_two, on_surface};
 use super::touch::{Touch, aside, hold_back, passed};
 use crate::math::{largest, length, max, min, sqrt, unit};
-use crate::shape::Contact;
+use crate::scene::Scene;
+use crate::shape::{Contact, Segment};
+use crate::time::Time;
 use glam::Vec3;
 
 /// Pairs of near particles that there is room for, for each particle.
@@ -39,8 +41,9 @@ struct Pair {
 struct Face {
     row: u32,
     normal: Vec3,
-    /// Of the plane from the origin along the normal \[m\]; it goes with the velocity.
+    /// Of its plane from the origin along the normal at the sub-step's end \[m\].
     offset: f32,
+    /// How it moves the particle then \[m/s\].
     velocity: Vec3,
     touch: Touch,
     spare: [u32; 2],
@@ -55,6 +58,8 @@ pub(crate) struct Lists {
     until: u32,
     /// Whether somebody is so fast that two could pass each other within a sub-step.
     fast: bool,
+    /// Whether a face moves: then faces are listed anew for every sub-step.
+    moving: bool,
 }
 
 /// The memory of a stage in its parts.
@@ -100,6 +105,10 @@ pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
         Held::of(stage.held).marks[..len].fill(0);
     }
     if stage.piece < stage.lists.until {
+        if stage.lists.moving {
+            stage.lists.faces = 0;
+            gather_faces(stage, stage.h.seconds());
+        }
         return;
     }
     stage.lists = Lists { until: stage.pieces, ..Lists::default() };
@@ -183,12 +192,27 @@ fn gather_faces(stage: &mut Stage<'_>, seconds: f32) {
                 return;
             };
             stage.lists.faces += 1;
-            let Contact { point, normal, velocity, material, .. } = *contact;
+            let Contact { point, normal, material, .. } = *contact;
             let touch = Touch::new(on_surface(stage.scene.grips, elasticity, own, material));
-            let (row, offset) = (row as u32, normal.dot(point));
+            stage.lists.moving |= contact.velocity != Vec3::ZERO;
+            let (way, velocity) = carried(stage.scene, center, contact, [stage.now, stage.now + stage.h]);
+            let (row, offset) = (row as u32, normal.dot(point + way));
             *place = Face { row, normal, offset, velocity, touch, spare: [0; 2] };
         });
     }
+}
+
+/// How far a face takes a particle that touches it in a sub-step \[m\], along its arc if it turns, and the velocity it gives it
+/// in the end.
+fn carried(scene: &Scene<'_>, center: Vec3, contact: &Contact, during: [Time; 2]) -> (Vec3, Vec3) {
+    let Contact { normal, distance, velocity, .. } = *contact;
+    let steady = (velocity * (during[1] - during[0]).seconds(), velocity);
+    if velocity == Vec3::ZERO || !(distance > 0.0) {
+        return steady;
+    }
+    // From the centre past the place of contact, thick enough to meet a rim as well.
+    let seat = Segment { from: center, to: center - normal * (1.5 * distance), radius: 0.5 * distance, during };
+    scene.colliders.ride(&seat).map_or(steady, |ride| (ride.place - center, ride.velocity))
 }
 
 /// Remembers the state at a sub-step's beginning, as the integrator wants it too.
@@ -234,7 +258,6 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
         long: stage.dt.seconds(),
     };
     for face in faces.iter_mut() {
-        face.offset += face.normal.dot(face.velocity) * h;
         pass.move_from_face(face);
     }
     for pair in pairs.iter_mut() {
