@@ -179,6 +179,8 @@ impl Flight<'_> {
         let pressing = -drive.dot(normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
+        // What bounces slips along the place that it touches; what rests goes as one with the surface.
+        let surface = ride.filter(|_| rests).map_or(surface, |ride| ride.velocity[0]);
         let came = before - surface - normal * incoming;
         let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
@@ -195,7 +197,7 @@ impl Flight<'_> {
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
             let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
-            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity + end, during }
+            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity[1] + end, during }
         } else {
             let stays = stays && has_lain(path, meeting, place);
             let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };

@@ -4,6 +4,7 @@ mod contacts;
 mod flight;
 mod grip;
 mod impulse;
+mod lists;
 mod meeting;
 mod melee;
 mod path;
@@ -17,11 +18,11 @@ mod touch;
 pub use contacts::{Contacts, Passage, Stage};
 pub use grip::Grip;
 pub use impulse::Impulse;
+pub(crate) use lists::Lists;
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub use projection::Projection;
 pub use response::Response;
-pub(crate) use solver::Lists;
 
 use crate::particles::Id;
 use crate::retire::Fate;

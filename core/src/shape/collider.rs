@@ -78,8 +78,7 @@ pub struct Hit {
     /// How far from the computed point the surface may really be \[m\]: a few units in the last place of the
     /// coordinates involved, never an absolute epsilon.
     pub slack: f32,
-    /// How the surface moves what rests on it there \[m/s\]: the velocity of its rigid motion at the ball's centre, since
-    /// balls do not spin.
+    /// How the surface itself moves there \[m/s\].
     pub velocity: Vec3,
     /// Number of its material in the scene, if it has one.
     pub material: Option<u16>,
@@ -96,7 +95,7 @@ pub struct Contact {
     pub normal: Vec3,
     /// How far the centre is \[m\].
     pub distance: f32,
-    /// How the surface moves what rests on it there \[m/s\]: the velocity of its rigid motion at the ball's centre.
+    /// How the surface itself moves there \[m/s\].
     pub velocity: Vec3,
     /// Number of its material in the scene, if it has one.
     pub material: Option<u16>,
@@ -107,8 +106,8 @@ pub struct Contact {
 pub struct Ride {
     /// Where the particle is in the end \[m\].
     pub place: Vec3,
-    /// How the surface moves it then \[m/s\].
-    pub velocity: Vec3,
+    /// How it moves in the beginning and in the end \[m/s\]: as what takes it along does at its centre, since it does not spin.
+    pub velocity: [Vec3; 2],
     /// How that changes in the beginning \[m/s²\].
     pub acceleration: Vec3,
 }

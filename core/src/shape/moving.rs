@@ -238,7 +238,7 @@ impl<C: Collider> Collider for Moving<C> {
         self.collider.contacts(pose.local(center), reach, at, &mut |contact| {
             let normal = pose.turn * contact.normal;
             let point = center - normal * contact.distance;
-            let velocity = pose.turn * contact.velocity + motion.velocity(center, at);
+            let velocity = pose.turn * contact.velocity + motion.velocity(point, at);
             visit(&Contact { point, normal, velocity, ..*contact });
         });
     }
@@ -260,7 +260,8 @@ impl<C: Collider> Collider for Moving<C> {
         let local = Segment { from, to: pose.local(seat.to), radius: seat.radius, during: [start; 2] };
         self.collider.first_hit(&local)?;
         let place = then.world(from);
-        let (velocity, acceleration) = (motion.velocity(place, end), motion.acceleration(seat.from, start));
+        let velocity = [motion.velocity(seat.from, start), motion.velocity(place, end)];
+        let acceleration = motion.acceleration(seat.from, start);
         Some(Ride { place, velocity, acceleration })
     }
 
@@ -282,7 +283,7 @@ fn in_world(motion: &Motion, segment: &Segment, piece: &Segment, hit: Hit, time:
     let pose = motion.pose(instant);
     let normal = pose.turn * hit.normal;
     let center = segment.at(hit.time);
-    let velocity = motion.velocity(center, instant);
+    let velocity = motion.velocity(center - normal * segment.radius, instant);
     // How far the piece strays from the path toward the surface, and what turning and moving round.
     let strays = (pose.local(center) - piece.at(time)).dot(hit.normal).abs();
     let rounding = segment.slack(largest(motion.pivot) + largest(pose.place));
