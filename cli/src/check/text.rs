@@ -77,9 +77,10 @@ pub(crate) fn facts(check: &Check) -> Vec<(&'static str, String)> {
     );
     facts.extend(check.followed.as_ref().map(|followed| {
         let (step, g) = (time(followed.step), plain(followed.acceleration));
+        let bounces = counted(followed.max_bounces as usize, "bounce");
         (
             "hits",
-            format!("found within 0.1 mm on paths bent by {g} m/s² up to steps of {step}; at most 8 bounces a step"),
+            format!("found within 0.1 mm on paths bent by {g} m/s² up to steps of {step}; at most {bounces} a step"),
         )
     }));
     facts.extend(check.pair.as_ref().map(|pair| {

@@ -17,6 +17,8 @@ pub(crate) struct Followed {
     pub(crate) acceleration: f64,
     /// The longest step \[s\].
     pub(crate) step: f64,
+    /// How many bounces a particle has in a step at the most.
+    pub(crate) max_bounces: u32,
 }
 
 /// Two particles that attract each other.
@@ -64,7 +66,8 @@ pub(crate) fn followed(model: &Model) -> Option<Followed> {
     });
     let acceleration = gravity.fold(Vector3::zeros(), |sum, g| sum + wide(g)).norm();
     let is_hit = !model.colliders.is_empty() || !model.forces.1.is_empty();
-    (is_hit && acceleration > 0.0).then(|| Followed { acceleration, step: longest_followed_step(acceleration) })
+    let (step, max_bounces) = (longest_followed_step(acceleration), model.max_bounces);
+    (is_hit && acceleration > 0.0).then_some(Followed { acceleration, step, max_bounces })
 }
 
 /// Of the first few thousand particles.

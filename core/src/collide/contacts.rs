@@ -1,7 +1,7 @@
 //! How particles that have a radius answer each other.
 
 use super::each_by_itself;
-use super::solver::Lists;
+use super::lists::Lists;
 use crate::index::Arrange;
 use crate::observe::Observer;
 use crate::report::Report;

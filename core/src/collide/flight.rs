@@ -85,6 +85,16 @@ impl Flight<'_> {
         Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..path }
     }
 
+    /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
+    /// past what it is pressed onto, and meet that only a step later.
+    pub(super) fn pressed_on(&mut self, path: Path) -> Path {
+        let pressed = path.caught_up();
+        match self.first_meeting(&pressed) {
+            Some(meeting) if !meeting.is_sink && has_touched(&pressed, &meeting) => pressed,
+            _ => path,
+        }
+    }
+
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..self.scene.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
@@ -169,6 +179,8 @@ impl Flight<'_> {
         let pressing = -drive.dot(normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
+        // What bounces slips along the place that it touches; what rests goes as one with the surface.
+        let surface = ride.filter(|_| rests).map_or(surface, |ride| ride.velocity[0]);
         let came = before - surface - normal * incoming;
         let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
@@ -185,7 +197,7 @@ impl Flight<'_> {
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
             let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
-            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity + end, during }
+            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity[1] + end, during }
         } else {
             let stays = stays && has_lain(path, meeting, place);
             let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
@@ -240,6 +252,15 @@ fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     let near = LAIN * meeting.hit.slack;
     let off = path.x0 + surface * elapsed - place;
     off.dot(off) <= near * near && length(path.v0 - surface) * elapsed <= near
+}
+
+/// Whether a path begins within rounding of the surface that it hits, and hardly leaves it before.
+fn has_touched(path: &Path, meeting: &Meeting) -> bool {
+    let Hit { normal, velocity: surface, slack, .. } = meeting.hit;
+    let elapsed = path.duration() * meeting.time;
+    let off = (path.x0 + surface * elapsed - path.at(meeting.time)).dot(normal);
+    let left = (path.v0 - surface).dot(normal) * elapsed;
+    max(off.abs(), left.abs()) <= LAIN * slack
 }
 
 /// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.

@@ -4,7 +4,9 @@ mod contacts;
 mod flight;
 mod grip;
 mod impulse;
+mod lists;
 mod meeting;
+mod melee;
 mod path;
 mod projection;
 mod queue;
@@ -16,11 +18,11 @@ mod touch;
 pub use contacts::{Contacts, Passage, Stage};
 pub use grip::Grip;
 pub use impulse::Impulse;
+pub(crate) use lists::Lists;
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub use projection::Projection;
 pub use response::Response;
-pub(crate) use solver::Lists;
 
 use crate::particles::Id;
 use crate::retire::Fate;
@@ -56,7 +58,12 @@ fn each_by_itself(passage: Passage<'_, '_>) {
         let mut flight =
             Flight { scene, id, row, radius, mass, elasticity, material, dt: dt.seconds(), report, observer };
         let before = flight.report.hits;
-        let end = flight.follow(if row >= old { flight.let_go(path) } else { path });
+        let path = match path {
+            path if row >= old => flight.let_go(path),
+            path if path.lags() => flight.pressed_on(path),
+            path => path,
+        };
+        let end = flight.follow(path);
         if has_moved && end.fate == Fate::Lives && report.hits == before {
             continue;
         }

@@ -96,6 +96,17 @@ impl Path {
         Self { x0, v0, x1, v1, during }
     }
 
+    /// Whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
+    pub(super) fn lags(&self) -> bool {
+        let bend = (self.v1 - self.v0) * (0.5 * self.duration());
+        self.excess().dot(bend) < -0.5 * bend.dot(bend)
+    }
+
+    /// The parabola from its beginning with the velocities of its ends.
+    pub(super) fn caught_up(&self) -> Self {
+        Self { x1: self.x0 + (self.v0 + self.v1) * (0.5 * self.duration()), ..*self }
+    }
+
     /// Straight from its beginning to its end.
     pub(super) fn straightened(&self) -> Self {
         let duration = self.duration();

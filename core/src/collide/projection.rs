@@ -1,7 +1,8 @@
 //! Heaps: contacts held by moving particles apart, in sub-steps.
 
 use super::contacts::{Contacts, Stage};
-use super::solver::{self, HELD};
+use super::lists::{self, HELD};
+use super::solver;
 use crate::index::Arrange;
 use glam::Vec3;
 
@@ -55,7 +56,7 @@ impl Contacts for Projection {
 
     #[inline(never)]
     fn gather(&self, stage: &mut Stage<'_>, scratch: &mut [u32]) {
-        solver::gather(stage, scratch);
+        lists::gather(stage, scratch);
     }
 
     fn begin<'h>(&self, held: &'h mut [Vec3], position: &[Vec3], velocity: &[Vec3]) -> Option<[&'h [Vec3]; 2]> {
@@ -68,6 +69,6 @@ impl Contacts for Projection {
     }
 
     fn has_moved(&self, held: &[Vec3], row: usize) -> bool {
-        solver::is_marked(held, row)
+        lists::is_marked(held, row)
     }
 }

@@ -106,8 +106,8 @@ pub struct Contact {
 pub struct Ride {
     /// Where the particle is in the end \[m\].
     pub place: Vec3,
-    /// How the surface under it moves then \[m/s\].
-    pub velocity: Vec3,
+    /// How it moves in the beginning and in the end \[m/s\]: as what takes it along does at its centre, since it does not spin.
+    pub velocity: [Vec3; 2],
     /// How that changes in the beginning \[m/s²\].
     pub acceleration: Vec3,
 }

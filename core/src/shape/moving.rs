@@ -258,13 +258,11 @@ impl<C: Collider> Collider for Moving<C> {
         let (pose, then) = (motion.pose(start), motion.pose(end));
         let from = pose.local(seat.from);
         let local = Segment { from, to: pose.local(seat.to), radius: seat.radius, during: [start; 2] };
-        let hit = self.collider.first_hit(&local)?;
-        let touch = from - hit.normal * seat.radius;
-        Some(Ride {
-            place: then.world(from),
-            velocity: motion.velocity(then.world(touch), end),
-            acceleration: motion.acceleration(pose.world(touch), start),
-        })
+        self.collider.first_hit(&local)?;
+        let place = then.world(from);
+        let velocity = [motion.velocity(seat.from, start), motion.velocity(place, end)];
+        let acceleration = motion.acceleration(seat.from, start);
+        Some(Ride { place, velocity, acceleration })
     }
 
     /// Of what stands still.

@@ -1,0 +1,376 @@
+//! The step of particles that meet, worked through in the order of time.
+
+use super::flight::Flight;
+use super::grip::of_two;
+use super::meeting::{Answer, Touch, first_touch};
+use super::path::{Path, between};
+use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
+use crate::index::SpatialIndex;
+use crate::math::{high, largest, length, max};
+use crate::observe::{Impact, Observer};
+use crate::particles::Id;
+use crate::report::Report;
+use crate::retire::Fate;
+use crate::scene::Scene;
+use crate::shape::Segment;
+use crate::time::Time;
+use glam::Vec3;
+
+/// How many others a particle may find near it in one step, each time that it looks what comes next: some thousand times
+/// what a heap takes. After as many again nobody is looked for where it waits.
+const MAX_FOUND: u32 = 1 << 16;
+
+/// A step whose meetings are worked through one after the other.
+pub(super) struct Melee<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) dt: Time,
+    pub(super) end: Time,
+    /// Clocks count in 2 to this power ticks.
+    pub(super) unit: u32,
+    pub(super) clocks: Queue<'a>,
+    /// Positions and velocities at the present paths' beginnings and ends.
+    pub(super) starts: [&'a mut [Vec3]; 2],
+    pub(super) ends: [&'a mut [Vec3]; 2],
+    /// Positions at the step's beginning, which the index sorts.
+    pub(super) home: &'a [Vec3],
+    pub(super) fate: &'a mut [Fate],
+    pub(super) radius: &'a [f32],
+    pub(super) mass: &'a [f32],
+    pub(super) inverse_mass: &'a [f32],
+    pub(super) elasticity: &'a [f32],
+    pub(super) material: &'a [u16],
+    pub(super) slot: &'a [u32],
+    pub(super) serial: &'a [u32],
+    /// The largest radius.
+    pub(super) widest: f32,
+    /// Nobody goes farther than this from home, or all are looked at instead of the index.
+    pub(super) leash: f32,
+    pub(super) report: &'a mut Report,
+    pub(super) observer: &'a mut dyn Observer,
+}
+
+impl Melee<'_> {
+    /// Sets the clocks, and finds how far anybody goes.
+    pub(super) fn prepare(&mut self, born: &[Time], old: usize) {
+        let mut farthest = 0.0;
+        for (row, &born) in born.iter().enumerate() {
+            let start = self.end - (self.end - born).min(self.dt);
+            let since = self.units(start);
+            self.clocks.set(row, Clock { since, until: NEVER, partner: NOBODY, ..Clock::default() });
+            let path = self.path(row);
+            if !path.is_finite() {
+                self.clocks.set(row, Clock { partner: GONE, until: NEVER, ..Clock::default() });
+                continue;
+            }
+            if row >= old {
+                let path = self.flight(row).let_go(path);
+                self.go(row, &path);
+            } else if path.lags() {
+                let path = self.flight(row).pressed_on(path);
+                self.go(row, &path);
+            }
+            let hull = self.path(row).hull(0.0);
+            farthest = max(farthest, length(hull.max - hull.min));
+            if self.radius[row] < f32::INFINITY {
+                self.widest = max(self.radius[row], self.widest);
+            }
+        }
+        self.leash = 2.0 * farthest;
+    }
+
+    /// Works through the meetings. Each particle has a bounded number of them, and so the work is bounded.
+    pub(super) fn run(&mut self, index: Option<&dyn SpatialIndex>) {
+        let mut near = index;
+        for row in 0..self.home.len() {
+            self.foresee(row, near);
+        }
+        while let Some(row) = self.clocks.first() {
+            let clock = *self.clocks.clock(row);
+            if clock.partner == WALL {
+                self.meet_wall(row, clock.until);
+                near = near.filter(|_| !self.strays(row));
+                self.foresee(row, near);
+                continue;
+            }
+            let other = clock.partner as usize;
+            if self.clocks.clock(other).turns != clock.partner_turns {
+                self.foresee(row, near);
+                continue;
+            }
+            self.meet(row, other, clock.until);
+            near = near.filter(|_| !self.strays(row) && !self.strays(other));
+            self.foresee(row, near);
+            self.foresee(other, near);
+        }
+    }
+
+    /// Whether a particle's present path leads where the index is not asked to look for it.
+    fn strays(&self, row: usize) -> bool {
+        let path = self.path(row);
+        let (hull, home) = (path.hull(0.0), self.home[row]);
+        path.is_finite() && length(high(hull.max - home, home - hull.min)) > self.leash
+    }
+
+    /// Finds out what happens first to a particle on its present path.
+    fn foresee(&mut self, row: usize, near: Option<&dyn SpatialIndex>) {
+        let clock = *self.clocks.clock(row);
+        if self.inverse_mass[row] == 0.0 || clock.partner == GONE {
+            self.clocks.set(row, Clock { until: NEVER, ..clock });
+            return;
+        }
+        // Whom one meets has to be met in turn: four times as many of these as of bounces off colliders.
+        let most = self.scene.max_bounces.saturating_mul(4);
+        if (clock.turns > most || clock.found > MAX_FOUND) && clock.waits == 0 {
+            self.wait(row);
+        }
+        if clock.found > 2 * MAX_FOUND {
+            self.clocks.set(row, Clock { until: NEVER, ..*self.clocks.clock(row) });
+            return;
+        }
+        let clock = *self.clocks.clock(row);
+        let path = self.path(row);
+        let hull = path.hull(self.radius[row]);
+        let mut next = Clock { until: NEVER, partner: NOBODY, ..clock };
+        let moves = clock.waits == 0;
+        let near_walls = moves && (self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull));
+        let meeting = if near_walls { self.flight(row).first_meeting(&path) } else { None };
+        if let Some(meeting) = meeting {
+            (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
+        }
+        let (middle, reach) = (hull.center(), hull.radius() + self.widest + self.leash);
+        let (mut curved, mut found) = (false, 0_u32);
+        let home = self.home;
+        let mut consider = |other: usize| {
+            // As an index defines who is near, whether there is one or not.
+            let offset = home[other] - middle;
+            found += u32::from(offset.dot(offset) <= reach * reach);
+            // Of several at one instant a wall comes first, then the lowest row: whatever order they are looked at in. Nobody
+            // is met before the path begins.
+            if next.until <= clock.since && (next.partner == WALL || next.partner <= other as u32) {
+                return;
+            }
+            let (until, bent) = self.first_touch(row, other, &path);
+            curved |= bent;
+            let earlier =
+                until < next.until || (until == next.until && next.partner != WALL && (other as u32) < next.partner);
+            if until != NEVER && earlier {
+                (next.until, next.partner) = (until, other as u32);
+                next.partner_turns = self.clocks.clock(other).turns;
+            }
+        };
+        match near {
+            Some(index) => {
+                index.within(middle, reach, &mut |others| {
+                    others.iter().for_each(|&other| consider(other as usize));
+                });
+            }
+            None => (0..self.home.len()).for_each(&mut consider),
+        }
+        // How a path bends after a meeting at its very beginning is nobody's concern.
+        self.report.caps.chords += u64::from(curved && next.until > clock.since);
+        next.found = clock.found.saturating_add(found);
+        self.clocks.set(row, next);
+    }
+
+    /// When a particle on its path touches another.
+    fn first_touch(&self, row: usize, other: usize, path: &Path) -> (u32, bool) {
+        let (own, its) = (self.clocks.clock(row), self.clocks.clock(other));
+        let reach = self.radius[row] + self.radius[other];
+        let yielding = self.inverse_mass[row] + self.inverse_mass[other];
+        // What has no size or no mass that an answer could be reckoned with meets nobody.
+        let is_sound = |x: f32| x > 0.0 && x < f32::INFINITY;
+        if other == row || its.partner == GONE || !is_sound(reach) || !is_sound(yielding) {
+            return (NEVER, false);
+        }
+        let from = self.instant(own.since.max(its.since));
+        let (touch, curved) = self.touch(row, other, [&from_on(path, from), &from_on(&self.path(other), from)]);
+        let end = self.end;
+        (touch.map_or(NEVER, |at| self.units(between([from, end], at))), curved)
+    }
+
+    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<f32>, bool) {
+        let reach = self.radius[row] + self.radius[other];
+        first_touch(&path.seen_from(its), reach, self.slack(row, other))
+    }
+
+    /// What rounding may do to the distance of two particles.
+    fn slack(&self, row: usize, other: usize) -> f32 {
+        let size = max(largest(self.starts[0][row]), largest(self.starts[0][other]));
+        4.0 * f32::EPSILON * (size + self.radius[row] + self.radius[other])
+    }
+
+    fn meet_wall(&mut self, row: usize, until: u32) {
+        let path = self.path(row);
+        let mut flight = self.flight(row);
+        let meeting = flight.first_meeting(&path);
+        let clock = *self.clocks.clock(row);
+        let (turns, since) = (clock.turns + 1, until);
+        let Some(meeting) = meeting else {
+            // A collider that answers otherwise the second time: it must not be asked for ever.
+            self.clocks.set(row, Clock { turns, ..clock });
+            return;
+        };
+        if meeting.is_sink {
+            let end = meeting.arrival(&path);
+            (self.ends[0][row], self.ends[1][row], self.fate[row]) = (end.position, end.velocity, end.fate);
+            self.clocks.set(row, Clock { turns, partner: GONE, ..clock });
+            return;
+        }
+        let onward = self.flight(row).rebound(&path, &meeting);
+        self.clocks.set(row, Clock { turns, since, partner: NOBODY, ..clock });
+        self.go(row, &onward);
+    }
+
+    /// Two particles meet.
+    fn meet(&mut self, row: usize, other: usize, until: u32) {
+        let now = self.instant(until);
+        let rows = [row, other];
+        let from = self.instant(self.clocks.clock(row).since.max(self.clocks.clock(other).since));
+        let whole = rows.map(|row| from_on(&self.path(row), from));
+        let at = self.touch(row, other, [&whole[0], &whole[1]]).0;
+        let mut paths = whole.map(|path| from_on(&path, now));
+        if let Some(at) = at {
+            for (path, whole) in paths.iter_mut().zip(&whole) {
+                path.x0 = whole.at(at);
+            }
+        }
+        let waits = rows.map(|row| self.clocks.clock(row).waits != 0);
+        let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
+        let offset = paths[0].x0 - paths[1].x0;
+        let normal = Touch::along(offset, velocity);
+        let inverse_mass = rows.map(|row| self.inverse_mass[row]);
+        let overlap = self.radius[row] + self.radius[other] - length(offset);
+        if overlap > self.slack(row, other) {
+            self.set_apart(rows, &mut paths, normal * overlap);
+        }
+        let material = rows.map(|row| self.material[row].checked_sub(1));
+        let feel = of_two(self.scene.grips, rows.map(|row| self.elasticity[row]), material);
+        let acceleration = paths.map(|path| path.acceleration());
+        let slack = self.slack(row, other);
+        let touch = Touch { normal, velocity, acceleration, inverse_mass, feel, slack };
+        let Answer { velocity: after, way, ends, slid } = touch.answer(self.dt.seconds(), (self.end - now).seconds());
+        if let Some(slid) = &slid {
+            self.observer.slid(slid);
+        }
+        self.report.contacts += 1;
+        let closing = max((velocity[1] - velocity[0]).dot(normal), 0.0);
+        for i in 0..2 {
+            let (row, clock) = (rows[i], *self.clocks.clock(rows[i]));
+            if inverse_mass[i] == 0.0 {
+                continue;
+            }
+            let normal = if i == 0 { normal } else { -normal };
+            self.observer.hit(&Impact {
+                id: self.id(row),
+                row,
+                other: Some(self.id(rows[1 - i])),
+                mass: self.mass[row],
+                place: paths[i].x0,
+                normal,
+                closing,
+                before: velocity[i],
+                after: after[i],
+                surface: Vec3::ZERO,
+                time: now,
+            });
+            self.clocks.set(row, Clock { turns: clock.turns + 1, since: until, ..clock });
+            let Path { x0, during, .. } = paths[i];
+            let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during };
+            self.go(row, &onward);
+            // Where one waits and does not get away, the other cannot go on either.
+            let blocked = waits[1 - i] && after[i].dot(normal) < 0.0;
+            if waits[i] || blocked {
+                self.wait(row);
+            }
+        }
+    }
+
+    /// Moves two that overlap apart, each by its share or one for both, where no wall is in the way: what walls have set
+    /// off may have been put a little into its neighbour, and would creep on and on.
+    fn set_apart(&self, rows: [usize; 2], paths: &mut [Path; 2], way: Vec3) {
+        let [a, b] = rows.map(|row| self.inverse_mass[row]);
+        let free = |i: usize, change: Vec3| {
+            let Path { x0, during: [now, _], .. } = paths[i];
+            let radius = self.radius[rows[i]];
+            let there = Segment { from: x0, to: x0 + change, radius, during: [now; 2] };
+            change == Vec3::ZERO || self.scene.colliders.first_hit(&there).is_none()
+        };
+        let shares = [[a / (a + b), b / (a + b)], [1.0, 0.0], [0.0, 1.0]];
+        let allowed = shares.into_iter().find(|&[first, second]| {
+            let moves = (first == 0.0 || a > 0.0) && (second == 0.0 || b > 0.0);
+            moves && free(0, way * first) && free(1, way * -second)
+        });
+        if let Some([first, second]) = allowed {
+            paths[0].x0 += way * first;
+            paths[1].x0 -= way * second;
+        }
+    }
+
+    /// It stays where it is until the step is over, unless a wall that moves takes it along, and keeps its velocity.
+    fn wait(&mut self, row: usize) {
+        let clock = *self.clocks.clock(row);
+        if clock.waits == 0 {
+            self.report.caps.bounces += 1;
+        }
+        let during = [self.instant(clock.since), self.end];
+        self.ends[0][row] = self.scene.colliders.carry(self.starts[0][row], self.radius[row], during);
+        self.ends[1][row] = self.starts[1][row];
+        self.clocks.set(row, Clock { waits: 1, ..clock });
+    }
+
+    /// Takes a new path.
+    fn go(&mut self, row: usize, path: &Path) {
+        (self.starts[0][row], self.starts[1][row]) = (path.x0, path.v0);
+        (self.ends[0][row], self.ends[1][row]) = (path.x1, path.v1);
+    }
+
+    /// The present path.
+    fn path(&self, row: usize) -> Path {
+        let clock = self.clocks.clock(row);
+        let during = [self.instant(clock.since), self.end];
+        let (x0, v0) = (self.starts[0][row], self.starts[1][row]);
+        if clock.waits != 0 || self.inverse_mass[row] == 0.0 {
+            return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during };
+        }
+        Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during }
+    }
+
+    fn id(&self, row: usize) -> Id {
+        Id { slot: self.slot[row], serial: self.serial[row] }
+    }
+
+    fn flight(&mut self, row: usize) -> Flight<'_> {
+        Flight {
+            scene: self.scene,
+            id: self.id(row),
+            row,
+            radius: self.radius[row],
+            mass: self.mass[row],
+            elasticity: self.elasticity[row],
+            material: self.material[row].checked_sub(1),
+            dt: self.dt.seconds(),
+            report: self.report,
+            observer: self.observer,
+        }
+    }
+
+    /// An instant of the step as clocks show it: never later than it is.
+    fn units(&self, instant: Time) -> u32 {
+        let ticks = (instant + self.dt - self.end).ticks();
+        // Below 2^31, as the unit was chosen.
+        (ticks >> self.unit) as u32
+    }
+
+    fn instant(&self, units: u32) -> Time {
+        (self.end - self.dt + Time::from_ticks(u64::from(units) << self.unit)).min(self.end)
+    }
+}
+
+/// What is left of a path from an instant on.
+fn from_on(path: &Path, instant: Time) -> Path {
+    let [start, end] = path.during;
+    if instant <= start || end <= start {
+        return Path { during: [instant.max(start), end], ..*path };
+    }
+    path.rest((instant - start).seconds() / (end - start).seconds())
+}
