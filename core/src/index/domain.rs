@@ -1,7 +1,11 @@
 //! How points are placed in an index: wrapped into a periodic domain, scaled where squares would leave an `f32`.
 
+use super::near::widened;
 use crate::math::{self, floor, largest, max, min};
 use glam::Vec3;
+
+/// All coordinates in an index are smaller than this, so that no square of a distance is beyond an `f32`: 2⁶¹.
+pub(super) const FAR: f32 = 2_305_843_009_213_693_952.0;
 
 /// A domain: all of space, or a box whose opposite faces are one and the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,12 +109,15 @@ impl Domain {
             return visit(Image::Itself);
         }
         let sides = (self.sides * self.scale).to_array();
-        let reach = radius * 1.000_001;
-        let across = |axis: usize, sign: i32| match sign {
-            0 => true,
-            _ if sides[axis] == 0.0 => false,
-            1 => high[axis] + reach >= sides[axis] * 0.999_999,
-            _ => low[axis] - reach <= sides[axis] * 0.000_001,
+        let across = |axis: usize, sign: i32| {
+            let (low, high, side) = (low[axis], high[axis], sides[axis]);
+            let reach = widened(radius, low, high, side);
+            match sign {
+                0 => true,
+                _ if side == 0.0 => false,
+                1 => high + reach >= side,
+                _ => low <= reach,
+            }
         };
         for code in 0..27 {
             let signs = [code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1];

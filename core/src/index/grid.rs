@@ -132,7 +132,7 @@ impl Partition for Grid<'_> {
         let mut cells = [[0; 2]; 3];
         for axis in 0..3 {
             let (low, high) = (region.low[axis] - moved[axis], region.high[axis] - moved[axis]);
-            let reach = widened(radius, low, high);
+            let reach = widened(radius, low, high, moved[axis]);
             if low - reach > self.sorted.high[axis] || high + reach < self.sorted.low[axis] {
                 return 0;
             }

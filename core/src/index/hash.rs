@@ -138,7 +138,7 @@ impl Partition for Hash<'_> {
         let mut cells = [[0; 2]; 3];
         for axis in 0..3 {
             let (low, high) = (region.low[axis] - moved[axis], region.high[axis] - moved[axis]);
-            let reach = widened(radius, low, high);
+            let reach = widened(radius, low, high, moved[axis]);
             let low = max(low - reach, self.sorted.low[axis]);
             let high = min(high + reach, self.sorted.high[axis]);
             if !(low <= high) {

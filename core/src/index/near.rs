@@ -47,11 +47,11 @@ impl Region {
     }
 }
 
-/// How far along an axis from `low` or `high` points may be that are within a radius by their squares: rounding may
-/// bring in some that are a little farther, underflow all that are closer than 4e-23.
+/// How far along an axis from `low` or `high` points may be, in an image moved by so much, that are within a radius by
+/// their squares: rounding may bring in some that are a little farther, underflow all that are closer than 4e-23.
 #[inline(always)]
-pub(super) fn widened(radius: f32, low: f32, high: f32) -> f32 {
-    radius + 1e-6 * max(radius, max(low.abs(), high.abs())) + 1e-22
+pub(super) fn widened(radius: f32, low: f32, high: f32, moved: f32) -> f32 {
+    radius + 1e-6 * max(max(radius, moved.abs()), max(low.abs(), high.abs())) + 1e-22
 }
 
 /// Slots that may hold something, and the box around their points.

@@ -1,6 +1,6 @@
 //! The queries, written once: a structure only says where points may be.
 
-use super::domain::{Domain, Image, around};
+use super::domain::{Domain, FAR, Image, around};
 use super::near::{Near, Region, Run, chunks};
 use super::nearest::Nearest;
 use super::sorted::{Found, Probe, Sorted, Tally};
@@ -62,9 +62,10 @@ impl Reach {
     }
 }
 
-/// Whether squares of distances from here are beyond an `f32`: then all points are equally far.
+/// Whether squares of distances from here may be beyond an `f32`: then all points are looked at. No point of an index
+/// is so far out itself.
 fn is_far(center: Vec3) -> bool {
-    !(math::largest(center) < 1e18)
+    !(math::largest(center) < FAR)
 }
 
 /// What is done at each point on the way through all.

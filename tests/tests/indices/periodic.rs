@@ -39,17 +39,39 @@ impl Torus {
         (0..self.n).map(&mut point).collect()
     }
 
+    /// Points at all distances from the faces, from a rounding on, on both of their sides.
+    fn points_by_the_faces(self) -> Vec<Vec3> {
+        let mut random = Random::new(self.seed);
+        let around = Vec3::select(self.sides.cmpgt(Vec3::ZERO), self.sides, Vec3::ONE);
+        let mut coordinate = |low: f32, side: f32| {
+            let off = side * 10f32.powf(random.between(-9.0, 0.5));
+            match random.word() % 8 {
+                0 => low,
+                1 => low + side,
+                2 => low + side * 0.5,
+                3 => (low + side).next_down(),
+                4 => low + side * random.between(0.0, 1.0),
+                5 => low + off,
+                _ => low + side - off,
+            }
+        };
+        (0..self.n).map(|_| Vec3::from_array([0, 1, 2].map(|axis| coordinate(self.low[axis], around[axis])))).collect()
+    }
+
     fn check(self, parts: &[f32], reach: f32) {
-        let (points, shortest) = (self.points(), self.shortest());
+        self.check_points(&self.points(), parts, reach);
+    }
+
+    fn check_points(self, points: &[Vec3], parts: &[f32], reach: f32) {
+        let shortest = self.shortest();
         let radii: Vec<f32> = parts.iter().map(|part| if shortest < INF { part * shortest } else { *part }).collect();
-        let oracle = Oracle::periodic(&points, self.low, self.sides);
-        let centers =
-            [centers(&points, 4), vec![self.low, self.low + self.sides, self.low + self.sides * 0.5]].concat();
+        let oracle = Oracle::periodic(points, self.low, self.sides);
+        let centers = [centers(points, 4), vec![self.low, self.low + self.sides, self.low + self.sides * 0.5]].concat();
         let expected: Vec<_> = radii.iter().map(|&radius| Expected::new(&oracle, radius, &centers)).collect();
         for &structure in Structure::ALL {
             let mut memory = used(structure.words(points.len()));
             let mut index = structure.periodic(&mut memory, self.low, self.sides);
-            index.build(&points, reach * radii[0]).expect("the memory is made for so many");
+            index.build(points, reach * radii[0]).expect("the memory is made for so many");
             expected.iter().for_each(|expected| expected.compare(&index, &format!("periodic {structure}")));
             let moved: Vec<Vec3> = points.iter().map(|point| *point + self.sides * 0.3).collect();
             index.refit(&moved).expect("the memory is made for so many");
@@ -73,6 +95,47 @@ proptest! {
         reach in reaches(),
     ) {
         Torus { low: low * size, sides: Vec3::from(sides) * size, n, seed }.check(&[part], reach);
+    }
+}
+
+proptest! {
+    #![proptest_config(config!(600))]
+
+    #[test]
+    fn sides_may_be_of_any_length(
+        low in prop_oneof![3 => Just(0.0f32), 1 => select(&[-0.5f32, 0.3, -7.0, 1e-5][..])],
+        size in prop_oneof![Just(0.0f32), -30.0f32..30.0],
+        spread in select(&[0.0f32, 1.0, 6.0, 20.0, 60.0][..]),
+        powers in prop::array::uniform3(-0.5f32..0.5),
+        open in select(&[7u8, 7, 7, 7, 6, 5, 3, 1][..]),
+        n in 2usize..60,
+        seed in any::<u64>(),
+        part in prop_oneof![3 => (-9.0f32..0.5).prop_map(|power| 10f32.powf(power)), 1 => select(&[6e-8f32, 0.5, 0.499_999_97][..])],
+        reach in reaches(),
+    ) {
+        let side = |axis: usize| 10f32.powf((size + spread * powers[axis]).clamp(-30.0, 30.0));
+        let sides = Vec3::from_array([0, 1, 2].map(|axis| if open >> axis & 1 == 1 { side(axis) } else { 0.0 }));
+        let torus = Torus { low: sides * low, sides, n, seed };
+        torus.check_points(&torus.points_by_the_faces(), &[part], reach);
+    }
+}
+
+/// Points that only rounding or underflow brings within the radius, in another image; and sides as long as no scale is
+/// needed for.
+#[test]
+fn what_only_rounding_brings_near_is_near() {
+    let ulp = f32::EPSILON / 2.0;
+    for size in [1e-18f32, 1e-6, 1.0, 1e3, 1.8e18] {
+        for stretch in [Vec3::ONE, Vec3::new(1.0, 1.0, 1e-6), Vec3::new(1e-5, 0.0, 1.0)] {
+            let torus = Torus { low: Vec3::ZERO, sides: stretch * size, n: 0, seed: 0 };
+            let by = |part: f32| torus.sides * part;
+            let at_a_face = [0.0, 0.1 * ulp, 0.4 * ulp, 0.6 * ulp, 1.4 * ulp, 1.0 - ulp, 1.0 - 2.0 * ulp].map(by);
+            let apart = [0.3, 0.55, 0.8].map(by);
+            let points = [&at_a_face[..], &apart, &at_a_face.map(|point| Vec3 { y: 0.0, ..point })].concat();
+            for reach in [1.0, 0.25] {
+                torus.check_points(&points, &[ulp, 2.0 * ulp, 0.3, 0.45], reach);
+            }
+        }
     }
 }
 
