@@ -323,8 +323,14 @@ fn groups_of_emitters_and_sinks_that_are_wrong() {
     let cases = [
         (scene(tilted, "emitters", sphere, 1), "a.json:emitters[0].group: 1 is out of range; there are 1, from 0"),
         (scene(tilted, "sinks", sphere, 7), "a.json:sinks[0].group: 7 is out of range; there are 1, from 0"),
-        (scene(squashed, "emitters", sphere, 0), "a.json:emitters[0].group: its groups squash what is round: put a mesh"),
-        (scene(tilted, "sinks", cone, 0), "a.json:sinks[0].group: its groups tilt or squash what stands upright: put a"),
+        (
+            scene(squashed, "emitters", sphere, 0),
+            "a.json:emitters[0].group: its groups squash what is round: put a mesh",
+        ),
+        (
+            scene(tilted, "sinks", cone, 0),
+            "a.json:sinks[0].group: its groups tilt or squash what stands upright: put a",
+        ),
     ];
     let folder = Folder::new();
     for (text, error) in cases {
