@@ -3,6 +3,7 @@
 use super::grip::on_surface;
 use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
+use super::touch::aside;
 use crate::math::{length, max, min, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
@@ -180,7 +181,8 @@ impl Flight<'_> {
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // What bounces slips along the place that it touches; what rests goes as one with the surface.
-        let surface = ride.filter(|_| rests).map_or(surface, |ride| ride.velocity[0]);
+        let whole = ride.filter(|_| rests).map_or(Vec3::ZERO, |ride| aside(ride.velocity[0] - surface, normal));
+        let surface = surface + whole;
         let came = before - surface - normal * incoming;
         let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
