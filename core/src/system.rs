@@ -226,3 +226,21 @@ impl<'a> Columns<'a> {
         hash.word(u32::from(self.material[row]));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Inline;
+
+    #[test]
+    fn what_is_counted_stops_at_the_largest_number() {
+        let (mut system, scene) = (System::with(Inline::<1, 0, 0, 4>::new()), Scene::EMPTY);
+        system.start(&scene, 1).expect("nothing is asked for");
+        system.status.totals.refused = u64::MAX;
+        system.status.totals.born = u64::MAX;
+        assert!(system.spawn(&Particle::default()).is_ok());
+        assert!(system.spawn(&Particle::default()).is_err());
+        system.step(&scene, Time::from_ticks(1));
+        assert_eq!([system.status.totals.born, system.status.totals.refused], [u64::MAX; 2]);
+    }
+}

@@ -1,4 +1,4 @@
-//! Ground: heights over a grid of x and z, borrowed (`HeightField`) or owned (`HeightFieldBuf`).
+//! Ground: heights over a grid of x and z, borrowed.
 
 use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
 use crate::math::{clamp, floor, largest, max, min, power_to_one};
@@ -13,17 +13,17 @@ use glam::Vec3;
 /// It is watertight as a mesh is: neighbours share their corners to the bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightField<'a> {
-    origin: Vec3,
-    spacing: f32,
-    columns: usize,
-    heights: &'a [f32],
-    bounds: Aabb,
+    pub(super) origin: Vec3,
+    pub(super) spacing: f32,
+    pub(super) columns: usize,
+    pub(super) heights: &'a [f32],
+    pub(super) bounds: Aabb,
     /// The area of its largest cell, of the field scaled so that its largest coordinate is about one.
-    largest: f32,
+    pub(super) largest: f32,
     /// Running sums of the cells' weights; empty, unless lent.
-    sums: &'a [u64],
+    pub(super) sums: &'a [u64],
     /// The lowest and the highest place of each block of cells, row by row \[m\]; empty, unless lent.
-    blocks: &'a [[f32; 2]],
+    pub(super) blocks: &'a [[f32; 2]],
 }
 
 /// Cells along each side of a block.
@@ -388,78 +388,5 @@ impl Collider for HeightField<'_> {
                 }
             }
         }
-    }
-}
-
-/// A height field on the heap.
-#[cfg(feature = "alloc")]
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Heights", into = "Heights"))]
-pub struct HeightFieldBuf {
-    heights: alloc::sync::Arc<[f32]>,
-    sums: alloc::sync::Arc<[u64]>,
-    blocks: alloc::sync::Arc<[[f32; 2]]>,
-    /// The same with no memory of its own.
-    grid: HeightField<'static>,
-}
-
-/// A height field as files have it.
-#[cfg(feature = "alloc")]
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Heights {
-    /// The place of height zero in the first column and row \[m\].
-    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-    pub origin: Vec3,
-    /// How far apart neighbouring columns are in x, and rows in z \[m\].
-    pub spacing: f32,
-    /// How many heights a row has.
-    pub columns: u32,
-    /// Heights over the origin, row by row \[m\].
-    pub heights: alloc::vec::Vec<f32>,
-}
-
-#[cfg(feature = "alloc")]
-impl HeightFieldBuf {
-    /// The same, borrowed.
-    #[must_use]
-    pub fn view(&self) -> HeightField<'_> {
-        HeightField { heights: &self.heights, sums: &self.sums, blocks: &self.blocks, ..self.grid }
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl TryFrom<Heights> for HeightFieldBuf {
-    type Error = BadHeights;
-
-    /// # Errors
-    /// As `HeightField::new`.
-    fn try_from(file: Heights) -> Result<Self, BadHeights> {
-        let field = HeightField::new(file.origin, file.spacing, file.columns as usize, &file.heights)?;
-        let mut sums = alloc::vec![0; field.cell_count()];
-        let mut blocks = alloc::vec![[0.0; 2]; field.block_count()];
-        let field = field.with_sums(&mut sums).with_blocks(&mut blocks);
-        let grid = HeightField { heights: &[], sums: &[], blocks: &[], ..field };
-        Ok(Self { grid, heights: file.heights.into(), sums: sums.into(), blocks: blocks.into() })
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl From<HeightFieldBuf> for Heights {
-    fn from(field: HeightFieldBuf) -> Self {
-        let HeightField { origin, spacing, columns, .. } = field.grid;
-        Self { origin, spacing, columns: columns as u32, heights: field.heights.to_vec() }
-    }
-}
-
-#[cfg(feature = "schema")]
-impl schemars::JsonSchema for HeightFieldBuf {
-    fn schema_name() -> alloc::borrow::Cow<'static, str> {
-        Heights::schema_name()
-    }
-    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        Heights::json_schema(generator)
     }
 }

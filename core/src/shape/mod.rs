@@ -10,6 +10,8 @@ mod cylinder;
 mod disc;
 mod exact;
 mod heightfield;
+#[cfg(feature = "alloc")]
+mod heights;
 mod line;
 mod mesh;
 #[cfg(feature = "alloc")]
@@ -31,7 +33,7 @@ pub use cylinder::Cylinder;
 pub use disc::Disc;
 pub use heightfield::{BadHeights, HeightField};
 #[cfg(feature = "alloc")]
-pub use heightfield::{HeightFieldBuf, Heights};
+pub use heights::{HeightFieldBuf, Heights};
 pub use line::Line;
 #[cfg(feature = "alloc")]
 pub use mesh::MeshBuf;

@@ -82,15 +82,20 @@ impl Collider for Triangle {
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let sides = Sides::rounded(self.corners, segment);
+        if !(segment.radius > 0.0) && sides.is_sure_miss() {
+            return None;
+        }
         let reach = max(size(self), max(max(largest(segment.from), largest(segment.to)), segment.radius));
         if (SMALL..LARGE).contains(&reach) {
-            return self.met(segment);
+            return self.met(segment, sides);
         }
         // Products of several lengths are beyond all numbers: everything is brought to about one, which keeps all digits.
         let scale = power_to_one(reach);
         let (from, to, radius) = (segment.from * scale, segment.to * scale, segment.radius * scale);
         let near = self.scaled(scale);
-        let hit = near.met(&Segment { from, to, radius, ..*segment })?;
+        let segment = Segment { from, to, radius, ..*segment };
+        let hit = near.met(&segment, Sides::rounded(near.corners, &segment))?;
         Some(Hit { slack: hit.slack / scale, ..hit })
     }
 
@@ -165,6 +170,8 @@ struct Sides {
     after: f32,
     /// How wrong those products may be.
     doubt: f32,
+    /// The largest offset of an end from a corner \[m\].
+    far: f32,
 }
 
 impl Sides {
@@ -172,8 +179,9 @@ impl Sides {
     fn rounded([a, b, c]: [Vec3; 3], segment: &Segment) -> Self {
         let (x, y, from, to) = (b - a, c - a, segment.from - a, segment.to - a);
         let normal = x.cross(y);
-        let doubt = permanent(x, y).dot(high(from.abs(), to.abs())) * ROUNDING + UNDERFLOW;
-        Self { normal, before: normal.dot(from), after: normal.dot(to), doubt }
+        let ends = high(from.abs(), to.abs());
+        let doubt = permanent(x, y).dot(ends) * ROUNDING + UNDERFLOW;
+        Self { normal, before: normal.dot(from), after: normal.dot(to), doubt, far: largest(ends) }
     }
 
     #[cold]
@@ -182,13 +190,20 @@ impl Sides {
         let lattice = Lattice::new([a, b, c, segment.from, segment.to]);
         let normal = cross(lattice.way(0, 1), lattice.way(0, 2));
         let [before, after] = [3, 4].map(|end| volume(normal, lattice.way(0, end)));
-        Self { normal: lattice.direction(normal), before, after, doubt: 0.0 }
+        Self { normal: lattice.direction(normal), before, after, doubt: 0.0, far: 0.0 }
     }
 
     /// Whether the signs of both are right.
     #[inline(always)]
     fn is_sure(&self) -> bool {
         min(self.before.abs(), self.after.abs()) > self.doubt
+    }
+
+    /// Whether both ends surely lie on one side, whatever the scale: products beyond an `f32` make the doubt infinite, and
+    /// of ends that are no farther than this what underflows is covered by it.
+    #[inline(always)]
+    fn is_sure_miss(&self) -> bool {
+        self.is_sure() && (self.before > 0.0) == (self.after > 0.0) && self.far < LARGE
     }
 
     /// How far from the plane's true place along a path they tell that it is met \[m\].
@@ -230,8 +245,8 @@ impl Triangle {
 
     /// Where the path of a point or a ball first meets it.
     #[inline]
-    fn met(&self, segment: &Segment) -> Option<Hit> {
-        let center = self.crossed(segment);
+    fn met(&self, segment: &Segment, sides: Sides) -> Option<Hit> {
+        let center = self.crossed(segment, sides);
         if segment.radius > 0.0 { ball::on_triangle(self, segment, center) } else { center }
     }
 
@@ -239,8 +254,7 @@ impl Triangle {
     ///
     /// Which sides its ends lie on and what it passes inside are told without error: of all triangles of a closed mesh,
     /// however thin, one is crossed by whatever gets in.
-    fn crossed(&self, segment: &Segment) -> Option<Hit> {
-        let mut sides = Sides::rounded(self.corners, segment);
+    fn crossed(&self, segment: &Segment, mut sides: Sides) -> Option<Hit> {
         if !sides.is_sure() {
             sides = Sides::exact(self.corners, segment);
         }
