@@ -16,9 +16,9 @@ use crate::shape::Segment;
 use crate::time::Time;
 use glam::Vec3;
 
-/// How many others a particle may find near it in one step, each time that it looks what comes next: some thousand times
-/// what a heap takes. After as many again nobody is looked for where it waits.
-const MAX_FOUND: u32 = 1 << 16;
+/// How many others a particle may find near it in one step, each time that it looks what comes next, for every bounce that the
+/// scene allows it: some hundred times what a heap takes. After as many again nobody is looked for where it waits.
+const FOUND_A_BOUNCE: u32 = 1 << 11;
 
 /// A step whose meetings are worked through one after the other.
 pub(super) struct Melee<'a> {
@@ -120,10 +120,11 @@ impl Melee<'_> {
         }
         // Whom one meets has to be met in turn: four times as many of these as of bounces off colliders.
         let most = self.scene.max_bounces.saturating_mul(4);
-        if (clock.turns > most || clock.found > MAX_FOUND) && clock.waits == 0 {
+        let most_found = self.scene.max_bounces.saturating_mul(FOUND_A_BOUNCE);
+        if (clock.turns > most || clock.found > most_found) && clock.waits == 0 {
             self.wait(row);
         }
-        if clock.found > 2 * MAX_FOUND {
+        if clock.found > most_found.saturating_mul(2) {
             self.clocks.set(row, Clock { until: NEVER, ..*self.clocks.clock(row) });
             return;
         }
