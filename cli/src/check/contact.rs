@@ -1,4 +1,4 @@
-//! What contacts by force ask of the step: springs between balls that touch.
+//! Bounds that contacts by force put on the step: springs between balls that touch.
 
 use super::bounds::{Part, place};
 use super::hit;
@@ -27,7 +27,7 @@ pub(crate) struct Contact {
 /// A ball of the start or of an emitter.
 #[derive(Clone, Copy)]
 struct Ball {
-    /// Whether it is of an emitter, and its number or that of the emitter.
+    /// Its number, or that of the emitter if the flag is set.
     from: (bool, usize),
     mass: f64,
     fixed: bool,
@@ -70,7 +70,7 @@ impl Contact {
         swings.chain(slip).fold(Limit::Unconditional, Limit::and)
     }
 
-    /// What to say of steps \[s\] that do hits no justice.
+    /// The warning about steps \[s\] that do hits no justice.
     pub(crate) fn warning(&self, method: Method, step: f64) -> Option<String> {
         let (steps, hit) = (time(step), self.duration());
         let Part { place, about, .. } = &self.part;

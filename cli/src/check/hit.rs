@@ -46,7 +46,7 @@ struct Hit {
 type State = [f64; 2];
 
 impl Hit {
-    /// Whether hits in steps of `h` give back more energy than they take.
+    /// True if hits in steps of `h` give back more energy than they take.
     fn gains(&self, h: f64) -> bool {
         /// Steps after which what still touches is taken to come to rest.
         const MOST: u32 = 20_000;

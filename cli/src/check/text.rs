@@ -34,7 +34,7 @@ pub(crate) fn text(check: &Check) -> String {
     text
 }
 
-/// What bounds the steps; contacts only where some do.
+/// The lines on what bounds the steps; those on contacts only where there are some.
 pub(crate) fn heads(check: &Check) -> Vec<String> {
     let heads = ["at rest", "every pose", "drag"].into_iter().chain(check.touching.as_ref().map(|_| "contact"));
     heads.map(str::to_string).collect()

@@ -17,7 +17,7 @@ pub(crate) struct Followed {
     pub(crate) acceleration: f64,
     /// The longest step \[s\].
     pub(crate) step: f64,
-    /// How many bounces a particle has in a step at the most.
+    /// The most bounces that a particle has in a step.
     pub(crate) max_bounces: u32,
 }
 

@@ -51,7 +51,7 @@ pub struct Reading {
     pub remarks: Vec<String>,
 }
 
-/// What becomes of a command that `.scn` does not have.
+/// The fate of a command that `.scn` does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unknown {
     /// It is an error.
