@@ -84,7 +84,7 @@ pub struct World {
     pub integrator: Option<Method>,
     /// How forces between neighbours find them: brute, grid, hash, quadtree, octree, kd, bsp or bvh; by default what the
     /// scene says, else grid. Sums over neighbours are rounded in its order: scenes with lennard_jones, power_law,
-    /// viscosity, or contacts by force or position end in other bits by another index
+    /// viscosity, or contacts by force end in other bits by another index
     #[arg(long, value_name = "NAME")]
     pub index: Option<Structure>,
     /// How particles that have a radius answer each other: impulse, force or position; by default what the scene says,

@@ -85,7 +85,7 @@ impl World {
         self.model.integrator.method
     }
 
-    /// What is summed over neighbours in the order of the index: forces, and contacts by force or position.
+    /// What is summed over neighbours in the order of the index: forces, and contacts by force.
     #[must_use]
     pub fn summed_by_index(&self) -> Vec<&'static str> {
         let is_summed = |force: &&ForceKind| {
@@ -94,9 +94,8 @@ impl World {
         let mut names: Vec<_> = self.model.forces.0.iter().filter(is_summed).map(ForceKind::kind).collect();
         let has_balls = self.model.has_balls();
         names.extend(self.file.contacts.filter(|_| has_balls).and_then(|response| match response {
-            Response::Impulse(_) => None,
+            Response::Impulse(_) | Response::Position(_) => None,
             Response::Force(_) => Some("contacts by force"),
-            Response::Position(_) => Some("contacts by position"),
         }));
         names.dedup();
         names

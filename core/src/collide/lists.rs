@@ -15,8 +15,8 @@ const PAIRS: usize = 8;
 const FACES: usize = 3;
 /// How much farther apart than a touch two may be and still be listed, as a share of the smaller radius.
 const MARGIN: f32 = 0.1;
-/// Vectors a particle takes: a place and two velocities of before, a drift, pairs, faces, and marks.
-pub(super) const HELD: usize = 4 + PAIR_COLUMNS + 5 * FACES + 1;
+/// Vectors a particle takes: a place and two velocities of before, a drift, two loads, pairs, faces, and marks.
+pub(super) const HELD: usize = 6 + PAIR_COLUMNS + 5 * FACES + 1;
 const PAIR_COLUMNS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>());
 
 /// Two that may touch in the step, and what they do to each other then.
@@ -40,7 +40,7 @@ pub(super) struct Face {
     /// How it moves the particle then \[m/s\].
     pub(super) velocity: Vec3,
     pub(super) touch: Touch,
-    pub(super) spare: [u32; 2],
+    pub(super) spare: u32,
 }
 
 /// How long the lists are.
@@ -54,6 +54,10 @@ pub(crate) struct Lists {
     pub(super) fast: bool,
     /// Whether a face moves: then faces are listed anew for every sub-step.
     pub(super) moving: bool,
+    /// Whether pairs are in their order from the ground up.
+    pub(super) sorted: bool,
+    /// Whether any of them has friction.
+    pub(super) rough: bool,
 }
 
 /// The memory of a stage in its parts.
@@ -63,6 +67,9 @@ pub(super) struct Held<'a> {
     pub(super) v: &'a mut [Vec3],
     pub(super) pushed: &'a mut [Vec3],
     pub(super) drift: &'a mut [Vec3],
+    /// What carries each, and what it should carry beyond that.
+    pub(super) borne: &'a mut [Vec3],
+    pub(super) owed: &'a mut [Vec3],
     pub(super) pairs: &'a mut [Pair],
     pub(super) faces: &'a mut [Face],
     /// Whether a particle has been moved by a contact in this step.
@@ -76,12 +83,14 @@ impl<'a> Held<'a> {
         let (v, rest) = rest.split_at_mut(capacity);
         let (pushed, rest) = rest.split_at_mut(capacity);
         let (drift, rest) = rest.split_at_mut(capacity);
+        let (borne, rest) = rest.split_at_mut(capacity);
+        let (owed, rest) = rest.split_at_mut(capacity);
         let (pairs, rest) = rest.split_at_mut(PAIR_COLUMNS * capacity);
         let pairs = bytemuck::cast_slice_mut::<Vec3, u32>(pairs);
         let whole = pairs.len() - pairs.len() % (size_of::<Pair>() / 4);
         let (faces, marks) = rest.split_at_mut(5 * FACES * capacity);
         let (pairs, faces) = (bytemuck::cast_slice_mut(&mut pairs[..whole]), bytemuck::cast_slice_mut(faces));
-        Self { x, v, pushed, drift, pairs, faces, marks: bytemuck::cast_slice_mut(marks) }
+        Self { x, v, pushed, drift, borne, owed, pairs, faces, marks: bytemuck::cast_slice_mut(marks) }
     }
 }
 
@@ -133,7 +142,8 @@ pub(super) fn gather(stage: &mut Stage<'_>, scratch: &mut [u32]) {
         };
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
         let touch = Touch::new(of_two(grips, [elasticity[a], elasticity[b]], of_both));
-        *place = Pair { rows: [row, other], lean: 0.0, touch };
+        lists.rough |= touch.has_friction();
+        *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, touch };
         lists.pairs += 1;
     };
     let words = (3 * stage.scene.index.columns() * len).min(scratch.len());
@@ -189,9 +199,10 @@ fn gather_faces(stage: &mut Stage<'_>, seconds: f32) {
             let Contact { point, normal, material, .. } = *contact;
             let touch = Touch::new(on_surface(stage.scene.grips, elasticity, own, material));
             stage.lists.moving |= contact.velocity != Vec3::ZERO;
+            stage.lists.rough |= touch.has_friction();
             let (way, velocity) = carried(stage.scene, center, contact, [stage.now, stage.now + stage.h]);
             let (row, offset) = (row as u32, normal.dot(point + way));
-            *place = Face { row, normal, offset, velocity, touch, spare: [0; 2] };
+            *place = Face { row, normal, offset, velocity, touch, spare: 0 };
         });
     }
 }

@@ -20,11 +20,12 @@ use glam::Vec3;
 /// Of two that rest on each other the lower one gives way less (Macklin et al., "Unified Particle Physics for Real-Time
 /// Applications", SIGGRAPH 2014, section 5.3), so that overlap hardly grows with the height of a heap; momentum is exact for all
 /// that meet faster than gravity makes them in a step, and where nothing drives them. In a heap a contact therefore presses by
-/// less than the weight above it, and friction holds it by as much less. Balls do not spin. Hits and contacts of this kind are counted
-/// in every sub-step, and [`Observer`](crate::Observer)s are not told of them.
+/// less than the weight above it; friction counts in what is missing, so that a stack slides as far as one ball does and what
+/// can rest on others comes to stand still (six on each other, or steps of 1/24 s, ask for 12 sub-steps). Balls do not spin.
+/// Hits and contacts of this kind are counted in every sub-step, and [`Observer`](crate::Observer)s are not told of them.
 ///
-/// Contacts are gone through in an order that comes from the scene's index: with another structure the answer is as good, but
-/// not the same to the bit.
+/// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
+/// (`caps.contacts`), bits do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -8,7 +8,7 @@ use crate::math::{largest, length, max, min, sqrt, unit};
 use glam::Vec3;
 
 /// Sweeps over the velocities at a step's end, so that what rests shows it.
-const SETTLING: u32 = 4;
+const SETTLING: u32 = 2;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
 
@@ -27,11 +27,12 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
     if !(h > 0.0) {
         return;
     }
-    let Held { x, v, pushed, drift, pairs, faces, marks } = Held::of(stage.held);
+    let Held { x, v, pushed, drift, borne, owed, pairs, faces, marks } = Held::of(stage.held);
     let (pairs, faces) = (&mut pairs[..stage.lists.pairs], &mut faces[..stage.lists.faces]);
     pushed[..stage.velocity.len()].copy_from_slice(stage.velocity);
     let len = stage.velocity.len();
     let (x, v, drift) = (&x[..len], &v[..len], &mut drift[..len]);
+    let (borne, owed) = (&mut borne[..len], &mut owed[..len]);
     for (row, drift) in drift.iter_mut().enumerate() {
         *drift = stage.position[row] - x[row] - (v[row] + stage.velocity[row]) * (0.5 * h);
     }
@@ -45,6 +46,8 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
         v0: v,
         pushed,
         drift,
+        borne,
+        owed,
         position: stage.position,
         velocity: stage.velocity,
         radius: stage.radius,
@@ -54,6 +57,10 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
         softness: compliance / (h * h),
         long: stage.dt.seconds(),
     };
+    if !stage.lists.sorted {
+        stage.lists.sorted = true;
+        pass.sort(pairs);
+    }
     for face in faces.iter_mut() {
         pass.move_from_face(face);
     }
@@ -62,8 +69,15 @@ pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
     }
     let is_last = stage.piece + 1 == stage.pieces;
     for sweep in 0..if is_last { SETTLING } else { 1 } {
-        faces.iter_mut().filter(|face| face.touch.is_on()).for_each(|face| pass.answer_face(face, sweep == 0));
-        pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()).for_each(|pair| pass.answer_pair(pair, sweep == 0));
+        pass.borne.fill(Vec3::ZERO);
+        pass.owed.fill(Vec3::ZERO);
+        faces.iter_mut().filter(|face| face.touch.is_on()).for_each(|face| pass.press_face(face));
+        pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()).for_each(|pair| pass.press_pair(pair));
+        if stage.lists.rough {
+            pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()).for_each(|pair| pass.carry(pair));
+        }
+        faces.iter_mut().filter(|face| face.touch.rubs()).for_each(|face| pass.rub_face(face, sweep == 0));
+        pairs.iter_mut().filter(|pair| pair.touch.rubs()).for_each(|pair| pass.rub_pair(pair, sweep == 0));
     }
     for pair in pairs.iter().filter(|pair| pair.touch.is_on()) {
         pair.rows.iter().for_each(|&row| marks[row as usize] = 1);
@@ -85,6 +99,10 @@ struct Pass<'a> {
     /// How far positions are from where the mean of the velocities before and now leads \[m\]: by half of what forces do in
     /// the sub-step with methods of first order, hardly with others. Contacts take out what lies in their way.
     drift: &'a mut [Vec3],
+    /// By how much the contacts below each have changed its velocity, and by how much more they would have if weights were
+    /// not shared out as [`Pass::weights`] does \[m/s\].
+    borne: &'a mut [Vec3],
+    owed: &'a mut [Vec3],
     position: &'a mut [Vec3],
     velocity: &'a mut [Vec3],
     radius: &'a [f32],
@@ -157,6 +175,34 @@ impl Pass<'_> {
         self.drift[row] = aside(self.drift[row], face.normal);
     }
 
+    /// Puts pairs in their order from the ground up, the same whatever order they were found in.
+    fn sort(&self, pairs: &mut [Pair]) {
+        for pair in &mut *pairs {
+            let [a, b] = pair.rows.map(|row| self.position[row as usize].dot(self.up));
+            // Until they touch it is their height.
+            pair.lean = max(a, b);
+        }
+        pairs.sort_unstable_by(|one, other| one.lean.total_cmp(&other.lean).then(one.rows.cmp(&other.rows)));
+    }
+
+    /// Passes on what weighs on the upper of two beyond what its contacts feel, for friction to count it in.
+    #[inline(always)]
+    fn carry(&mut self, pair: &mut Pair) {
+        let ([a, b], normal) = self.ends(pair);
+        let (upper, lower, up) = if pair.lean > 0.0 { (a, b, normal) } else { (b, a, -normal) };
+        pair.touch.carry(if pair.lean == 0.0 { 0.0 } else { self.burden(upper) });
+        let (wa, wb) = self.weights(pair);
+        let missing = pair.touch.load() - pair.touch.pressed() * (1.0 - pair.lean.abs());
+        self.owed[lower] -= up * (missing * self.inverse_mass[lower] / (wa + wb));
+    }
+
+    /// How many times what its contacts feel weighs on a particle besides.
+    fn burden(&self, row: usize) -> f32 {
+        let borne = self.borne[row];
+        let square = borne.dot(borne);
+        if square > 0.0 { max(-self.owed[row].dot(borne) / square, 0.0) } else { 0.0 }
+    }
+
     /// How far apart two may be by rounding that touch \[m\].
     fn slack(&self, row: usize, reach: f32) -> f32 {
         4.0 * f32::EPSILON * (largest(self.position[row]) + reach)
@@ -172,72 +218,89 @@ impl Pass<'_> {
         if *lean > 0.0 { (wa, wb * (1.0 - lean)) } else { (wa * (1.0 + lean), wb) }
     }
 
+    /// Lets two part as fast as their elasticity wants.
     #[inline(always)]
-    fn answer_pair(&mut self, pair: &mut Pair, first: bool) {
-        let [a, b] = pair.rows.map(|row| row as usize);
-        let d = self.position[a] - self.position[b];
-        let normal = d * (1.0 / max(length(d), f32::MIN_POSITIVE));
+    fn press_pair(&mut self, pair: &mut Pair) {
+        let ([a, b], normal) = self.ends(pair);
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        let bounce = self.bounce(pair.touch.elasticity, &along);
-        let change = pair.touch.press(bounce, along(self.velocity));
+        let change = pair.touch.press(self.bounce(pair.touch.elasticity, &along), along(self.velocity));
         let (wa, wb) = self.weights(pair);
-        let share = normal * (change / (wa + wb));
-        self.velocity[a] += share * wa;
-        self.velocity[b] -= share * wb;
-        if !pair.touch.has_friction() {
-            return;
-        }
-        let whole = wa + wb;
-        let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
-        let weight = (wa + wb) / whole;
-        let inverse = 1.0 / (wa + wb);
-        let slip = aside(self.velocity[a] - self.velocity[b], normal);
-        let taken = pair.touch.hold(slip, weight);
-        let share = taken * inverse;
-        self.velocity[a] += share * wa;
-        self.velocity[b] -= share * wb;
-        if first {
-            let drift = aside(self.drift[a] - self.drift[b], normal);
-            let back = hold_back(taken, drift, self.h);
-            let (share, drift) = (back * inverse, (back - taken * (0.5 * self.h)) * inverse);
-            self.position[a] += share * wa;
-            self.position[b] -= share * wb;
-            self.drift[a] += drift * wa;
-            self.drift[b] -= drift * wb;
-            if taken == -slip && bounce == 0.0 && wa * wb == 0.0 {
-                let reach = self.radius[a] + self.radius[b];
-                let gap = length(self.x0[a] - self.x0[b]) - reach;
-                let [row, other] = if wa > 0.0 { [a, b] } else { [b, a] };
-                let way = self.position[other] - self.x0[other];
-                let touched = gap.abs() <= self.slack(a, reach);
-                self.keep(row, self.velocity[other], touched && self.v0[row] == self.v0[other], way);
-            }
+        let share = normal * (1.0 / (wa + wb));
+        self.velocity[a] += share * (change * wa);
+        self.velocity[b] -= share * (change * wb);
+        if pair.lean != 0.0 {
+            let (upper, side) = if pair.lean > 0.0 { (a, wa) } else { (b, -wb) };
+            self.borne[upper] += share * (pair.touch.pressed() * side);
         }
     }
 
-    fn answer_face(&mut self, face: &mut Face, first: bool) {
-        let (row, normal) = (face.row as usize, face.normal);
-        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
-        let bounce = self.bounce(face.touch.elasticity, &along);
-        let change = face.touch.press(bounce, along(self.velocity));
-        self.velocity[row] += normal * change;
-        if !face.touch.has_friction() {
+    fn press_face(&mut self, face: &mut Face) {
+        let row = face.row as usize;
+        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
+        let change = face.touch.press(self.bounce(face.touch.elasticity, &along), along(self.velocity));
+        self.velocity[row] += face.normal * change;
+        self.borne[row] += face.normal * face.touch.pressed();
+    }
+
+    /// Takes from the slip of two what friction can.
+    #[inline(always)]
+    fn rub_pair(&mut self, pair: &mut Pair, first: bool) {
+        let ([a, b], normal) = self.ends(pair);
+        let (fa, fb) = self.weights(pair);
+        let whole = fa + fb;
+        let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
+        let inverse = 1.0 / (wa + wb);
+        let slip = aside(self.velocity[a] - self.velocity[b], normal);
+        let taken = pair.touch.hold(slip, (wa + wb) / whole);
+        let share = taken * inverse;
+        self.velocity[a] += share * wa;
+        self.velocity[b] -= share * wb;
+        if !first {
             return;
         }
+        let drift = aside(self.drift[a] - self.drift[b], normal);
+        let back = hold_back(taken, drift, self.h);
+        let (share, drift) = (back * inverse, (back - taken * (0.5 * self.h)) * inverse);
+        self.position[a] += share * wa;
+        self.position[b] -= share * wb;
+        self.drift[a] += drift * wa;
+        self.drift[b] -= drift * wb;
+        let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
+        if taken == -slip && wa * wb == 0.0 && self.bounce(pair.touch.elasticity, &along) == 0.0 {
+            let reach = self.radius[a] + self.radius[b];
+            let gap = length(self.x0[a] - self.x0[b]) - reach;
+            let [row, other] = if wa > 0.0 { [a, b] } else { [b, a] };
+            let way = self.position[other] - self.x0[other];
+            let touched = gap.abs() <= self.slack(a, reach);
+            self.keep(row, self.velocity[other], touched && self.v0[row] == self.v0[other], way);
+        }
+    }
+
+    fn rub_face(&mut self, face: &mut Face, first: bool) {
+        let (row, normal) = (face.row as usize, face.normal);
         let slip = aside(self.velocity[row] - face.velocity, normal);
+        face.touch.carry(self.burden(row));
         let taken = face.touch.hold(slip, 1.0);
         self.velocity[row] += taken;
-        if first {
-            let back = hold_back(taken, aside(self.drift[row], normal), self.h);
-            self.position[row] += back;
-            self.drift[row] += back - taken * (0.5 * self.h);
-            if taken == -slip && bounce == 0.0 {
-                let way = face.velocity * self.h;
-                let gap = (self.x0[row] + way).dot(normal) - face.offset - self.radius[row];
-                let touched = gap.abs() <= self.slack(row, self.radius[row]);
-                self.keep(row, face.velocity, touched && self.v0[row] == face.velocity, way);
-            }
+        if !first {
+            return;
         }
+        let back = hold_back(taken, aside(self.drift[row], normal), self.h);
+        self.position[row] += back;
+        self.drift[row] += back - taken * (0.5 * self.h);
+        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
+        if taken == -slip && self.bounce(face.touch.elasticity, &along) == 0.0 {
+            let way = face.velocity * self.h;
+            let gap = (self.x0[row] + way).dot(normal) - face.offset - self.radius[row];
+            let touched = gap.abs() <= self.slack(row, self.radius[row]);
+            self.keep(row, face.velocity, touched && self.v0[row] == face.velocity, way);
+        }
+    }
+
+    fn ends(&self, pair: &Pair) -> ([usize; 2], Vec3) {
+        let [a, b] = pair.rows.map(|row| row as usize);
+        let d = self.position[a] - self.position[b];
+        ([a, b], d * (1.0 / max(length(d), f32::MIN_POSITIVE)))
     }
 
     /// Gives what friction holds the velocity of what holds it. What was at rest on that and stays so has gone its way and no

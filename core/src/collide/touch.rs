@@ -13,6 +13,8 @@ pub(super) struct Touch {
     pressed: f32,
     /// How much slip friction has taken \[m/s\].
     held: f32,
+    /// How much more of what weighs on the upper one goes through here than has changed that speed \[m/s\].
+    carried: f32,
     pub(super) elasticity: f32,
     resting: f32,
     sliding: f32,
@@ -20,7 +22,7 @@ pub(super) struct Touch {
 
 impl Touch {
     pub(super) fn new(Feel { elasticity, friction: Friction { resting, sliding } }: Feel) -> Self {
-        Self { pressed: -1.0, held: 0.0, elasticity, resting, sliding }
+        Self { pressed: -1.0, held: 0.0, carried: 0.0, elasticity, resting, sliding }
     }
 
     /// Whether the two touch in this sub-step.
@@ -28,8 +30,18 @@ impl Touch {
         self.pressed >= 0.0
     }
 
+    /// By how much the contact has changed the speed at which they part \[m/s\].
+    pub(super) fn pressed(&self) -> f32 {
+        self.pressed
+    }
+
     pub(super) fn has_friction(&self) -> bool {
         self.resting + self.sliding > 0.0
+    }
+
+    /// Whether the two touch in this sub-step, and not smoothly.
+    pub(super) fn rubs(&self) -> bool {
+        self.is_on() && self.has_friction()
     }
 
     pub(super) fn end(&mut self) {
@@ -38,7 +50,17 @@ impl Touch {
 
     /// They touch, and have been given this speed apart.
     pub(super) fn begin(&mut self, pressed: f32) {
-        (self.pressed, self.held) = (pressed, 0.0);
+        (self.pressed, self.held, self.carried) = (pressed, 0.0, 0.0);
+    }
+
+    /// Friction counts in this many times what presses, besides that itself.
+    pub(super) fn carry(&mut self, times: f32) {
+        self.carried = times * self.pressed;
+    }
+
+    /// By how much it presses with all that weighs on it \[m/s\].
+    pub(super) fn load(&self) -> f32 {
+        self.pressed + self.carried
     }
 
     /// How the speed at which they part has to change to be `wanted`. It takes back no more than the contact has given, so
@@ -52,7 +74,7 @@ impl Touch {
     /// What friction takes of a slip \[m/s\]: all that it can by what presses, which counts `weight` times.
     pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
         let speed = length(slip);
-        let left = |share: f32| max(share * self.pressed * weight - self.held, 0.0);
+        let left = |share: f32| max(share * self.load() * weight - self.held, 0.0);
         let taken = if speed <= left(self.resting) { speed } else { min(speed, left(self.sliding)) };
         if !(taken > 0.0) {
             return Vec3::ZERO;

@@ -12,3 +12,4 @@ mod meetings;
 mod poison;
 mod position;
 mod resting;
+mod stacks;

@@ -1,0 +1,141 @@
+//! Balls held by position on balls: a contact holds by all the weight above it, what can rest stands still, and no index
+//! makes a difference.
+
+use pointmass::force::Friction;
+use pointmass::index::Structure;
+use pointmass::shape::{Affine, Collider, Cuboid, Placed, Plane};
+use pointmass::{Gravity, Grip, Method, Particle, Projection, Scene, Vec3};
+use pointmass_tests::{G, Random, run, started};
+
+/// Steps a second, sub-steps of each.
+const STEPS: [(u32, u32); 4] = [(24, 6), (60, 4), (60, 12), (240, 20)];
+
+fn grip(friction: f32) -> Grip {
+    Grip { elasticity: None, friction: Some(Friction { resting: friction, sliding: friction }) }
+}
+
+fn ball(position: Vec3, radius: f32) -> Particle {
+    Particle { position, radius, elasticity: 0.0, material: Some(0), ..Particle::REST }
+}
+
+/// Balls on each other that slide together over a floor.
+struct Stack<'a> {
+    masses: &'a [f32],
+    speed: f32,
+    /// With the floor. The balls hold on to each other by 1.
+    friction: f32,
+}
+
+impl Stack<'_> {
+    /// How far each gets, as a share of v²/2μg.
+    fn ways(&self, method: Method, (rate, substeps): (u32, u32)) -> Vec<f64> {
+        const RADIUS: f32 = 0.1;
+        let grips = [grip(1.0), grip(self.friction * self.friction)];
+        let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let floor = Placed::new(floor, Affine::IDENTITY).expect("a map that leaves all as it is").made_of(Some(1));
+        let place = |i: usize| Vec3::Y * (RADIUS * (1.0 + 2.0 * i as f32));
+        let balls = self.masses.iter().enumerate();
+        let start: Vec<_> = balls
+            .map(|(i, &mass)| Particle { mass, velocity: Vec3::X * self.speed, ..ball(place(i), RADIUS) })
+            .collect();
+        let scene = Scene {
+            start: &start,
+            grips: &grips,
+            forces: &Gravity { acceleration: Vec3::NEG_Y * G as f32 },
+            colliders: &floor,
+            contacts: &Projection { substeps, compliance: 0.0 },
+            integrator: &method,
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, start.len(), 1);
+        run(&mut system, &scene, 1.0 / f64::from(rate), 2 * rate);
+        let want = f64::from(self.speed).powi(2) / (2.0 * f64::from(self.friction) * G);
+        system.particles().position.iter().map(|x| f64::from(x.x) / want).collect()
+    }
+}
+
+#[test]
+fn a_stack_slides_as_far_as_one_ball() {
+    for (masses, bound) in
+        [(&[1.0, 1.0][..], 0.02), (&[4.0, 1.0], 0.02), (&[1.0, 4.0], 0.03), (&[1.0, 1.0, 1.0], 0.1), (&[1.0; 6], 0.7)]
+    {
+        for (speed, friction) in [(3.0, 0.3), (2.0, 0.5)] {
+            for method in Method::ALL {
+                for steps in STEPS {
+                    // What follows sub-steps only slowly, being heavy or high, gets there with more of them.
+                    let bound = if steps.1 >= 12 { 0.2 * bound } else { bound };
+                    for way in (Stack { masses, speed, friction }).ways(*method, steps) {
+                        assert!((way - 1.0).abs() < bound, "{masses:?}, {friction}, {method}, {steps:?}: {way}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pyramid_settles_and_then_stands_still() {
+    for (friction, radius, origin) in [(0.3, 0.1, Vec3::ZERO), (0.8, 2.0, Vec3::new(5.0, 0.0, -3.0))] {
+        let grips = [grip(friction)];
+        let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, z)| Vec3::new(x, 1.0, z));
+        let places = corners.into_iter().chain([Vec3::Y * (1.0 + 2f32.sqrt())]);
+        let start: Vec<_> = places.map(|place| ball(origin + place * radius, radius)).collect();
+        for method in Method::ALL {
+            for (rate, substeps) in [(24, 1), (60, 2), (60, 12), (240, 20)] {
+                let scene = Scene {
+                    start: &start,
+                    grips: &grips,
+                    forces: &Gravity::EARTH,
+                    colliders: &floor,
+                    contacts: &Projection { substeps, compliance: 0.0 },
+                    integrator: method,
+                    ..Scene::EMPTY
+                };
+                let mut system = started(&scene, start.len(), 1);
+                let case = format!("{method}, {rate} steps of {substeps}, friction {friction}, radius {radius}");
+                run(&mut system, &scene, 1.0 / f64::from(rate), 10 * rate);
+                let settled = system.particles().position.to_vec();
+                let moved = settled.iter().zip(&start).map(|(x, ball)| x.distance(ball.position)).fold(0.0, f32::max);
+                // It gives way by more the farther all fall in a sub-step.
+                let bound = 0.6 / substeps as f32;
+                assert!(moved < bound * radius, "{case}: {moved}");
+                run(&mut system, &scene, 1.0 / f64::from(rate), 6 * rate);
+                assert_eq!(system.particles().position, settled, "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_heap_falls_to_the_same_bits_whatever_the_index() {
+    let mut random = Random::new(7);
+    let start: Vec<_> = (0..200)
+        .map(|i| {
+            let cell = Vec3::new((i % 6) as f32, (i / 36) as f32, (i / 6 % 6) as f32) + 0.5;
+            let radius = random.between(0.03, 0.05);
+            let velocity = random.vector(1.0);
+            Particle { velocity, elasticity: 0.3, ..ball(cell * 0.11 + random.vector(0.004), radius) }
+        })
+        .collect();
+    let (grips, room) = ([grip(0.4)], Cuboid { min: Vec3::ZERO, max: Vec3::new(0.7, 9.0, 0.7) });
+    let hash = |structure: Structure| {
+        let scene = Scene {
+            start: &start,
+            grips: &grips,
+            forces: &Gravity::EARTH,
+            colliders: &room as &dyn Collider,
+            contacts: &Projection { substeps: 8, compliance: 0.0 },
+            index: &structure,
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, start.len(), 1);
+        run(&mut system, &scene, 1.0 / 60.0, 90);
+        assert!(system.totals().contacts > 10_000 && system.totals().caps.contacts == 0, "{:?}", system.totals());
+        system.hash()
+    };
+    let want = hash(Structure::Brute);
+    for structure in Structure::ALL {
+        assert_eq!(hash(*structure), want, "{structure}");
+    }
+}
