@@ -1,9 +1,9 @@
 //! The ledger: where energy went, in double precision.
 
 use crate::force::{Entry, Force, Springs, State};
+use crate::memory::Storage;
 use crate::observe::{Impact, Observer, Phase, Sliding};
 use crate::scene::Scene;
-use crate::storage::Storage;
 use crate::system::System;
 use crate::time::Time;
 use glam::Vec3;

@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 //!
 //! # Map
-//! [`System`] holds the state, and `view` has the step. [`emit`] creates; [`force`] and [`integrate`] move; `collide` and
+//! [`System`] holds the state, `step` moves it on. [`emit`] creates; [`force`] and [`integrate`] move; `collide` and
 //! [`shape`] collide, with [`rays`] to find what a path meets first and [`index`] to find what is near; `retire` deletes.
 //! [`Report`], and with the feature `std` [`Measures`], [`Ledger`] and [`stability`], tell what happened and what will.
 //! [`Sheet`] makes cloth. [`Storage`] is the memory. [`scene`] reads and writes scene files.
@@ -27,6 +27,7 @@ mod ledger;
 pub mod math;
 #[cfg(feature = "std")]
 mod measure;
+mod memory;
 mod observe;
 mod particles;
 pub mod rays;
@@ -39,10 +40,10 @@ pub mod shape;
 #[cfg(feature = "std")]
 pub mod stability;
 mod stall;
-mod storage;
+mod step;
 mod system;
 mod time;
-mod view;
+
 mod weave;
 
 pub use collide::{Contacts, Grip, Impulse, Projection, Response};
@@ -64,14 +65,14 @@ pub use integrate::{
 pub use ledger::{Books, Ledger};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
+#[cfg(feature = "alloc")]
+pub use memory::Heap;
+pub use memory::{Columns, Inline, Size, Slices, Storage};
 pub use observe::{Impact, Observer, Passing, Phase, Sliding};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use report::{Caps, Died, Effort, Report};
 pub use retire::{Cause, Fate};
 pub use scene::{Scene, Unfit};
-#[cfg(feature = "alloc")]
-pub use storage::Heap;
-pub use storage::{Columns, Inline, Size, Slices, Storage};
 pub use system::System;
 pub use time::Time;
 #[cfg(feature = "alloc")]

@@ -1,8 +1,8 @@
 //! Energy, momentum and angular momentum, in double precision: for reports, not for the step.
 
 use crate::force::{Entry, Force};
+use crate::memory::Storage;
 use crate::scene::Scene;
-use crate::storage::Storage;
 use crate::system::System;
 
 /// What a system amounts to, all its particles taken together.

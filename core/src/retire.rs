@@ -1,12 +1,12 @@
 //! Deletion: by age, at sinks, and of what is no longer a number.
 
 use crate::force::Spring;
+use crate::memory::Slices;
 use crate::observe::{Observer, Passing};
 use crate::particles::Id;
 use crate::report::Report;
-use crate::storage::Slices;
+use crate::step::View;
 use crate::time::Time;
-use crate::view::View;
 
 /// Why a particle will be removed at the end of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,13 +2,13 @@
 
 use crate::force::{self, Spring, Springs, State};
 use crate::hash::Fnv;
+use crate::memory::{Columns, Storage};
 use crate::observe::Observer;
 use crate::particles::{Full, Id, Particle};
 use crate::report::Report;
 use crate::scene::{Scene, Unfit};
-use crate::storage::{Columns, Storage};
+use crate::step::{Status, View};
 use crate::time::Time;
-use crate::view::{Status, View};
 
 /// The state that a scene acts on, in memory of its owner's choice. An empty one is all zeros.
 #[derive(Clone, Debug)]

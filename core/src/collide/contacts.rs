@@ -1,13 +1,13 @@
 //! How particles that have a radius answer each other.
 
-use super::each_by_itself;
 use super::lists::Lists;
+use super::sweep::each_by_itself;
 use crate::index::Arrange;
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
+use crate::step::View;
 use crate::time::Time;
-use crate::view::View;
 use glam::Vec3;
 
 /// How particles that have a radius answer each other's touch: `()` not at all, [`Impulse`](crate::Impulse) when they

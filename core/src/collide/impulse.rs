@@ -1,11 +1,11 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
 use super::contacts::{Contacts, Passage};
-use super::each_by_itself;
 use super::melee::Melee;
 use super::queue::Queue;
+use super::sweep::each_by_itself;
 use crate::index::Arrange;
-use crate::storage::{Slices, Storage};
+use crate::memory::{Layout, Shares, Slices, Storage};
 
 /// Hard balls: whoever meets, another particle or a collider, is answered by an impulse at that instant, in the order of
 /// time, and goes on from there.
@@ -51,9 +51,8 @@ impl Contacts for Impulse {
             work,
             ..
         } = view.memory.slices();
-        let (start, scratch) = work.split_at_mut(2 * capacity);
-        let (start_x, start_v) = start.split_at_mut(capacity);
-        let (clocks, scratch) = scratch[scene.contacts.held(scene.index) * capacity..].split_at_mut(3 * len);
+        let Shares { start: [start_x, start_v], scratch, .. } = Layout::of(scene.demand(), capacity).meeting(work);
+        let (clocks, scratch) = scratch.split_at_mut(3 * len);
         let (home, scratch) = scratch.split_at_mut(len);
         let words = scene.index.columns() * len;
         let index_memory = bytemuck::cast_slice_mut(&mut scratch[..words]);

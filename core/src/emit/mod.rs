@@ -13,8 +13,8 @@ use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::rng::Stream;
+use crate::step::View;
 use crate::time::{Time, fixed_32};
-use crate::view::View;
 
 /// Something that brings particles into the world.
 ///

@@ -2,7 +2,7 @@
 
 use super::{Force, State};
 use crate::math::sqrt;
-use crate::shape::{Aabb, Collider, Hit, Segment, Shape, Surface};
+use crate::shape::{Aabb, Collider, Hit, Hulls, Marks, Segment, Shape, Surface};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -68,6 +68,10 @@ impl<M: Collider> Collider for Sink<M> {
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.shape.may_touch(bounds)
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        self.shape.mark_near(hulls, marks);
     }
 }
 

@@ -5,9 +5,9 @@ use crate::emit::Emit;
 use crate::force::{Force, Spring};
 use crate::index::Arrange;
 use crate::integrate::{Integrator, Symplectic};
+use crate::memory::{Demand, Size};
 use crate::particles::Particle;
 use crate::shape::Collider;
-use crate::storage::Size;
 
 /// What the world does: immutable while it runs. Lists are closed under composition, so each field is one thing.
 ///
@@ -67,10 +67,21 @@ impl Scene<'_> {
     /// Vectors that a step needs to work with for each particle.
     #[must_use]
     pub fn columns(&self) -> usize {
-        let start = if self.needs_start() { 2 } else { 0 };
-        // Newborns need one column for their acceleration, whatever the method.
-        let moving = self.integrator.columns().max(1).saturating_add(self.forces.needs().columns(self.index));
-        moving.max(self.contacts.scratch(self.index)).saturating_add(start + self.contacts.held(self.index))
+        self.demand().columns()
+    }
+
+    /// What a step works with.
+    pub(crate) fn demand(&self) -> Demand {
+        let needs = self.forces.needs();
+        Demand {
+            start: if self.needs_start() { 2 } else { 0 },
+            held: self.contacts.held(self.index),
+            trees: needs.tree_columns(),
+            near: needs.columns(self.index) - needs.tree_columns(),
+            // Newborns need one for their acceleration, whatever the method.
+            method: self.integrator.columns().max(1),
+            contacts: self.contacts.scratch(self.index),
+        }
     }
 
     /// The least memory it runs in; `particles` is what it begins with.

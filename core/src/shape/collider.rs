@@ -1,6 +1,6 @@
 //! What a moving point can run into, one by one or in lists.
 
-use super::{Aabb, Affine};
+use super::{Aabb, Affine, Hulls, Marks};
 use crate::math::{high, largest, low, max};
 use crate::time::Time;
 use glam::Vec3;
@@ -20,6 +20,15 @@ pub trait Collider: Sync {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let _ = bounds;
         true
+    }
+
+    /// Marks those of many paths that might meet it, each inside a hull of its own: as [`Collider::may_touch`] says by default.
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        for (i, mark) in marks.iter_mut().enumerate() {
+            if *mark == 0 && self.may_touch(&hulls.get(i)) {
+                *mark = u32::MAX;
+            }
+        }
     }
 
     /// Visits the places of it that are nearest to `center` and within `reach` \[m\] of it at an instant, one for each
@@ -164,6 +173,7 @@ impl Collider for () {
     fn may_touch(&self, _: &Aabb) -> bool {
         false
     }
+    fn mark_near(&self, _: &Hulls, _: &mut Marks) {}
     fn is_empty(&self) -> bool {
         true
     }
@@ -175,6 +185,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn may_touch(&self, bounds: &Aabb) -> bool {
         (**self).may_touch(bounds)
+    }
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        (**self).mark_near(hulls, marks);
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
@@ -202,6 +215,9 @@ impl<T: Collider> Collider for [T] {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.iter().any(|c| c.may_touch(bounds))
     }
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        self.iter().for_each(|c| c.mark_near(hulls, marks));
+    }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let bounds = Aabb { min: center - reach, max: center + reach };
         self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts(center, reach, at, visit));
@@ -228,6 +244,9 @@ macro_rules! lists {
             }
             fn may_touch(&self, bounds: &Aabb) -> bool {
                 self.as_slice().may_touch(bounds)
+            }
+            fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+                self.as_slice().mark_near(hulls, marks);
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.as_slice().contacts(center, reach, at, visit);
@@ -265,6 +284,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 $($name.may_touch(bounds))||+
+            }
+            fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.mark_near(hulls, marks);)+
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 #[allow(non_snake_case)]

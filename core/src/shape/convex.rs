@@ -113,6 +113,9 @@ macro_rules! convex_collider {
             fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
                 crate::shape::Surface::bounds(self).overlaps(bounds)
             }
+            fn mark_near(&self, hulls: &crate::shape::Hulls, marks: &mut crate::shape::Marks) {
+                hulls.near_box(&crate::shape::Surface::bounds(self), marks);
+            }
         }
     )+};
 }

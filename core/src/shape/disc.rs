@@ -2,7 +2,7 @@
 
 use super::ball::{Filled, approach, lean};
 use super::plane::crossing;
-use super::{Aabb, Collider, Contact, Hit, Segment, Spot, Surface, earlier};
+use super::{Aabb, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{frame, largest, length, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::PI;
@@ -57,6 +57,10 @@ impl Surface for Disc {
 impl Collider for Disc {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.bounds().overlaps(bounds)
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        hulls.near_box(&self.bounds(), marks);
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {

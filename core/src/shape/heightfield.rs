@@ -1,6 +1,6 @@
 //! Ground: heights over a grid of x and z, borrowed.
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, Triangle};
 use crate::math::{clamp, floor, largest, max, min, power_to_one};
 use crate::rays::{Best, Closest, Pieces, Probe, square_to};
 use crate::time::Time;
@@ -368,6 +368,10 @@ impl Collider for HeightField<'_> {
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.bounds.overlaps(bounds)
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        hulls.near_box(&self.bounds, marks);
     }
 
     /// One for each triangle within reach.

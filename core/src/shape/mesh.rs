@@ -1,6 +1,6 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, Triangle};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, Triangle};
 use crate::math::{high, largest, max, power_to_one};
 use crate::rays::{Index, Pieces, Unsound};
 #[cfg(feature = "alloc")]
@@ -239,6 +239,10 @@ impl Collider for Mesh<'_> {
         self.bounds.overlaps(bounds)
     }
 
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        hulls.near_box(&self.bounds, marks);
+    }
+
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         let mut show = |number: usize| {
             let image =
@@ -299,6 +303,9 @@ macro_rules! through_view {
             }
             fn may_touch(&self, bounds: &Aabb) -> bool {
                 self.view().may_touch(bounds)
+            }
+            fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+                self.view().mark_near(hulls, marks);
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.view().contacts(center, reach, at, visit);

@@ -12,6 +12,7 @@ mod exact;
 mod heightfield;
 #[cfg(feature = "alloc")]
 mod heights;
+mod hulls;
 mod line;
 mod mesh;
 #[cfg(feature = "alloc")]
@@ -34,6 +35,7 @@ pub use disc::Disc;
 pub use heightfield::{BadHeights, HeightField};
 #[cfg(feature = "alloc")]
 pub use heights::{HeightFieldBuf, Heights};
+pub use hulls::{Hulls, Marks};
 pub use line::Line;
 #[cfg(feature = "alloc")]
 pub use mesh::MeshBuf;
@@ -140,6 +142,9 @@ impl<M: Collider> Collider for Shape<M> {
     }
     fn may_touch(&self, bounds: &Aabb) -> bool {
         each!(self, s => s.may_touch(bounds))
+    }
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        each!(self, s => s.mark_near(hulls, marks));
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         each!(self, s => s.contacts(center, reach, at, visit));

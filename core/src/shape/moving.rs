@@ -1,6 +1,6 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Ride, Segment};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Ride, Segment};
 use crate::math::{clamp, high, largest, length, low, max, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::TAU;
@@ -230,6 +230,10 @@ impl<C: Collider> Collider for Moving<C> {
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         if self.motion.is_none() { self.collider.may_touch(bounds) } else { self.reach.overlaps(bounds) }
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        if self.motion.is_none() { self.collider.mark_near(hulls, marks) } else { hulls.near_box(&self.reach, marks) }
     }
 
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {

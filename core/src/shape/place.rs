@@ -1,6 +1,6 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
-use super::{Aabb, Collider, Contact, Hit, Segment, Surface, earlier};
+use super::{Aabb, Collider, Contact, Hit, Hulls, Marks, Segment, Surface, earlier};
 use crate::math::{high, largest, length, max, min, unit};
 use crate::time::Time;
 use glam::{Mat3, Vec3};
@@ -187,6 +187,10 @@ impl<C: Collider> Collider for Placed<C> {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         // Its own answer is the sharper one: of a plane, say.
         if self.maps.is_none() { self.collider.may_touch(bounds) } else { self.bounds.overlaps(bounds) }
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        if self.maps.is_none() { self.collider.mark_near(hulls, marks) } else { hulls.near_box(&self.bounds, marks) }
     }
 
     fn is_empty(&self) -> bool {

@@ -1,7 +1,7 @@
 //! An infinite plane.
 
 use super::ball::lean;
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface, earlier};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{clamp, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -66,6 +66,10 @@ impl Collider for Plane {
         let distance = self.normal.dot(middle - self.point).abs();
         let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
         distance <= self.normal.abs().dot(half + room)
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        hulls.near_plane(self.point, self.normal, marks);
     }
 }
 

@@ -4,7 +4,7 @@ use super::ball::{self, Filled, gap_to_line};
 use super::exact::{Lattice, cross, volume};
 use super::plane::crossing;
 use super::sliver::Sliver;
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface};
 use crate::math::{clamp, high, largest, length, max, min, power_to_one, sqrt, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -79,6 +79,10 @@ impl Surface for Triangle {
 impl Collider for Triangle {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.bounds().overlaps(bounds)
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        hulls.near_box(&self.bounds(), marks);
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {

@@ -1,0 +1,108 @@
+//! Forces over masses: what a method asks for accelerations.
+
+use crate::force::{Force, Grow, Needs, Springs, State};
+use crate::index::{BarnesHut, SpatialIndex};
+use crate::integrate::{Dynamics, Linear};
+use crate::observe::{Observer, Phase};
+use crate::rows::each_row_with;
+use crate::scene::Scene;
+use crate::time::Time;
+use glam::Vec3;
+
+/// The scene's forces over the masses, from row `first` on.
+pub(super) struct Field<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) radius: &'a [f32],
+    pub(super) mass: &'a [f32],
+    pub(super) inverse_mass: &'a [f32],
+    pub(super) drag: &'a [f32],
+    pub(super) charge: &'a [f32],
+    pub(super) springs: Springs<'a>,
+    /// What the forces need to find, and memory for it.
+    pub(super) needs: Needs,
+    pub(super) tree: &'a mut [u32],
+    pub(super) near: &'a mut [u32],
+    pub(super) first: usize,
+    pub(super) evaluations: u64,
+    pub(super) observer: &'a mut dyn Observer,
+}
+
+impl<'a> Field<'a> {
+    /// The state as it is, without trees and index.
+    fn state<'s>(&self, time: Time, position: &'s [Vec3], velocity: &'s [Vec3]) -> State<'s>
+    where
+        'a: 's,
+    {
+        let len = position.len();
+        let (radius, mass) = (&self.radius[..len], &self.mass[..len]);
+        let (drag, charge, springs) = (&self.drag[..len], &self.charge[..len], self.springs);
+        let (mass_tree, charge_tree, near) = (None, None, None);
+        State { time, position, velocity, radius, mass, drag, charge, springs, mass_tree, charge_tree, near }
+    }
+
+    /// Calls `then` with the state as forces see it, trees and index made.
+    fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&State<'_>)) {
+        self.evaluations += u64::from(!position.is_empty());
+        let state = self.state(time, position, velocity);
+        if self.needs.tree_columns() > 0 && position.len() >= BarnesHut::FEWEST {
+            self.with_trees(&state, then);
+        } else {
+            self.with_neighbours(&state, then);
+        }
+    }
+
+    /// Apart, so that whoever needs no trees has no room for them on the stack.
+    #[inline(never)]
+    fn with_trees(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
+        // No more memory than these particles call for: more would make other nodes, and so other bits.
+        let words = 3 * BarnesHut::COLUMNS * state.position.len();
+        let memory = core::mem::take(&mut self.tree);
+        let first = if self.needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
+        let (of_mass, of_charge) = memory.split_at_mut(first);
+        let second = words.min(of_charge.len());
+        let grown = |grow: Option<Grow>, memory, weights| grow?(memory, state.position, weights);
+        let mass_tree = grown(self.needs.mass_tree, of_mass, state.mass);
+        let charge_tree = grown(self.needs.charge_tree, &mut of_charge[..second], state.charge);
+        let (mass_tree, charge_tree) = (mass_tree.as_ref(), charge_tree.as_ref());
+        self.with_neighbours(&State { mass_tree, charge_tree, ..*state }, then);
+        self.tree = memory;
+    }
+
+    fn with_neighbours(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
+        let reach = self.needs.reach;
+        if !(reach > 0.0) {
+            return then(state);
+        }
+        let words = (3 * self.scene.index.columns() * state.position.len()).min(self.near.len());
+        let then = &mut |near: Option<&dyn SpatialIndex>| then(&State { near, ..*state });
+        self.scene.index.arrange(&mut self.near[..words], state.position, reach, then);
+    }
+}
+
+impl Dynamics for Field<'_> {
+    fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
+        let rows = self.first..position.len();
+        let (forces, inverse_mass) = (self.scene.forces, &self.inverse_mass[rows.clone()]);
+        self.with_state(time, position, velocity, &mut |state| {
+            acceleration.fill(Vec3::ZERO);
+            forces.add_to(state, rows.clone(), acceleration);
+            state.springs.add_to(state, rows.clone(), acceleration);
+        });
+        each_row_with(acceleration, Vec3::ZERO, inverse_mass, |force, _, inverse| {
+            // What is fixed stays so under a force that is beyond an f32.
+            if inverse == 0.0 { 0.0 } else { force * inverse }
+        });
+    }
+
+    fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
+        let (forces, inverse_mass) = (self.scene.forces, &self.inverse_mass[..position.len()]);
+        self.with_state(time, position, velocity, &mut |state| {
+            then(&Linear { forces: &(forces, state.springs), state: *state, inverse_mass });
+        });
+    }
+
+    fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
+        let state = self.state(time, position, velocity);
+        self.observer.after(Phase::Advance, &state);
+    }
+}

@@ -1,0 +1,83 @@
+//! Rows taken by the newborn and given back by the dead.
+
+use super::View;
+use crate::force::{Spring, Springs};
+use crate::memory::{Slices, Storage};
+use crate::particles::{Full, Id, Particle, WHITE};
+use crate::report::Report;
+use crate::retire::Fate;
+use crate::time::Time;
+use glam::Vec3;
+
+impl View<'_> {
+    /// Puts a particle into the next row.
+    pub(crate) fn spawn(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
+        if self.is_full() {
+            return Err(Full);
+        }
+        let (m, status) = (&mut self.memory, &mut *self.status);
+        let row = status.len;
+        let slot = if status.free > 0 {
+            let slot = status.free - 1;
+            status.free = m.row_of[slot as usize];
+            slot
+        } else {
+            status.slots += 1;
+            (status.slots - 1) as u32
+        };
+        let serial = status.taken;
+        m.row_of[slot as usize] = row as u32;
+        m.slot[row] = slot;
+        m.serial[row] = serial;
+        m.position[row] = particle.position;
+        // Who has a number that cannot be used is taken out at the step's end, whichever it is. Any lifetime can be: one
+        // that is no number or beyond all is for ever.
+        let is_sound = Particle { lifetime: 0.0, ..*particle }.is_sound();
+        let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
+        m.velocity[row] = if is_sound { velocity } else { Vec3::NAN };
+        m.radius[row] = particle.radius;
+        m.mass[row] = particle.mass;
+        m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };
+        m.drag[row] = particle.drag;
+        m.charge[row] = particle.charge;
+        m.elasticity[row] = particle.elasticity;
+        m.born[row] = born;
+        m.dies[row] = death(born, particle.lifetime);
+        m.color[row] = particle.color.unwrap_or(WHITE);
+        m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
+        m.fate[row] = Fate::Lives;
+        status.len += 1;
+        status.taken = serial.wrapping_add(1);
+        Ok(Id { slot, serial })
+    }
+
+    /// Takes the particle in `row` out; the last row fills the gap.
+    pub(crate) fn remove(&mut self, row: usize, springs: &[Spring], report: &mut Report) {
+        let len = self.status.len;
+        let last = len - 1;
+        let Slices { serial, row_of, last_spring, incident, .. } = self.memory.slices();
+        let table =
+            Springs { springs, start: self.status.start, serial: &serial[..len], row_of, last_spring, incident };
+        report.caps.springs += table.held_by(row);
+
+        let slot = self.memory.slot[row];
+        if row != last {
+            self.memory.move_row(last, row);
+            self.memory.row_of[self.memory.slot[row] as usize] = row as u32;
+        }
+        self.memory.row_of[slot as usize] = self.status.free;
+        self.status.free = slot + 1;
+        self.status.len = last;
+    }
+}
+
+/// When a particle born at `born` dies of age. A lifetime counts as over within the rounding of its `f32` and of a
+/// tick, so that one of 0.1 s ends with the sixth of sixty frames a second.
+fn death(born: Time, lifetime: f32) -> Time {
+    if lifetime > 0.0 {
+        let ticks = Time::from_seconds(lifetime).ticks();
+        born + Time::from_ticks(ticks.saturating_sub((ticks >> 24) + 1))
+    } else {
+        Time::NEVER
+    }
+}

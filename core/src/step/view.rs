@@ -1,0 +1,92 @@
+//! A system with its memory at hand: every phase of a step works on it.
+
+use crate::force::{Spring, State, spring};
+use crate::memory::{Slices, Storage};
+use crate::particles::Full;
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::time::Time;
+
+/// A system with its memory at hand: every algorithm works on it, and it is generic over nothing.
+#[derive(Debug)]
+pub(crate) struct View<'a> {
+    pub(crate) memory: Slices<'a>,
+    pub(crate) status: &'a mut Status,
+}
+
+/// All of a system's state that is not a column.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Status {
+    /// Rows in use.
+    pub(crate) len: usize,
+    /// Slots ever used.
+    pub(crate) slots: usize,
+    /// The first free slot plus one; zero: none.
+    pub(crate) free: u32,
+    /// Particles taken in so far.
+    pub(crate) taken: u32,
+    /// Particles of the scene's start that found room.
+    pub(crate) start: u32,
+    /// Emitters that the scene had then.
+    pub(crate) emitters: usize,
+    pub(crate) time: Time,
+    /// The step that an integrator which chooses its own goes on with.
+    pub(crate) hint: Time,
+    pub(crate) seed: u64,
+    pub(crate) totals: Report,
+}
+
+impl Status {
+    pub(crate) const NEW: Self = Self {
+        len: 0,
+        slots: 0,
+        free: 0,
+        taken: 0,
+        start: 0,
+        emitters: 0,
+        time: Time::ZERO,
+        hint: Time::ZERO,
+        seed: 0,
+        totals: Report::NOTHING,
+    };
+}
+
+impl View<'_> {
+    pub(crate) fn len(&self) -> usize {
+        self.status.len
+    }
+
+    pub(crate) fn seed(&self) -> u64 {
+        self.status.seed
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.status.len >= self.capacity()
+    }
+
+    pub(crate) fn capacity(&self) -> usize {
+        self.memory.columns().capacity()
+    }
+
+    pub(crate) fn start(&mut self, scene: &Scene<'_>) {
+        self.memory.tallies.fill(Default::default());
+        self.status.emitters = scene.emitters.count();
+        let mut report = Report::default();
+        for particle in scene.start {
+            match self.spawn(particle, Time::ZERO) {
+                Ok(_) => report.initial += 1,
+                Err(Full) => report.refused = report.refused.saturating_add(1),
+            }
+        }
+        self.status.start = self.status.taken;
+        spring::sort_by_ends(scene.springs, self.memory.last_spring, self.memory.incident);
+        let lost = |s: &&Spring| s.ends.iter().any(|&end| end >= self.status.start);
+        report.caps.springs = scene.springs.iter().filter(lost).count() as u64;
+        self.status.totals = report;
+    }
+
+    /// The particles as forces see them.
+    pub(super) fn state<'s>(&'s self, scene: &Scene<'s>) -> State<'s> {
+        self.memory.columns().state(scene.springs, self.status)
+    }
+}
