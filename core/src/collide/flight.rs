@@ -1,7 +1,7 @@
 //! One particle's way through a step: hit by hit.
 
 use super::grip::on_surface;
-use super::path::{MAX_CHORDS, Path};
+use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::touch::aside;
 use crate::math::{length, max, min, sqrt, unit};
@@ -36,8 +36,9 @@ pub(super) struct Arrival {
 
 /// Where a path meets something.
 pub(super) struct Meeting {
-    /// The fraction of the whole path before it.
+    /// The fraction of the whole path before it, and the place on the path \[m\].
     pub(super) time: f32,
+    place: Vec3,
     /// The chord along which it was found, and the fraction of the path before that.
     chord: Segment,
     begun: f32,
@@ -64,7 +65,7 @@ pub(super) struct Flight<'a> {
 impl Meeting {
     /// The end in a sink.
     pub(super) fn arrival(&self, path: &Path) -> Arrival {
-        Arrival { position: path.at(self.time), velocity: path.velocity(self.time), fate: Fate::Sink }
+        Arrival { position: self.place, velocity: path.velocity(self.time), fate: Fate::Sink }
     }
 }
 
@@ -113,7 +114,8 @@ impl Flight<'_> {
 
     /// The first hit along the path's chords, at its instant on the path itself.
     pub(super) fn first_meeting(&mut self, path: &Path) -> Option<Meeting> {
-        let chords = path.chords();
+        let cubic = path.cubic();
+        let chords = cubic.chords();
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
         }
@@ -122,8 +124,9 @@ impl Flight<'_> {
         path.pieces(chords, self.radius).zip(0_u8..).find_map(|(chord, i)| {
             let (hit, is_sink) = self.first_hit(&chord)?;
             let begun = f32::from(i) / whole;
-            let meeting = Meeting { time: (f32::from(i) + hit.time) / whole, chord, begun, hit, is_sink };
-            Some(self.on_path(path, meeting, f32::from(i + 1) / whole))
+            let (time, place) = ((f32::from(i) + hit.time) / whole, chord.at(hit.time));
+            let meeting = Meeting { time, place, chord, begun, hit, is_sink };
+            Some(self.on_path(path, &cubic, meeting, f32::from(i + 1) / whole))
         })
     }
 
@@ -139,12 +142,13 @@ impl Flight<'_> {
 
     /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
     /// touches the surface. A place far along the surface from that on the chord asks for the surface there.
-    fn on_path(&self, path: &Path, meeting: Meeting, end: f32) -> Meeting {
-        let Meeting { chord, begun, hit, .. } = meeting;
-        let time = crossing(path, &hit, chord.at(hit.time), [begun, meeting.time, end]);
-        let aside = path.at(time) - chord.at(hit.time);
-        if !(length(aside) > 16.0 * hit.slack) {
-            return Meeting { time, ..meeting };
+    fn on_path(&self, path: &Path, cubic: &Cubic, meeting: Meeting, end: f32) -> Meeting {
+        let Meeting { begun, hit, .. } = meeting;
+        let drift = hit.velocity.dot(hit.normal) * path.duration();
+        let time = crossing(cubic, drift, &hit, meeting.place, [begun, meeting.time, end]);
+        let place = cubic.at(time);
+        if !(length(place - meeting.place) > 16.0 * hit.slack) {
+            return Meeting { time, place, ..meeting };
         }
         let reach = (end - begun) * (1.0 / 16.0);
         let [from, to] = [max(time - reach, begun), min(time + reach, end)];
@@ -152,10 +156,11 @@ impl Flight<'_> {
         match self.first_hit(&piece) {
             Some((near, is_sink)) if is_sink == meeting.is_sink && near.normal.dot(hit.normal) > 0.0 => {
                 let found = from + (to - from) * near.time;
-                let time = crossing(path, &near, piece.at(near.time), [from, found, to]);
-                Meeting { time, hit: near, ..meeting }
+                let drift = near.velocity.dot(near.normal) * path.duration();
+                let time = crossing(cubic, drift, &near, piece.at(near.time), [from, found, to]);
+                Meeting { time, place: cubic.at(time), hit: near, ..meeting }
             }
-            _ => Meeting { time, ..meeting },
+            _ => Meeting { time, place, ..meeting },
         }
     }
 
@@ -168,7 +173,7 @@ impl Flight<'_> {
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
         let acceleration = path.acceleration();
-        let (place, before) = (path.at(meeting.time), path.velocity(meeting.time));
+        let (place, before) = (meeting.place, path.velocity(meeting.time));
         let incoming = (before - surface).dot(normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * feel.elasticity } else { incoming };
@@ -260,7 +265,7 @@ fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
 fn has_touched(path: &Path, meeting: &Meeting) -> bool {
     let Hit { normal, velocity: surface, slack, .. } = meeting.hit;
     let elapsed = path.duration() * meeting.time;
-    let off = (path.x0 + surface * elapsed - path.at(meeting.time)).dot(normal);
+    let off = (path.x0 + surface * elapsed - meeting.place).dot(normal);
     let left = (path.v0 - surface).dot(normal) * elapsed;
     max(off.abs(), left.abs()) <= LAIN * slack
 }
@@ -275,10 +280,9 @@ fn slowed(speed: f32, work: f32) -> f32 {
 /// When a path crosses the plane that touches the surface at a place where it would be hit after a fraction of the path,
 /// from the side of the normal to the other, between two others. It begins at the end: where the path bends toward the
 /// surface, Newton's method comes from there to the crossing and never to where the path has left the surface before.
-fn crossing(path: &Path, hit: &Hit, place: Vec3, [begun, found, end]: [f32; 3]) -> f32 {
-    let drift = hit.velocity.dot(hit.normal) * path.duration();
-    let [c1, c2, c3] = path.coefficients().map(|c| c.dot(hit.normal));
-    let (c0, c1) = ((path.x0 - place).dot(hit.normal) + drift * found, c1 - drift);
+fn crossing(cubic: &Cubic, drift: f32, hit: &Hit, place: Vec3, [begun, found, end]: [f32; 3]) -> f32 {
+    let [c1, c2, c3] = cubic.coefficients.map(|c| c.dot(hit.normal));
+    let (c0, c1) = ((cubic.start - place).dot(hit.normal) + drift * found, c1 - drift);
     let (mut low, mut high, mut s) = (begun, end, end);
     for _ in 0..MAX_LOOKS {
         let height = c0 + (c1 + (c2 + c3 * s) * s) * s;

@@ -22,6 +22,32 @@ pub(super) struct Path {
     pub(super) during: [Time; 2],
 }
 
+/// The same as a polynomial in the fraction of its time, for whoever asks for many points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cubic {
+    pub(super) start: Vec3,
+    /// Of the first power and on \[m\].
+    pub(super) coefficients: [Vec3; 3],
+}
+
+impl Cubic {
+    /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.
+    #[inline(always)]
+    pub(super) fn at(&self, s: f32) -> Vec3 {
+        let [c1, c2, c3] = self.coefficients;
+        self.start + (c1 + (c2 + c3 * s) * s) * s
+    }
+
+    /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
+    pub(super) fn chords(&self) -> u32 {
+        let [_, c2, c3] = self.coefficients;
+        let bend = 2.0 * max(length(c2), length(c2 + c3 * 3.0));
+        let ratio = bend / (8.0 * CHORD_ERROR);
+        // The cast rounds down and saturates.
+        if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1) } else { 1 }
+    }
+}
+
 impl Path {
     /// How long it takes \[s\].
     pub(super) fn duration(&self) -> f32 {
@@ -46,10 +72,16 @@ impl Path {
         Aabb { min: min - radius, max: max + radius }.with_slack()
     }
 
-    /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.
+    /// It as a polynomial.
+    pub(super) fn cubic(&self) -> Cubic {
+        let (duration, excess) = (self.duration(), self.excess());
+        let bend = (self.v1 - self.v0) * (0.5 * duration) + excess * 3.0;
+        Cubic { start: self.x0, coefficients: [self.v0 * duration, bend, excess * -2.0] }
+    }
+
+    /// The point at a fraction of the time.
     pub(super) fn at(&self, s: f32) -> Vec3 {
-        let [c1, c2, c3] = self.coefficients();
-        self.x0 + (c1 + (c2 + c3 * s) * s) * s
+        self.cubic().at(s)
     }
 
     /// The velocity at a fraction of the time \[m/s\]. Where the cubic bends as the ends' velocities do not say, as with the
@@ -67,12 +99,6 @@ impl Path {
         let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * (0.5 * self.duration());
         let rounding = (self.x0.abs() + self.x1.abs()) * f32::EPSILON;
         Vec3::select(excess.abs().cmple(rounding), Vec3::ZERO, excess)
-    }
-
-    /// Those of the powers of s in `at`, from the first on \[m\].
-    pub(super) fn coefficients(&self) -> [Vec3; 3] {
-        let (duration, excess) = (self.duration(), self.excess());
-        [self.v0 * duration, (self.v1 - self.v0) * (0.5 * duration) + excess * 3.0, excess * -2.0]
     }
 
     /// Its rest from a fraction of the time on, as a path of its own.
@@ -120,13 +146,9 @@ impl Path {
         if duration > 0.0 { (self.v1 - self.v0) / duration } else { Vec3::ZERO }
     }
 
-    /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
+    /// How many chords stay within `CHORD_ERROR` of it.
     pub(super) fn chords(&self) -> u32 {
-        let [_, c2, c3] = self.coefficients();
-        let bend = 2.0 * max(length(c2), length(c2 + c3 * 3.0));
-        let ratio = bend / (8.0 * CHORD_ERROR);
-        // The cast rounds down and saturates.
-        if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1) } else { 1 }
+        self.cubic().chords()
     }
 
     /// The straight line between two fractions of its time, for a ball.
