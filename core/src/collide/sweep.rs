@@ -20,7 +20,8 @@ pub(super) fn each_by_itself(mut passage: Passage<'_, '_>) {
     }
 }
 
-/// Marks those from a row on that may touch anything in the step.
+/// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.
+#[inline(never)]
 fn near(passage: &Passage<'_, '_>, layout: &Layout, first: usize) -> Marks {
     let Passage { view, scene, old, dt, .. } = passage;
     let m = &view.memory;
