@@ -6,7 +6,8 @@
 #[cfg(feature = "rapier")]
 use pointmass::Vec3;
 use pointmass::index::Structure;
-use pointmass::{Gravity, Heap, Penalty, Projection, Response, Scene, Symplectic, System, Time};
+use pointmass::scene::Position;
+use pointmass::{Gravity, Heap, Penalty, Response, Scene, Symplectic, System, Time};
 use pointmass_bench::drop::{Drop, deepest};
 use std::time::Instant;
 
@@ -16,13 +17,13 @@ const FORCE_STEPS: usize = 20;
 fn main() {
     let argument = |i: usize, default: usize| std::env::args().nth(i).and_then(|x| x.parse().ok()).unwrap_or(default);
     let (balls, seconds) = (argument(1, 10_000), argument(2, 8));
-    let substeps = argument(3, Projection::default().substeps as usize) as u32;
+    let substeps = argument(3, Position::default().substeps as usize) as u32;
     let drop = Drop::of(balls);
     println!("{balls} balls, {seconds} s; the drop brings {:.3} J a ball", drop.energy());
     let [response, mean, last, energy, overlap] =
         ["response", "ms a step", "last second", "energy/drop", "overlap/radius"];
     println!("{response:12}{mean:>12}{last:>14}{energy:>14}{overlap:>16}");
-    let position = Response::Position(Projection { substeps, ..Projection::default() });
+    let position = Response::Position(Position { substeps, ..Position::default() });
     let impulse = Response::by_name("impulse", drop.dt, drop.mass());
     let force = Response::by_name("force", drop.dt / FORCE_STEPS as f32, drop.mass());
     for response in [Some(position), impulse, force].into_iter().flatten() {
@@ -45,7 +46,9 @@ fn run(drop: &Drop, response: &Response, seconds: usize) {
         forces: &forces,
         colliders: &walls,
         grips: &grips,
-        contacts: response,
+        constraints: &response.contacts(),
+        substeps: response.substeps(),
+        meetings: response.meetings(),
         integrator: &Symplectic,
         index: &Structure::Grid,
         ..Scene::EMPTY

@@ -42,7 +42,7 @@ fn main() {
 }
 
 /// About so many drops in the air at once.
-fn nozzle(particles: f32) -> Emitter<Mesh<'static>> {
+fn nozzle(particles: f32) -> Emitter<Shape<Mesh<'static>>> {
     let disc = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
     Emitter {
         speed: Varied { mean: 10.0, variance: 1.0 },

@@ -32,7 +32,7 @@ pub fn started(scene: &Scene<'_>, capacity: usize) -> System<Heap> {
 
 /// A jet that holds about `n` drops in the air, each for 2 s.
 #[must_use]
-pub fn jet(n: f32) -> Emitter<Mesh<'static>> {
+pub fn jet(n: f32) -> Emitter<Shape<Mesh<'static>>> {
     let nozzle = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
     Emitter {
         speed: Varied { mean: 6.0, variance: 1.0 },

@@ -152,6 +152,7 @@ impl Summary {
             ("at sinks", self.died.sink),
             ("of crowding", self.died.density),
             ("by chance", self.died.chance),
+            ("by the program's own rule or hand", self.died.other),
             ("no longer finite", self.died.nonfinite),
         ];
         push_counts(&mut rows, "died", &died);
@@ -210,13 +211,14 @@ fn method_effort(effort: &pointmass::Effort) -> String {
 
 /// The books, a row an entry; what is nothing is left out.
 fn accounts(books: &Books) -> Vec<(&'static str, String)> {
-    let Books { opening, emission, restitution, friction, scenery, breaking, .. } = *books;
+    let Books { opening, emission, restitution, friction, constraints, scenery, breaking, .. } = *books;
     let Books { deletion, outside, remainder, closing, .. } = *books;
     let mut entries = vec![("at first", opening), ("born", emission)];
     entries.extend(books.work.iter().copied());
     entries.extend([
         ("lost in hits", restitution),
         ("friction", friction),
+        ("constraints", constraints),
         ("moving scenery", scenery),
         ("springs that broke", breaking),
         ("died", deletion),

@@ -2,7 +2,7 @@
 
 use crate::words::thousands;
 use pointmass::scene::Model;
-use pointmass::{Contacts, ForceKind, Report, Vec3};
+use pointmass::{ForceKind, Report, Vec3};
 
 /// The share of a scene's speeds below which nobody misses what rounding swallows.
 const NEGLIGIBLE: f64 = 0.01;
@@ -12,8 +12,7 @@ const SELDOM: f64 = 0.01;
 /// What is lost in steps of `h` \[s\] of a run of some duration \[s\], if that is worth telling: told by where particles begin
 /// and by how fast they move at first or after a second's fall.
 pub(crate) fn foreseen(model: &Model, h: f64, duration: f64) -> Option<String> {
-    let pieces = model.contacts.as_ref().map_or(1, Contacts::substeps);
-    let h = h / f64::from(pieces);
+    let h = h / f64::from(model.substeps);
     let free = || model.particles.iter().filter(|particle| !particle.fixed);
     let gravity = model.forces.0.iter().filter_map(|force| match force {
         ForceKind::Gravity(gravity) => Some(gravity.acceleration),

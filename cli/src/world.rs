@@ -94,7 +94,7 @@ impl World {
         let mut names: Vec<_> = self.model.forces.0.iter().filter(is_summed).map(ForceKind::kind).collect();
         let has_balls = self.model.has_balls();
         names.extend(self.file.contacts.filter(|_| has_balls).and_then(|response| match response {
-            Response::Impulse(_) | Response::Position(_) => None,
+            Response::Impulse {} | Response::Position(_) => None,
             Response::Force(_) => Some("contacts by force"),
         }));
         names.dedup();

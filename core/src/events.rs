@@ -2,7 +2,7 @@
 
 use crate::observe::{Impact, Observer, Passing};
 use crate::particles::Id;
-use crate::retire::Cause;
+use crate::reap::Cause;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -41,8 +41,8 @@ pub enum EventKind {
 
 /// Records of a step in memory that its owner lends: watch with it by [`System::step_observed`](crate::System), read, clear.
 ///
-/// What finds no room is counted, never overwritten. Contacts held by position or by force last, and are no hits: of them
-/// there are no records.
+/// What finds no room is counted, never overwritten. Contacts held by position are recorded where they begin, faster than what
+/// rests meets in a step; those by force are no hits, and there are no records of them.
 ///
 /// ```
 /// use pointmass::shape::Plane;
@@ -120,6 +120,10 @@ impl Observer for Events<'_> {
         let kind = hit.other.map_or(EventKind::Hit, EventKind::Contact);
         let Impact { id, place, normal, closing, time, .. } = *hit;
         self.push(Event { kind, id: Some(id), place, normal, speed: closing, time });
+    }
+
+    fn touched(&mut self, touch: &Impact) {
+        self.hit(touch);
     }
 
     fn born(&mut self, birth: &Passing) {

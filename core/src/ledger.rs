@@ -1,6 +1,6 @@
 //! The ledger: where energy went, in double precision.
 
-use crate::force::{Entry, Force, Springs, State};
+use crate::force::{Entry, Force, State};
 use crate::memory::Storage;
 use crate::observe::{Impact, Observer, Phase, Sliding};
 use crate::scene::Scene;
@@ -67,8 +67,11 @@ pub struct Books {
     /// Lost in hits by elasticities below one.
     pub restitution: f64,
     /// Lost by dry friction on colliders and, by [`Impulse`](crate::Impulse), of particles on each other: in hits and while
-    /// they slide. (Contacts by position are not booked: what they take is in the remainder.)
+    /// they slide.
     pub friction: f64,
+    /// What constraints have taken and given, contacts by position among them: restitution, friction, and what they store while
+    /// they give way.
+    pub constraints: f64,
     /// The work of scenery that moves on what it hits, lifts and drags along.
     pub scenery: f64,
     /// Set free, or taken along, by springs that broke.
@@ -77,7 +80,7 @@ pub struct Books {
     pub deletion: f64,
     /// Brought in or taken out between steps, by the program's own hand.
     pub outside: f64,
-    /// The error of the method and of rounding, and what contacts by position do.
+    /// The error of the method and of rounding.
     pub remainder: f64,
     /// Kinetic and potential energy now.
     pub closing: f64,
@@ -94,7 +97,8 @@ impl Books {
     #[must_use]
     pub fn total(&self) -> f64 {
         let work: f64 = self.work.iter().map(|(_, work)| work).sum();
-        let causes = self.emission + self.restitution + self.friction + self.scenery + self.breaking + self.deletion;
+        let causes = self.emission + self.restitution + self.friction + self.constraints + self.scenery;
+        let causes = causes + self.breaking + self.deletion;
         work + causes + self.outside + self.remainder
     }
 
@@ -102,8 +106,8 @@ impl Books {
     #[must_use]
     pub fn turnover(&self) -> f64 {
         let work: f64 = self.work.iter().map(|(_, work)| work.abs()).sum();
-        let Self { emission, restitution, friction, scenery, breaking, deletion, outside, .. } = *self;
-        let others = [emission, restitution, friction, scenery, breaking, deletion, outside];
+        let Self { emission, restitution, friction, constraints, scenery, breaking, deletion, outside, .. } = *self;
+        let others = [emission, restitution, friction, constraints, scenery, breaking, deletion, outside];
         work + others.iter().map(|x| x.abs()).sum::<f64>()
     }
 
@@ -225,23 +229,14 @@ impl Snapshot {
 
     /// These particles with all else as in `other`.
     fn state<'s>(&'s self, other: &State<'s>) -> State<'s> {
-        State { time: self.time, position: &self.position, velocity: &self.velocity, ..*other }
+        other.moved(self.time, &self.position, &self.velocity)
     }
 }
 
 /// The first `len` of them.
 fn first<'s>(state: &State<'s>, len: usize) -> State<'s> {
     let len = len.min(state.position.len());
-    State {
-        position: &state.position[..len],
-        velocity: &state.velocity[..len],
-        radius: &state.radius[..len],
-        mass: &state.mass[..len],
-        drag: &state.drag[..len],
-        charge: &state.charge[..len],
-        springs: Springs { serial: &state.springs.serial[..len], ..state.springs },
-        ..*state
-    }
+    state.moved(state.time, &state.position[..len], &state.velocity[..len])
 }
 
 impl Observer for Ledger<'_> {
@@ -254,6 +249,16 @@ impl Observer for Ledger<'_> {
             }
             Phase::Create => {}
             Phase::Advance => self.arrive(state),
+            Phase::Project => {
+                let change = self.change(state);
+                self.books.remainder += change;
+            }
+            Phase::Constrain => {
+                let change = self.change(state);
+                self.books.constraints += change;
+                self.from.set(state);
+                self.powers = self.powers(state);
+            }
             Phase::Move => {
                 let old = first(state, self.old);
                 self.arrive(&old);

@@ -1,8 +1,8 @@
 #![doc = include_str!("../README.md")]
 //!
 //! # Map
-//! [`System`] holds the state, `step` moves it on. [`emit`] creates; [`force`] and [`integrate`] move; `collide` and
-//! [`shape`] collide, with [`rays`] to find what a path meets first and [`index`] to find what is near; `retire` deletes.
+//! [`System`] holds the state, `step` moves it on. [`emit`] creates; [`force`] and [`integrate`] move,
+//! [`constrain`] binds; `collide` and [`shape`] collide, with [`rays`] to find what a path meets first and [`index`] to find what is near; [`reap`] deletes.
 //! [`Report`], and with the feature `std` [`Measures`], [`Ledger`] and [`stability`], tell what happened and what will.
 //! [`Sheet`] makes cloth. [`Storage`] is the memory. [`scene`] reads and writes scene files.
 
@@ -15,6 +15,7 @@ extern crate alloc;
 extern crate std;
 
 mod collide;
+pub mod constrain;
 pub mod emit;
 mod events;
 pub mod force;
@@ -31,8 +32,8 @@ mod memory;
 mod observe;
 mod particles;
 pub mod rays;
+pub mod reap;
 mod report;
-mod retire;
 pub mod rng;
 mod rows;
 pub mod scene;
@@ -46,10 +47,11 @@ mod time;
 
 mod weave;
 
-pub use collide::{Contacts, Grip, Impulse, Projection, Response};
-#[doc(hidden)]
-pub use collide::{Passage, Stage};
-pub use emit::{Emit, Emitter, Spread, Varied};
+pub use collide::{Grip, Impulse, Meetings};
+#[cfg(feature = "alloc")]
+pub use constrain::ConstraintKind;
+pub use constrain::{Constraint, Contacts, Distance};
+pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
     AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, Penalty, PowerLaw,
@@ -70,9 +72,9 @@ pub use memory::Heap;
 pub use memory::{Columns, Inline, Size, Slices, Storage};
 pub use observe::{Impact, Observer, Passing, Phase, Sliding};
 pub use particles::{Color, Full, Id, Particle, WHITE};
+pub use reap::{Cause, Chance, Dense, Fate, Reaper, ReaperKind};
 pub use report::{Caps, Died, Effort, Report};
-pub use retire::{Cause, Fate};
-pub use scene::{Scene, Unfit};
+pub use scene::{Response, Scene, Unfit};
 pub use system::System;
 pub use time::Time;
 #[cfg(feature = "alloc")]

@@ -22,6 +22,13 @@ pub fn length(v: Vec3) -> f32 {
     sqrt(v.dot(v))
 }
 
+/// What of a vector lies along a surface.
+#[inline(always)]
+#[must_use]
+pub(crate) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
+    v - normal * v.dot(normal)
+}
+
 /// `v` over its length; zero where it has none that an `f32` can hold.
 #[inline]
 #[must_use]
@@ -96,6 +103,28 @@ pub fn cbrt(x: f32) -> f32 {
     root
 }
 
+/// Natural logarithm of a number from 1.2e-38 on, within 1.2e-7 of its value; −∞ below that and of no number.
+///
+/// The reduction and the polynomial of FDLIBM's `e_logf.c` (Sun Microsystems, 1993) in the coefficients of FreeBSD's:
+/// x = 2^k (1 + f) with 1 + f from √½ to √2, s = f / (2 + f), and ln(1 + f) = f − f²/2 + s (f²/2 + R(s²)).
+#[must_use]
+pub fn ln(x: f32) -> f32 {
+    const SQRT_HALF: u32 = 0x3F35_04F3;
+    const LN2_HIGH: f32 = 6.931_381e-1;
+    const LN2_LOW: f32 = 9.058_001e-6;
+    if !(f32::MIN_POSITIVE..f32::INFINITY).contains(&x) {
+        return if x >= f32::INFINITY { x } else { f32::NEG_INFINITY };
+    }
+    let bits = x.to_bits() + (0x3F80_0000 - SQRT_HALF);
+    let k = (bits >> 23) as i32 as f32 - 127.0;
+    let f = f32::from_bits((bits & 0x007F_FFFF) + SQRT_HALF) - 1.0;
+    let s = f / (2.0 + f);
+    let z = s * s;
+    let r = z * (6.666_666e-1 + z * (4.000_097_2e-1 + z * (2.849_878_7e-1 + z * 2.427_907_9e-1)));
+    let half = 0.5 * f * f;
+    s * (half + r) + k * LN2_LOW - half + f + k * LN2_HIGH
+}
+
 /// Sine and cosine of `turns` × 2π, within 1.2e-7 for up to a million turns.
 ///
 /// Cephes' single-precision polynomials on an eighth of a turn, in `f32` alone: about 30 instructions with an FPU,
@@ -166,6 +195,18 @@ mod tests {
             assert!((cbrt(x) / libm::cbrtf(x) - 1.0).abs() < 1e-6, "cube root of {x}");
         }
         assert_eq!([cbrt(0.0), cbrt(-1.0), cbrt(f32::INFINITY)], [0.0, 0.0, f32::INFINITY]);
+    }
+
+    #[test]
+    fn logarithms_are_within_their_bound() {
+        let near_one = (-3000..3000).map(|i| f32::from_bits((1f32.to_bits() as i32 + i) as u32));
+        let everywhere = (0x0080_0000..0x7F80_0000).step_by(9973).map(f32::from_bits);
+        for x in near_one.chain(everywhere) {
+            let exact = libm::log(f64::from(x));
+            assert!((f64::from(ln(x)) - exact).abs() <= 1.2e-7 * exact.abs(), "ln {x}: {} for {exact}", ln(x));
+        }
+        assert_eq!([ln(1.0), ln(f32::INFINITY)], [0.0, f32::INFINITY]);
+        assert!([0.0, -1.0, 1e-40, f32::NAN].iter().all(|&x| ln(x) == f32::NEG_INFINITY));
     }
 
     #[test]

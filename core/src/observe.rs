@@ -2,7 +2,7 @@
 
 use crate::force::State;
 use crate::particles::Id;
-use crate::retire::Cause;
+use crate::reap::Cause;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -16,6 +16,12 @@ pub trait Observer {
     /// A particle met a collider or another particle, and was answered.
     fn hit(&mut self, hit: &Impact) {
         let _ = hit;
+    }
+
+    /// A constraint keeps a particle from a collider or from another particle, with which it came together faster than what
+    /// rests does in a step: told once, at the sub-step's end.
+    fn touched(&mut self, touch: &Impact) {
+        let _ = touch;
     }
 
     /// A particle that has come to rest on a surface slides along it, or stays and is carried, for the rest of the step.
@@ -50,6 +56,10 @@ pub enum Phase {
     Create,
     /// The integrator has moved the old so far on its way through the step. The newborn have not moved yet.
     Advance,
+    /// The integrator has moved the old to the end of a sub-step, and constraints are about to.
+    Project,
+    /// Constraints have moved the old at the end of a sub-step.
+    Constrain,
     /// The integrator has moved the old to the step's end, and the newborn have flown there.
     Move,
     /// Springs that were stretched too far have broken.

@@ -1,6 +1,7 @@
 //! What a step did, counted: nothing that is bounded is bounded silently.
 
 use crate::math::max;
+use crate::reap::Cause;
 
 /// What happened in a step, or in all of them so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,8 +70,10 @@ pub struct Died {
     pub sink: u64,
     /// Where too many were.
     pub density: u64,
-    /// By chance, or by the program's own hand.
+    /// By chance.
     pub chance: u64,
+    /// By a rule of the program's own, or by its hand.
+    pub other: u64,
     /// Because a number of theirs was no longer finite.
     pub nonfinite: u64,
 }
@@ -105,7 +108,7 @@ macro_rules! add_fields {
     )+};
 }
 add_fields! {
-    Died { lifetime sink density chance nonfinite }
+    Died { lifetime sink density chance other nonfinite }
     Caps { bounces chords springs contacts stalled unfit }
     Effort { evaluations accepted rejected solves iterations capped }
 }
@@ -130,10 +133,23 @@ impl core::ops::AddAssign for Report {
 }
 
 impl Died {
+    /// Counts a death.
+    pub(crate) fn count(&mut self, cause: Cause) {
+        let counter = match cause {
+            Cause::Lifetime => &mut self.lifetime,
+            Cause::Sink => &mut self.sink,
+            Cause::Density => &mut self.density,
+            Cause::Chance => &mut self.chance,
+            Cause::Other => &mut self.other,
+            Cause::Nonfinite => &mut self.nonfinite,
+        };
+        *counter += 1;
+    }
+
     /// From whatever cause.
     #[must_use]
     pub const fn total(&self) -> u64 {
-        self.lifetime + self.sink + self.density + self.chance + self.nonfinite
+        self.lifetime + self.sink + self.density + self.chance + self.other + self.nonfinite
     }
 }
 
@@ -142,7 +158,7 @@ impl Report {
     pub const NOTHING: Self = Self {
         initial: 0,
         born: 0,
-        died: Died { lifetime: 0, sink: 0, density: 0, chance: 0, nonfinite: 0 },
+        died: Died { lifetime: 0, sink: 0, density: 0, chance: 0, other: 0, nonfinite: 0 },
         refused: 0,
         hits: 0,
         contacts: 0,
@@ -154,7 +170,8 @@ impl Report {
     /// Every counter of what happened that the state does not tell, in a fixed order.
     pub(crate) fn counters(&self) -> [u64; 16] {
         let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
-        let Died { lifetime, sink, density, chance, nonfinite } = died;
+        // The hash takes in `other` where there are any.
+        let Died { lifetime, sink, density, chance, other: _, nonfinite } = died;
         let Caps { bounces, chords, springs, contacts: near, stalled: _, unfit } = caps;
         [
             initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, contacts, broken, bounces,

@@ -17,6 +17,12 @@ impl Stream {
         Self { key: threefry([seed as u32, (seed >> 32) as u32], [emitter, serial]) }
     }
 
+    /// A word of its own, beside all pairs: what a particle keeps of it as long as it lives.
+    #[must_use]
+    pub const fn name(&self) -> u32 {
+        self.key[0]
+    }
+
     /// Two independent words, the `place`-th pair of the stream.
     #[must_use]
     pub fn words(&self, place: u32) -> [u32; 2] {
@@ -28,6 +34,14 @@ impl Stream {
     pub fn units(&self, place: u32) -> [f32; 2] {
         self.words(place).map(|word| (word >> 8) as f32 * (1.0 / 16_777_216.0))
     }
+}
+
+/// The `place`-th word of a particle whose stream has this [`name`](Stream::name): the first is the name itself, which is
+/// uniform already and costs nothing.
+#[inline]
+#[must_use]
+pub fn later(name: u32, place: u32) -> u32 {
+    if place == 0 { name } else { threefry([name, place], [0, 0])[0] }
 }
 
 /// Threefry-2x32 with 20 rounds: a bijection of `counter` for each `key`.
@@ -79,6 +93,25 @@ mod tests {
         }
         // Three products of variance 1/144 each: five standard deviations.
         assert!(sum.abs() < 5.0 * (3.0 * f64::from(n) / 144.0f64).sqrt(), "{sum}");
+    }
+
+    #[test]
+    fn words_after_birth_are_uncorrelated_with_each_other_and_with_those_of_the_birth() {
+        let n = 20_000u32;
+        let unit = |word: u32| f64::from(word) / 4_294_967_296.0 - 0.5;
+        let mut sums = [0.0; 6];
+        for serial in 0..n {
+            let stream = Stream::new(3, 1, serial);
+            let [a, b, c] = [0, 1, 2].map(|place| unit(later(stream.name(), place)));
+            let next = unit(Stream::new(3, 1, serial + 1).name());
+            let [d, e] = stream.words(0).map(unit);
+            for (sum, product) in sums.iter_mut().zip([a * b, a * c, b * c, a * next, a * d, a * e]) {
+                *sum += product;
+            }
+        }
+        // Products of variance 1/144: five standard deviations.
+        let most = 5.0 * (f64::from(n) / 144.0).sqrt();
+        assert!(sums.iter().all(|sum| sum.abs() < most), "{sums:?}");
     }
 
     #[test]

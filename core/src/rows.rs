@@ -59,6 +59,13 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
     *total = Vec3::new(f(total.x, vector.x, factor), f(total.y, vector.y, factor), f(total.z, vector.z, factor));
 }
 
+/// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
+#[inline]
+pub(crate) fn are_finite(column: &[Vec3]) -> bool {
+    let carried = |any: u32, x: &f32| any | ((x.to_bits() & 0x7FFF_FFFF) + 0x0080_0000);
+    flat(column).iter().fold(0, carried) >> 31 == 0
+}
+
 #[inline(always)]
 pub(crate) fn flat(column: &[Vec3]) -> &[f32] {
     bytemuck::cast_slice(column)
@@ -72,6 +79,20 @@ fn flat_mut(column: &mut [Vec3]) -> &mut [f32] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_number_that_is_not_finite_is_seen_wherever_it_is() {
+        for n in 0..20 {
+            let mut column = std::vec![Vec3::new(f32::MAX, -f32::MAX, -0.0); n];
+            assert!(are_finite(&column));
+            for (i, bad) in (0..3 * n).zip([f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().cycle())
+            {
+                let good = core::mem::replace(&mut column[i / 3][i % 3], bad);
+                assert!(!are_finite(&column), "{bad} at {i} of {n}");
+                column[i / 3][i % 3] = good;
+            }
+        }
+    }
 
     #[test]
     fn blocks_and_rest_are_treated_alike() {

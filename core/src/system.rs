@@ -80,6 +80,7 @@ impl<B: Storage> System<B> {
     pub fn step_observed(&mut self, scene: &Scene<'_>, dt: Time, observer: &mut dyn Observer) -> Report {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
+        self.status.is_reaped |= !scene.reapers.is_empty();
         if scene.fits(self.memory.columns().size()) {
             self.view().step(scene, dt, &mut report, observer);
         } else {
@@ -96,7 +97,7 @@ impl<B: Storage> System<B> {
     pub fn spawn(&mut self, particle: &Particle) -> Result<Id, Full> {
         let now = self.status.time;
         self.status.hint = Time::ZERO;
-        let given = self.view().spawn(particle, now);
+        let given = self.view().put(particle, now);
         let totals = &mut self.status.totals;
         match given {
             Ok(_) => totals.born = totals.born.saturating_add(1),
@@ -105,11 +106,11 @@ impl<B: Storage> System<B> {
         given
     }
 
-    /// Takes a particle out, and says whether it was alive. Counted as a death by chance.
+    /// Takes a particle out, and says whether it was alive. Counted in `died.other`.
     pub fn remove(&mut self, scene: &Scene<'_>, id: Id) -> bool {
         let Some(row) = self.row(id) else { return false };
         let mut report = Report::default();
-        report.died.chance = 1;
+        report.died.other = 1;
         self.status.hint = Time::ZERO;
         self.view().remove(row, scene.springs, &mut report);
         self.status.totals += report;
@@ -144,16 +145,23 @@ impl<B: Storage> System<B> {
         self.memory.columns().state(scene.springs, &self.status)
     }
 
-    /// A fingerprint of time, counters, and every column in the order of ids: equal on all targets for equal states. The
+    /// A fingerprint of time, counters, and every column in the order of ids (keys once a scene has had reapers, which die
+    /// by them): equal on all targets for equal states. The
     /// order of rows and of free slots, which decides how sums round and which ids come next, is not in it.
     pub fn hash(&self) -> u64 {
         let mut hash = Fnv::new();
-        let Status { time, seed, taken, emitters, totals, .. } = self.status;
+        let Status { time, seed, taken, given, is_reaped, emitters, totals, .. } = self.status;
         hash.long(time.ticks());
         hash.long(seed);
         hash.word(taken);
         for counter in totals.counters() {
             hash.long(counter);
+        }
+        if totals.died.other > 0 {
+            hash.long(totals.died.other);
+        }
+        if is_reaped {
+            hash.word(given);
         }
         let columns = self.particles();
         for tally in columns.tallies.iter().take(emitters) {
@@ -168,6 +176,10 @@ impl<B: Storage> System<B> {
             let row = columns.row_of[slot] as usize;
             if columns.slot.get(row) == Some(&(slot as u32)) {
                 columns.hash_row(row, &mut hash);
+                // Where nothing dies by them keys decide nothing.
+                if is_reaped {
+                    hash.word(columns.key[row]);
+                }
             }
         }
         hash.finish()
@@ -179,13 +191,13 @@ impl<B: Storage> System<B> {
 }
 
 impl<'a> Columns<'a> {
-    /// The living as forces see them.
+    /// The living as forces and reapers see them.
     pub(crate) fn state(self, springs: &'a [Spring], status: &Status) -> State<'a> {
-        let Columns { position, velocity, radius, mass, drag, charge, serial, row_of, last_spring, incident, .. } =
-            self.living(status.len);
+        let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, .. } = self;
+        let Columns { serial, row_of, last_spring, incident, .. } = self;
         let springs = Springs { springs, start: status.start, serial, row_of, last_spring, incident };
-        let (time, mass_tree, charge_tree, near) = (status.time, None, None, None);
-        State { time, position, velocity, radius, mass, drag, charge, springs, mass_tree, charge_tree, near }
+        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, ..State::EMPTY };
+        lives.moved(status.time, &position[..status.len], &velocity[..status.len])
     }
 
     /// The columns by row, cut to the rows in use.
@@ -206,6 +218,7 @@ impl<'a> Columns<'a> {
             fate: &self.fate[..len],
             serial: &self.serial[..len],
             slot: &self.slot[..len],
+            key: &self.key[..len],
             ..self
         }
     }

@@ -3,10 +3,12 @@
 use crate::Form;
 use pointmass::emit::Burst;
 use pointmass::math::sin_cos_turns;
-use pointmass::shape::{Cuboid, Disc, Mesh, Plane, Sphere};
-use pointmass::{Drag, Emitter, Gravity, Method, MutualGravity, Particle, Scene, Size, Spread, Spring, Varied, Vec3};
+use pointmass::shape::{Cuboid, Disc, Plane, Sphere};
+use pointmass::{
+    Drag, Emitter, Gravity, Meetings, Method, MutualGravity, Particle, Scene, Size, Spread, Spring, Varied, Vec3,
+};
 
-type Nozzle = Emitter<Mesh<'static>>;
+type Nozzle = Emitter<Form>;
 
 /// Two emitters with everything varied, the second fuller than any memory here.
 pub fn emitters() -> (Nozzle, Nozzle) {
@@ -58,9 +60,12 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         forces: &forces,
         colliders: &(ground, box_),
         grips: &[],
-        contacts: &(),
+        constraints: &(),
+        substeps: 1,
+        meetings: Meetings::Through,
         max_bounces: Scene::EMPTY.max_bounces,
         sinks: &sink,
+        reapers: &(),
         integrator: Method::Rk4.integrator(),
         index: &(),
     })

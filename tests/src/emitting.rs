@@ -1,7 +1,7 @@
 //! Emitters, and runs of them cut into steps in many ways.
 
 use crate::{Form, Random, started};
-use pointmass::shape::{Mesh, Sphere};
+use pointmass::shape::Sphere;
 use pointmass::{Emitter, Heap, Scene, Spread, System, Time, Varied, Vec3};
 
 /// A run of 2.5 s cut into steps in many ways; every cut ends at the same instant.
@@ -56,7 +56,7 @@ pub fn sphere() -> Form {
 
 /// Births on a sphere with every property varied, but at rest: they stay where they were born.
 #[must_use]
-pub fn varied(rate: f32) -> Emitter<Mesh<'static>> {
+pub fn varied(rate: f32) -> Emitter<Form> {
     let varied = |mean| Varied { mean, variance: 0.25 * mean };
     Emitter {
         mass: varied(2.0),

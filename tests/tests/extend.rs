@@ -1,13 +1,16 @@
 //! Everything that a user can bring along: forces, integrators, emitters, colliders, memory.
 
 use core::ops::Range;
+use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::{Births, Tally};
 use pointmass::force::State;
+use pointmass::index::{Arrange, Structure};
 use pointmass::integrate::{Dynamics, Motion};
+use pointmass::reap::Verdicts;
 use pointmass::shape::{Collider, Hit, Plane, Segment};
 use pointmass::{
-    Columns, Drag, Emit, Emitter, Fate, Force, Gravity, Heap, Integrator, Measures, Method, Particle, Scene, Size,
-    Slices, Storage, System, Time, Vec3,
+    Cause, Chance, Columns, Constraint, Distance, Drag, Emit, Emitter, Fate, Force, Gravity, Heap, Integrator,
+    Measures, Meetings, Method, Particle, Reaper, Scene, Size, Slices, Storage, System, Time, Vec3,
 };
 use pointmass_tests::{f64s, gap, point, run, started};
 
@@ -107,6 +110,88 @@ fn an_integrator() {
             assert!((f64::from(x.x) - expected).abs() < 2e-5 && x.y == p.position.y);
         }
     }
+}
+
+/// A wire bent to a circle about the z axis, on which beads are threaded, and which counts in its own memory how often it has
+/// been asked, for each bead and altogether. Beads that come within a reach of each other stop.
+struct Wire {
+    radius: f32,
+    reach: f32,
+}
+
+impl Constraint for Wire {
+    fn demand(&self) -> Demand {
+        Demand {
+            step: Words { per_row: 1, fixed: 2 },
+            scratch: Words { per_row: 3, fixed: 0 },
+            finds_near: self.reach > 0.0,
+        }
+    }
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if bodies.substep.number == 0 {
+            share.step.fill(0);
+        }
+        share.step[0] += 1;
+    }
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        assert!(share.step[0] == bodies.substep.number + 1 && share.scratch.len() >= 3 * bodies.len());
+        for row in 0..bodies.len() {
+            let x = bodies.position[row];
+            let flat = Vec3::new(x.x, x.y, 0.0);
+            bodies.shift(row, flat * (self.radius / flat.length()) - x);
+            share.step[2 + row] += 1;
+        }
+    }
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let Bodies { position, velocity, near, .. } = bodies;
+        near.pairs(position, self.reach, &mut |a, b| {
+            velocity[a as usize] = Vec3::ZERO;
+            velocity[b as usize] = Vec3::ZERO;
+            share.step[1] += 1;
+        });
+        let last = bodies.substep.is_last();
+        assert!(!last || share.step[2..2 + bodies.len()].iter().all(|&times| times == bodies.substep.count));
+    }
+}
+
+#[test]
+fn a_constraint() {
+    let bead = |angle: f32| Particle { position: Vec3::new(angle.sin(), -angle.cos(), 0.0) * 2.0, ..Particle::REST };
+    let start = [bead(0.2), bead(-1.5), bead(3.0)];
+    let wire = Wire { radius: 2.0, reach: 0.0 };
+    let wires = [Wire { radius: 2.0, reach: 0.0 }];
+    let lists: [&dyn Constraint; 5] = [&wire, &&wire, &wires, &(&wire, ()), &((), Some(&wire), None::<Distance>)];
+    let mut hashes = Vec::new();
+    for constraints in lists {
+        assert!(!constraints.is_empty());
+        let forces = &Gravity::EARTH;
+        let scene = Scene { start: &start, forces, constraints, substeps: 20, ..Scene::EMPTY };
+        let mut system = started(&scene, 3, 0);
+        let energy = Measures::of(&system, &scene).energy.total();
+        run(&mut system, &scene, 1.0 / 60.0, 300);
+        for x in system.particles().position {
+            assert!((x.length() - 2.0).abs() < 1e-5 && x.z == 0.0, "{x}");
+        }
+        // Beads slide without friction; projections of first order take a little, and give nothing.
+        let off = Measures::of(&system, &scene).energy.total() - energy;
+        assert!((-5.0..0.1).contains(&off), "{off} J of some 100");
+        hashes.push(system.hash());
+    }
+    assert!(hashes.windows(2).all(|pair| pair[0] == pair[1]));
+    // Two that meet stop: whichever index finds them.
+    let start = [bead(-1.0), bead(1.0)];
+    for index in [&() as &dyn Arrange, &Structure::Grid, &Structure::Kd] {
+        let wire = Wire { radius: 2.0, reach: 0.5 };
+        let scene =
+            Scene { start: &start, forces: &Gravity::EARTH, constraints: &wire, substeps: 8, index, ..Scene::EMPTY };
+        let mut system = started(&scene, 2, 0);
+        run(&mut system, &scene, 1.0 / 60.0, 240);
+        let x = system.particles().position;
+        assert!((x[0] - x[1]).length() < 0.5 && (x[0].x + x[1].x).abs() < 1e-3, "{x:?}");
+    }
+    // Those that are none ask for nothing.
+    let none = Scene { constraints: &((), [(), ()]), ..Scene::EMPTY };
+    assert_eq!(none.columns(), Scene::EMPTY.columns());
 }
 
 /// Births on a helix, one step on with each; half of its numbers belong to a second, slower one.
@@ -213,13 +298,72 @@ fn a_collider() {
     assert_eq!((system.len(), system.totals().died.sink), (0, 5));
 }
 
+/// Who is above 1.5 m goes, and who was taken in as the first of seven.
+struct Doom;
+
+impl Reaper for Doom {
+    fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
+        for (nth, row) in rows.enumerate() {
+            let is_seventh = state.id(row).is_some_and(|id| id.serial() % 7 == 0);
+            if state.position[row].y > 1.5 || is_seventh {
+                verdicts.end(nth, Cause::Other);
+            }
+        }
+    }
+}
+
+/// Who has lived for as many tenths of a second as its own random word says goes of age.
+struct Tenths;
+
+impl Reaper for Tenths {
+    fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
+        let place = verdicts.claim();
+        for (nth, row) in rows.enumerate() {
+            let tenths = 1 + state.word(row, place).expect("a row that is there") % 8;
+            if (state.time - state.born[row]).seconds() > 0.1 * tenths as f32 {
+                verdicts.end(nth, Cause::Lifetime);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_reaper() {
+    let at = |x: f32, y: f32| Particle { position: Vec3::new(x, y, 0.0), ..Particle::REST };
+    let start: Vec<_> = (0..20).map(|i| at(i as f32, 0.1 * i as f32)).collect();
+    let scene = Scene { start: &start, reapers: &Doom, ..Scene::EMPTY };
+    let mut system = started(&scene, 20, 0);
+    let report = system.step(&scene, Time::SECOND);
+    // Serials 0, 7 and 14, and 16 to 19.
+    assert_eq!((report.died.other, report.died.total(), system.len()), (7, 7, 13));
+    assert!(system.particles().serial.iter().all(|serial| serial % 7 != 0 && *serial < 16));
+    // It is not asked again about the dead, and says nothing of who lives.
+    assert_eq!(system.step(&scene, Time::SECOND).died.total(), 0);
+
+    // In lists of every make, with what another knows: the same deaths, each counted under its own cause.
+    let crowd = vec![at(0.0, 0.0); 800];
+    let kinds: [&dyn Reaper; 2] = [&Tenths, &Doom];
+    let lists: [&dyn Reaper; 4] = [&(Tenths, Doom), &kinds, &&kinds[..], &((), (Tenths,), [(), ()], &Doom)];
+    let outcome = |reapers: &dyn Reaper| {
+        let scene = Scene { start: &crowd, reapers, ..Scene::EMPTY };
+        let mut system = started(&scene, 800, 5);
+        run(&mut system, &scene, 0.01, 45);
+        (system.hash(), system.totals().died)
+    };
+    let (hash, died) = outcome(lists[0]);
+    assert_eq!(died.other, 115);
+    // Four of eight tenths have passed: half of those that are no seventh.
+    assert!((300..386).contains(&died.lifetime), "{died:?}");
+    assert!(lists.iter().all(|&list| outcome(list) == (hash, died)));
+}
+
 /// Memory of a user's own: plain vectors, each longer than need be by another number.
 #[derive(Clone)]
 struct Arena {
     vectors: [Vec<Vec3>; 3],
     numbers: [Vec<f32>; 6],
     times: [Vec<Time>; 2],
-    words: [Vec<u32>; 5],
+    words: [Vec<u32>; 6],
     colors: Vec<[u8; 4]>,
     materials: Vec<u16>,
     fates: Vec<Fate>,
@@ -248,7 +392,7 @@ impl Storage for Arena {
         let [position, velocity, work] = &mut self.vectors;
         let [radius, mass, inverse_mass, drag, charge, elasticity] = &mut self.numbers;
         let [born, dies] = &mut self.times;
-        let [serial, slot, row_of, last_spring, incident] = &mut self.words;
+        let [serial, slot, row_of, last_spring, incident, key] = &mut self.words;
         Slices {
             position,
             velocity,
@@ -265,6 +409,7 @@ impl Storage for Arena {
             fate: &mut self.fates,
             serial,
             slot,
+            key,
             row_of,
             last_spring,
             tallies: &mut self.tallies,
@@ -276,7 +421,7 @@ impl Storage for Arena {
         let [position, velocity, work] = &self.vectors;
         let [radius, mass, inverse_mass, drag, charge, elasticity] = &self.numbers;
         let [born, dies] = &self.times;
-        let [serial, slot, row_of, last_spring, incident] = &self.words;
+        let [serial, slot, row_of, last_spring, incident, key] = &self.words;
         Columns {
             position,
             velocity,
@@ -293,6 +438,7 @@ impl Storage for Arena {
             fate: &self.fates,
             serial,
             slot,
+            key,
             row_of,
             last_spring,
             tallies: &self.tallies,
@@ -316,8 +462,11 @@ fn memory() {
         forces: &forces,
         colliders: &floor,
         sinks: &(),
+        reapers: &(Doom, Chance { rate: 0.3 }),
         grips: &[],
-        contacts: &(),
+        constraints: &(),
+        substeps: 1,
+        meetings: Meetings::Through,
         max_bounces: 8,
         integrator: &Leapfrog,
         index: &(),
@@ -333,4 +482,5 @@ fn memory() {
         assert_eq!(arena.hash(), heap.hash());
     }
     assert!(heap.totals().refused > 0 && heap.totals().hits > 0 && heap.totals().died.lifetime > 0);
+    assert!(heap.totals().died.chance > 0 && heap.totals().died.other > 0);
 }

@@ -4,8 +4,8 @@ use core::cell::Cell;
 use pointmass::emit::Tally;
 use pointmass::shape::Plane;
 use pointmass::{
-    Columns, Drag, Emitter, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices, Spring,
-    Storage, System, Time, Vec3,
+    Chance, Columns, Drag, Emitter, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices,
+    Spring, Storage, System, Time, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, often, started};
@@ -181,7 +181,7 @@ fn ids_stay_with_their_particles() {
         assert_eq!(totals.born, system.len() as u64 + totals.died.total());
         assert_eq!(totals.died.total(), dead.len() as u64);
     }
-    assert!(system.totals().died.lifetime > 0 && system.totals().died.chance > 0);
+    assert!(system.totals().died.lifetime > 0 && system.totals().died.other > 0);
     assert_eq!(system.id(system.len()), None);
 }
 
@@ -248,6 +248,30 @@ fn the_hash_sees_every_column() {
     // What is no part of the state is not seen.
     assert_eq!(hash(Some(|m| m.work.fill(Vec3::NAN))).0, plain);
     assert_eq!(hash(Some(|m| m.position[29] = if m.position.len() == 30 { m.position[29] } else { Vec3::X })).0, plain);
+}
+
+#[test]
+fn the_hash_sees_keys_where_they_decide_who_dies() {
+    let hash = |rate: f32, tamper: Option<Tamper>| {
+        busy(|scene| {
+            let reapers = Chance { rate };
+            let scene = Scene { reapers: &reapers, ..*scene };
+            let with = Rc::new(Cell::new(None));
+            let mut system = System::with(Tampered { memory: Heap::new(SIZE), with: Rc::clone(&with) });
+            system.start(&scene, 42).expect("it fits");
+            for i in 1..=30 {
+                system.step(&scene, Time::frame(i, 60) - system.time());
+            }
+            assert!(system.len() > 10);
+            with.set(tamper);
+            system.step(&Scene::EMPTY, Time::ZERO);
+            assert!(with.take().is_none());
+            system.hash()
+        })
+    };
+    let tamper: Tamper = |m| m.key[9] ^= 1;
+    assert_eq!(hash(0.0, Some(tamper)), hash(0.0, None));
+    assert_ne!(hash(0.01, Some(tamper)), hash(0.01, None));
 }
 
 #[test]

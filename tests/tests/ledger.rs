@@ -3,7 +3,7 @@
 use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
 use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
 use pointmass::{
-    Adaptive, Books, Drag, Emitter, Force, Gravity, Grip, Heap, Impulse, Ledger, Measures, Method, MutualGravity,
+    Adaptive, Books, Drag, Emitter, Force, Gravity, Grip, Heap, Ledger, Measures, Meetings, Method, MutualGravity,
     Particle, Rk4, Scene, Sheet, Size, Spring, System, Thread, Threads, Time, Varied, Vec3, Verlet,
 };
 use pointmass_tests::busy::{SIZE, busy};
@@ -288,7 +288,8 @@ fn friction_of_hard_balls_has_its_line() {
     let pair = [ball(-2.0, 0.6, 4.0), ball(0.0, 0.0, 0.0)];
     let perched =
         [Particle { fixed: true, ..ball(0.0, 0.0, 0.0) }, Particle { elasticity: 0.0, ..ball(0.6, 0.8, 0.0) }];
-    let hitting = Scene { start: &pair, grips: &GRIP, contacts: &Impulse {}, integrator: &Verlet, ..Scene::EMPTY };
+    let hitting =
+        Scene { start: &pair, grips: &GRIP, meetings: Meetings::IMPULSE, integrator: &Verlet, ..Scene::EMPTY };
     let sliding = Scene { start: &perched, forces: &Gravity::EARTH, ..hitting };
     for (name, scene, least, bound) in [("hit", hitting, -0.5, 1e-5), ("slide", sliding, -0.05, 1e-3)] {
         let (books, share) = books(&scene, 2, 1.0 / 240.0);

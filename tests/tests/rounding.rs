@@ -1,7 +1,7 @@
 //! Steps too short for where particles are: what rounding swallows is counted.
 
 use pointmass::shape::Plane;
-use pointmass::{Gravity, Method, Particle, Projection, Scene, Time, Vec3};
+use pointmass::{Contacts, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{run, started};
 
 /// How many of `n` steps of `h` \[s\] rounding swallows of a particle that begins so.
@@ -60,8 +60,7 @@ fn sub_steps_of_contacts_and_of_methods_count_as_such() {
     // A step of 1 ms leads on at 1000 m; a hundredth of it does not.
     let start = [Particle { position: Vec3::X * 1000.0, velocity: Vec3::X, radius: 0.1, ..Particle::REST }];
     for (substeps, want) in [(1, 0), (100, 10)] {
-        let contacts = &Projection { substeps, compliance: 0.0 };
-        let scene = Scene { start: &start, contacts, ..Scene::EMPTY };
+        let scene = Scene { start: &start, substeps, constraints: &Contacts::HARD, ..Scene::EMPTY };
         let mut system = started(&scene, 1, 1);
         for _ in 0..10 {
             system.step(&scene, Time::from_seconds(1e-3));
@@ -72,13 +71,14 @@ fn sub_steps_of_contacts_and_of_methods_count_as_such() {
 
 #[test]
 fn what_rests_on_the_ground_does_not_stall() {
-    for (contacts, height) in [(&() as &dyn pointmass::Contacts, 0.0), (&Projection::default(), 9.0)] {
+    let by_position = Scene { substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
+    for (touching, height) in [(Scene::EMPTY, 0.0), (by_position, 9.0)] {
         let ground = Plane { point: Vec3::Y * height, normal: Vec3::Y };
         let start = [Particle { position: Vec3::Y * (height + 0.1), radius: 0.1, elasticity: 0.0, ..Particle::REST }];
         for &method in Method::ALL {
             let integrator = &method;
             let forces = &Gravity::EARTH;
-            let scene = Scene { start: &start, forces, colliders: &ground, contacts, integrator, ..Scene::EMPTY };
+            let scene = Scene { start: &start, forces, colliders: &ground, integrator, ..touching };
             let mut system = started(&scene, 1, 1);
             run(&mut system, &scene, 1e-4, 2000);
             let stalled = system.totals().caps.stalled;

@@ -11,7 +11,7 @@ use pointmass_tests::{
 };
 
 /// Places of birth, and directions, of very many births all at once.
-fn births<M: Surface + Sync>(emitter: Emitter<M>) -> Vec<([f64; 3], [f64; 3])> {
+fn births<S: Surface + Sync>(emitter: Emitter<S>) -> Vec<([f64; 3], [f64; 3])> {
     let n = often(100_000);
     let burst = Some(Burst { count: n as u32, at: 0.0, every: 0.0 });
     let emitter = Emitter { burst, speed: Varied::exactly(1.0), ..emitter };

@@ -145,6 +145,26 @@ fn two_balls_come_in_and_two_go_out() {
 }
 
 #[test]
+fn a_chain_wraps_itself_round_a_peg_and_rests() {
+    let peg = pointmass::Vec3::new(-1.05, 0.95, 0.0);
+    watch("chain", 6.0, |balls, now| {
+        for (i, pair) in balls.position.windows(2).enumerate() {
+            let length = if i == 25 { 0.11 } else { 0.075 };
+            assert!((pair[0].distance(pair[1]) / length - 1.0).abs() < 0.06, "link {i} at {now} s");
+        }
+        for (center, &r) in balls.position.iter().zip(balls.radius) {
+            let inside = 0.1 + r - (*center - peg).length();
+            assert!(inside < 0.01, "{inside} m inside the peg at {now} s");
+        }
+        if now > 5.5 {
+            assert!(balls.position[26].y > peg.y + 0.1, "it lies on the peg");
+            let kinetic: f32 = balls.velocity.iter().zip(balls.mass).map(|(v, m)| 0.5 * m * v.length_squared()).sum();
+            assert!(kinetic < 0.05, "{kinetic} J of 17 that it fell for");
+        }
+    });
+}
+
+#[test]
 fn no_bullet_leaves_the_room() {
     let (mut fastest, mut moved) = (0.0, 0);
     watch("bullet", 3.0, |balls, now| {

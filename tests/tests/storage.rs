@@ -196,7 +196,7 @@ proptest! {
                 prop_assert!(report.hits <= 8 * capacity as u64);
                 if let Some(id) = system.id(2 * i) {
                     prop_assert!(system.remove(&scene, id));
-                    sum.died.chance += 1;
+                    sum.died.other += 1;
                     sum.caps.springs = system.totals().caps.springs;
                 }
                 prop_assert_eq!(system.totals(), &sum);

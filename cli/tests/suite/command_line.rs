@@ -112,7 +112,7 @@ fn the_json_report_has_exactly_its_fields() {
     let all = "scene integrator dt seed steps time substeps initial born live died refused hits contacts broken caps effort energy forces \
                momentum angular_momentum hash seconds ns_per_particle_step";
     assert_eq!(fields(&report), expected(all));
-    assert_eq!(fields(&report["died"]), expected("lifetime sink density chance nonfinite"));
+    assert_eq!(fields(&report["died"]), expected("lifetime sink density chance other nonfinite"));
     assert_eq!(fields(&report["substeps"]), expected("auto least most total beyond tolerance"));
     assert_eq!(fields(&report["energy"]), expected("kinetic potential"));
     assert!(report["caps"].as_object().is_some_and(|caps| caps.values().all(Value::is_u64)), "{report}");

@@ -119,6 +119,7 @@ fn what_scn_cannot_say_is_warned_of() {
         (format!(r#""sinks": [{{{plane}, {sink}}}]"#), "sinks[0]"),
         (format!(r#""scenery": [{{{plane}}}]"#), "scenery[0]"),
         (format!(r#""scenery": [{{{circle}}}]"#), "scenery[0]"),
+        (r#""reapers": [{"chance": {"rate": 1}}]"#.into(), "reapers"),
         (r#""forces": []"#.into(), "forces"),
         (r#""forces": [{"drag": {}}]"#.into(), "forces"),
         (r#""forces": [{"mutual_gravity": {}}]"#.into(), "forces"),

@@ -6,7 +6,7 @@ use pointmass::index::Structure;
 use pointmass::rays;
 use pointmass::scene::{Camera, Files, Group, Item, Light, Material, Run, SceneFile};
 use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
-use pointmass::{Method, Particle, Tuning, Vec3};
+use pointmass::{Chance, Method, Particle, ReaperKind, Tuning, Vec3};
 use proptest::array::{uniform3, uniform4};
 use proptest::collection::vec;
 use proptest::num::f32 as kinds;
@@ -238,7 +238,7 @@ fn source() -> impl Strategy<Value = Source> {
     (shape, positive(), particle(), reference(), number(), number())
 }
 
-fn emitter((shape, rate, newborn, material, speed, cutoff): Source, materials: usize) -> Emitter<String> {
+fn emitter((shape, rate, newborn, material, speed, cutoff): Source, materials: usize) -> Emitter<Shape<String>> {
     Emitter {
         speed: Varied::exactly(speed),
         spread: Spread::Lecture(cutoff),
@@ -306,7 +306,7 @@ fn force() -> impl Strategy<Value = ForceKind> {
     ]
 }
 
-fn any_emitter() -> impl Strategy<Value = Emitter<String>> {
+fn any_emitter() -> impl Strategy<Value = Emitter<Shape<String>>> {
     let shape = prop_oneof![6 => common_shape(), 1 => circle(), 1 => triangle()];
     let spread = prop_oneof![number().prop_map(Spread::Uniform), number().prop_map(Spread::Lecture)];
     let burst = (0..1000u32, number(), prop_oneof![Just(0.0), 1e-9f32..1.0]);
@@ -348,30 +348,48 @@ fn run() -> impl Strategy<Value = Run> {
         iterations,
         ..Tuning::DEFAULT
     });
-    (0.0f64..1e6, 1e-6f64..10.0, method, (tuning, indices, 1u32..=10_000), any::<u64>(), any::<u32>()).prop_map(
-        |(duration, dt, integrator, (tuning, (index, collision_index), max_bounces), seed, capacity)| Run {
-            duration,
-            dt,
-            integrator,
-            tuning,
-            index,
-            collision_index,
-            max_bounces,
-            seed,
-            capacity,
-        },
+    (
+        0.0f64..1e6,
+        (1e-6f64..10.0, select(vec![1u32, 1, 1, 2, 5])),
+        method,
+        (tuning, indices, 1u32..=10_000),
+        any::<u64>(),
+        any::<u32>(),
     )
+        .prop_map(
+            |(
+                duration,
+                (dt, substeps),
+                integrator,
+                (tuning, (index, collision_index), max_bounces),
+                seed,
+                capacity,
+            )| Run {
+                duration,
+                dt,
+                substeps,
+                integrator,
+                tuning,
+                index,
+                collision_index,
+                max_bounces,
+                seed,
+                capacity,
+            },
+        )
 }
 
 /// A scene of which `.scn` may not be able to say all. Everything in it can be used.
 pub(crate) fn any_scene() -> impl Strategy<Value = SceneFile> {
     let shapes = prop_oneof![6 => common_shape(), 1 => circle(), 1 => triangle(), 1 => plane()];
-    let more = (vec(any_emitter(), 0..3), vec(force(), 0..4), vec((shapes, any::<u32>()), 0..3));
+    let reapers = vec(positive().prop_map(|rate| ReaperKind::Chance(Chance { rate })), 0..3);
+    let more = (vec(any_emitter(), 0..3), vec(force(), 0..4), vec((shapes, any::<u32>()), 0..3), reapers);
     let words = (option::of("(?s).{0,20}"), "(?s).{0,40}", run(), any::<[u8; 4]>(), uniform3(positive()));
-    (scene(), more, words).prop_map(|(mut scene, (emitters, forces, items), words)| {
+    (scene(), more, words).prop_map(|(mut scene, (emitters, forces, items, reapers), words)| {
         let (schema, about, run, color, [size, glow, softness]) = words;
         (scene.schema, scene.about, scene.run) = (schema, about, run);
         scene.emitters.extend(emitters);
+        scene.reapers = reapers;
         if !forces.is_empty() {
             scene.forces = forces;
         }

@@ -63,7 +63,7 @@ const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-fn source(shape: Shape<String>, rate: f32, newborn: Particle, speed: f32, cutoff: f32) -> Emitter<String> {
+fn source(shape: Shape<String>, rate: f32, newborn: Particle, speed: f32, cutoff: f32) -> Emitter<Shape<String>> {
     let (speed, spread) = (Varied::exactly(speed), Spread::Lecture(cutoff));
     Emitter { speed, spread, material: newborn.material, ..Emitter::new(shape, rate).giving_birth_to(&newborn) }
 }

@@ -3,12 +3,11 @@
 use super::grip::on_surface;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
-use super::touch::aside;
-use crate::math::{length, max, min, sqrt, unit};
+use crate::math::{aside, length, max, min, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
+use crate::reap::Fate;
 use crate::report::Report;
-use crate::retire::Fate;
 use crate::scene::Scene;
 use crate::shape::{Hit, Ride, Segment};
 use crate::time::Time;
@@ -25,7 +24,7 @@ const LAIN: f32 = 8.0;
 const MAX_LOOKS: u32 = 16;
 
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
-pub(super) const RESTING: f32 = 0.25;
+pub(crate) const RESTING: f32 = 0.25;
 
 /// How a path ends.
 pub(super) struct Arrival {

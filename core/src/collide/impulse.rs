@@ -1,89 +1,70 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
-use super::contacts::{Contacts, Passage};
+use super::meetings::Passage;
 use super::melee::Melee;
 use super::queue::Queue;
 use super::sweep::each_by_itself;
-use crate::index::Arrange;
 use crate::memory::{Layout, Shares, Slices, Storage};
 
-/// Hard balls: whoever meets, another particle or a collider, is answered by an impulse at that instant, in the order of
-/// time, and goes on from there.
-///
-/// Nothing passes through anything however fast, momentum is exact to rounding, and with elasticities of one so is energy.
-/// A particle that has met four times as often as [`Scene::max_bounces`](crate::Scene::max_bounces) says waits where it is for
-/// the step's end (counted in `caps.bounces`), as does one that finds others near it some ten thousand times: that is what
-/// happens in a dense heap, where every touch is a meeting; for heaps use [`Projection`](crate::Projection).
-/// Whichever index the scene has, the answer is the same to the bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Impulse {}
-
 /// Vectors a particle for its clock and for where it was at the step's beginning.
-const COLUMNS: usize = 4;
+pub(super) const COLUMNS: usize = 4;
 
-impl Contacts for Impulse {
-    fn scratch(&self, index: &dyn Arrange) -> usize {
-        COLUMNS + index.columns()
+/// Follows all through the step.
+#[inline(never)]
+pub(super) fn follow(passage: Passage<'_, '_>) {
+    // Points meet nobody.
+    if !passage.view.memory.radius[..passage.view.len()].iter().any(|&radius| radius > 0.0) {
+        return each_by_itself(passage);
     }
-
-    #[inline(never)]
-    fn follow(&self, passage: Passage<'_, '_>) {
-        // Points meet nobody.
-        if !passage.view.memory.radius[..passage.view.len()].iter().any(|&radius| radius > 0.0) {
-            return each_by_itself(passage);
-        }
-        let Passage { view, scene, old, dt, end, report, observer } = passage;
-        let (len, capacity) = (view.len(), view.capacity());
-        let Slices {
-            position,
-            velocity,
-            radius,
-            mass,
-            inverse_mass,
-            elasticity,
-            material,
-            born,
-            fate,
-            slot,
-            serial,
-            work,
-            ..
-        } = view.memory.slices();
-        let Shares { start: [start_x, start_v], scratch, .. } = Layout::of(scene.demand(), capacity).meeting(work);
-        let (clocks, scratch) = scratch.split_at_mut(3 * len);
-        let (home, scratch) = scratch.split_at_mut(len);
-        let words = scene.index.columns() * len;
-        let index_memory = bytemuck::cast_slice_mut(&mut scratch[..words]);
-        let unit = (dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
-        let mut melee = Melee {
-            scene,
-            dt,
-            end,
-            unit,
-            clocks: Queue::new(bytemuck::cast_slice_mut(clocks)),
-            ends: [&mut position[..len], &mut velocity[..len]],
-            starts: [&mut start_x[..len], &mut start_v[..len]],
-            home: &[],
-            fate: &mut fate[..len],
-            radius: &radius[..len],
-            mass,
-            inverse_mass,
-            elasticity,
-            material,
-            slot,
-            serial,
-            widest: 0.0,
-            leash: 0.0,
-            report,
-            observer,
-        };
-        melee.prepare(&born[..len], old);
-        home.copy_from_slice(melee.starts[0]);
-        let home = &*home;
-        melee.home = home;
-        let reach = 2.0 * melee.widest + melee.leash;
-        scene.index.arrange(index_memory, home, reach, &mut |index| melee.run(index));
-    }
+    let Passage { view, scene, old, dt, end, report, observer } = passage;
+    let (len, capacity) = (view.len(), view.capacity());
+    let Slices {
+        position,
+        velocity,
+        radius,
+        mass,
+        inverse_mass,
+        elasticity,
+        material,
+        born,
+        fate,
+        slot,
+        serial,
+        work,
+        ..
+    } = view.memory.slices();
+    let Shares { start: [start_x, start_v], scratch, .. } = Layout::of(scene.plan(), capacity).shares(work);
+    let (clocks, scratch) = scratch.meeting().split_at_mut(3 * len);
+    let (home, scratch) = scratch.split_at_mut(len);
+    let words = scene.index.columns() * len;
+    let index_memory = bytemuck::cast_slice_mut(&mut scratch[..words]);
+    let unit = (dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
+    let mut melee = Melee {
+        scene,
+        dt,
+        end,
+        unit,
+        clocks: Queue::new(bytemuck::cast_slice_mut(clocks)),
+        ends: [&mut position[..len], &mut velocity[..len]],
+        starts: [&mut start_x[..len], &mut start_v[..len]],
+        home: &[],
+        fate: &mut fate[..len],
+        radius: &radius[..len],
+        mass,
+        inverse_mass,
+        elasticity,
+        material,
+        slot,
+        serial,
+        widest: 0.0,
+        leash: 0.0,
+        report,
+        observer,
+    };
+    melee.prepare(&born[..len], old);
+    home.copy_from_slice(melee.starts[0]);
+    let home = &*home;
+    melee.home = home;
+    let reach = 2.0 * melee.widest + melee.leash;
+    scene.index.arrange(index_memory, home, reach, &mut |index| melee.run(index));
 }

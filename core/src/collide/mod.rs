@@ -1,26 +1,20 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
-mod contacts;
 mod flight;
 mod grip;
 mod impulse;
-mod lists;
 mod meeting;
+mod meetings;
 mod melee;
 mod path;
-mod projection;
 mod queue;
-mod response;
 mod slide;
-mod solver;
 mod sweep;
-mod touch;
 
-pub use contacts::{Contacts, Passage, Stage};
+pub(crate) use flight::RESTING;
 pub use grip::Grip;
-pub use impulse::Impulse;
-pub(crate) use lists::Lists;
+pub(crate) use grip::{Feel, of_two, on_surface};
+pub(crate) use meetings::Passage;
+pub use meetings::{Impulse, Meetings};
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
-pub use projection::Projection;
-pub use response::Response;

@@ -1,16 +1,17 @@
 //! Every particle by itself: tiles of rows whose boxes touch nothing are passed by, the others are followed.
 
-use super::contacts::Passage;
 use super::flight::Flight;
+use super::meetings::Passage;
 use super::path::Path;
+use crate::constrain::{SHIFTED, TOUCHING};
 use crate::memory::{Layout, Past};
 use crate::particles::Id;
-use crate::retire::Fate;
+use crate::reap::Fate;
 use crate::shape::{Hulls, Marks};
 
 /// Sends every free particle along its path through the step, past all others.
 pub(super) fn each_by_itself(mut passage: Passage<'_, '_>) {
-    let layout = Layout::of(passage.scene.demand(), passage.view.capacity());
+    let layout = Layout::of(passage.scene.plan(), passage.view.capacity());
     for first in (0..passage.view.len()).step_by(Hulls::MANY) {
         for (i, mark) in near(&passage, &layout, first).into_iter().enumerate() {
             if mark != 0 {
@@ -54,15 +55,18 @@ fn follow(passage: &mut Passage<'_, '_>, layout: &Layout, row: usize) {
     if m.inverse_mass[row] == 0.0 {
         return;
     }
-    let Past { start: [start_x, start_v], held } = layout.past(m.work);
+    let Past { start: [start_x, start_v], marks } = layout.past(m.work);
     // A newborn has come only part of the way.
     let start = end - (end - m.born[row]).min(dt);
     let path =
         Path { x0: start_x[row], v0: start_v[row], x1: m.position[row], v1: m.velocity[row], during: [start, end] };
-    // Contacts know nothing of the newborn.
-    let has_moved = row < old && scene.contacts.has_moved(held, row);
-    // What contacts have moved goes straight, and is only kept from passing: half of it may not touch anything.
-    let (path, radius) = if has_moved { (path.straightened(), 0.5 * m.radius[row]) } else { (path, m.radius[row]) };
+    // Constraints know nothing of the newborn.
+    let mark = if row < old { marks.get(row).copied().unwrap_or(0) } else { 0 };
+    // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
+    // may not touch anything.
+    let path = if mark & SHIFTED != 0 { path.straightened() } else { path };
+    let is_kept = mark & TOUCHING != 0;
+    let radius = if is_kept { 0.5 * m.radius[row] } else { m.radius[row] };
     let hull = path.hull(radius);
     if !(scene.colliders.may_touch(&hull) || scene.sinks.may_touch(&hull)) || !path.is_finite() {
         return;
@@ -79,7 +83,7 @@ fn follow(passage: &mut Passage<'_, '_>, layout: &Layout, row: usize) {
         path => path,
     };
     let end = flight.follow(path);
-    if has_moved && end.fate == Fate::Lives && report.hits == before {
+    if is_kept && end.fate == Fate::Lives && report.hits == before {
         return;
     }
     (m.position[row], m.velocity[row], m.fate[row]) = (end.position, end.velocity, end.fate);

@@ -4,7 +4,7 @@ use super::{Births, Emit, Spread, Varied};
 use crate::math::unit;
 use crate::particles::{Color, Particle, WHITE};
 use crate::rng::Stream;
-use crate::shape::{Shape, Surface};
+use crate::shape::{Aabb, Spot, Surface};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -23,14 +23,37 @@ pub struct Burst {
     pub every: f32,
 }
 
+/// Where particles are few: fewer than `fewest` within `radius` of a place.
+///
+/// Those that are there are counted where they were when the step began, those of this step where they were born. Each newborn
+/// of a step is held against the others, so n of them cost n² looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WhereSparse {
+    /// How far neighbours are looked for \[m\].
+    pub radius: f32,
+    /// With fewer neighbours a place is sparse.
+    pub fewest: u32,
+}
+
+/// How often a place inside a shape is sought in its bounding box, before one on its surface has to do.
+const DRAWS: u32 = 32;
+
 /// A surface that gives birth to particles.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Emitter<M> {
+pub struct Emitter<S> {
     /// Where births lie, uniformly by area.
-    pub shape: Shape<M>,
+    pub shape: S,
+    /// Births lie inside the shape, if it is closed: uniformly by volume. Their directions lead away from its middle.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub inside: bool,
+    /// Births come only where others are few: what the rate and the bursts bring are places that are tried.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub where_sparse: Option<WhereSparse>,
     /// The group of a scene file whose transform applies to the shape, the direction and the velocity; a `Model`
     /// has applied it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -98,9 +121,13 @@ pub struct Emitter<M> {
 
 /// One emitter, or two if it has bursts: those of the rate and those of the bursts are numbered separately, so that
 /// their random numbers do not depend on which come first in a step.
-impl<M: Surface + Sync> Emit for Emitter<M> {
+impl<S: Surface + Sync> Emit for Emitter<S> {
     fn count(&self) -> usize {
         1 + usize::from(self.burst.is_some())
+    }
+
+    fn reach(&self) -> f32 {
+        self.where_sparse.map_or(0.0, |sparse| sparse.radius)
     }
 
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
@@ -115,19 +142,21 @@ impl<M: Surface + Sync> Emit for Emitter<M> {
             let mut due = births.due(number, self.rate, first, last);
             while !births.is_full() {
                 let Some(at) = due.next() else { return };
-                let _counted = births.give(number, at, |stream| self.newborn(stream, at));
+                self.bear(births, number, at);
             }
             births.refuse(number, due.left());
         }
     }
 }
 
-impl<M> Emitter<M> {
+impl<S> Emitter<S> {
     /// An emitter of `rate` births per second that are at rest, of 1 kg, immortal.
     #[must_use]
-    pub const fn new(shape: Shape<M>, rate: f32) -> Self {
+    pub const fn new(shape: S, rate: f32) -> Self {
         Self {
             shape,
+            inside: false,
+            where_sparse: None,
             group: None,
             rate,
             burst: None,
@@ -165,7 +194,7 @@ impl<M> Emitter<M> {
     }
 }
 
-impl<M: Surface> Emitter<M> {
+impl<S: Surface> Emitter<S> {
     /// The bursts whose instants lie in [from, to): one at zero belongs to the first step.
     fn emit_bursts(&self, burst: &Burst, [from, to]: [Time; 2], births: &mut Births<'_>, number: usize) {
         let (first, every) = (Time::from_seconds(burst.at).ticks(), Time::from_seconds(burst.every).ticks());
@@ -188,7 +217,7 @@ impl<M: Surface> Emitter<M> {
                     births.refuse(number, u64::from(burst.count - given));
                     break;
                 }
-                let _counted = births.give(number, at, |stream| self.newborn(stream, at));
+                self.bear(births, number, at);
             }
             // Once nothing fits, what is left of this step's bursts is only counted.
             if births.is_full() && every > 0 {
@@ -200,12 +229,37 @@ impl<M: Surface> Emitter<M> {
         }
     }
 
+    /// One birth, if it comes to one.
+    fn bear(&self, births: &mut Births<'_>, number: usize, at: Time) {
+        match self.where_sparse {
+            None => {
+                let _counted = births.give(number, at, |stream| self.newborn(stream, at));
+            }
+            Some(WhereSparse { radius, fewest }) => births.offer(number, at, |stream, births| {
+                let newborn = self.newborn(stream, at);
+                (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
+            }),
+        }
+    }
+
+    /// A place inside the shape: the first that falls there of several in its bounding box.
+    fn place_inside(&self, random: Stream) -> Option<Spot> {
+        let Aabb { min, max } = self.shape.bounds();
+        let drawn = (0..DRAWS).map(|draw| {
+            let ([u, v], [w, _]) = (random.units(8 + 2 * draw), random.units(9 + 2 * draw));
+            min + (max - min) * Vec3::new(u, v, w)
+        });
+        let point = { drawn }.find(|&point| self.shape.is_inside(point))?;
+        Some(Spot { point, normal: unit(point - (min + max) * 0.5) })
+    }
+
     /// A newborn. Each property draws from a place of its own, so that a change of one leaves the others alone.
     fn newborn(&self, random: Stream, at: Time) -> Particle {
         let [u, v] = random.units(0);
         let [w, p] = random.units(1);
         let [q, speed] = random.units(2);
-        let spot = self.shape.sample([u, v, w]);
+        let inside = if self.inside { self.place_inside(random) } else { None };
+        let spot = inside.unwrap_or_else(|| self.shape.sample([u, v, w]));
         let axis = self.direction.map_or(spot.normal, unit);
         let direction = self.spread.direction(axis, [p, q]);
         Particle {

@@ -6,15 +6,20 @@
 mod emitter;
 mod vary;
 
-pub use emitter::{Burst, Emitter};
+pub use emitter::{Burst, Emitter, WhereSparse};
 pub use vary::{Spread, Varied};
 
+use crate::force::{State, count_of};
+use crate::index::SpatialIndex;
+use crate::math::max;
+use crate::memory::Storage;
 use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::rng::Stream;
 use crate::step::View;
 use crate::time::{Time, fixed_32};
+use glam::Vec3;
 
 /// Something that brings particles into the world.
 ///
@@ -23,6 +28,11 @@ use crate::time::{Time, fixed_32};
 pub trait Emit: Sync {
     /// How many emitters it is.
     fn count(&self) -> usize;
+
+    /// How far it asks who is near, by [`Births::count_within`] \[m\]; zero: it does not.
+    fn reach(&self) -> f32 {
+        0.0
+    }
 
     /// Brings about the births between `from` (excluded) and `to` (included).
     ///
@@ -45,9 +55,12 @@ pub struct Births<'a> {
     pub(crate) view: View<'a>,
     pub(crate) report: &'a mut Report,
     pub(crate) observer: &'a mut dyn Observer,
+    /// Those who were there when the step began, in an index if anybody asks for it, and how many they were.
+    pub(crate) near: Option<&'a dyn SpatialIndex>,
+    pub(crate) old: usize,
     /// When the step ends.
     pub(crate) end: Time,
-    pub(crate) next: usize,
+    pub(crate) number: usize,
 }
 
 impl Tally {
@@ -57,8 +70,8 @@ impl Tally {
 impl Births<'_> {
     /// The number of the next emitter.
     pub fn claim(&mut self) -> usize {
-        self.next += 1;
-        self.next - 1
+        self.number += 1;
+        self.number - 1
     }
 
     /// The births that emitter `number` owes at `rate` per second after `from` until `to`, and goes on from them.
@@ -78,25 +91,66 @@ impl Births<'_> {
         self.view.is_full()
     }
 
+    /// How many particles lie within `radius` \[m\] of a place: those of before this step where they were then, those born in it
+    /// where they were born. Costs one query of the scene's index if the emitter's [`reach`](Emit::reach) is as much, and a look
+    /// at each newborn.
+    #[must_use]
+    pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
+        let all = &self.view.memory.position[..self.view.len()];
+        match self.near {
+            Some(index) => index.count(place, radius).found + count_of(&all[self.old..], place, radius),
+            None => count_of(all, place, radius),
+        }
+    }
+
+    /// The particles there are, those born in this step among them.
+    #[must_use]
+    pub fn state(&self) -> State<'_> {
+        State { near: None, ..self.view.memory.columns().state(&[], self.view.status) }
+    }
+
     /// A birth of emitter `number` at the instant `at`, made from the random numbers that belong to it.
     ///
     /// # Errors
     /// If there is no room, which is counted. It has used up its random numbers all the same.
     pub fn give(&mut self, number: usize, at: Time, make: impl FnOnce(Stream) -> Particle) -> Result<(), Full> {
-        let Some(tally) = self.view.memory.tallies.get_mut(number) else { return Err(Full) };
-        let serial = tally.serial;
-        tally.serial = serial.wrapping_add(1);
+        let Some(stream) = self.next(number) else { return Err(Full) };
         if self.view.is_full() {
-            self.report.refused = self.report.refused.saturating_add(1);
-            self.observer.refused(1, at);
+            self.miss(at);
             return Err(Full);
         }
-        let particle = make(Stream::new(self.view.seed(), number as u32, serial));
-        let id = self.view.spawn(&particle, at)?;
+        self.bear(stream, at, &make(stream))
+    }
+
+    /// A birth of emitter `number` that may come to nothing: `make` sees who is there. What finds no room is counted.
+    pub fn offer(&mut self, number: usize, at: Time, make: impl FnOnce(Stream, &Self) -> Option<Particle>) {
+        let Some(stream) = self.next(number) else { return };
+        let Some(particle) = make(stream, self) else { return };
+        if self.bear(stream, at, &particle).is_err() {
+            self.miss(at);
+        }
+    }
+
+    /// The random numbers of an emitter's next birth.
+    fn next(&mut self, number: usize) -> Option<Stream> {
+        let tally = self.view.memory.tallies.get_mut(number)?;
+        let serial = tally.serial;
+        tally.serial = serial.wrapping_add(1);
+        Some(Stream::new(self.view.seed(), number as u32, serial))
+    }
+
+    fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
+        let id = self.view.spawn(particle, at, stream.name())?;
         self.report.born += 1;
-        let Particle { position: place, velocity, .. } = particle;
+        let Particle { position: place, velocity, .. } = *particle;
         self.observer.born(&Passing { id, place, velocity, time: at });
         Ok(())
+    }
+
+    /// Counts a birth that finds no room.
+    fn miss(&mut self, at: Time) {
+        self.report.refused = self.report.refused.saturating_add(1);
+        self.observer.refused(1, at);
     }
 
     /// `count` births of emitter `number` that find no room, at once.
@@ -157,6 +211,9 @@ impl<T: Emit + ?Sized> Emit for &T {
     fn count(&self) -> usize {
         (**self).count()
     }
+    fn reach(&self) -> f32 {
+        (**self).reach()
+    }
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         (**self).emit(from, to, births);
     }
@@ -165,6 +222,9 @@ impl<T: Emit + ?Sized> Emit for &T {
 impl<T: Emit> Emit for [T] {
     fn count(&self) -> usize {
         self.iter().map(Emit::count).sum()
+    }
+    fn reach(&self) -> f32 {
+        self.iter().map(Emit::reach).fold(0.0, max)
     }
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         for emitter in self {
@@ -180,6 +240,9 @@ macro_rules! lists {
         impl<$($generics)*> Emit for $list {
             fn count(&self) -> usize {
                 self.as_slice().count()
+            }
+            fn reach(&self) -> f32 {
+                self.as_slice().reach()
             }
             fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
                 self.as_slice().emit(from, to, births);
@@ -201,6 +264,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 0 $(+ $name.count())+
+            }
+            fn reach(&self) -> f32 {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                [$($name.reach()),+].into_iter().fold(0.0, max)
             }
             fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
                 #[allow(non_snake_case)]

@@ -41,6 +41,8 @@ pub use wind::Wind;
 
 use crate::index::{Arrange, BarnesHut, SpatialIndex};
 use crate::math::max;
+use crate::particles::Id;
+use crate::rng::later;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -166,7 +168,7 @@ impl Needs {
     }
 }
 
-/// The particles as a force sees them: one entry a row.
+/// The particles as forces and reapers see them: one entry a row.
 #[derive(Clone, Copy)]
 pub struct State<'a> {
     /// The instant.
@@ -183,6 +185,14 @@ pub struct State<'a> {
     pub drag: &'a [f32],
     /// Charges \[C\].
     pub charge: &'a [f32],
+    /// When they were born.
+    pub born: &'a [Time],
+    /// When they die of age; [`Time::NEVER`]: never.
+    pub dies: &'a [Time],
+    /// The slots they hold; see [`id`](State::id).
+    pub slot: &'a [u32],
+    /// What their random numbers are drawn by; see [`word`](State::word).
+    pub key: &'a [u32],
     /// The springs between them.
     pub springs: Springs<'a>,
     /// Them in an index, while a step is made, if a force asks for neighbours and the scene has one.
@@ -191,6 +201,89 @@ pub struct State<'a> {
     pub mass_tree: Option<&'a BarnesHut<'a>>,
     /// Their charges in a tree, likewise.
     pub charge_tree: Option<&'a BarnesHut<'a>>,
+}
+
+impl<'a> State<'a> {
+    /// Nobody.
+    pub(crate) const EMPTY: State<'static> = State {
+        time: Time::ZERO,
+        position: &[],
+        velocity: &[],
+        radius: &[],
+        mass: &[],
+        drag: &[],
+        charge: &[],
+        born: &[],
+        dies: &[],
+        slot: &[],
+        key: &[],
+        springs: Springs { springs: &[], start: 0, serial: &[], row_of: &[], last_spring: &[], incident: &[] },
+        near: None,
+        mass_tree: None,
+        charge_tree: None,
+    };
+
+    /// The first of these particles, as many as there are places, at other places with other velocities; what was sorted by
+    /// place is left out.
+    pub(crate) fn moved<'s>(&self, time: Time, position: &'s [Vec3], velocity: &'s [Vec3]) -> State<'s>
+    where
+        'a: 's,
+    {
+        let len = position.len();
+        State {
+            time,
+            position,
+            velocity,
+            radius: &self.radius[..len],
+            mass: &self.mass[..len],
+            drag: &self.drag[..len],
+            charge: &self.charge[..len],
+            born: &self.born[..len],
+            dies: &self.dies[..len],
+            slot: &self.slot[..len],
+            key: &self.key[..len],
+            springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
+            near: None,
+            mass_tree: None,
+            charge_tree: None,
+        }
+    }
+
+    /// How many particles lie within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking at all.
+    #[must_use]
+    pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
+        match self.near {
+            Some(index) => index.count(place, radius).found,
+            None => count_of(self.position, place, radius),
+        }
+    }
+
+    /// The particle in a row.
+    #[must_use]
+    pub fn id(&self, row: usize) -> Option<Id> {
+        Some(Id { slot: *self.slot.get(row)?, serial: *self.springs.serial.get(row)? })
+    }
+
+    /// A random word of the particle in a row, the `place`-th that it has beside those of its birth: the same as long as it
+    /// lives, and however time is cut into steps.
+    ///
+    /// It belongs to the emitter's number and the birth's number there, of what is put in without an emitter to the number
+    /// in which it was put in. (Serials and slots will not do for that: in which order the births of several emitters come in
+    /// depends on the steps.)
+    #[must_use]
+    pub fn word(&self, row: usize, place: u32) -> Option<u32> {
+        Some(later(*self.key.get(row)?, place))
+    }
+}
+
+/// How many of these points lie within `radius` \[m\] of a place.
+pub(crate) fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
+    let square = radius * radius;
+    let is_near = |&&point: &&Vec3| {
+        let d = point - place;
+        d.x * d.x + d.y * d.y + d.z * d.z <= square
+    };
+    if radius >= 0.0 { points.iter().filter(is_near).count() as u64 } else { 0 }
 }
 
 impl Force for () {

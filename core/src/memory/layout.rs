@@ -2,36 +2,118 @@
 
 use glam::Vec3;
 
-/// What a step works with: how many columns of vectors, one vector a particle, each part of it asks for.
+/// So many words of 32 bits for each particle, and so many besides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Demand {
-    /// Places and velocities of the step's beginning, two or none.
-    pub(crate) start: usize,
-    /// What contacts keep through the step.
-    pub(crate) held: usize,
-    /// Trees of masses and charges.
-    pub(crate) trees: usize,
-    /// An index of who is near.
-    pub(crate) near: usize,
-    /// The method.
-    pub(crate) method: usize,
-    /// Contacts, when the method has done its work.
-    pub(crate) contacts: usize,
+pub struct Words {
+    /// For each particle there is room for.
+    pub per_row: usize,
+    /// Besides.
+    pub fixed: usize,
 }
 
-impl Demand {
-    /// All of it, in columns.
-    pub(crate) fn columns(&self) -> usize {
-        let Self { start, held, trees, near, method, contacts } = *self;
-        let moving = method.saturating_add(trees).saturating_add(near);
-        moving.max(contacts).saturating_add(start).saturating_add(held)
+impl Words {
+    /// None at all.
+    pub const NONE: Self = Self { per_row: 0, fixed: 0 };
+
+    /// For so many particles.
+    #[must_use]
+    pub const fn of(self, capacity: usize) -> usize {
+        self.per_row.saturating_mul(capacity).saturating_add(self.fixed)
+    }
+
+    /// Both, one behind the other.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self { per_row: self.per_row.saturating_add(other.per_row), fixed: self.fixed.saturating_add(other.fixed) }
+    }
+
+    /// Room for either, one after the other.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { per_row: self.per_row.max(other.per_row), fixed: self.fixed.max(other.fixed) }
+    }
+
+    /// Vectors for each particle.
+    const fn columns(columns: usize) -> Self {
+        Self { per_row: columns.saturating_mul(3), fixed: 0 }
     }
 }
 
-/// Where the parts of a demand lie in memory for so many particles: one behind the other; what is over is scratch.
+/// What a part of a scene asks for, to work with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Demand {
+    /// What it keeps through a step; at the step's beginning it holds anything.
+    pub step: Words,
+    /// What it works with while it is called.
+    pub scratch: Words,
+    /// Whether it asks who is near.
+    pub finds_near: bool,
+}
+
+impl Demand {
+    /// Nothing.
+    pub const NONE: Self = Self { step: Words::NONE, scratch: Words::NONE, finds_near: false };
+
+    /// What two ask for.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            step: self.step.and(other.step),
+            scratch: self.scratch.or(other.scratch),
+            finds_near: self.finds_near || other.finds_near,
+        }
+    }
+}
+
+/// What a whole scene's step asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Plan {
+    /// Whether anybody asks for places and velocities at the step's beginning, and at each sub-step's.
+    pub(crate) start: bool,
+    pub(crate) before: bool,
+    /// Whether there are constraints, and what they ask for.
+    pub(crate) constrained: bool,
+    pub(crate) constraints: Demand,
+    /// Vectors a particle for trees of masses and charges, for the index of forces, and for the method.
+    pub(crate) trees: usize,
+    pub(crate) near: usize,
+    pub(crate) method: usize,
+    /// Vectors a particle for an index, whoever asks who is near.
+    pub(crate) index: usize,
+    /// Vectors a particle for meetings, when all have been moved.
+    pub(crate) meetings: usize,
+    /// Whether births or deaths depend on who is near.
+    pub(crate) crowd: bool,
+}
+
+impl Plan {
+    /// Vectors for each of so many particles that all of it takes.
+    pub(crate) fn columns(&self, capacity: usize) -> usize {
+        let words = self.lasting().and(self.passing()).of(capacity.max(1));
+        words.div_ceil(3 * capacity.max(1))
+    }
+
+    /// What lasts through the step.
+    fn lasting(&self) -> Words {
+        let states = Words::columns(2 * usize::from(self.start) + 2 * usize::from(self.before));
+        let marks = Words { per_row: usize::from(self.constrained), fixed: 0 };
+        states.and(marks).and(self.constraints.step)
+    }
+
+    /// What its phases need in turn.
+    fn passing(&self) -> Words {
+        let moving = self.method.saturating_add(self.trees).saturating_add(self.near);
+        let index = if self.constraints.finds_near { self.index } else { 0 };
+        let constraining = Words::columns(index).and(self.constraints.scratch);
+        let crowd = if self.crowd { self.index.saturating_add(1) } else { 0 };
+        Words::columns(moving.max(self.meetings).max(crowd)).or(constraining)
+    }
+}
+
+/// Where the parts of a plan lie in memory for so many particles: one behind the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
-    demand: Demand,
+    plan: Plan,
     capacity: usize,
 }
 
@@ -40,52 +122,108 @@ pub(crate) struct Layout {
 pub(crate) struct Shares<'m> {
     /// Where all were at the step's beginning \[m\], and how fast \[m/s\]; empty if nobody asks.
     pub(crate) start: [&'m mut [Vec3]; 2],
-    /// What contacts keep through the step.
-    pub(crate) held: &'m mut [Vec3],
-    /// For the trees of masses and charges.
-    pub(crate) trees: &'m mut [u32],
-    /// For the index of who is near.
-    pub(crate) near: &'m mut [u32],
-    /// For the method, or for whatever is at work.
-    pub(crate) scratch: &'m mut [Vec3],
+    /// The same at the sub-step's beginning.
+    pub(crate) before: [&'m mut [Vec3]; 2],
+    /// What constraints have done to each particle.
+    pub(crate) marks: &'m mut [u32],
+    /// What constraints keep through the step.
+    pub(crate) step: &'m mut [u32],
+    /// For whatever is at work.
+    pub(crate) scratch: Scratch<'m>,
+}
+
+/// Memory that is used for one thing after the other.
+#[derive(Debug)]
+pub(crate) struct Scratch<'m> {
+    words: &'m mut [u32],
+    layout: Layout,
 }
 
 /// What a step remembers of its beginning, for reading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Past<'m> {
     pub(crate) start: [&'m [Vec3]; 2],
-    pub(crate) held: &'m [Vec3],
+    /// What constraints have done to each particle; empty without any.
+    pub(crate) marks: &'m [u32],
 }
 
 impl Layout {
-    pub(crate) fn of(demand: Demand, capacity: usize) -> Self {
-        Self { demand, capacity }
+    pub(crate) fn of(plan: Plan, capacity: usize) -> Self {
+        Self { plan, capacity }
     }
 
-    /// The shares while the method moves all.
-    pub(crate) fn moving<'m>(&self, work: &'m mut [Vec3]) -> Shares<'m> {
-        let shares = self.meeting(work);
-        let (trees, rest) = cut(shares.scratch, self.demand.trees * self.capacity);
-        let (near, scratch) = cut(rest, self.demand.near * self.capacity);
-        Shares { trees: bytemuck::cast_slice_mut(trees), near: bytemuck::cast_slice_mut(near), scratch, ..shares }
+    /// All shares.
+    pub(crate) fn shares<'m>(&self, work: &'m mut [Vec3]) -> Shares<'m> {
+        let mut rest: &'m mut [u32] = bytemuck::cast_slice_mut(work);
+        let pair = if self.plan.start { self.capacity } else { 0 };
+        let start = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
+        let pair = if self.plan.before { self.capacity } else { 0 };
+        let before = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
+        let marks = take(&mut rest, if self.plan.constrained { self.capacity } else { 0 });
+        let step = take(&mut rest, self.plan.constraints.step.of(self.capacity));
+        Shares { start, before, marks, step, scratch: Scratch { words: rest, layout: *self } }
     }
 
-    /// The shares when all have been moved: trees and index are no longer needed.
-    pub(crate) fn meeting<'m>(&self, work: &'m mut [Vec3]) -> Shares<'m> {
-        let (start, rest) = cut(work, self.demand.start * self.capacity);
-        let (held, scratch) = cut(rest, self.demand.held * self.capacity);
-        let middle = start.len() / 2;
-        Shares { start: start.split_at_mut(middle).into(), held, trees: &mut [], near: &mut [], scratch }
+    /// Before anything has been moved, or when all has been done: for a copy of the places of `len` particles, and for an index
+    /// of them, no more than they call for: more would make another structure.
+    pub(crate) fn crowd<'m>(&self, work: &'m mut [Vec3], len: usize) -> (&'m mut [Vec3], &'m mut [u32]) {
+        let (places, rest) = work.split_at_mut(len.min(work.len()));
+        let words = bytemuck::cast_slice_mut(rest);
+        let len = (3 * self.plan.index * len).min(words.len());
+        (places, &mut words[..len])
     }
 
     /// What is remembered of a step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
-        let (start, rest) = work.split_at(self.demand.start * self.capacity);
-        Past { start: start.split_at(start.len() / 2).into(), held: &rest[..self.demand.held * self.capacity] }
+        let pair = if self.plan.start { self.capacity } else { 0 };
+        let (start, rest) = work.split_at(2 * pair);
+        let rest = if self.plan.before { &rest[2 * self.capacity..] } else { rest };
+        let marks = if self.plan.constrained { &bytemuck::cast_slice(rest)[..self.capacity] } else { &[] };
+        Past { start: start.split_at(pair).into(), marks }
     }
 }
 
-/// The first so many, or all that there are.
-fn cut(memory: &mut [Vec3], len: usize) -> (&mut [Vec3], &mut [Vec3]) {
-    memory.split_at_mut(len.min(memory.len()))
+impl Scratch<'_> {
+    /// For trees of masses and charges, for the index of forces, and for the method.
+    pub(crate) fn moving(&mut self) -> ([&mut [u32]; 2], &mut [Vec3]) {
+        let Layout { plan, capacity } = self.layout;
+        let mut rest = &mut *self.words;
+        let trees = take(&mut rest, 3 * plan.trees * capacity);
+        let near = take(&mut rest, 3 * plan.near * capacity);
+        ([trees, near], vectors(rest))
+    }
+
+    /// For the index of constraints, and for them.
+    pub(crate) fn constraining(&mut self) -> [&mut [u32]; 2] {
+        let Layout { plan, capacity } = self.layout;
+        let mut rest = &mut *self.words;
+        let near = if plan.constraints.finds_near { 3 * plan.index * capacity } else { 0 };
+        [take(&mut rest, near), rest]
+    }
+}
+
+impl<'m> Scratch<'m> {
+    /// For meetings, when all have been moved.
+    pub(crate) fn meeting(self) -> &'m mut [Vec3] {
+        vectors(self.words)
+    }
+}
+
+/// The first so many words, or all that there are.
+pub(crate) fn take<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [u32] {
+    let all = core::mem::take(rest);
+    let (first, others) = all.split_at_mut(len.min(all.len()));
+    *rest = others;
+    first
+}
+
+/// The first so many vectors, or all that there are.
+pub(crate) fn take_vectors<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [Vec3] {
+    vectors(take(rest, 3 * len))
+}
+
+/// As many whole vectors as there are in so many words.
+fn vectors(words: &mut [u32]) -> &mut [Vec3] {
+    let whole = words.len() - words.len() % 3;
+    bytemuck::cast_slice_mut(&mut words[..whole])
 }

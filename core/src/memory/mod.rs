@@ -3,7 +3,8 @@
 mod layout;
 mod storage;
 
-pub(crate) use layout::{Demand, Layout, Past, Shares};
+pub use layout::{Demand, Words};
+pub(crate) use layout::{Layout, Past, Plan, Scratch, Shares, take, take_vectors};
 #[cfg(feature = "alloc")]
 pub use storage::Heap;
 pub use storage::{Columns, Inline, Size, Slices, Storage};

@@ -4,7 +4,7 @@
 
 use crate::emit::Tally;
 use crate::particles::Color;
-use crate::retire::Fate;
+use crate::reap::Fate;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -222,6 +222,8 @@ storage! {
         fate: Fate = Fate::Lives,
         /// How many particles came into the system before it, by row.
         serial: u32 = 0,
+        /// What its random numbers are drawn by as long as it lives, by row.
+        key: u32 = 0,
         /// The slot it holds, by row.
         slot: u32 = 0,
         /// Its row, by slot; of a free slot the next free one plus one, zero ending the list.
@@ -303,7 +305,7 @@ mod tests {
     #[test]
     fn a_particle_takes_the_bytes_that_the_readme_says() {
         let one = size_of::<Inline<1001, 0, 0, 4>>() - size_of::<Inline<1, 0, 0, 4>>();
-        assert_eq!(one, 1000 * (87 + 4 * 12));
+        assert_eq!(one, 1000 * (91 + 4 * 12));
     }
 
     #[cfg(feature = "alloc")]

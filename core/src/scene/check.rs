@@ -2,8 +2,9 @@
 
 use super::check_force::check_force;
 use super::{Group, Light, SceneError, SceneFile};
-use crate::emit::{Emitter, Spread, Varied};
+use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::math::unit;
+use crate::reap::ReaperKind;
 use crate::shape::{Affine, Shape};
 use alloc::format;
 use alloc::string::String;
@@ -38,6 +39,11 @@ impl SceneFile {
         }
         if let Some((at, message)) = self.contacts.and_then(|response| response.fault()) {
             return Err(SceneError::value(format!("contacts.{at}"), message));
+        }
+        for (i, constraint) in self.constraints.iter().enumerate() {
+            if let Some((at, message)) = constraint.fault() {
+                return Err(SceneError::value(format!("constraints[{i}].{at}"), message));
+            }
         }
         for (i, spring) in self.springs.iter().enumerate() {
             let at = format!("springs[{i}]");
@@ -79,6 +85,12 @@ impl SceneFile {
         for (i, force) in self.forces.iter().enumerate() {
             check_force(&format!("forces[{i}]"), force)?;
         }
+        for (i, reaper) in self.reapers.iter().enumerate() {
+            match reaper {
+                ReaperKind::Chance(chance) => zero_or_more(&format!("reapers[{i}].rate"), chance.rate)?,
+                ReaperKind::Dense(dense) => zero_or_more(&format!("reapers[{i}].radius"), dense.radius)?,
+            }
+        }
         // How many particles fabrics bring is known when their meshes have been read.
         if self.fabrics.is_empty() {
             self.check_corners(self.particles.len())?;
@@ -116,6 +128,10 @@ impl SceneFile {
         if !(run.duration >= 0.0 && run.duration < longest) {
             let message = format!("has to be from zero to below 2^31 s, not {:?} s", run.duration);
             return Err(SceneError::value("run.duration", message));
+        }
+        if !(1..=1000).contains(&run.substeps) {
+            let message = format!("has to be from 1 to 1000, not {}", run.substeps);
+            return Err(SceneError::value("run.substeps", message));
         }
         if !(1..=10_000).contains(&run.max_bounces) {
             let message = format!("has to be from 1 to 10000, not {}", run.max_bounces);
@@ -164,7 +180,7 @@ impl SceneFile {
         }
     }
 
-    fn check_emitter(&self, at: &str, emitter: &Emitter<String>) -> Checked {
+    fn check_emitter(&self, at: &str, emitter: &Emitter<Shape<String>>) -> Checked {
         if !(emitter.rate >= 0.0 && emitter.rate <= MAX_RATE) {
             let message = format!("has to be from zero to {MAX_RATE:e}, not {}", emitter.rate);
             return Err(SceneError::value(format!("{at}.rate"), message));
@@ -202,6 +218,17 @@ impl SceneFile {
         finite(&format!("{at}.velocity"), &emitter.velocity.to_array())?;
         if let Some(direction) = emitter.direction {
             check_direction(&format!("{at}.direction"), direction)?;
+        }
+        if let Some(WhereSparse { radius, .. }) = emitter.where_sparse {
+            zero_or_more(&format!("{at}.where_sparse.radius"), radius)?;
+        }
+        let is_open =
+            matches!(emitter.shape, Shape::Line(_) | Shape::Circle(_) | Shape::Triangle(_) | Shape::HeightField(_));
+        if emitter.inside && is_open {
+            return Err(SceneError::value(
+                format!("{at}.inside"),
+                "needs a closed shape: box, sphere, cylinder, cone or mesh",
+            ));
         }
         if let Some(burst) = &emitter.burst {
             finite(&format!("{at}.burst"), &[burst.at, burst.every])?;

@@ -14,6 +14,12 @@ const MAX_LENGTH: f32 = 1e18;
 impl SceneFile {
     /// Checks that the corners of closed meshes are among `count` particles of the start.
     pub(super) fn check_corners(&self, count: usize) -> Checked {
+        for (i, constraint) in self.constraints.iter().enumerate() {
+            if let Some(end) = constraint.ends().iter().find(|&&end| end as usize >= count) {
+                let message = format!("particle {end} is out of range; there are {count}, from 0");
+                return Err(SceneError::value(format!("constraints[{i}]"), message));
+            }
+        }
         for (i, force) in self.forces.iter().enumerate() {
             let ForceKind::Pressure(pressure) = force else { continue };
             for (k, corners) in pressure.triangles.iter().enumerate() {

@@ -1,13 +1,16 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
 use super::Fabric;
-use crate::collide::{Grip, Response};
+use super::Response;
+use crate::collide::Grip;
+use crate::constrain::ConstraintKind;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::{Method, Tuning};
 use crate::particles::Particle;
 use crate::rays;
+use crate::reap::ReaperKind;
 use crate::shape::{Motion, Shape};
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -36,16 +39,22 @@ pub struct SceneFile {
     pub fabrics: Vec<Fabric>,
     /// What brings further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
-    pub emitters: Vec<Emitter<String>>,
+    pub emitters: Vec<Emitter<Shape<String>>>,
     /// What acts on all of them, in this order.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub forces: Vec<ForceKind>,
     /// How those that have a radius answer each other's touch; without it they pass through each other.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub contacts: Option<Response>,
+    /// What binds them, in this order, before contacts by position.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub constraints: Vec<ConstraintKind>,
     /// What pulls them, after the forces, and removes those that touch it.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub sinks: Vec<Sink<String>>,
+    /// What else they die of, beside age and sinks.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub reapers: Vec<ReaperKind>,
     /// What they bounce off and what is drawn.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub scenery: Vec<Item>,
@@ -76,6 +85,9 @@ pub struct Run {
     pub duration: f64,
     /// The step \[s\].
     pub dt: f64,
+    /// Parts that each step is cut into for the method and the constraints, from 1 to 1000. Contacts by position ask for their
+    /// own; the greater number counts.
+    pub substeps: u32,
     /// The method.
     pub integrator: Method,
     /// What adaptive and implicit methods are set to.
@@ -242,7 +254,9 @@ impl SceneFile {
             emitters: Vec::new(),
             forces: Vec::new(),
             contacts: None,
+            constraints: Vec::new(),
             sinks: Vec::new(),
+            reapers: Vec::new(),
             scenery: Vec::new(),
             groups: Vec::new(),
             materials: Vec::new(),
@@ -265,6 +279,7 @@ impl Default for Run {
         Self {
             duration: 10.0,
             dt: 1.0 / 60.0,
+            substeps: 1,
             integrator: Method::Rk4,
             tuning: Tuning::DEFAULT,
             index: Structure::Grid,

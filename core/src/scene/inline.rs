@@ -2,6 +2,7 @@
 
 use super::Scene;
 use super::scn::{Command, Located, Place, Scenery, ScnError, Source, commands};
+use crate::collide::Meetings;
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{AllPairs, Drag, Gravity, Sink, Spring};
 use crate::integrate::Rk4;
@@ -29,7 +30,7 @@ use heapless::Vec;
 pub struct InlineScene<const PARTICLES: usize, const SPRINGS: usize, const OTHERS: usize> {
     particles: Vec<Particle, PARTICLES>,
     springs: Vec<Spring, SPRINGS>,
-    emitters: Vec<Emitter<NoMesh>, OTHERS>,
+    emitters: Vec<Emitter<Shape<NoMesh>>, OTHERS>,
     forces: (Vec<Gravity, 1>, Drag, Vec<AllPairs, 1>, Vec<Sink<NoMesh>, OTHERS>),
     colliders: Vec<Placed<Shape<NoMesh>>, OTHERS>,
 }
@@ -129,8 +130,11 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             forces: &self.forces,
             colliders: &self.colliders,
             sinks: &self.forces.3,
+            reapers: &(),
             grips: &[],
-            contacts: &(),
+            constraints: &(),
+            substeps: 1,
+            meetings: Meetings::Through,
             max_bounces: Scene::EMPTY.max_bounces,
             integrator: &Rk4,
             index: &(),

@@ -23,6 +23,7 @@ mod model;
 mod read;
 #[cfg(feature = "alloc")]
 mod remarks;
+mod response;
 mod rules;
 #[cfg(feature = "schema")]
 mod schema;
@@ -41,6 +42,7 @@ pub use inline::{InlineError, InlineScene};
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
+pub use response::{Position, Response};
 pub use rules::{Scene, Unfit};
 #[cfg(feature = "schema")]
 pub use schema::schema;

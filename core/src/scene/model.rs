@@ -1,8 +1,10 @@
 //! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
 
+use super::Response;
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
-use crate::collide::{Contacts, Grip, Response};
+use crate::collide::{Grip, Meetings};
+use crate::constrain::{ConstraintKind, Contacts};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Penalty, Sink, Spring};
 use crate::index::Structure;
@@ -11,6 +13,7 @@ use crate::math::max;
 use crate::memory::Size;
 use crate::particles::{Color, Particle};
 use crate::rays;
+use crate::reap::ReaperKind;
 use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Shape};
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -26,13 +29,19 @@ pub struct Model {
     /// Springs between them.
     pub springs: Vec<Spring>,
     /// What brings further particles into the world.
-    pub emitters: Vec<Emitter<Arc<MeshBuf>>>,
+    pub emitters: Vec<Emitter<Shape<Arc<MeshBuf>>>>,
     /// What acts on them: forces, then the pull of the sinks, then what pushes balls apart.
     pub forces: (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>),
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
+    /// What binds them: constraints, then contacts by position.
+    pub constraints: (Vec<ConstraintKind>, Option<Contacts>),
+    /// Parts that each step is cut into.
+    pub substeps: u32,
     /// What they bounce off.
     pub colliders: Vec<Moving<Placed<Shape<Arc<MeshBuf>>>>>,
+    /// What else they die of, beside age and sinks.
+    pub reapers: Vec<ReaperKind>,
     /// How materials feel, by their numbers.
     pub grips: Vec<Grip>,
     /// What is drawn.
@@ -122,6 +131,9 @@ impl Model {
             colliders: colliders.collect::<Result<_, _>>()?,
             forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes),
             contacts: file.contacts,
+            constraints: (file.constraints.clone(), file.contacts.and_then(|response| response.contacts())),
+            substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
+            reapers: file.reapers.clone(),
             grips: file.materials.iter().map(|material| material.grip).collect(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
@@ -147,8 +159,11 @@ impl Model {
             forces: &self.forces,
             colliders: &self.colliders,
             sinks: &self.forces.1,
+            reapers: &self.reapers,
             grips: &self.grips,
-            contacts: self.contacts.as_ref().map_or(&(), |response| response as &dyn Contacts),
+            constraints: &self.constraints,
+            substeps: self.substeps,
+            meetings: self.contacts.map_or(Meetings::Through, |response| response.meetings()),
             max_bounces: self.max_bounces,
             integrator: &self.integrator,
             index: &self.index,
@@ -267,12 +282,13 @@ fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<
 }
 
 fn with_shape(
-    emitter: &Emitter<String>,
+    emitter: &Emitter<Shape<String>>,
     shape: Shape<Arc<MeshBuf>>,
     to_world: &Affine,
     file: &SceneFile,
-) -> Emitter<Arc<MeshBuf>> {
-    let Emitter { rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } = *emitter;
+) -> Emitter<Shape<Arc<MeshBuf>>> {
+    let Emitter { inside, where_sparse, rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } =
+        *emitter;
     let Emitter {
         radius, mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_variance, ..
     } = *emitter;
@@ -281,6 +297,8 @@ fn with_shape(
     let (direction, velocity) = (direction.map(|d| to_world.linear * d), to_world.linear * velocity);
     Emitter {
         shape,
+        inside,
+        where_sparse,
         group: None,
         rate,
         burst,

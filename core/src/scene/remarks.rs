@@ -1,7 +1,7 @@
 //! What a declared scene can say, but hardly means.
 
+use super::Response;
 use super::SceneFile;
-use crate::collide::Response;
 use crate::emit::{Spread, Varied};
 use crate::force::Friction;
 use alloc::format;

@@ -1,12 +1,14 @@
 //! The scene as a system steps through it.
 
-use crate::collide::{Contacts, Grip};
+use crate::collide::{Grip, Meetings};
+use crate::constrain::Constraint;
 use crate::emit::Emit;
 use crate::force::{Force, Spring};
 use crate::index::Arrange;
 use crate::integrate::{Integrator, Symplectic};
-use crate::memory::{Demand, Size};
+use crate::memory::{Plan, Size};
 use crate::particles::Particle;
+use crate::reap::Reaper;
 use crate::shape::Collider;
 
 /// What the world does: immutable while it runs. Lists are closed under composition, so each field is one thing.
@@ -29,10 +31,16 @@ pub struct Scene<'a> {
     pub colliders: &'a dyn Collider,
     /// What they vanish at.
     pub sinks: &'a dyn Collider,
+    /// What else they die of, beside age and sinks.
+    pub reapers: &'a dyn Reaper,
     /// How materials feel, by their numbers; those beyond have no friction.
     pub grips: &'a [Grip],
-    /// How those that have a radius answer each other.
-    pub contacts: &'a dyn Contacts,
+    /// What binds them together and keeps them apart.
+    pub constraints: &'a dyn Constraint,
+    /// Parts that a step is cut into for the method and the constraints, 1 to 1000: the finer, the stiffer are constraints.
+    pub substeps: u32,
+    /// What those that have a radius do where they meet.
+    pub meetings: Meetings,
     /// How often a particle may bounce in one step before it waits at the surface for its end, which is counted in
     /// `caps.bounces`: by default 8 times. By [`Impulse`](crate::Impulse) it may meet others and colliders four times as often.
     pub max_bounces: u32,
@@ -57,31 +65,44 @@ impl Scene<'_> {
         forces: &(),
         colliders: &(),
         sinks: &(),
+        reapers: &(),
         grips: &[],
-        contacts: &(),
+        constraints: &(),
+        substeps: 1,
+        meetings: Meetings::Through,
         max_bounces: 8,
         integrator: &Symplectic,
         index: &(),
     };
 
-    /// Vectors that a step needs to work with for each particle.
+    /// Vectors that a step needs to work with for each particle, if there is room for as many as it begins with or more.
     #[must_use]
     pub fn columns(&self) -> usize {
-        self.demand().columns()
+        self.plan().columns(self.start.len())
     }
 
     /// What a step works with.
-    pub(crate) fn demand(&self) -> Demand {
+    pub(crate) fn plan(&self) -> Plan {
         let needs = self.forces.needs();
-        Demand {
-            start: if self.needs_start() { 2 } else { 0 },
-            held: self.contacts.held(self.index),
+        let constrained = !self.constraints.is_empty();
+        Plan {
+            start: self.needs_start(),
+            before: constrained || self.pieces() > 1,
+            constrained,
+            constraints: self.constraints.demand(),
             trees: needs.tree_columns(),
             near: needs.columns(self.index) - needs.tree_columns(),
             // Newborns need one for their acceleration, whatever the method.
             method: self.integrator.columns().max(1),
-            contacts: self.contacts.scratch(self.index),
+            index: self.index.columns(),
+            crowd: self.emitters.reach() > 0.0 || self.reapers.reach() > 0.0,
+            meetings: self.meetings.columns() + if self.meetings.is_through() { 0 } else { self.index.columns() },
         }
+    }
+
+    /// Parts that a step is cut into.
+    pub(crate) fn pieces(&self) -> u32 {
+        self.substeps.clamp(1, 1000)
     }
 
     /// The least memory it runs in; `particles` is what it begins with.
@@ -97,7 +118,7 @@ impl Scene<'_> {
 
     /// Whether paths are to be followed through space.
     pub(crate) fn is_swept(&self) -> bool {
-        !(self.colliders.is_empty() && self.sinks.is_empty() && self.contacts.is_empty())
+        !(self.colliders.is_empty() && self.sinks.is_empty() && self.meetings.is_through())
     }
 
     pub(crate) fn needs_start(&self) -> bool {

@@ -73,21 +73,24 @@ impl Writer {
         if scene.contacts.is_some() {
             self.warn("contacts: in .scn particles pass through each other; that is left out");
         }
+        if !scene.reapers.is_empty() {
+            self.warn("reapers: in .scn particles die of age and at sinks alone; that is left out");
+        }
         if !scene.about.is_empty() {
             scene.about.split(['\n', '\r']).for_each(|text| self.line(format_args!("# {text}")));
             self.warn("about: kept as a comment");
         }
         if scene.run != Run::default() {
-            let Run { duration, dt, integrator, tuning, index, collision_index, max_bounces, seed, capacity } =
+            let Run { duration, dt, substeps, integrator, tuning, index, collision_index, max_bounces, seed, capacity } =
                 &scene.run;
             self.line(format_args!(
                 "# run with --duration {duration} --dt {dt} --integrator {integrator} --seed {seed} --capacity {capacity}"
             ));
             self.warn("run: .scn has no settings of a run; they are kept as a comment");
             let usual = Run::default();
-            let left_out = (*tuning, *index, *collision_index, *max_bounces);
-            if left_out != (usual.tuning, usual.index, usual.collision_index, usual.max_bounces) {
-                self.warn("run: its tuning, its indices and its max_bounces are left out");
+            let left_out = (*tuning, *index, *collision_index, *max_bounces, *substeps);
+            if left_out != (usual.tuning, usual.index, usual.collision_index, usual.max_bounces, usual.substeps) {
+                self.warn("run: its tuning, its indices, its max_bounces and its substeps are left out");
             }
         }
     }
@@ -257,7 +260,7 @@ impl Writer {
         self.line(format_args!("particle {place} {mass} {fixed} {rest} {}", number(*material)));
     }
 
-    fn source(&mut self, index: usize, emitter: &Emitter<String>) {
+    fn source(&mut self, index: usize, emitter: &Emitter<Shape<String>>) {
         let at = format!("emitters[{index}]");
         self.warn_of_group(&at, emitter.group);
         let Some(shape) = self.shape(&at, &emitter.shape, false) else { return };
@@ -274,6 +277,11 @@ impl Writer {
         }
         if emitter.burst.is_some() || emitter.start != 0.0 || emitter.stop.is_some() {
             self.warn(format!("{at}: .scn has neither bursts nor start and stop; they are left out"));
+        }
+        if emitter.inside || emitter.where_sparse.is_some() {
+            self.warn(format!(
+                "{at}: in .scn births lie on surfaces, whoever is there; inside and where_sparse are left out"
+            ));
         }
         if emitter.direction.is_some() || emitter.velocity != Vec3::ZERO {
             self.warn(format!("{at}: .scn has neither a direction nor a velocity of sources; they are left out"));

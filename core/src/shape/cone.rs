@@ -49,6 +49,10 @@ impl Surface for Cone {
         let reach = Vec3::new(self.radius, 0.5 * self.height, self.radius);
         Aabb { min: self.center - reach, max: self.center + reach }
     }
+
+    fn is_inside(&self, point: Vec3) -> bool {
+        self.contains(point)
+    }
 }
 
 impl Cone {

@@ -71,6 +71,10 @@ impl Surface for Cuboid {
     fn bounds(&self) -> Aabb {
         Aabb::around([self.min, self.max])
     }
+
+    fn is_inside(&self, point: Vec3) -> bool {
+        self.contains(point)
+    }
 }
 
 impl Cuboid {

@@ -1,7 +1,7 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
 use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, Triangle};
-use crate::math::{high, largest, max, power_to_one};
+use crate::math::{high, largest, length, max, power_to_one};
 use crate::rays::{Index, Pieces, Unsound};
 #[cfg(feature = "alloc")]
 use crate::rays::{Structure, TooSmall};
@@ -181,6 +181,9 @@ impl MeshBuf {
     }
 }
 
+/// A way out of meshes, along no axis, so that it hardly ever runs along a face.
+const OUT: Vec3 = Vec3::new(0.836_516, 0.481_754, 0.261_214);
+
 impl Surface for Mesh<'_> {
     fn area(&self) -> f32 {
         self.faces().map(|face| face.area()).sum()
@@ -205,6 +208,18 @@ impl Surface for Mesh<'_> {
 
     fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// By how often a straight way out crosses it; beyond 64 times it is taken for outside.
+    fn is_inside(&self, point: Vec3) -> bool {
+        let out = OUT * (2.0 * length(self.bounds.max - self.bounds.min));
+        let (mut from, to) = (point, point + out);
+        for crossings in 0..64 {
+            let segment = Segment::new(from, to);
+            let Some(hit) = self.first_hit(&segment) else { return crossings % 2 == 1 };
+            from = segment.at(hit.time) + OUT * (4.0 * hit.slack);
+        }
+        false
     }
 }
 
@@ -295,6 +310,9 @@ macro_rules! through_view {
             }
             fn bounds(&self) -> Aabb {
                 self.view().bounds()
+            }
+            fn is_inside(&self, point: Vec3) -> bool {
+                self.view().is_inside(point)
             }
         }
         impl Collider for $owner {

@@ -62,6 +62,12 @@ pub trait Surface {
 
     /// The smallest axis-aligned box around it.
     fn bounds(&self) -> Aabb;
+
+    /// Whether a point lies inside what it encloses; open surfaces enclose nothing.
+    fn is_inside(&self, point: Vec3) -> bool {
+        let _ = point;
+        false
+    }
 }
 
 /// A point on a surface and the direction away from it.
@@ -133,6 +139,9 @@ impl<M: Surface> Surface for Shape<M> {
     }
     fn bounds(&self) -> Aabb {
         each!(self, s => s.bounds())
+    }
+    fn is_inside(&self, point: Vec3) -> bool {
+        each!(self, s => s.is_inside(point))
     }
 }
 

@@ -41,6 +41,10 @@ impl Surface for Sphere {
     fn bounds(&self) -> Aabb {
         Aabb { min: self.center - self.radius, max: self.center + self.radius }
     }
+
+    fn is_inside(&self, point: Vec3) -> bool {
+        self.contains(point)
+    }
 }
 
 impl Convex for Sphere {

@@ -1,10 +1,10 @@
-//! Update: the method moves the old, in as many sub-steps as contacts ask for; the newborn fly on from their births.
+//! Update: the old go through the step's sub-steps; the newborn fly on from their births.
 
 use super::View;
-use super::field::Field;
-use crate::collide::{Lists, Stage};
-use crate::force::Springs;
-use crate::integrate::{Dynamics, Motion, Work};
+use super::field::{Attributes, Field};
+use super::substeps::Moved;
+use crate::force::{Springs, State};
+use crate::integrate::Dynamics;
 use crate::memory::{Layout, Shares, Storage};
 use crate::observe::Observer;
 use crate::report::Report;
@@ -26,78 +26,56 @@ impl View<'_> {
     ) {
         let (len, now, capacity) = (self.status.len, self.status.time, self.capacity());
         let m = self.memory.slices();
-        let Shares { start: [start_x, start_v], held, trees, near, scratch } =
-            Layout::of(scene.demand(), capacity).moving(m.work);
+        let Shares { start: [start_x, start_v], before, marks, step: kept, mut scratch } =
+            Layout::of(scene.plan(), capacity).shares(m.work);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(&m.position[..len]);
             start_v[..len].copy_from_slice(&m.velocity[..len]);
         }
-        let mut field = Field {
-            scene,
-            radius: m.radius,
-            mass: m.mass,
-            inverse_mass: m.inverse_mass,
-            drag: m.drag,
-            charge: m.charge,
-            springs: Springs {
-                springs: scene.springs,
-                start: self.status.start,
-                serial: &m.serial[..len],
-                row_of: m.row_of,
-                last_spring: m.last_spring,
-                incident: m.incident,
-            },
-            needs: scene.forces.needs(),
-            tree: trees,
-            near,
-            first: old,
-            evaluations: 0,
-            observer,
+        let springs = Springs {
+            springs: scene.springs,
+            start: self.status.start,
+            serial: m.serial,
+            row_of: m.row_of,
+            last_spring: m.last_spring,
+            incident: m.incident,
         };
+        let (radius, mass, drag, charge) = (&*m.radius, &*m.mass, &*m.drag, &*m.charge);
+        let (born, dies, slot, key) = (&*m.born, &*m.dies, &*m.slot, &*m.key);
+        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, ..State::EMPTY };
+        let attributes =
+            Attributes { lives, inverse_mass: m.inverse_mass, elasticity: m.elasticity, material: m.material };
+        let needs = scene.forces.needs();
         if old < len {
+            let ([tree, near], memory) = scratch.moving();
+            let mut field = Field { scene, attributes, needs, tree, near, first: old, evaluations: 0, observer };
             let ends = [&mut m.position[..len], &mut m.velocity[..len]];
-            fly(&mut field, ends, old..len, m.born, [now, now + dt], scratch);
+            fly(&mut field, ends, old..len, born, [now, now + dt], memory);
+            report.effort.evaluations += field.evaluations;
         }
-        (field.first, field.springs.serial) = (0, &m.serial[..old]);
-        let pieces = scene.contacts.substeps();
-        let mut stage = Stage {
+        let mut moved = Moved {
             scene,
-            held,
-            lists: Lists::default(),
+            attributes,
+            needs,
             position: &mut m.position[..old],
             velocity: &mut m.velocity[..old],
-            radius: m.radius,
-            inverse_mass: m.inverse_mass,
-            elasticity: m.elasticity,
-            material: m.material,
-            now,
-            h: dt,
-            dt,
-            pieces,
-            piece: 0,
+            start: [start_x, start_v].map(|column| &*first(column, old)),
+            before: before.map(|column| first(column, old)),
+            marks: first(marks, old),
+            kept,
+            scratch,
+            capacity,
             report,
+            observer,
         };
-        let start = if scene.needs_start() { [&start_x[..old], &start_v[..old]] } else { [&[][..]; 2] };
-        for piece in 0..pieces {
-            let end = now + dt.part(piece + 1, pieces);
-            (stage.piece, stage.h) = (piece, end - stage.now);
-            let work = Work { memory: scratch, stride: capacity, len: old };
-            substep(&mut stage, start, work, &mut self.status.hint, &mut field);
-            stage.now = end;
-        }
-        report.effort.evaluations += field.evaluations;
+        moved.go(now, dt, &mut self.status.hint);
     }
 }
 
-/// One sub-step: the method moves all, then contacts by position move them apart.
-fn substep(stage: &mut Stage<'_>, start: [&[Vec3]; 2], work: Work<'_>, hint: &mut Time, field: &mut Field<'_>) {
-    let scene = stage.scene;
-    scene.contacts.gather(stage, bytemuck::cast_slice_mut(work.memory));
-    let start = scene.contacts.begin(stage.held, stage.position, stage.velocity).unwrap_or(start);
-    let (position, velocity, effort) = (&mut *stage.position, &mut *stage.velocity, &mut stage.report.effort);
-    let motion = Motion { position, velocity, start, work, hint, effort };
-    scene.integrator.advance(motion, stage.now, stage.h, field);
-    scene.contacts.project(stage);
+/// The first so many, or none where there is no memory for them.
+fn first<T>(column: &mut [T], len: usize) -> &mut [T] {
+    let len = len.min(column.len());
+    &mut column[..len]
 }
 
 /// Lets newborn rows fly from their births to the end of the step.

@@ -2,7 +2,8 @@
 
 use super::View;
 use crate::emit::Births;
-use crate::memory::Storage;
+use crate::index::SpatialIndex;
+use crate::memory::{Layout, Slices, Storage};
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -18,8 +19,20 @@ impl View<'_> {
         observer: &mut dyn Observer,
     ) -> usize {
         let (old, now) = (self.status.len, self.status.time);
-        let view = View { memory: self.memory.slices(), status: self.status };
-        scene.emitters.emit(now, end, &mut Births { view, report, observer, end, next: 0 });
+        let (layout, reach) = (Layout::of(scene.plan(), self.capacity()), scene.emitters.reach());
+        let (mut memory, status) = (self.memory.slices(), &mut *self.status);
+        let mut emit = |memory: &mut Slices<'_>, near: Option<&dyn SpatialIndex>| {
+            let view = View { memory: memory.slices(), status: &mut *status };
+            let (report, observer) = (&mut *report, &mut *observer);
+            scene.emitters.emit(now, end, &mut Births { view, report, observer, near, old, end, number: 0 });
+        };
+        if reach > 0.0 {
+            let (places, words) = layout.crowd(core::mem::take(&mut memory.work), old);
+            places.copy_from_slice(&memory.position[..old]);
+            scene.index.arrange(words, places, reach, &mut |near| emit(&mut memory, near));
+        } else {
+            emit(&mut memory, None);
+        }
         old
     }
 }

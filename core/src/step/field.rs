@@ -1,6 +1,6 @@
 //! Forces over masses: what a method asks for accelerations.
 
-use crate::force::{Force, Grow, Needs, Springs, State};
+use crate::force::{Force, Grow, Needs, State};
 use crate::index::{BarnesHut, SpatialIndex};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
@@ -9,15 +9,20 @@ use crate::scene::Scene;
 use crate::time::Time;
 use glam::Vec3;
 
+/// What particles are besides places and velocities: one entry a row.
+#[derive(Clone, Copy)]
+pub(super) struct Attributes<'a> {
+    /// All that forces see of them.
+    pub(super) lives: State<'a>,
+    pub(super) inverse_mass: &'a [f32],
+    pub(super) elasticity: &'a [f32],
+    pub(super) material: &'a [u16],
+}
+
 /// The scene's forces over the masses, from row `first` on.
 pub(super) struct Field<'a> {
     pub(super) scene: &'a Scene<'a>,
-    pub(super) radius: &'a [f32],
-    pub(super) mass: &'a [f32],
-    pub(super) inverse_mass: &'a [f32],
-    pub(super) drag: &'a [f32],
-    pub(super) charge: &'a [f32],
-    pub(super) springs: Springs<'a>,
+    pub(super) attributes: Attributes<'a>,
     /// What the forces need to find, and memory for it.
     pub(super) needs: Needs,
     pub(super) tree: &'a mut [u32],
@@ -27,23 +32,11 @@ pub(super) struct Field<'a> {
     pub(super) observer: &'a mut dyn Observer,
 }
 
-impl<'a> Field<'a> {
-    /// The state as it is, without trees and index.
-    fn state<'s>(&self, time: Time, position: &'s [Vec3], velocity: &'s [Vec3]) -> State<'s>
-    where
-        'a: 's,
-    {
-        let len = position.len();
-        let (radius, mass) = (&self.radius[..len], &self.mass[..len]);
-        let (drag, charge, springs) = (&self.drag[..len], &self.charge[..len], self.springs);
-        let (mass_tree, charge_tree, near) = (None, None, None);
-        State { time, position, velocity, radius, mass, drag, charge, springs, mass_tree, charge_tree, near }
-    }
-
+impl Field<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
     fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&State<'_>)) {
         self.evaluations += u64::from(!position.is_empty());
-        let state = self.state(time, position, velocity);
+        let state = self.attributes.lives.moved(time, position, velocity);
         if self.needs.tree_columns() > 0 && position.len() >= BarnesHut::FEWEST {
             self.with_trees(&state, then);
         } else {
@@ -82,7 +75,7 @@ impl<'a> Field<'a> {
 impl Dynamics for Field<'_> {
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
         let rows = self.first..position.len();
-        let (forces, inverse_mass) = (self.scene.forces, &self.inverse_mass[rows.clone()]);
+        let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
         self.with_state(time, position, velocity, &mut |state| {
             acceleration.fill(Vec3::ZERO);
             forces.add_to(state, rows.clone(), acceleration);
@@ -95,14 +88,14 @@ impl Dynamics for Field<'_> {
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
-        let (forces, inverse_mass) = (self.scene.forces, &self.inverse_mass[..position.len()]);
+        let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[..position.len()]);
         self.with_state(time, position, velocity, &mut |state| {
             then(&Linear { forces: &(forces, state.springs), state: *state, inverse_mass });
         });
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
-        let state = self.state(time, position, velocity);
+        let state = self.attributes.lives.moved(time, position, velocity);
         self.observer.after(Phase::Advance, &state);
     }
 }

@@ -1,18 +1,19 @@
-//! The step: create, advance, snap, collide, retire. Each is a file.
+//! The step: create, advance, snap, collide, reap. Each is a file.
 
 mod advance;
 mod create;
 mod field;
 mod population;
 mod snap;
+mod substeps;
 mod view;
 
 pub(crate) use view::{Status, View};
 
 use crate::collide::Passage;
 use crate::observe::{Observer, Phase};
+use crate::reap::reap;
 use crate::report::Report;
-use crate::retire::retire;
 use crate::scene::Scene;
 use crate::stall;
 use crate::time::Time;
@@ -33,16 +34,16 @@ impl View<'_> {
         }
         if scene.is_swept() {
             let (report, observer) = (&mut *report, &mut *observer);
-            scene.contacts.follow(Passage { view: &mut *self, scene, old, dt, end, report, observer });
+            scene.meetings.follow(Passage { view: &mut *self, scene, old, dt, end, report, observer });
         }
         observer.after(Phase::Collide, &self.state(scene));
-        // The steps that were made of this one: sub-steps of contacts, and those that a method chose.
-        let steps = u64::from(scene.contacts.substeps()).max(report.effort.accepted);
+        // The steps that were made of this one: sub-steps, and those that a method chose.
+        let steps = u64::from(scene.pieces()).max(report.effort.accepted);
         let len = self.len();
         let h = dt.seconds() / steps as f32;
         report.caps.stalled += stall::count(&self.memory.position[..len], &self.memory.velocity[..len], h);
         let before = report.died.total();
-        retire(self, scene.springs, end, report, observer);
+        reap(self, scene, end, report, observer);
         if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {
             self.status.hint = Time::ZERO;
         }

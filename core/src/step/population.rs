@@ -4,14 +4,25 @@ use super::View;
 use crate::force::{Spring, Springs};
 use crate::memory::{Slices, Storage};
 use crate::particles::{Full, Id, Particle, WHITE};
+use crate::reap::Fate;
 use crate::report::Report;
-use crate::retire::Fate;
+use crate::rng::Stream;
 use crate::time::Time;
 use glam::Vec3;
 
+/// The number, instead of an emitter's, of those that are put in without one.
+const NO_EMITTER: u32 = u32::MAX;
+
 impl View<'_> {
-    /// Puts a particle into the next row.
-    pub(crate) fn spawn(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
+    /// Puts a particle in that no emitter brings. Its random numbers are those of the number in which it was put in.
+    pub(crate) fn put(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
+        let number = self.status.given;
+        self.status.given = number.wrapping_add(1);
+        self.spawn(particle, born, Stream::new(self.status.seed, NO_EMITTER, number).name())
+    }
+
+    /// Puts a particle into the next row; `key` is what its random numbers are drawn by as long as it lives.
+    pub(crate) fn spawn(&mut self, particle: &Particle, born: Time, key: u32) -> Result<Id, Full> {
         if self.is_full() {
             return Err(Full);
         }
@@ -29,6 +40,7 @@ impl View<'_> {
         m.row_of[slot as usize] = row as u32;
         m.slot[row] = slot;
         m.serial[row] = serial;
+        m.key[row] = key;
         m.position[row] = particle.position;
         // Who has a number that cannot be used is taken out at the step's end, whichever it is. Any lifetime can be: one
         // that is no number or beyond all is for ever.

@@ -27,6 +27,10 @@ pub(crate) struct Status {
     pub(crate) taken: u32,
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
+    /// Particles put in without an emitter so far, those that found no room included.
+    pub(crate) given: u32,
+    /// Whether a scene has had reapers, so that keys decide what becomes of particles.
+    pub(crate) is_reaped: bool,
     /// Emitters that the scene had then.
     pub(crate) emitters: usize,
     pub(crate) time: Time,
@@ -43,6 +47,8 @@ impl Status {
         free: 0,
         taken: 0,
         start: 0,
+        given: 0,
+        is_reaped: false,
         emitters: 0,
         time: Time::ZERO,
         hint: Time::ZERO,
@@ -71,9 +77,10 @@ impl View<'_> {
     pub(crate) fn start(&mut self, scene: &Scene<'_>) {
         self.memory.tallies.fill(Default::default());
         self.status.emitters = scene.emitters.count();
+        self.status.is_reaped = !scene.reapers.is_empty();
         let mut report = Report::default();
         for particle in scene.start {
-            match self.spawn(particle, Time::ZERO) {
+            match self.put(particle, Time::ZERO) {
                 Ok(_) => report.initial += 1,
                 Err(Full) => report.refused = report.refused.saturating_add(1),
             }
@@ -86,7 +93,7 @@ impl View<'_> {
     }
 
     /// The particles as forces see them.
-    pub(super) fn state<'s>(&'s self, scene: &Scene<'s>) -> State<'s> {
+    pub(crate) fn state<'s>(&'s self, scene: &Scene<'s>) -> State<'s> {
         self.memory.columns().state(scene.springs, self.status)
     }
 }

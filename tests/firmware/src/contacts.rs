@@ -5,10 +5,9 @@
 
 use pointmass::force::Friction;
 use pointmass::index::{Arrange, Structure};
+use pointmass::scene::Position;
 use pointmass::shape::Cuboid;
-use pointmass::{
-    Force, Gravity, Grip, Impulse, Inline, Particle, Penalty, Projection, Response, Scene, System, Time, Vec3,
-};
+use pointmass::{Force, Gravity, Grip, Inline, Particle, Penalty, Response, Scene, System, Time, Vec3};
 
 /// The hashes in the form of `all` in `expected.rs`.
 pub(crate) const EXPECTED: &str = include_str!("../../contacts.txt");
@@ -37,9 +36,9 @@ const PENALTY: Penalty =
 
 /// The responses by the names of their hashes, without an index and with one.
 const RESPONSES: [([&str; 2], Response); 3] = [
-    (["impulse", "impulse_grid"], Response::Impulse(Impulse {})),
+    (["impulse", "impulse_grid"], Response::Impulse {}),
     (["force", "force_grid"], Response::Force(PENALTY)),
-    (["position", "position_grid"], Response::Position(Projection { substeps: 8, compliance: 1e-6 })),
+    (["position", "position_grid"], Response::Position(Position { substeps: 8, compliance: 1e-6 })),
 ];
 
 /// Calls `out` with the name of each and the hash after a second.
@@ -53,8 +52,17 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         let forces: &dyn Force = &(Gravity::EARTH, push);
         let indices: [&dyn Arrange; 2] = [&(), &Structure::Grid];
         for (name, index) in names.iter().zip(indices) {
-            let scene =
-                Scene { start, forces, colliders: &room, grips: &grips, contacts: response, index, ..Scene::EMPTY };
+            let scene = Scene {
+                start,
+                forces,
+                colliders: &room,
+                grips: &grips,
+                constraints: &response.contacts(),
+                substeps: response.substeps(),
+                meetings: response.meetings(),
+                index,
+                ..Scene::EMPTY
+            };
             if system.start(&scene, 1).is_ok() {
                 for frame in 1..=60 {
                     system.step(&scene, Time::frame(frame, 60) - system.time());

@@ -2,7 +2,7 @@
 
 use pointmass::index::{Arrange, Structure};
 use pointmass::shape::{Cuboid, Plane};
-use pointmass::{Contacts, Gravity, Impulse, Particle, Scene, Time, Vec3};
+use pointmass::{Gravity, Meetings, Particle, Scene, Time, Vec3};
 use pointmass_tests::{Random, often, started};
 
 #[test]
@@ -11,11 +11,11 @@ fn fast_billiards_go_on_if_they_may() {
     let walls = (Plane { point: Vec3::X * -0.5, normal: Vec3::X }, Plane { point: Vec3::X * 0.5, normal: Vec3::NEG_X });
     let velocity = Vec3::X * 1000.0;
     let start = [Particle { velocity, radius: 0.1, elasticity: 1.0, ..Particle::REST }];
-    for contacts in [&() as &dyn Contacts, &Impulse {}] {
+    for meetings in [Meetings::Through, Meetings::IMPULSE] {
         for (rate, most, stops) in [(60, 8, true), (60, 22, false), (6, 100, true), (6, 210, false)] {
-            let scene = Scene { start: &start, colliders: &walls, max_bounces: most, contacts, ..Scene::EMPTY };
+            let scene = Scene { start: &start, colliders: &walls, max_bounces: most, meetings, ..Scene::EMPTY };
             // By impulse there may be four times as many.
-            let stops = stops && contacts.is_empty();
+            let stops = stops && meetings == Meetings::Through;
             let mut system = started(&scene, 1, 1);
             let mut hits = 0;
             for i in 1..=30 {
@@ -42,7 +42,7 @@ fn crowd(count: usize, index: &dyn Arrange) -> (u64, pointmass::Report) {
         })
         .collect();
     let room = Cuboid { min: Vec3::splat(-3.0), max: Vec3::splat(3.0) };
-    let scene = Scene { start: &start, colliders: &room, contacts: &Impulse {}, index, ..Scene::EMPTY };
+    let scene = Scene { start: &start, colliders: &room, meetings: Meetings::IMPULSE, index, ..Scene::EMPTY };
     let mut system = started(&scene, count, 1);
     let report = system.step(&scene, Time::frame(1, 60));
     assert!(system.particles().position.iter().all(|x| x.is_finite()));
@@ -69,8 +69,8 @@ fn points_have_nobody_to_meet() {
         .map(|_| Particle { position: random.vector(0.8), velocity: random.vector(3.0), ..Particle::REST })
         .collect();
     let room = Cuboid { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let [with, without] = [&Impulse {} as &dyn Contacts, &()].map(|contacts| {
-        let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &room, contacts, ..Scene::EMPTY };
+    let [with, without] = [Meetings::IMPULSE, Meetings::Through].map(|meetings| {
+        let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &room, meetings, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 1);
         (1..=120).for_each(|i| {
             system.step(&scene, Time::frame(i, 60) - system.time());

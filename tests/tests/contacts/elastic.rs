@@ -1,7 +1,7 @@
 //! Hard balls without loss keep their energy for minutes, in any gravity.
 
 use pointmass::shape::Plane;
-use pointmass::{Gravity, Impulse, Method, Particle, Scene, Vec3};
+use pointmass::{Gravity, Meetings, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, f64s, run, started};
 
 const FLOOR: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -24,8 +24,8 @@ fn check(name: &str, start: &[Particle], gravity: f64) {
                 continue;
             }
             let integrator = method.integrator();
-            let contacts = &Impulse {};
-            let scene = Scene { start, forces: &forces, colliders: &FLOOR, contacts, integrator, ..Scene::EMPTY };
+            let meetings = Meetings::IMPULSE;
+            let scene = Scene { start, forces: &forces, colliders: &FLOOR, meetings, integrator, ..Scene::EMPTY };
             let mut system = started(&scene, start.len(), 1);
             let energy = |system: &pointmass::System<pointmass::Heap>| {
                 let p = system.particles();

@@ -2,8 +2,8 @@
 
 use pointmass::shape::Cuboid;
 use pointmass::{
-    Cause, Emitter, Event, EventKind, Events, Gravity, Id, Impact, Impulse, Observer, Particle, Passing, Report, Scene,
-    System, Time, Varied, Vec3,
+    Cause, Emitter, Event, EventKind, Events, Gravity, Id, Impact, Meetings, Observer, Particle, Passing, Report,
+    Scene, System, Time, Varied, Vec3,
 };
 use pointmass_tests::{Random, point, started};
 
@@ -61,7 +61,7 @@ fn play(mut then: impl FnMut(&mut System<pointmass::Heap>, &Scene<'_>)) {
         forces: &Gravity::EARTH,
         colliders: &ROOM,
         sinks: &SINK,
-        contacts: &Impulse {},
+        meetings: Meetings::IMPULSE,
         ..Scene::EMPTY
     };
     let mut system = started(&scene, 33, 3);
@@ -105,6 +105,7 @@ fn everything_is_told_once() {
                         Cause::Lifetime => 0,
                         Cause::Sink => 1,
                         Cause::Nonfinite => 2,
+                        Cause::Chance | Cause::Density | Cause::Other => panic!("there is no such rule"),
                     }] += 1;
                     assert_eq!((event.time, system.row(id.expect("who"))), (system.time(), None));
                 }

@@ -2,7 +2,7 @@
 
 use pointmass::force::Friction;
 use pointmass::shape::Plane;
-use pointmass::{Gravity, Grip, Method, Particle, Projection, Scene, Vec3};
+use pointmass::{Contacts, Gravity, Grip, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, f64s, gap, run, started};
 
 /// Steps a second, sub-steps of each.
@@ -24,14 +24,14 @@ impl Stage {
         let forces = &Gravity { acceleration: self.gravity };
         for &integrator in Method::ALL {
             for (rate, substeps) in STEPS {
-                let contacts = &Projection { substeps, compliance: 0.0 };
                 let colliders = &planes;
                 let scene = Scene {
                     start,
                     grips: &grips,
                     forces,
                     colliders,
-                    contacts,
+                    substeps,
+                    constraints: &Contacts::HARD,
                     integrator: &integrator,
                     ..Scene::EMPTY
                 };

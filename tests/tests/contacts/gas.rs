@@ -2,7 +2,7 @@
 
 use pointmass::index::Structure;
 use pointmass::shape::Cuboid;
-use pointmass::{Impact, Impulse, Observer, Particle, Scene, Time, Vec3};
+use pointmass::{Impact, Meetings, Observer, Particle, Scene, Time, Vec3};
 use pointmass_tests::{ks, started};
 
 const SIDE: f32 = 1.0;
@@ -60,8 +60,13 @@ fn gas(across: usize, radius: f32, steps: usize) -> Gas {
     let start = balls(across, radius);
     let n = start.len() as f64;
     let inside = Cuboid { min: Vec3::ZERO, max: Vec3::splat(SIDE) };
-    let scene =
-        Scene { start: &start, colliders: &inside, contacts: &Impulse {}, index: &Structure::Grid, ..Scene::EMPTY };
+    let scene = Scene {
+        start: &start,
+        colliders: &inside,
+        meetings: Meetings::IMPULSE,
+        index: &Structure::Grid,
+        ..Scene::EMPTY
+    };
     let mut system = started(&scene, start.len(), 1);
     let energy = |velocity: &[Vec3]| velocity.iter().map(|v| 0.5 * f64::from(v.dot(*v))).sum::<f64>();
     let before = energy(system.particles().velocity);

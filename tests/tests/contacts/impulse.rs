@@ -1,7 +1,7 @@
 //! Hard balls.
 
 use pointmass::shape::Cuboid;
-use pointmass::{Gravity, Impulse, Particle, Scene, Time, Vec3};
+use pointmass::{Gravity, Meetings, Particle, Scene, Time, Vec3};
 use pointmass_tests::started;
 
 fn ball(x: f32, vx: f32) -> Particle {
@@ -10,7 +10,7 @@ fn ball(x: f32, vx: f32) -> Particle {
 
 /// Velocities along x after a second of balls on a line.
 fn after_a_second(start: &[Particle]) -> Vec<f32> {
-    let scene = Scene { start, contacts: &Impulse {}, ..Scene::EMPTY };
+    let scene = Scene { start, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 1);
     for frame in 1..=60 {
         system.step(&scene, Time::frame(frame, 60) - system.time());
@@ -65,7 +65,8 @@ fn a_tower_of_balls_stands() {
         (0..4).map(|i| Particle { position: Vec3::Y * (0.5 + i as f32), elasticity: 0.3, ..ball(0.0, 0.0) }).collect();
     let floor = Cuboid { min: Vec3::new(-9.0, -1.0, -9.0), max: Vec3::new(9.0, 0.0, 9.0) };
     let forces = Gravity::EARTH;
-    let scene = Scene { start: &start, forces: &forces, colliders: &floor, contacts: &Impulse {}, ..Scene::EMPTY };
+    let scene =
+        Scene { start: &start, forces: &forces, colliders: &floor, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
     let mut system = started(&scene, 4, 1);
     for frame in 1..=600 {
         system.step(&scene, Time::frame(frame, 60) - system.time());

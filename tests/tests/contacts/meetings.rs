@@ -4,7 +4,7 @@ use pointmass::emit::Burst;
 use pointmass::force::Friction;
 use pointmass::index::{Arrange, InGrid, InKd, Structure};
 use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
-use pointmass::{Emitter, Gravity, Grip, Impact, Impulse, Observer, Particle, Scene, Spread, Time, Varied, Vec3};
+use pointmass::{Emitter, Gravity, Grip, Impact, Meetings, Observer, Particle, Scene, Spread, Time, Varied, Vec3};
 use pointmass_tests::{Random, f64s, often, point, run, started};
 
 /// Balls of all sizes on a lattice of so many along each side, a metre apart, in motion.
@@ -45,7 +45,7 @@ fn momentum_is_conserved_to_rounding() {
             // All fly inward, so that they meet often before they have flown apart.
             ball.velocity += (Vec3::splat(2.5) - ball.position) * 3.0;
         }
-        let scene = Scene { start: &start, grips: &GRIPS, contacts: &Impulse {}, ..Scene::EMPTY };
+        let scene = Scene { start: &start, grips: &GRIPS, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 1);
         let before = momentum(system.particles().mass, system.particles().velocity);
         run(&mut system, &scene, 0.02, 50);
@@ -92,7 +92,7 @@ fn friction_keeps_within_coulomb_s_cone_and_never_turns_slip_round() {
             ..Particle::REST
         };
         let start = [ball(apart * 0.5), ball(apart * -0.5)];
-        let scene = Scene { start: &start, grips: &grips, contacts: &Impulse {}, ..Scene::EMPTY };
+        let scene = Scene { start: &start, grips: &grips, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, 2, 1);
         let mut records = Records::default();
         system.step_observed(&scene, Time::from_seconds(1.0), &mut records);
@@ -127,7 +127,7 @@ fn a_billiard_stays_in_its_room() {
     }
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::splat(5.0) };
     let scene =
-        Scene { start: &start, colliders: &room, contacts: &Impulse {}, index: &Structure::Grid, ..Scene::EMPTY };
+        Scene { start: &start, colliders: &room, meetings: Meetings::IMPULSE, index: &Structure::Grid, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 1);
     let energy = |mass: &[f32], velocity: &[Vec3]| -> f64 {
         mass.iter().zip(velocity).map(|(&m, v)| 0.5 * f64::from(m) * f64::from(v.dot(*v))).sum()
@@ -162,7 +162,7 @@ fn points_do_not_meet_points() {
     };
     for (radius, meetings) in [(0.0, 0), (0.1, 1)] {
         let start = [at(-1.0, 0.0), at(1.0, radius)];
-        let scene = Scene { start: &start, contacts: &Impulse {}, ..Scene::EMPTY };
+        let scene = Scene { start: &start, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, 2, 1);
         run(&mut system, &scene, 0.1, 20);
         assert_eq!(system.totals().contacts, meetings);
@@ -194,7 +194,7 @@ fn hash_with(index: &dyn Arrange, fast: bool) -> (u64, pointmass::Report) {
         grips: &GRIPS,
         colliders: &colliders,
         emitters: &emitter,
-        contacts: &Impulse {},
+        meetings: Meetings::IMPULSE,
         index,
         ..Scene::EMPTY
     };
@@ -226,7 +226,7 @@ fn newborns_meet_what_is_in_their_way_in_the_step_of_their_birth() {
         ..Emitter::new(point(Vec3::ZERO), 10.0)
     };
     let (start, step) = ([pin], Time::from_seconds(0.35));
-    let scene = Scene { start: &start, emitters: &emitter, contacts: &Impulse {}, ..Scene::EMPTY };
+    let scene = Scene { start: &start, emitters: &emitter, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
     let mut system = started(&scene, 20, 1);
     system.step(&scene, step);
     let p = system.particles();
@@ -261,7 +261,7 @@ fn who_waits_is_carried_along_by_a_wall_that_moves() {
     let rise = Motion { drift: Vec3::Y, ..Motion::STILL };
     let rising = Moving::new(floor, &Aabb { min: floor.min, max: floor.max }, rise);
     let colliders = (wall(Vec3::X), wall(Vec3::NEG_X), rising);
-    let scene = Scene { start: &start, colliders: &colliders, contacts: &Impulse {}, ..Scene::EMPTY };
+    let scene = Scene { start: &start, colliders: &colliders, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
     let mut system = started(&scene, 1, 1);
     for frame in 1..=60 {
         system.step(&scene, Time::frame(frame, 60) - system.time());

@@ -2,13 +2,14 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use pointmass::index::{Arrange, Structure};
+use pointmass::scene::Position;
 use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
-use pointmass::{Force, Gravity, Impulse, Particle, Penalty, Projection, Response, Scene, Time, Vec3};
+use pointmass::{Force, Gravity, Particle, Penalty, Response, Scene, Time, Vec3};
 use pointmass_tests::{Random, run, started};
 
 fn responses() -> [Response; 3] {
     let penalty = Penalty { stiffness: 1e4, damping: 0.2, reach: 0.4, ..Penalty::NONE };
-    [Response::Impulse(Impulse {}), Response::Force(penalty), Response::Position(Projection::default())]
+    [Response::Impulse {}, Response::Force(penalty), Response::Position(Position::default())]
 }
 
 /// Balls in a room that they nearly fill.
@@ -35,7 +36,16 @@ fn with_scene<T>(
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::splat(1.4) };
     let push = if let Response::Force(penalty) = response { *penalty } else { Penalty::NONE };
     let forces: &dyn Force = &(Gravity::EARTH, push);
-    then(&Scene { start, forces, colliders: &room, contacts: response, index, ..Scene::EMPTY })
+    then(&Scene {
+        start,
+        forces,
+        colliders: &room,
+        constraints: &response.contacts(),
+        substeps: response.substeps(),
+        meetings: response.meetings(),
+        index,
+        ..Scene::EMPTY
+    })
 }
 
 #[test]
@@ -83,7 +93,7 @@ fn one_that_is_no_number_harms_nobody() {
                 let far = got.iter().zip(&want).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
                 // Hard balls go on to the bit; sums in another order do not.
                 let bound = match response {
-                    Response::Impulse(_) => 0.0,
+                    Response::Impulse {} => 0.0,
                     // For its one step it is a ball like any other, and pushes.
                     Response::Force(_) if ill.mass != 1.0 => 0.5,
                     // One so fast has all held against each other on their ways, not only at the ends of sub-steps.
@@ -137,7 +147,14 @@ fn a_collider_that_contradicts_itself_ends_too() {
     });
     for response in &responses() {
         let fickle = Fickle(AtomicU32::new(0));
-        let scene = Scene { start: &start, colliders: &fickle, contacts: response, ..Scene::EMPTY };
+        let scene = Scene {
+            start: &start,
+            colliders: &fickle,
+            constraints: &response.contacts(),
+            substeps: response.substeps(),
+            meetings: response.meetings(),
+            ..Scene::EMPTY
+        };
         let mut system = started(&scene, 3, 1);
         run(&mut system, &scene, 0.1, 20);
         assert_eq!(system.len(), 3);
@@ -160,7 +177,15 @@ fn balls_stay_above_an_outsider_s_floor() {
     for response in &responses() {
         let push = if let Response::Force(penalty) = response { *penalty } else { Penalty::NONE };
         let forces = (Gravity::EARTH, push);
-        let scene = Scene { start: &start, forces: &forces, colliders: &Floor, contacts: response, ..Scene::EMPTY };
+        let scene = Scene {
+            start: &start,
+            forces: &forces,
+            colliders: &Floor,
+            constraints: &response.contacts(),
+            substeps: response.substeps(),
+            meetings: response.meetings(),
+            ..Scene::EMPTY
+        };
         let mut system = started(&scene, 27, 1);
         run(&mut system, &scene, 1.0 / 240.0, 240);
         // What only sweeps keeps half of a ball that contacts have moved from passing.

@@ -3,9 +3,11 @@
 use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::shape::{Cuboid, Plane};
-use pointmass::{Gravity, Grip, Particle, Projection, Scene, Time, Vec3};
+use pointmass::{Contacts, Gravity, Grip, Particle, Scene, Time, Vec3};
 use pointmass_tests::{G, Random, f64s, run, started};
 
+/// Hard balls in as many sub-steps as a heap asks for.
+const HEAP: Scene<'_> = Scene { substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
 const GROUND: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
 
 fn ball(y: f32) -> Particle {
@@ -18,8 +20,8 @@ fn a_soft_floor_gives_way_by_the_same_however_many_sub_steps() {
         let start = [Particle { mass, ..ball(0.1) }];
         let want = f64::from(mass) * G * f64::from(compliance);
         for substeps in [5, 10, 20] {
-            let contacts = &Projection { substeps, compliance };
-            let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &GROUND, contacts, ..Scene::EMPTY };
+            let (forces, constraints) = (&Gravity::EARTH, &Contacts { compliance });
+            let scene = Scene { start: &start, forces, colliders: &GROUND, substeps, constraints, ..Scene::EMPTY };
             let mut system = started(&scene, 1, 1);
             run(&mut system, &scene, 1.0 / 60.0, 600);
             let sunk = 0.1 - f64s(system.particles().position[0])[1];
@@ -32,8 +34,7 @@ fn a_soft_floor_gives_way_by_the_same_however_many_sub_steps() {
 fn a_bounce_gives_back_its_share_of_the_speed() {
     for elasticity in [0.3, 0.5, 0.8, 1.0] {
         let start = [Particle { elasticity, ..ball(1.1) }];
-        let contacts = &Projection::default();
-        let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &GROUND, contacts, ..Scene::EMPTY };
+        let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &GROUND, ..HEAP };
         let mut system = started(&scene, 1, 1);
         let (mut lowest, mut apex, mut hit) = (f32::INFINITY, 0.0_f32, false);
         for frame in 1..=240 {
@@ -62,7 +63,7 @@ fn two_balls_bounce_off_each_other_with_their_share_of_the_speed() {
             ..ball(0.0)
         };
         let start = [at(-0.5, 2.0, 1.0), at(0.5, -1.0, 3.0)];
-        let scene = Scene { start: &start, contacts: &Projection::default(), ..Scene::EMPTY };
+        let scene = Scene { start: &start, substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
         let mut system = started(&scene, 2, 1);
         run(&mut system, &scene, 1.0 / 60.0, 60);
         let [a, b] = [0, 1].map(|row| f64s(system.particles().velocity[row])[0]);
@@ -76,9 +77,8 @@ fn what_slides_stops_after_its_way() {
     for sliding in [0.2, 0.4, 0.8] {
         let grips = [Grip { elasticity: None, friction: Some(Friction { resting: sliding, sliding }) }];
         let start = [Particle { velocity: Vec3::X * 3.0, material: Some(0), ..ball(0.1) }];
-        let contacts = &Projection::default();
         let forces = &Gravity::EARTH;
-        let scene = Scene { start: &start, grips: &grips, forces, colliders: &GROUND, contacts, ..Scene::EMPTY };
+        let scene = Scene { start: &start, grips: &grips, forces, colliders: &GROUND, ..HEAP };
         let mut system = started(&scene, 1, 1);
         run(&mut system, &scene, 1.0 / 60.0, 120);
         let want = 9.0 / (2.0 * f64::from(sliding) * G);
@@ -107,7 +107,7 @@ fn momentum_of_free_balls_is_conserved() {
             }
         })
         .collect();
-    let scene = Scene { start: &start, grips: &grips, contacts: &Projection::default(), ..Scene::EMPTY };
+    let scene = Scene { start: &start, grips: &grips, substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 1);
     let momentum = |mass: &[f32], velocity: &[Vec3]| -> [f64; 3] {
         core::array::from_fn(|axis| mass.iter().zip(velocity).map(|(&m, &v)| f64::from(m) * f64s(v)[axis]).sum())
@@ -129,7 +129,7 @@ fn momentum_of_free_balls_is_conserved() {
 fn what_overlaps_at_rest_is_parted_without_a_bang() {
     for apart in [0.0, 1e-6, 0.05, 0.15] {
         let start = [ball(0.0), Particle { mass: 4.0, elasticity: 0.9, ..ball(apart) }];
-        let scene = Scene { start: &start, contacts: &Projection::default(), ..Scene::EMPTY };
+        let scene = Scene { start: &start, substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
         let mut system = started(&scene, 2, 1);
         run(&mut system, &scene, 1.0 / 60.0, 30);
         let p = system.particles();
@@ -162,7 +162,8 @@ fn a_heap_settles_and_keeps_its_room() {
         grips: &grips,
         forces: &Gravity::EARTH,
         colliders: &room,
-        contacts: &Projection::default(),
+        substeps: 12,
+        constraints: &Contacts::HARD,
         index: &Structure::Grid,
         ..Scene::EMPTY
     };
@@ -201,9 +202,8 @@ fn newborns_owe_nothing_to_who_had_their_row() {
     };
     let emitters = emitter(0.1);
     let newborn = |start: &[Particle]| {
-        let contacts = &Projection::default();
         let forces = &Gravity::EARTH;
-        let scene = Scene { start, forces, emitters: &emitters, colliders: &GROUND, contacts, ..Scene::EMPTY };
+        let scene = Scene { start, forces, emitters: &emitters, colliders: &GROUND, ..HEAP };
         let mut system = started(&scene, 1, 1);
         let mut after = None;
         for _ in 0..6 {

@@ -1,7 +1,7 @@
 //! Hard balls at rest on balls.
 
 use pointmass::force::Friction;
-use pointmass::{Gravity, Grip, Impulse, Method, Particle, Scene, Vec3};
+use pointmass::{Gravity, Grip, Meetings, Method, Particle, Scene, Vec3};
 use pointmass_tests::{run, started};
 
 /// A ball that lies on a fixed one, where that slopes by so many degrees.
@@ -10,8 +10,8 @@ fn perched(degrees: f32, mu: f32, method: Method, rate: f64, seconds: f64) -> (V
     let ball = Particle { radius: 0.5, elasticity: 0.0, material: Some(0), ..Particle::REST };
     let (sin, cos) = degrees.to_radians().sin_cos();
     let start = [Particle { fixed: true, ..ball }, Particle { position: Vec3::new(0.6 * sin, cos, 0.8 * sin), ..ball }];
-    let (forces, contacts, integrator) = (&Gravity::EARTH, &Impulse {}, method.integrator());
-    let scene = Scene { start: &start, forces, contacts, grips: &grips, integrator, ..Scene::EMPTY };
+    let (forces, meetings, integrator) = (&Gravity::EARTH, Meetings::IMPULSE, method.integrator());
+    let scene = Scene { start: &start, forces, meetings, grips: &grips, integrator, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 1);
     run(&mut system, &scene, 1.0 / rate, (rate * seconds) as u32);
     (system.particles().position[1] - start[1].position, system.particles().velocity[1])

@@ -4,7 +4,7 @@
 use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::shape::{Affine, Collider, Cuboid, Placed, Plane};
-use pointmass::{Gravity, Grip, Method, Particle, Projection, Scene, Vec3};
+use pointmass::{Contacts, Gravity, Grip, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, Random, run, started};
 
 /// Steps a second, sub-steps of each.
@@ -43,7 +43,8 @@ impl Stack<'_> {
             grips: &grips,
             forces: &Gravity { acceleration: Vec3::NEG_Y * G as f32 },
             colliders: &floor,
-            contacts: &Projection { substeps, compliance: 0.0 },
+            substeps,
+            constraints: &Contacts::HARD,
             integrator: &method,
             ..Scene::EMPTY
         };
@@ -88,7 +89,8 @@ fn a_pyramid_settles_and_then_stands_still() {
                     grips: &grips,
                     forces: &Gravity::EARTH,
                     colliders: &floor,
-                    contacts: &Projection { substeps, compliance: 0.0 },
+                    substeps,
+                    constraints: &Contacts::HARD,
                     integrator: method,
                     ..Scene::EMPTY
                 };
@@ -125,7 +127,8 @@ fn a_heap_falls_to_the_same_bits_whatever_the_index() {
             grips: &grips,
             forces: &Gravity::EARTH,
             colliders: &room as &dyn Collider,
-            contacts: &Projection { substeps: 8, compliance: 0.0 },
+            substeps: 8,
+            constraints: &Contacts::HARD,
             index: &structure,
             ..Scene::EMPTY
         };

@@ -2,18 +2,18 @@
 
 use pointmass::force::Friction;
 use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Disc, Motion, Moving, Placed, Plane};
-use pointmass::{Contacts, Gravity, Grip, Method, Particle, Projection, Scene, Time, Vec3};
+use pointmass::{Contacts, Gravity, Grip, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{f64s, gap, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
 /// Where particles are after `seconds`, on a surface with this coefficient of friction.
 fn after(collider: &dyn Collider, mu: f32, start: &[Particle], method: Method, rate: f64, seconds: f64) -> Vec<Vec3> {
-    after_touching(&(), collider, mu, start, method, rate, seconds)
+    after_touching(Scene::EMPTY, collider, mu, start, method, rate, seconds)
 }
 
 fn after_touching(
-    contacts: &dyn Contacts,
+    touching: Scene<'_>,
     collider: &dyn Collider,
     mu: f32,
     start: &[Particle],
@@ -24,8 +24,7 @@ fn after_touching(
     let grips = [Grip { elasticity: Some(0.0), friction: Some(Friction { resting: mu, sliding: mu }) }];
     let start: Vec<Particle> = start.iter().map(|p| Particle { material: Some(0), elasticity: 0.0, ..*p }).collect();
     let (forces, integrator) = (&Gravity::EARTH, method.integrator());
-    let scene =
-        Scene { start: &start, forces, colliders: collider, contacts, grips: &grips, integrator, ..Scene::EMPTY };
+    let scene = Scene { start: &start, forces, colliders: collider, grips: &grips, integrator, ..touching };
     let mut system = started(&scene, start.len(), 0);
     run(&mut system, &scene, 1.0 / rate, (rate * seconds) as u32);
     system.particles().position.to_vec()
@@ -89,9 +88,9 @@ fn on_a_disc_that_spins_it_stays_where_it_is_by_position() {
             ..Particle::REST
         }];
         for (rate, substeps) in [(10.0, 12), (60.0, 12), (60.0, 1), (24.0, 40)] {
-            let contacts = Projection { substeps, ..Projection::default() };
+            let touching = Scene { substeps, constraints: &Contacts::HARD, ..Scene::EMPTY };
             for &method in Method::ALL {
-                let x = after_touching(&contacts, &disc, 0.5, &start, method, rate, 20.0)[0] - pivot;
+                let x = after_touching(touching, &disc, 0.5, &start, method, rate, 20.0)[0] - pivot;
                 let away = x.x.hypot(x.z) / distance;
                 // Chords of the arc are trapezoids in time: they stray by a part in 24 of the fourth power of the angle.
                 assert!((away - 1.0).abs() < 2e-3, "{method}, {rate}/s in {substeps}: at {away}");

@@ -1,13 +1,15 @@
 //! Heaps: contacts held by moving particles apart, in sub-steps.
 
-use super::contacts::{Contacts, Stage};
-use super::lists::{self, HELD};
-use super::solver;
-use crate::index::Arrange;
-use glam::Vec3;
+mod lists;
+mod solver;
+mod touch;
 
-/// Contacts held by position, for heaps: the step is cut into sub-steps, and in each the integrator moves everything, then
-/// whatever overlaps is moved apart, with friction and elasticity, and velocities follow.
+use super::{Bodies, Constraint, Demand, Share, Words};
+use lists::{KEPT, Kept};
+
+/// Contacts held by position, for heaps of balls: in each sub-step the integrator moves everything, then whatever overlaps is
+/// moved apart, with friction and elasticity, and velocities follow. Heaps ask for some 12 sub-steps of 1/60 s
+/// ([`Scene::substeps`](crate::Scene::substeps)).
 ///
 /// Friction is Coulomb's: it takes up to the coefficient times the change of velocity by which the contact presses in the
 /// sub-step, bounces counted in, whichever the method and however deep the overlap. What it holds at rest on scenery or on
@@ -26,50 +28,40 @@ use glam::Vec3;
 ///
 /// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
 /// (`caps.contacts`), bits do not depend on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Projection {
-    /// Sub-steps of a step, 1 to 1000.
-    pub substeps: u32,
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contacts {
     /// How far a contact gives way to a force \[m/N\]: zero is hard.
     pub compliance: f32,
 }
 
-impl Default for Projection {
-    fn default() -> Self {
-        Self { substeps: 12, compliance: 0.0 }
-    }
+impl Contacts {
+    /// Hard balls.
+    pub const HARD: Self = Self { compliance: 0.0 };
 }
 
-impl Contacts for Projection {
-    fn held(&self, _: &dyn Arrange) -> usize {
-        HELD
-    }
-
-    fn scratch(&self, index: &dyn Arrange) -> usize {
-        index.columns()
-    }
-
-    fn substeps(&self) -> u32 {
-        self.substeps.clamp(1, 1000)
+impl Constraint for Contacts {
+    fn demand(&self) -> Demand {
+        Demand { step: KEPT, scratch: Words::NONE, finds_near: true }
     }
 
     #[inline(never)]
-    fn gather(&self, stage: &mut Stage<'_>, scratch: &mut [u32]) {
-        lists::gather(stage, scratch);
-    }
-
-    fn begin<'h>(&self, held: &'h mut [Vec3], position: &[Vec3], velocity: &[Vec3]) -> Option<[&'h [Vec3]; 2]> {
-        Some(solver::begin(held, position, velocity))
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if let Some(mut kept) = Kept::of(share.step, share.capacity) {
+            lists::gather(bodies, &mut kept);
+        }
     }
 
     #[inline(never)]
-    fn project(&self, stage: &mut Stage<'_>) {
-        solver::project(stage, self.compliance);
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if let Some(mut kept) = Kept::of(share.step, share.capacity).filter(|_| bodies.substep.seconds() > 0.0) {
+            solver::project(bodies, &mut kept, self.compliance);
+        }
     }
 
-    fn has_moved(&self, held: &[Vec3], row: usize) -> bool {
-        lists::is_marked(held, row)
+    #[inline(never)]
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if let Some(mut kept) = Kept::of(share.step, share.capacity).filter(|_| bodies.substep.seconds() > 0.0) {
+            solver::settle(bodies, &mut kept, self.compliance);
+        }
     }
 }

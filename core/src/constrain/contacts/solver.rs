@@ -1,10 +1,12 @@
 //! Contacts held by position: the passes over them in each sub-step.
 
-use super::contacts::Stage;
-use super::flight::RESTING;
-use super::lists::{Face, Held, Pair};
-use super::touch::{aside, hold_back, passed};
-use crate::math::{largest, length, max, min, sqrt, unit};
+use super::super::Bodies;
+use super::lists::{Face, Kept, Pair};
+use super::touch::{hold_back, passed};
+use crate::collide::RESTING;
+use crate::math::{aside, largest, length, max, min, sqrt, unit};
+use crate::observe::Impact;
+use crate::particles::Id;
 use glam::Vec3;
 
 /// Sweeps over the velocities at a step's end, so that what rests shows it.
@@ -12,80 +14,89 @@ const SETTLING: u32 = 2;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
 
-/// Remembers the state at a sub-step's beginning, as the integrator wants it too.
-pub(super) fn begin<'h>(held: &'h mut [Vec3], position: &[Vec3], velocity: &[Vec3]) -> [&'h [Vec3]; 2] {
-    let Held { x, v, .. } = Held::of(held);
-    let len = position.len();
-    x[..len].copy_from_slice(position);
-    v[..len].copy_from_slice(velocity);
-    [&x[..len], &v[..len]]
-}
-
-/// Moves what overlaps apart, lets velocities follow, then answers the approach by the elasticity and the slip by friction.
-pub(super) fn project(stage: &mut Stage<'_>, compliance: f32) {
-    let h = stage.h.seconds();
-    if !(h > 0.0) {
-        return;
+/// Moves what overlaps apart, and lets velocities follow.
+pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
+    let (len, h) = (bodies.len(), bodies.substep.seconds());
+    kept.pushed[..len].copy_from_slice(bodies.velocity);
+    let [x, v] = bodies.before;
+    for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
+        *drift = bodies.position[row] - x[row] - (v[row] + bodies.velocity[row]) * (0.5 * h);
     }
-    let Held { x, v, pushed, drift, borne, owed, pairs, faces, marks } = Held::of(stage.held);
-    let (pairs, faces) = (&mut pairs[..stage.lists.pairs], &mut faces[..stage.lists.faces]);
-    pushed[..stage.velocity.len()].copy_from_slice(stage.velocity);
-    let len = stage.velocity.len();
-    let (x, v, drift) = (&x[..len], &v[..len], &mut drift[..len]);
-    let (borne, owed) = (&mut borne[..len], &mut owed[..len]);
-    for (row, drift) in drift.iter_mut().enumerate() {
-        *drift = stage.position[row] - x[row] - (v[row] + stage.velocity[row]) * (0.5 * h);
-    }
-    let driven = stage.velocity.iter().zip(v).map(|(now, before)| *now - *before);
+    let driven = bodies.velocity.iter().zip(v).map(|(now, before)| *now - *before);
     // What is no longer finite must not reach the others before it is taken out.
-    let driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
-    let mut pass = Pass {
-        up: -unit(driven),
-        calm: stage.pieces as f32 * length(driven),
-        x0: x,
-        v0: v,
-        pushed,
-        drift,
-        borne,
-        owed,
-        position: stage.position,
-        velocity: stage.velocity,
-        radius: stage.radius,
-        inverse_mass: stage.inverse_mass,
-        h,
-        rate: 1.0 / h,
-        softness: compliance / (h * h),
-        long: stage.dt.seconds(),
-    };
-    if !stage.lists.sorted {
-        stage.lists.sorted = true;
-        pass.sort(pairs);
-    }
-    for face in faces.iter_mut() {
+    kept.lists.driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
+    let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
+    for face in faces {
         pass.move_from_face(face);
     }
-    for pair in pairs.iter_mut() {
-        pass.move_apart(pair, stage.lists.fast);
+    for pair in pairs {
+        pass.move_apart(pair);
     }
-    let is_last = stage.piece + 1 == stage.pieces;
+}
+
+/// Answers the approach of what touches by the elasticity and the slip by friction.
+pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
+    let (is_last, rough) = (bodies.substep.is_last(), kept.lists.rough != 0);
+    let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for sweep in 0..if is_last { SETTLING } else { 1 } {
         pass.borne.fill(Vec3::ZERO);
         pass.owed.fill(Vec3::ZERO);
         faces.iter_mut().filter(|face| face.touch.is_on()).for_each(|face| pass.press_face(face));
         pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()).for_each(|pair| pass.press_pair(pair));
-        if stage.lists.rough {
+        if rough {
             pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()).for_each(|pair| pass.carry(pair));
         }
         faces.iter_mut().filter(|face| face.touch.rubs()).for_each(|face| pass.rub_face(face, sweep == 0));
         pairs.iter_mut().filter(|pair| pair.touch.rubs()).for_each(|pair| pass.rub_pair(pair, sweep == 0));
     }
-    for pair in pairs.iter().filter(|pair| pair.touch.is_on()) {
-        pair.rows.iter().for_each(|&row| marks[row as usize] = 1);
-        stage.report.contacts += 1;
+    report(bodies, kept);
+}
+
+/// Counts what touches, and tells whoever watches of what came together.
+fn report(bodies: &mut Bodies<'_>, kept: &Kept<'_>) {
+    let rests = bodies.substep.count as f32 * length(kept.lists.driven);
+    let pairs = kept.pairs[..kept.lists.pairs as usize].iter();
+    for pair in pairs.filter(|pair| pair.touch.is_on()) {
+        let [a, b] = pair.rows.map(|row| row as usize);
+        let normal = unit(bodies.position[a] - bodies.position[b]);
+        for (row, other, normal) in [(a, b, normal), (b, a, -normal)] {
+            bodies.mark_touching(row);
+            let met = Met { row, other: bodies.id(other), normal, surface: Vec3::ZERO };
+            met.tell(bodies, kept.pushed, kept.pushed[other], rests);
+        }
+        bodies.report.contacts += 1;
     }
-    for face in faces.iter().filter(|face| face.touch.is_on()) {
-        marks[face.row as usize] = 1;
-        stage.report.hits += 1;
+    let faces = kept.faces[..kept.lists.faces as usize].iter();
+    for face in faces.filter(|face| face.touch.is_on()) {
+        let (row, normal, surface) = (face.row as usize, face.normal, face.velocity);
+        bodies.mark_touching(row);
+        Met { row, other: None, normal, surface }.tell(bodies, kept.pushed, surface, rests);
+        bodies.report.hits += 1;
+    }
+}
+
+/// What a particle has met.
+struct Met {
+    row: usize,
+    other: Option<Id>,
+    /// From that to the particle.
+    normal: Vec3,
+    /// How a collider moves there \[m/s\].
+    surface: Vec3,
+}
+
+impl Met {
+    /// Tells whoever watches, if it is not fixed and came against what moves with `velocity` faster than what rests does.
+    fn tell(&self, bodies: &mut Bodies<'_>, pushed: &[Vec3], velocity: Vec3, rests: f32) {
+        let Self { row, other, normal, surface } = *self;
+        let closing = (velocity - pushed[row]).dot(normal);
+        if !(closing > rests) || bodies.inverse_mass[row] == 0.0 {
+            return;
+        }
+        let Some(id) = bodies.id(row) else { return };
+        let (before, after) = (pushed[row], bodies.velocity[row]);
+        let (mass, place, time) = (bodies.mass[row], bodies.position[row], bodies.substep.during[1]);
+        bodies.tell(&Impact { id, row, other, mass, place, normal, closing, before, after, surface, time });
     }
 }
 
@@ -116,11 +127,48 @@ struct Pass<'a> {
     /// Compliance over h².
     softness: f32,
     long: f32,
+    /// Whether somebody is so fast that two could pass each other.
+    fast: bool,
 }
 
-impl Pass<'_> {
+impl<'a> Pass<'a> {
+    /// A pass, and what it goes over.
+    fn of<'k: 'a>(
+        bodies: &'a mut Bodies<'_>,
+        kept: &'k mut Kept<'_>,
+        compliance: f32,
+    ) -> (Self, &'k mut [Pair], &'k mut [Face]) {
+        let (len, substep) = (bodies.len(), bodies.substep);
+        let (lists, h) = (&mut *kept.lists, substep.seconds());
+        let (pairs, faces) = (&mut kept.pairs[..lists.pairs as usize], &mut kept.faces[..lists.faces as usize]);
+        let pass = Self {
+            up: -unit(lists.driven),
+            calm: substep.count as f32 * length(lists.driven),
+            x0: bodies.before[0],
+            v0: bodies.before[1],
+            pushed: &kept.pushed[..len],
+            drift: &mut kept.drift[..len],
+            borne: &mut kept.borne[..len],
+            owed: &mut kept.owed[..len],
+            position: bodies.position,
+            velocity: bodies.velocity,
+            radius: bodies.radius,
+            inverse_mass: bodies.inverse_mass,
+            h,
+            rate: 1.0 / h,
+            softness: compliance / (h * h),
+            long: substep.step.seconds(),
+            fast: lists.fast != 0,
+        };
+        if lists.sorted == 0 {
+            lists.sorted = 1;
+            pass.sort(pairs);
+        }
+        (pass, pairs, faces)
+    }
+
     #[inline(always)]
-    fn move_apart(&mut self, pair: &mut Pair, fast: bool) {
+    fn move_apart(&mut self, pair: &mut Pair) {
         let [a, b] = pair.rows.map(|row| row as usize);
         let (d, reach) = (self.position[a] - self.position[b], self.radius[a] + self.radius[b]);
         let square = d.dot(d);
@@ -131,7 +179,7 @@ impl Pass<'_> {
             // Of two in one place the one with the higher row goes up.
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
             (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance)
-        } else if fast && square > 0.0 {
+        } else if self.fast && square > 0.0 {
             let Some(normal) = passed(self.x0[a] - self.x0[b], d, reach) else { return };
             (normal, reach - d.dot(normal))
         } else {

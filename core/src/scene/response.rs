@@ -1,22 +1,41 @@
 //! The ways in which particles answer each other, by name.
 
-use super::contacts::{Contacts, Passage, Stage};
-use super::{Impulse, Projection};
+use crate::collide::Meetings;
+use crate::constrain::Contacts;
 use crate::force::Penalty;
-use crate::index::Arrange;
-use glam::Vec3;
 
 /// How particles that have a radius answer each other's touch, as files and the command line say it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Response {
     /// By impulses when they meet: for gases, billiards, cradles.
-    Impulse(Impulse),
+    Impulse {},
     /// By a force while they overlap: for study.
     Force(Penalty),
     /// By position in sub-steps: for heaps.
-    Position(Projection),
+    Position(Position),
+}
+
+/// Contacts held by position, see [`Contacts`], and the sub-steps that they ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Position {
+    /// Sub-steps of a step, 1 to 1000.
+    pub substeps: u32,
+    /// How far a contact gives way to a force \[m/N\]: zero is hard.
+    pub compliance: f32,
+}
+
+impl Default for Position {
+    fn default() -> Self {
+        Self { substeps: 12, compliance: 0.0 }
+    }
 }
 
 impl Response {
@@ -27,7 +46,7 @@ impl Response {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::Impulse(_) => "impulse",
+            Self::Impulse {} => "impulse",
             Self::Force(_) => "force",
             Self::Position(_) => "position",
         }
@@ -39,7 +58,7 @@ impl Response {
     pub fn by_name(name: &str, dt: f32, mass: f32) -> Option<Self> {
         let frequency = core::f32::consts::PI / (8.0 * dt);
         let penalty = Penalty { stiffness: 0.5 * mass * frequency * frequency, damping: 0.1, ..Penalty::NONE };
-        [Self::Impulse(Impulse {}), Self::Force(penalty), Self::Position(Projection::default())]
+        [Self::Impulse {}, Self::Force(penalty), Self::Position(Position::default())]
             .into_iter()
             .find(|response| response.name() == name)
     }
@@ -50,7 +69,7 @@ impl Response {
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         match self {
-            Self::Impulse(_) => None,
+            Self::Impulse {} => None,
             Self::Force(Penalty { stiffness, .. }) if !positive(*stiffness) => {
                 Some(("force.stiffness", "has to be above zero, in N/m"))
             }
@@ -64,51 +83,48 @@ impl Response {
                 let sound = not_negative(friction.resting) && not_negative(friction.sliding);
                 (!sound).then_some(("force.friction", "takes coefficients from 0 on"))
             }
-            Self::Position(Projection { substeps, .. }) if !(1..=1000).contains(substeps) => {
+            Self::Position(Position { substeps, .. }) if !(1..=1000).contains(substeps) => {
                 Some(("position.substeps", "has to be from 1 to 1000"))
             }
-            Self::Position(Projection { compliance, .. }) => {
+            Self::Position(Position { compliance, .. }) => {
                 (!not_negative(*compliance)).then_some(("position.compliance", "must not be below zero, in m/N"))
             }
         }
     }
 
-    /// What moves particles, if it is not a force.
-    fn contacts(&self) -> &dyn Contacts {
-        match self {
-            Self::Impulse(impulse) => impulse,
-            Self::Force(_) => &(),
-            Self::Position(projection) => projection,
+    /// What holds them apart by position, if that is how they answer.
+    #[must_use]
+    pub fn contacts(&self) -> Option<Contacts> {
+        match *self {
+            Self::Position(Position { compliance, .. }) => Some(Contacts { compliance }),
+            _ => None,
         }
     }
-}
 
-impl Contacts for Response {
-    fn is_empty(&self) -> bool {
-        self.contacts().is_empty()
+    /// The force between them, if that is how they answer.
+    #[must_use]
+    pub fn force(&self) -> Option<Penalty> {
+        match *self {
+            Self::Force(penalty) => Some(penalty),
+            _ => None,
+        }
     }
-    fn held(&self, index: &dyn Arrange) -> usize {
-        self.contacts().held(index)
+
+    /// The sub-steps that it asks for.
+    #[must_use]
+    pub fn substeps(&self) -> u32 {
+        match *self {
+            Self::Position(Position { substeps, .. }) => substeps,
+            _ => 1,
+        }
     }
-    fn scratch(&self, index: &dyn Arrange) -> usize {
-        self.contacts().scratch(index)
-    }
-    fn substeps(&self) -> u32 {
-        self.contacts().substeps()
-    }
-    fn gather(&self, stage: &mut Stage<'_>, scratch: &mut [u32]) {
-        self.contacts().gather(stage, scratch);
-    }
-    fn begin<'h>(&self, held: &'h mut [Vec3], position: &[Vec3], velocity: &[Vec3]) -> Option<[&'h [Vec3]; 2]> {
-        self.contacts().begin(held, position, velocity)
-    }
-    fn project(&self, stage: &mut Stage<'_>) {
-        self.contacts().project(stage);
-    }
-    fn has_moved(&self, held: &[Vec3], row: usize) -> bool {
-        self.contacts().has_moved(held, row)
-    }
-    fn follow(&self, passage: Passage<'_, '_>) {
-        self.contacts().follow(passage);
+
+    /// What they do where their paths meet.
+    #[must_use]
+    pub fn meetings(&self) -> Meetings {
+        match self {
+            Self::Impulse {} => Meetings::IMPULSE,
+            _ => Meetings::Through,
+        }
     }
 }

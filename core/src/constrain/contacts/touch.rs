@@ -1,6 +1,6 @@
 //! Two that touch in a sub-step: what presses them, and Coulomb's friction by just that.
 
-use super::grip::Feel;
+use crate::collide::Feel;
 use crate::force::Friction;
 use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
@@ -91,12 +91,6 @@ pub(super) fn hold_back(taken: Vec3, drift: Vec3, h: f32) -> Vec3 {
     let back = taken * (0.5 * h) - drift;
     let (far, most) = (length(back), length(taken) * h);
     if far > most { back * (most / far) } else { back }
-}
-
-/// What of a vector lies along a surface.
-#[inline(always)]
-pub(super) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
-    v - normal * v.dot(normal)
 }
 
 /// The normal at the first touch of two, one of which was at `from` and is at `to` as seen from the other, if they touched on

@@ -1,0 +1,81 @@
+//! How particles that have a radius meet each other on their way through a step.
+
+use super::impulse;
+use super::sweep::each_by_itself;
+use crate::observe::Observer;
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::step::View;
+use crate::time::Time;
+
+/// What particles that have a radius do where their paths meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Meetings {
+    /// They pass through each other, or are kept apart by a force ([`Penalty`](crate::Penalty)) or a constraint
+    /// ([`Contacts`](crate::Contacts)).
+    #[default]
+    Through,
+    /// They bounce off each other as hard balls do: [`Meetings::IMPULSE`].
+    Impulse(Impulse),
+}
+
+/// Hard balls: whoever meets, another particle or a collider, is answered by an impulse at that instant, in the order of
+/// time, and goes on from there.
+///
+/// Nothing passes through anything however fast, momentum is exact to rounding, and with elasticities of one so is energy.
+/// A particle that has met four times as often as [`Scene::max_bounces`](crate::Scene::max_bounces) says waits where it is for
+/// the step's end (counted in `caps.bounces`), as does one that finds others near it some ten thousand times: that is what
+/// happens in a dense heap, where every touch is a meeting; for heaps use [`Contacts`](crate::Contacts).
+/// Whichever index the scene has, the answer is the same to the bit.
+#[derive(Clone, Copy)]
+pub struct Impulse {
+    /// What does it: a function, so that a program which does not name it does not carry it about.
+    follow: fn(Passage<'_, '_>),
+}
+
+impl PartialEq for Impulse {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl core::fmt::Debug for Impulse {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Impulse")
+    }
+}
+
+impl Meetings {
+    /// By impulses, in the order of time.
+    pub const IMPULSE: Self = Self::Impulse(Impulse { follow: impulse::follow });
+
+    /// Whether all pass through each other.
+    pub(crate) fn is_through(&self) -> bool {
+        matches!(self, Self::Through)
+    }
+
+    /// Vectors for each particle to work with, an index not counted.
+    pub(crate) fn columns(&self) -> usize {
+        if self.is_through() { 0 } else { impulse::COLUMNS }
+    }
+
+    /// Sends every free particle along its path.
+    pub(crate) fn follow(&self, passage: Passage<'_, '_>) {
+        match self {
+            Self::Through => each_by_itself(passage),
+            Self::Impulse(Impulse { follow }) => follow(passage),
+        }
+    }
+}
+
+/// A step whose particles have been moved and are now to be held against colliders, sinks and each other.
+pub(crate) struct Passage<'p, 'v> {
+    pub(crate) view: &'p mut View<'v>,
+    pub(crate) scene: &'p Scene<'p>,
+    /// Those from this row on are newborn.
+    pub(crate) old: usize,
+    pub(crate) dt: Time,
+    pub(crate) end: Time,
+    pub(crate) report: &'p mut Report,
+    pub(crate) observer: &'p mut dyn Observer,
+}

@@ -1,0 +1,199 @@
+//! The particles as a constraint sees and moves them.
+
+use crate::collide::Grip;
+use crate::index::Arrange;
+use crate::memory::{Demand, take};
+use crate::observe::{Impact, Observer};
+use crate::particles::Id;
+use crate::report::Report;
+use crate::shape::Collider;
+use crate::time::Time;
+use core::fmt;
+use glam::Vec3;
+
+/// A constraint has moved the particle: its path through the step is no longer the method's.
+pub(crate) const SHIFTED: u32 = 1;
+/// A constraint keeps the particle from what it touches: the sweep only keeps its middle from passing through.
+pub(crate) const TOUCHING: u32 = 2;
+
+/// A part of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Substep {
+    /// When it begins and ends.
+    pub during: [Time; 2],
+    /// Its number in the step, from 0, and of how many.
+    pub number: u32,
+    /// In how many the step is cut.
+    pub count: u32,
+    /// How long the whole step is.
+    pub step: Time,
+}
+
+impl Substep {
+    /// How long it is \[s\].
+    #[must_use]
+    pub fn seconds(&self) -> f32 {
+        (self.during[1] - self.during[0]).seconds()
+    }
+
+    /// Whether it is the last of its step.
+    #[must_use]
+    pub fn is_last(&self) -> bool {
+        self.number + 1 == self.count
+    }
+}
+
+/// The particles of a sub-step as constraints see and move them: one entry a row. Those born in this step are not among them.
+#[allow(missing_debug_implementations)]
+pub struct Bodies<'a> {
+    /// Positions \[m\].
+    pub position: &'a mut [Vec3],
+    /// Velocities \[m/s\].
+    pub velocity: &'a mut [Vec3],
+    /// Positions and velocities when the sub-step began.
+    pub before: [&'a [Vec3]; 2],
+    /// Radii \[m\].
+    pub radius: &'a [f32],
+    /// Masses \[kg\].
+    pub mass: &'a [f32],
+    /// Inverse masses \[1/kg\]; zero for what is fixed.
+    pub inverse_mass: &'a [f32],
+    /// Shares of the normal speed that they keep in a hit.
+    pub elasticity: &'a [f32],
+    /// Numbers of their materials plus one; zero: none.
+    pub material: &'a [u16],
+    /// The sub-step.
+    pub substep: Substep,
+    /// The scene's colliders.
+    pub colliders: &'a dyn Collider,
+    /// How materials feel, by their numbers.
+    pub grips: &'a [Grip],
+    /// Who is near whom.
+    pub near: Near<'a>,
+    /// What happened in the step.
+    pub report: &'a mut Report,
+    pub(crate) slot: &'a [u32],
+    pub(crate) serial: &'a [u32],
+    pub(crate) row_of: &'a [u32],
+    /// Particles of the scene's start that found room.
+    pub(crate) start: u32,
+    pub(crate) marks: &'a mut [u32],
+    pub(crate) observer: &'a mut dyn Observer,
+}
+
+impl Bodies<'_> {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// What the particle in a row is called.
+    #[must_use]
+    pub fn id(&self, row: usize) -> Option<Id> {
+        Some(Id { slot: *self.slot.get(row)?, serial: *self.serial.get(row)? })
+    }
+
+    /// The row of a particle by its place in the scene's start, while it lives.
+    #[must_use]
+    pub fn row_of_start(&self, number: u32) -> Option<usize> {
+        let row = *self.row_of.get(number as usize)? as usize;
+        (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
+    }
+
+    /// Moves a particle by `by` \[m\], and lets its velocity follow: by what that is over the sub-step.
+    pub fn shift(&mut self, row: usize, by: Vec3) {
+        self.position[row] += by;
+        let h = self.substep.seconds();
+        if h > 0.0 {
+            self.velocity[row] += by * (1.0 / h);
+        }
+        self.marks[row] |= SHIFTED;
+    }
+
+    /// Tells whoever watches that a particle is kept from another thing with which it came together.
+    pub fn tell(&mut self, touch: &Impact) {
+        self.observer.touched(touch);
+    }
+
+    /// Says that the particle in a row is kept from the surface it touches, and needs no other answer to it in this step:
+    /// the sweep then only sees that its inner half does not pass through.
+    pub fn mark_touching(&mut self, row: usize) {
+        self.marks[row] |= SHIFTED | TOUCHING;
+    }
+}
+
+/// Finds who is near whom, by the scene's index.
+pub struct Near<'a> {
+    pub(crate) index: &'a dyn Arrange,
+    pub(crate) memory: &'a mut [u32],
+}
+
+impl fmt::Debug for Near<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Near").field("words", &self.memory.len()).finish_non_exhaustive()
+    }
+}
+
+impl Near<'_> {
+    /// Visits every two of the points within `reach` \[m\] of each other once, by their rows: in an order of the index's own.
+    pub fn pairs(&mut self, points: &[Vec3], reach: f32, visit: &mut dyn FnMut(u32, u32)) {
+        // No more memory than these points call for: more would make another structure.
+        let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
+        self.index.arrange(&mut self.memory[..words], points, reach, &mut |index| match index {
+            Some(index) => {
+                index.pairs(reach, &mut |row, others| others.iter().for_each(|&other| visit(row, other)));
+            }
+            None => {
+                let near = |a: Vec3, b: Vec3| {
+                    let d = a - b;
+                    d.x * d.x + d.y * d.y + d.z * d.z <= reach * reach
+                };
+                for (row, &point) in points.iter().enumerate() {
+                    let others = points[..row].iter().enumerate().filter(|&(_, &other)| near(point, other));
+                    others.for_each(|(other, _)| visit(row as u32, other as u32));
+                }
+            }
+        });
+    }
+}
+
+/// A constraint's own memory.
+#[derive(Debug)]
+pub struct Share<'a> {
+    /// What it keeps through the step: at the first sub-step it holds anything.
+    pub step: &'a mut [u32],
+    /// What it works with while it is called.
+    pub scratch: &'a mut [u32],
+    /// Particles there is room for.
+    pub capacity: usize,
+}
+
+impl Share<'_> {
+    /// The shares of its parts, one after the other.
+    pub(super) fn parts(&mut self) -> Parts<'_> {
+        let Share { step, scratch, capacity } = self;
+        Parts { step, scratch, capacity: *capacity }
+    }
+}
+
+/// A share that is being cut into those of parts.
+pub(super) struct Parts<'a> {
+    step: &'a mut [u32],
+    scratch: &'a mut [u32],
+    capacity: usize,
+}
+
+impl Parts<'_> {
+    /// The next one's.
+    pub(super) fn next(&mut self, demand: Demand) -> Share<'_> {
+        let step = take(&mut self.step, demand.step.of(self.capacity));
+        Share { step, scratch: self.scratch, capacity: self.capacity }
+    }
+}

@@ -1,0 +1,52 @@
+//! The constraints that a scene file names.
+
+use super::{Bodies, Constraint, Demand, Distance, Share};
+
+/// A constraint, as files say it.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum ConstraintKind {
+    /// Two particles at a distance.
+    Distance(Distance),
+}
+
+impl ConstraintKind {
+    /// What it is.
+    fn get(&self) -> &dyn Constraint {
+        match self {
+            Self::Distance(distance) => distance,
+        }
+    }
+
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::Distance(distance) => distance.fault(),
+        }
+    }
+
+    /// The particles of the scene's start that it binds.
+    #[must_use]
+    pub fn ends(&self) -> &[u32] {
+        match self {
+            Self::Distance(distance) => &distance.ends,
+        }
+    }
+}
+
+impl Constraint for ConstraintKind {
+    fn demand(&self) -> Demand {
+        self.get().demand()
+    }
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.get().prepare(bodies, share);
+    }
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.get().project(bodies, share);
+    }
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.get().settle(bodies, share);
+    }
+}

@@ -1,0 +1,150 @@
+//! What binds particles together and keeps them apart: the trait, one file a constraint.
+//!
+//! A step is cut into sub-steps ([`Scene::substeps`](crate::Scene::substeps)). In each the method moves everything by the
+//! forces, then constraints move positions to where they are met, by few at a time, with velocities following: extended
+//! position-based dynamics with one iteration for each of many small steps (Macklin, Müller and Chentanez, "XPBD",
+//! MIG 2016; Macklin et al., "Small Steps in Physics Simulation", SCA 2019).
+
+mod bodies;
+mod contacts;
+mod distance;
+#[cfg(feature = "alloc")]
+mod kind;
+
+pub use bodies::{Bodies, Near, Share, Substep};
+pub(crate) use bodies::{SHIFTED, TOUCHING};
+pub use contacts::Contacts;
+pub use distance::Distance;
+#[cfg(feature = "alloc")]
+pub use kind::ConstraintKind;
+
+pub use crate::memory::{Demand, Words};
+
+/// Something that the places and velocities of particles have to satisfy.
+///
+/// A tuple, slice or reference of constraints is a constraint: all of them, one after the other in each phase. Every
+/// constraint sees what those before it have done.
+pub trait Constraint: Sync {
+    /// The memory it works in.
+    fn demand(&self) -> Demand {
+        Demand::NONE
+    }
+
+    /// Whether it constrains nothing: a scene of such constraints keeps no memory for them.
+    fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Looks on before the method moves everything through a sub-step: to list who may touch whom, for instance.
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let _ = (bodies, share);
+    }
+
+    /// Moves particles to where they satisfy it, when the method has moved them: by [`Bodies::shift`], so that their
+    /// velocities follow.
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>);
+
+    /// Changes velocities at a sub-step's end, when all have been projected: restitution, friction, viscosity.
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let _ = (bodies, share);
+    }
+}
+
+impl Constraint for () {
+    fn is_empty(&self) -> bool {
+        true
+    }
+    fn project(&self, _: &mut Bodies<'_>, _: &mut Share<'_>) {}
+}
+
+impl<T: Constraint + ?Sized> Constraint for &T {
+    fn demand(&self) -> Demand {
+        (**self).demand()
+    }
+    fn is_empty(&self) -> bool {
+        (**self).is_empty()
+    }
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        (**self).prepare(bodies, share);
+    }
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        (**self).project(bodies, share);
+    }
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        (**self).settle(bodies, share);
+    }
+}
+
+/// What has parts does what they do, each in its own share of the memory.
+macro_rules! all_of {
+    ($this:ident => $parts:expr) => {
+        fn demand(&self) -> Demand {
+            let $this = self;
+            let mut sum = Demand::NONE;
+            for part in $parts {
+                sum = sum.and(part.demand());
+            }
+            sum
+        }
+        fn is_empty(&self) -> bool {
+            let $this = self;
+            for part in $parts {
+                if !part.is_empty() {
+                    return false;
+                }
+            }
+            true
+        }
+        all_of!(@phase prepare, $this => $parts);
+        all_of!(@phase project, $this => $parts);
+        all_of!(@phase settle, $this => $parts);
+    };
+    (@phase $phase:ident, $this:ident => $parts:expr) => {
+        fn $phase(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+            let $this = self;
+            let mut shares = share.parts();
+            for part in $parts {
+                part.$phase(bodies, &mut shares.next(part.demand()));
+            }
+        }
+    };
+}
+
+impl<T: Constraint> Constraint for Option<T> {
+    all_of!(this => this.as_slice());
+}
+
+impl<T: Constraint> Constraint for [T] {
+    all_of!(this => this);
+}
+
+impl<T: Constraint, const N: usize> Constraint for [T; N] {
+    all_of!(this => this);
+}
+
+impl<T: Constraint, const N: usize> Constraint for heapless::Vec<T, N> {
+    all_of!(this => this);
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Constraint> Constraint for alloc::vec::Vec<T> {
+    all_of!(this => this);
+}
+
+macro_rules! tuples {
+    ($($name:ident)+) => {
+        impl<$($name: Constraint),+> Constraint for ($($name,)+) {
+            all_of!(this => {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = this;
+                [$($name as &dyn Constraint),+]
+            });
+        }
+    };
+}
+tuples!(A);
+tuples!(A B);
+tuples!(A B C);
+tuples!(A B C D);
+tuples!(A B C D E);
+tuples!(A B C D E F);

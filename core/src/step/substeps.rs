@@ -1,0 +1,135 @@
+//! Sub-steps: the method moves everything, then constraints move it to where they are met.
+
+use super::field::{Attributes, Field};
+use crate::constrain::{Bodies, Near, Share, Substep};
+use crate::force::Needs;
+use crate::integrate::{Motion, Work};
+use crate::memory::Scratch;
+use crate::observe::{self, Observer};
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::time::Time;
+use glam::Vec3;
+
+/// The particles that a step moves through its sub-steps, and the memory for it.
+pub(super) struct Moved<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) attributes: Attributes<'a>,
+    pub(super) needs: Needs,
+    pub(super) position: &'a mut [Vec3],
+    pub(super) velocity: &'a mut [Vec3],
+    /// Places and velocities at the step's beginning, and at the sub-step's; empty where nobody asks.
+    pub(super) start: [&'a [Vec3]; 2],
+    pub(super) before: [&'a mut [Vec3]; 2],
+    /// What constraints do to each, and what they keep through the step.
+    pub(super) marks: &'a mut [u32],
+    pub(super) kept: &'a mut [u32],
+    pub(super) scratch: Scratch<'a>,
+    pub(super) capacity: usize,
+    pub(super) report: &'a mut Report,
+    pub(super) observer: &'a mut dyn Observer,
+}
+
+/// What constraints are asked for.
+#[derive(Clone, Copy)]
+enum Phase {
+    Prepare,
+    Project,
+    Settle,
+}
+
+impl Moved<'_> {
+    /// Moves all from `now` on through a step of `dt`.
+    pub(super) fn go(&mut self, now: Time, dt: Time, hint: &mut Time) {
+        let (mut from, count) = (now, self.scene.pieces());
+        self.marks.fill(0);
+        for number in 0..count {
+            let to = now + dt.part(number + 1, count);
+            let substep = Substep { during: [from, to], number, count, step: dt };
+            self.remember();
+            if !self.marks.is_empty() {
+                self.constrain(Phase::Prepare, substep);
+            }
+            self.integrate(substep, hint);
+            if !self.marks.is_empty() {
+                self.tell(observe::Phase::Advance, to);
+                self.tell(observe::Phase::Project, to);
+                self.constrain(Phase::Project, substep);
+                self.constrain(Phase::Settle, substep);
+                self.tell(observe::Phase::Constrain, to);
+            }
+            from = to;
+        }
+    }
+
+    /// Keeps where all are as a sub-step begins.
+    fn remember(&mut self) {
+        let [x, v] = &mut self.before;
+        if !x.is_empty() {
+            x.copy_from_slice(self.position);
+            v.copy_from_slice(self.velocity);
+        }
+    }
+
+    /// Lets the method move all by the forces.
+    fn integrate(&mut self, substep: Substep, hint: &mut Time) {
+        let [from, to] = substep.during;
+        let len = self.position.len();
+        let ([tree, near], memory) = self.scratch.moving();
+        let (scene, attributes, needs) = (self.scene, self.attributes, self.needs);
+        let mut field =
+            Field { scene, attributes, needs, tree, near, first: 0, evaluations: 0, observer: self.observer };
+        let start = if self.before[0].is_empty() { self.start } else { self.before.each_ref().map(|column| &**column) };
+        let motion = Motion {
+            position: self.position,
+            velocity: self.velocity,
+            start,
+            work: Work { memory, stride: self.capacity, len },
+            hint,
+            effort: &mut self.report.effort,
+        };
+        scene.integrator.advance(motion, from, to - from, &mut field);
+        self.report.effort.evaluations += field.evaluations;
+    }
+
+    /// Says that the sub-step has come so far.
+    fn tell(&mut self, phase: observe::Phase, time: Time) {
+        let state = self.attributes.lives.moved(time, self.position, self.velocity);
+        self.observer.after(phase, &state);
+    }
+
+    /// Asks the constraints for a phase of theirs.
+    fn constrain(&mut self, phase: Phase, substep: Substep) {
+        let (scene, constraints) = (self.scene, self.scene.constraints);
+        let Attributes { lives, inverse_mass, elasticity, material } = self.attributes;
+        let len = self.position.len();
+        let [memory, scratch] = self.scratch.constraining();
+        let mut bodies = Bodies {
+            position: self.position,
+            velocity: self.velocity,
+            before: self.before.each_ref().map(|column| &**column),
+            radius: &lives.radius[..len],
+            mass: &lives.mass[..len],
+            inverse_mass: &inverse_mass[..len],
+            elasticity: &elasticity[..len],
+            material: &material[..len],
+            substep,
+            colliders: scene.colliders,
+            grips: scene.grips,
+            near: Near { index: scene.index, memory },
+            report: self.report,
+            slot: &lives.slot[..len],
+            serial: &lives.springs.serial[..len],
+            row_of: lives.springs.row_of,
+            start: lives.springs.start,
+            marks: self.marks,
+            observer: self.observer,
+        };
+        let mut share = Share { step: self.kept, scratch, capacity: self.capacity };
+        match phase {
+            Phase::Prepare => constraints.prepare(&mut bodies, &mut share),
+            Phase::Project => constraints.project(&mut bodies, &mut share),
+            Phase::Settle => constraints.settle(&mut bodies, &mut share),
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Constraints of distance: rods, strings and chains against their closed forms, whatever the method, the step and the sub-steps.
+
+use pointmass::shape::Plane;
+use pointmass::{
+    Contacts, Distance, Drag, Event, EventKind, Events, Gravity, Ledger, Measures, Method, Particle, Scene, Time, Vec3,
+};
+use pointmass_tests::{gap, run, started};
+
+const G: f64 = 9.81;
+const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
+
+fn fixed(position: Vec3) -> Particle {
+    Particle { position, fixed: true, ..Particle::REST }
+}
+
+#[test]
+fn a_pendulum_on_a_rod_swings_in_its_time() {
+    let angle = 0.3f64;
+    // The period of a pendulum by the arithmetic and geometric mean.
+    let (mut a, mut b) = (1.0, (angle / 2.0).cos());
+    for _ in 0..6 {
+        (a, b) = ((a + b) / 2.0, f64::sqrt(a * b));
+    }
+    for (length, mass, pivot) in [(1.0f32, 1.0f32, Vec3::ZERO), (0.25, 30.0, Vec3::new(3.0, -2.0, 1.0))] {
+        let period = core::f64::consts::TAU * (f64::from(length) / G).sqrt() / a;
+        let at = pivot + Vec3::new(angle.sin() as f32, -angle.cos() as f32, 0.0) * length;
+        let start = [fixed(pivot), Particle { position: at, mass, ..Particle::REST }];
+        let rod = Distance::rod([0, 1], length);
+        for (rate, substeps) in [(60, 20), (24, 50), (240, 5)] {
+            for &method in Method::ALL {
+                let integrator = &method;
+                let scene =
+                    Scene { start: &start, forces: &DOWN, constraints: &rod, substeps, integrator, ..Scene::EMPTY };
+                let mut system = started(&scene, 2, 0);
+                // Ten periods end where it began, swinging back the slower the nearer.
+                let (mut crossings, mut before, mut last) = (0, at.x - pivot.x, 0.0);
+                for frame in 1..=(12.0 * period * f64::from(rate)) as u32 {
+                    system.step(&scene, Time::frame(u64::from(frame), rate) - system.time());
+                    let x = system.particles().position[1].x - pivot.x;
+                    if before > 0.0 && x <= 0.0 {
+                        let share = f64::from(before / (before - x));
+                        last = (f64::from(frame) - 1.0 + share) / f64::from(rate);
+                        crossings += 1;
+                        if crossings == 10 {
+                            break;
+                        }
+                    }
+                    before = x;
+                    let stretch = (system.particles().position[1] - pivot).length() / length - 1.0;
+                    assert!(stretch.abs() < 1e-5, "{method} {rate} {substeps}: {stretch}");
+                }
+                // Implicit and first-order methods lose or gain a little swing, and with it a little time.
+                let off = last / (9.25 * period) - 1.0;
+                assert!(off.abs() < 5e-3, "{method} {rate}/s in {substeps}: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_chain_hangs_longer_by_what_its_links_give_way() {
+    let links = 8u32;
+    let (mass, length) = (0.05f32, 0.1f32);
+    let start: Vec<Particle> = (0..=links)
+        .map(|i| Particle {
+            position: Vec3::NEG_Y * (i as f32 * length),
+            mass,
+            fixed: i == 0,
+            drag: 0.2,
+            ..Particle::REST
+        })
+        .collect();
+    for (substeps, compliance) in [(5, 0.04f32), (10, 0.01), (20, 0.004), (50, 0.001), (50, 0.02)] {
+        for (damping, tether) in [(0.0, false), (0.5, true)] {
+            let chain: Vec<_> =
+                (0..links).map(|i| Distance { ends: [i, i + 1], length, compliance, damping, tether }).collect();
+            for method in [Method::Symplectic, Method::Rk4, Method::Verlet, Method::Implicit] {
+                let forces = (DOWN, Drag {});
+                let (constraints, integrator) = (&chain, &method);
+                let scene = Scene { start: &start, forces: &forces, constraints, substeps, integrator, ..Scene::EMPTY };
+                let mut system = started(&scene, start.len(), 0);
+                run(&mut system, &scene, 1.0 / 60.0, 1500);
+                let n = f64::from(links);
+                let longer = f64::from(compliance) * f64::from(mass) * G * n * (n + 1.0) / 2.0;
+                let hangs = -f64::from(system.particles().position[links as usize].y) - n * f64::from(length);
+                let off = hangs / longer - 1.0;
+                assert!(off.abs() < 0.01, "{method}, {substeps} sub-steps of {compliance} m/N: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn momentum_is_kept_to_rounding() {
+    let free = |x: f32, vy: f32, mass: f32| Particle {
+        position: Vec3::new(x, 0.5, -0.2),
+        velocity: Vec3::new(0.3, vy, 0.1),
+        mass,
+        ..Particle::REST
+    };
+    let start = [free(0.0, 1.0, 0.1), free(1.0, -1.0, 3.0), free(2.0, 0.5, 20.0)];
+    let rods = [Distance::rod([0, 1], 1.0), Distance { compliance: 1e-3, ..Distance::rod([1, 2], 0.9) }];
+    for substeps in [1, 7, 40] {
+        let scene = Scene { start: &start, constraints: &rods, substeps, ..Scene::EMPTY };
+        let mut system = started(&scene, 3, 0);
+        let before = Measures::of(&system, &scene).momentum;
+        run(&mut system, &scene, 1.0 / 60.0, 600);
+        let after = Measures::of(&system, &scene).momentum;
+        assert!(gap(before, after) < 2e-4, "{substeps}: {before:?} {after:?}");
+    }
+}
+
+#[test]
+fn a_string_pulls_and_does_not_push() {
+    let start = [fixed(Vec3::ZERO), Particle { position: Vec3::X * 0.5, velocity: Vec3::X, ..Particle::REST }];
+    let string = Distance::string([0, 1], 1.0);
+    let scene = Scene { start: &start, constraints: &string, substeps: 10, ..Scene::EMPTY };
+    let mut system = started(&scene, 2, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 24);
+    assert_eq!(system.particles().velocity[1], Vec3::X, "slack, it does nothing");
+    run(&mut system, &scene, 1.0 / 60.0, 60);
+    let x = system.particles().position[1];
+    assert!(x.length() <= 1.0 + 1e-6, "{x}");
+    // A rod of the same length pushes at once.
+    let scene = Scene { constraints: &Distance::rod([0, 1], 1.0), ..scene };
+    let mut system = started(&scene, 2, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 1);
+    assert!((system.particles().position[1].x - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn what_has_lost_an_end_or_a_direction_does_nothing() {
+    let brief = Particle { position: Vec3::X, lifetime: 0.1, ..Particle::REST };
+    let start = [Particle { velocity: Vec3::Y, ..Particle::REST }, brief, Particle::REST];
+    let rods = [Distance::rod([0, 1], 1.0), Distance::rod([0, 2], 0.0), Distance::rod([7, 0], 1.0)];
+    let scene = Scene { start: &start, constraints: &rods, substeps: 4, ..Scene::EMPTY };
+    let mut system = started(&scene, 3, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 60);
+    assert_eq!(system.len(), 2);
+    assert!(system.particles().position.iter().all(|x| x.is_finite()));
+    // Two fixed ends stay, however far apart.
+    let start = [fixed(Vec3::ZERO), fixed(Vec3::X * 9.0)];
+    let scene = Scene { start: &start, ..scene };
+    let mut system = started(&scene, 2, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 10);
+    assert_eq!(system.particles().position, [Vec3::ZERO, Vec3::X * 9.0]);
+}
+
+/// A dumbbell that falls askew onto the ground: a rod, and contacts that keep its balls up.
+#[test]
+fn rods_and_contacts_hold_together() {
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let ball = |x: f32, y: f32, mass: f32| Particle {
+        position: Vec3::new(x, y, 0.0),
+        radius: 0.1,
+        mass,
+        elasticity: 0.0,
+        ..Particle::REST
+    };
+    for start in [[ball(0.0, 1.0, 1.0), ball(0.5, 1.5, 1.0)], [ball(0.0, 0.5, 5.0), ball(0.0, 1.0, 0.2)]] {
+        let length = (start[0].position - start[1].position).length();
+        let rod = Distance::rod([0, 1], length);
+        let constraints = (rod, Contacts::HARD);
+        for &method in Method::ALL {
+            for (rate, substeps) in [(60.0, 12), (24.0, 40)] {
+                let (forces, integrator) = (&Gravity::EARTH, &method);
+                let parts = Scene { start: &start, forces, colliders: &ground, ..Scene::EMPTY };
+                let scene = Scene { constraints: &constraints, substeps, integrator, ..parts };
+                let mut system = started(&scene, 2, 0);
+                for _ in 0..(4.0 * rate) as u32 {
+                    system.step(&scene, Time::from_seconds_f64(1.0 / rate));
+                    let x = system.particles().position;
+                    assert!(x.iter().all(|x| x.y > 0.099), "{method}: {x:?}");
+                    let stretch = ((x[0] - x[1]).length() / length - 1.0).abs();
+                    assert!(stretch < 4e-2, "{method} {rate}: {stretch}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_ledger_and_events_are_told_of_them() {
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let ball = |y: f32| Particle {
+        position: Vec3::new(0.0, y, 0.0),
+        radius: 0.1,
+        mass: 2.0,
+        elasticity: 0.5,
+        ..Particle::REST
+    };
+    let start = [ball(1.1)];
+    for method in [Method::Symplectic, Method::Verlet, Method::Rk4] {
+        let (forces, integrator) = (&DOWN, &method);
+        let parts = Scene { start: &start, forces, colliders: &ground, ..Scene::EMPTY };
+        let scene = Scene { constraints: &Contacts::HARD, substeps: 16, integrator, ..parts };
+        let mut system = started(&scene, 1, 0);
+        let mut ledger = Ledger::new(&system, &scene);
+        let (mut room, mut first) = ([Event::NOTHING; 64], None);
+        for frame in 1..=40 {
+            let mut copy = system.clone();
+            let dt = Time::frame(frame, 60) - system.time();
+            system.step_observed(&scene, dt, &mut ledger);
+            let mut events = Events::new(&mut room);
+            copy.step_observed(&scene, dt, &mut events);
+            if first.is_none() {
+                first = events.as_slice().iter().find(|event| matches!(event.kind, EventKind::Hit)).copied();
+            }
+        }
+        let hit = first.expect("it falls on the ground");
+        let fall = (2.0 / G).sqrt();
+        assert!((f64::from(hit.time.seconds()) - fall).abs() < 2e-3, "{method}: {}", hit.time.seconds());
+        assert!((f64::from(hit.speed) - G * fall).abs() < 0.05 && hit.normal == Vec3::Y);
+        // One bounce: three quarters of what the fall of a metre gave.
+        let books = ledger.books();
+        let lost = 0.75 * 2.0 * G;
+        assert!((books.constraints / -lost - 1.0).abs() < 0.02, "{method}: {books:?}");
+        assert!(books.remainder.abs() < 0.01 * lost, "{method}: {books:?}");
+        assert!((books.opening + books.total() - books.closing).abs() < 1e-9 * books.turnover());
+    }
+}
