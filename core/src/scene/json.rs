@@ -36,7 +36,7 @@ fn plain(message: &str) -> String {
     if message == "number out of range" {
         return "number out of range: the largest is 3.4e38".to_string();
     }
-    if message == "invalid type: unit variant, expected newtype variant" {
+    if message.starts_with("invalid type: unit variant, expected ") {
         return r#"a name alone, where its settings should follow: {"name": {...}}"#.to_string();
     }
     for (name, meaning) in [
