@@ -3,13 +3,13 @@
 use super::grip::on_surface;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
-use crate::math::{aside, length, max, min, sqrt, unit};
+use crate::math::{aside, largest, length, max, min, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::Fate;
 use crate::report::Report;
 use crate::scene::Scene;
-use crate::shape::{Hit, Ride, Segment};
+use crate::shape::{Contact, Hit, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -96,6 +96,36 @@ impl Flight<'_> {
         }
     }
 
+    /// The path of what lies on one surface that stands still, and is pressed on to it: along that, from its own place. Any
+    /// other is as it was: to be dropped on to what it comes to.
+    pub(super) fn lying(&mut self, path: Path) -> Path {
+        match self.seat(&path) {
+            Some(seat) => self.answer(&path, &seat, path.x0),
+            None => path,
+        }
+    }
+
+    /// Where a path begins that leaves what it lies on only to come back to it. It is within rounding of its surface, but not
+    /// within that of being behind it.
+    fn seat(&self, path: &Path) -> Option<Meeting> {
+        let place = path.x0;
+        let chord = Segment { from: place, to: place, radius: self.radius, during: path.during };
+        let slack = chord.slack(largest(place));
+        let mut faces = 0;
+        let mut found = None;
+        self.scene.colliders.contacts(place, self.radius + LAIN * slack, path.during[0], &mut |contact| {
+            faces += 1;
+            found = Some(*contact);
+        });
+        let Contact { normal, distance, velocity, material, .. } = found.filter(|_| faces == 1)?;
+        let (gap, time) = (distance - self.radius, path.duration());
+        let lifts = path.v0.dot(normal).abs() * time <= LAIN * slack;
+        let falls = -0.5 * path.acceleration().dot(normal) * time * time > gap;
+        let lies = velocity == Vec3::ZERO && gap >= 0.5 * slack && lifts && falls;
+        let hit = Hit { material, ..Hit::new(0.0, normal, slack) };
+        lies.then_some(Meeting { time: 0.0, place, chord, begun: 0.0, hit, is_sink: false })
+    }
+
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..self.scene.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
@@ -166,6 +196,12 @@ impl Flight<'_> {
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
     /// braked by friction, the mean acceleration of the path so far for the time that is left.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+        let beside = self.set_off(path, meeting, meeting.place);
+        self.answer(path, meeting, beside)
+    }
+
+    /// The way on from beside a hit.
+    fn answer(&mut self, path: &Path, meeting: &Meeting, beside: Vec3) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
         let feel = on_surface(self.scene.grips, self.elasticity, self.material, material);
@@ -176,7 +212,6 @@ impl Flight<'_> {
         let incoming = (before - surface).dot(normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * feel.elasticity } else { incoming };
-        let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, acceleration.dot(beside - place));
         let ride = self.ride(&meeting.hit, beside, during);

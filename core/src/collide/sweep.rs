@@ -68,7 +68,8 @@ fn follow(passage: &mut Passage<'_, '_>, layout: &Layout, row: usize) {
     let is_kept = mark & TOUCHING != 0;
     let radius = if is_kept { 0.5 * m.radius[row] } else { m.radius[row] };
     let hull = path.hull(radius);
-    if !(scene.colliders.may_touch(&hull) || scene.sinks.may_touch(&hull)) || !path.is_finite() {
+    let near_sink = scene.sinks.may_touch(&hull);
+    if !(scene.colliders.may_touch(&hull) || near_sink) || !path.is_finite() {
         return;
     }
     let (mass, elasticity) = (m.mass[row], m.elasticity[row]);
@@ -79,6 +80,10 @@ fn follow(passage: &mut Passage<'_, '_>, layout: &Layout, row: usize) {
     let before = flight.report.hits;
     let path = match path {
         path if row >= old => flight.let_go(path),
+        path if mark == 0 && !near_sink => match flight.lying(path) {
+            path if path.lags() => flight.pressed_on(path),
+            path => path,
+        },
         path if path.lags() => flight.pressed_on(path),
         path => path,
     };
