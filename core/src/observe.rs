@@ -13,6 +13,12 @@ pub trait Observer {
         let _ = (phase, state);
     }
 
+    /// Whether `after` has anything to do. A step that nobody watches takes particles that have nothing to do with each other
+    /// through all its phases a few at a time, to the same bits.
+    fn watches_phases(&self) -> bool {
+        true
+    }
+
     /// A particle met a collider or another particle, and was answered.
     fn hit(&mut self, hit: &Impact) {
         let _ = hit;
@@ -45,7 +51,11 @@ pub trait Observer {
     }
 }
 
-impl Observer for () {}
+impl Observer for () {
+    fn watches_phases(&self) -> bool {
+        false
+    }
+}
 
 /// Where in a step one is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -96,34 +96,38 @@ impl Flight<'_> {
         }
     }
 
-    /// The path of what lies on one surface that stands still, and is pressed on to it: along that, from its own place. Any
-    /// other is as it was: to be dropped on to what it comes to.
-    pub(super) fn lying(&mut self, path: Path) -> Path {
-        match self.seat(&path) {
-            Some(seat) => self.answer(&path, &seat, path.x0),
-            None => path,
-        }
+    /// The way of what lies on one surface that stands still, and is pressed on to it: along that, from its own place.
+    pub(super) fn lying(&mut self, path: &Path) -> Option<Path> {
+        let acceleration = path.acceleration();
+        let seat = self.seat(path, acceleration)?;
+        let feel = on_surface(self.scene.grips, self.elasticity, self.material, seat.material);
+        let (normal, time) = (seat.normal, path.during[0]);
+        let (incoming, pressing) = (path.v0.dot(normal), -acceleration.dot(normal));
+        let (slip, drive) = (path.v0 - normal * incoming, acceleration + normal * pressing);
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(path.duration());
+        let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
+        let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
+        self.report.hits += 1;
+        self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+        let world = [acceleration, way, slip, end];
+        self.observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
+        Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
     }
 
-    /// Where a path begins that leaves what it lies on only to come back to it. It is within rounding of its surface, but not
-    /// within that of being behind it.
-    fn seat(&self, path: &Path) -> Option<Meeting> {
-        let place = path.x0;
-        let chord = Segment { from: place, to: place, radius: self.radius, during: path.during };
-        let slack = chord.slack(largest(place));
-        let mut faces = 0;
-        let mut found = None;
-        self.scene.colliders.contacts(place, self.radius + LAIN * slack, path.during[0], &mut |contact| {
+    /// What a path begins on that leaves it only to come back to it within the step. The place is within rounding of its surface,
+    /// but not within that of being behind it.
+    fn seat(&self, path: &Path, acceleration: Vec3) -> Option<Contact> {
+        let slack = 4.0 * f32::EPSILON * (2.0 * largest(path.x0) + self.radius);
+        let (mut faces, mut seat) = (0, None);
+        self.scene.colliders.contacts(path.x0, self.radius + LAIN * slack, path.during[0], &mut |contact| {
             faces += 1;
-            found = Some(*contact);
+            seat = Some(*contact);
         });
-        let Contact { normal, distance, velocity, material, .. } = found.filter(|_| faces == 1)?;
-        let (gap, time) = (distance - self.radius, path.duration());
-        let lifts = path.v0.dot(normal).abs() * time <= LAIN * slack;
-        let falls = -0.5 * path.acceleration().dot(normal) * time * time > gap;
-        let lies = velocity == Vec3::ZERO && gap >= 0.5 * slack && lifts && falls;
-        let hit = Hit { material, ..Hit::new(0.0, normal, slack) };
-        lies.then_some(Meeting { time: 0.0, place, chord, begun: 0.0, hit, is_sink: false })
+        let seat = seat.filter(|seat| faces == 1 && seat.velocity == Vec3::ZERO)?;
+        let (gap, time) = (seat.distance - self.radius, path.duration());
+        let (leaving, pressing) = (path.v0.dot(seat.normal).abs(), -acceleration.dot(seat.normal));
+        let rests = leaving * time <= LAIN * slack && 2.0 * leaving < RESTING * self.dt * pressing;
+        (rests && gap >= 0.5 * slack && 0.5 * pressing * time * time > gap).then_some(seat)
     }
 
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
@@ -147,6 +151,12 @@ impl Flight<'_> {
         let chords = cubic.chords();
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
+        }
+        if chords == 1 {
+            let chord = Segment { from: path.x0, to: path.x1, radius: self.radius, during: path.during };
+            let (hit, is_sink) = self.first_hit(&chord)?;
+            let meeting = Meeting { time: hit.time, place: chord.at(hit.time), chord, begun: 0.0, hit, is_sink };
+            return Some(self.on_path(path, &cubic, meeting, 1.0));
         }
         let chords = chords.min(MAX_CHORDS);
         let whole = chords as f32;
@@ -196,12 +206,6 @@ impl Flight<'_> {
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
     /// braked by friction, the mean acceleration of the path so far for the time that is left.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
-        let beside = self.set_off(path, meeting, meeting.place);
-        self.answer(path, meeting, beside)
-    }
-
-    /// The way on from beside a hit.
-    fn answer(&mut self, path: &Path, meeting: &Meeting, beside: Vec3) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
         let feel = on_surface(self.scene.grips, self.elasticity, self.material, material);
@@ -212,6 +216,7 @@ impl Flight<'_> {
         let incoming = (before - surface).dot(normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * feel.elasticity } else { incoming };
+        let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, acceleration.dot(beside - place));
         let ride = self.ride(&meeting.hit, beside, during);

@@ -3,7 +3,6 @@
 use super::meetings::Passage;
 use super::melee::Melee;
 use super::queue::Queue;
-use super::sweep::each_by_itself;
 use crate::memory::{Layout, Shares, Slices, Storage};
 
 /// Vectors a particle for its clock and for where it was at the step's beginning.
@@ -14,9 +13,9 @@ pub(super) const COLUMNS: usize = 4;
 pub(super) fn follow(passage: Passage<'_, '_>) {
     // Points meet nobody.
     if !passage.view.memory.radius[..passage.view.len()].iter().any(|&radius| radius > 0.0) {
-        return each_by_itself(passage);
+        return passage.each_by_itself();
     }
-    let Passage { view, scene, old, dt, end, report, observer } = passage;
+    let Passage { view, scene, old, now, dt, report, observer } = passage;
     let (len, capacity) = (view.len(), view.capacity());
     let Slices {
         position,
@@ -42,7 +41,7 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
     let mut melee = Melee {
         scene,
         dt,
-        end,
+        end: now + dt,
         unit,
         clocks: Queue::new(bytemuck::cast_slice_mut(clocks)),
         ends: [&mut position[..len], &mut velocity[..len]],

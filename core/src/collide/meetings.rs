@@ -62,7 +62,7 @@ impl Meetings {
     /// Sends every free particle along its path.
     pub(crate) fn follow(&self, passage: Passage<'_, '_>) {
         match self {
-            Self::Through => each_by_itself(passage),
+            Self::Through => passage.each_by_itself(),
             Self::Impulse(Impulse { follow }) => follow(passage),
         }
     }
@@ -74,8 +74,18 @@ pub(crate) struct Passage<'p, 'v> {
     pub(crate) scene: &'p Scene<'p>,
     /// Those from this row on are newborn.
     pub(crate) old: usize,
+    /// When it began, and how long it takes.
+    pub(crate) now: Time,
     pub(crate) dt: Time,
-    pub(crate) end: Time,
     pub(crate) report: &'p mut Report,
     pub(crate) observer: &'p mut dyn Observer,
+}
+
+impl Passage<'_, '_> {
+    /// Sends all past each other.
+    pub(super) fn each_by_itself(self) {
+        let Self { view, scene, old, now, dt, report, observer } = self;
+        let (rows, capacity) = (0..view.len(), view.capacity());
+        each_by_itself(&mut view.tile(scene, [now, dt], old, rows, capacity), report, observer);
+    }
 }

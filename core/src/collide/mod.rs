@@ -18,3 +18,4 @@ pub(crate) use meetings::Passage;
 pub use meetings::{Impulse, Meetings};
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
+pub(crate) use sweep::each_by_itself;

@@ -41,7 +41,12 @@ impl Cubic {
     /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
     pub(super) fn chords(&self) -> u32 {
         let [_, c2, c3] = self.coefficients;
-        let bend = 2.0 * max(length(c2), length(c2 + c3 * 3.0));
+        let end = c2 + c3 * 3.0;
+        // Most do not bend so much: no root is needed.
+        if max(c2.dot(c2), end.dot(end)) <= (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR) {
+            return 1;
+        }
+        let bend = 2.0 * max(length(c2), length(end));
         let ratio = bend / (8.0 * CHORD_ERROR);
         // The cast rounds down and saturates.
         if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1) } else { 1 }
@@ -61,7 +66,9 @@ impl Path {
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        [self.x0, self.v0, self.x1, self.v1].iter().all(|v| v.is_finite())
+        // What is not finite makes a sum that is not; a sum may be so without.
+        (self.x0 + self.v0 + self.x1 + self.v1).is_finite()
+            || [self.x0, self.v0, self.x1, self.v1].iter().all(|v| v.is_finite())
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.

@@ -15,6 +15,10 @@ use glam::Vec3;
 pub struct Drag {}
 
 impl Force for Drag {
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         each_row(total, &state.velocity[rows.clone()], &state.drag[rows], |total, v, k| total - v * k);
     }

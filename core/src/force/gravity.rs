@@ -21,6 +21,10 @@ impl Gravity {
 }
 
 impl Force for Gravity {
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         each_row_with(total, self.acceleration, &state.mass[rows], |total, g, m| total + g * m);
     }

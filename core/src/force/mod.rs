@@ -61,6 +61,12 @@ pub trait Force: Sync {
         Needs::default()
     }
 
+    /// Whether the force on a particle depends on nothing but its own row and the time. A step then takes a few rows at a time
+    /// through all its phases, while they are in the cache; the state has no other rows in it.
+    fn is_local(&self) -> bool {
+        false
+    }
+
     /// Adds how the force on each particle changes as they move: (∂f/∂x) δx + (∂f/∂v) δv \[N\], for methods that solve for
     /// the state at a step's end. All rows at once.
     ///
@@ -249,6 +255,24 @@ impl<'a> State<'a> {
         }
     }
 
+    /// What they are besides places and velocities, some rows of it.
+    pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
+        Self {
+            position: &[],
+            velocity: &[],
+            radius: &self.radius[rows.clone()],
+            mass: &self.mass[rows.clone()],
+            drag: &self.drag[rows.clone()],
+            charge: &self.charge[rows.clone()],
+            born: &self.born[rows.clone()],
+            dies: &self.dies[rows.clone()],
+            slot: &self.slot[rows.clone()],
+            key: &self.key[rows.clone()],
+            springs: Springs { serial: &self.springs.serial[rows], ..self.springs },
+            ..*self
+        }
+    }
+
     /// How many particles lie within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking at all.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
@@ -288,6 +312,9 @@ pub(crate) fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
 
 impl Force for () {
     fn add_to(&self, _: &State<'_>, _: Range<usize>, _: &mut [Vec3]) {}
+    fn is_local(&self) -> bool {
+        true
+    }
     #[cfg(feature = "std")]
     fn account(&self, _: &State<'_>, _: &mut dyn FnMut(Entry)) {}
 }
@@ -320,6 +347,10 @@ macro_rules! sum_of {
                 needs = needs.and(part.needs());
             }
             needs
+        }
+        fn is_local(&self) -> bool {
+            let $this = self;
+            $parts.into_iter().all(|part| part.is_local())
         }
         #[cfg(feature = "std")]
         fn energy(&self, state: &State<'_>) -> f64 {
@@ -359,6 +390,10 @@ macro_rules! same_as {
         fn needs(&self) -> Needs {
             let $this = self;
             $force.needs()
+        }
+        fn is_local(&self) -> bool {
+            let $this = self;
+            $force.is_local()
         }
         fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
             let $this = self;

@@ -19,6 +19,10 @@ pub struct QuadraticDrag {
 }
 
 impl Force for QuadraticDrag {
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         for (total, &v) in total.iter_mut().zip(&state.velocity[rows]) {
             *total -= v * (self.coefficient * length(v));

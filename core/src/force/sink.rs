@@ -36,6 +36,10 @@ pub struct Sink<M> {
 }
 
 impl<M: Surface + Sync> Force for Sink<M> {
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         for (total, &x) in total.iter_mut().zip(&state.position[rows]) {
             let toward = self.shape.nearest(x) - x;

@@ -42,6 +42,10 @@ impl<F: Flow> Wind<F> {
 }
 
 impl<F: Flow> Force for Wind<F> {
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         let first = rows.start;
         self.each(state, rows, |row, k, air| {

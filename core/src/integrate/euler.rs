@@ -22,6 +22,10 @@ impl Integrator for Euler {
         1
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let [a] = motion.work.take();
         world.accelerations(time, motion.position, motion.velocity, a);
@@ -33,6 +37,10 @@ impl Integrator for Euler {
 impl Integrator for Symplectic {
     fn columns(&self) -> usize {
         1
+    }
+
+    fn is_local(&self) -> bool {
+        true
     }
 
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {

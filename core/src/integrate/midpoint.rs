@@ -24,6 +24,10 @@ impl Integrator for Midpoint {
         true
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         advance(motion, [time, time + step.half()], step, world);
     }
@@ -35,6 +39,10 @@ impl Integrator for LectureMidpoint {
     }
 
     fn needs_start(&self) -> bool {
+        true
+    }
+
+    fn is_local(&self) -> bool {
         true
     }
 

@@ -81,6 +81,11 @@ pub trait Integrator: Sync {
         false
     }
 
+    /// Whether it moves each particle by what is in its own row, so that rows may be moved a few at a time.
+    fn is_local(&self) -> bool {
+        false
+    }
+
     /// Moves everything from `time` to `time` + `step`.
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics);
 }
@@ -143,6 +148,9 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
     fn needs_start(&self) -> bool {
         (**self).needs_start()
+    }
+    fn is_local(&self) -> bool {
+        (**self).is_local()
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         (**self).advance(motion, time, step, world);

@@ -131,6 +131,9 @@ impl Integrator for Method {
     fn needs_start(&self) -> bool {
         self.integrator().needs_start()
     }
+    fn is_local(&self) -> bool {
+        self.integrator().is_local()
+    }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.integrator().advance(motion, time, step, world);
     }
@@ -156,6 +159,9 @@ impl Integrator for Tuned {
     }
     fn needs_start(&self) -> bool {
         self.with(|integrator| integrator.needs_start())
+    }
+    fn is_local(&self) -> bool {
+        self.with(|integrator| integrator.is_local())
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.with(|integrator| integrator.advance(motion, time, step, world));

@@ -21,6 +21,10 @@ impl Integrator for Rk4 {
         true
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, start: [x0, v0], work, .. } = motion;
         let [a, sum_x, sum_v] = work.take();

@@ -15,6 +15,10 @@ impl Integrator for Verlet {
         2
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, .. } = motion;
         let [a, b] = work.take();

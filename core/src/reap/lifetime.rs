@@ -1,6 +1,6 @@
 //! Death of age.
 
-use super::{Cause, Reaper, Verdicts};
+use super::{CHUNK, Cause, Reaper, Verdicts};
 use crate::force::State;
 use crate::time::Time;
 use core::ops::Range;
@@ -10,15 +10,29 @@ const BEFORE_NEVER: Time = Time::from_ticks(Time::NEVER.ticks() - 1);
 
 /// Ends those whose time has come.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lifetime;
+pub(crate) struct Lifetime;
 
 impl Reaper for Lifetime {
     fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
         let last = state.time.min(BEFORE_NEVER);
-        for (nth, &dies) in state.dies[rows].iter().enumerate() {
-            if dies <= last {
-                verdicts.end(nth, Cause::Lifetime);
+        for (chunk, dies) in state.dies[rows].chunks(CHUNK).enumerate() {
+            if !may_end(dies, last) {
+                continue;
+            }
+            for (nth, &dies) in dies.iter().enumerate() {
+                if dies <= last {
+                    verdicts.end(CHUNK * chunk + nth, Cause::Lifetime);
+                }
             }
         }
     }
+}
+
+/// Whether any of these instants may have come by `last`. The difference to the next instant has the highest bit where it is
+/// below zero, or where what dies later than in 68 years does: that has the bit itself.
+fn may_end(dies: &[Time], last: Time) -> bool {
+    let next = last.ticks().saturating_add(1);
+    let came = |any: u64, dies: &Time| any | (dies.ticks().wrapping_sub(next) & !dies.ticks());
+    let is_late = next >> 63 != 0;
+    is_late || dies.iter().fold(0, came) >> 63 != 0
 }

@@ -24,8 +24,8 @@ use crate::step::View;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
-use lifetime::Lifetime;
-use nonfinite::Nonfinite;
+pub(crate) use lifetime::Lifetime;
+pub(crate) use nonfinite::Nonfinite;
 
 /// Rows that are looked at together.
 const CHUNK: usize = 64;
@@ -157,7 +157,9 @@ pub(crate) fn reap(
     report: &mut Report,
     observer: &mut dyn Observer,
 ) {
-    judge(view, scene);
+    if !scene.reapers.is_empty() {
+        judge(view, scene);
+    }
     // From the back, so that the row that fills a gap has been looked at already.
     let mut end = view.len();
     while let Some((row, cause)) = last_doomed(&view.memory.fate[..end]) {
@@ -170,15 +172,13 @@ pub(crate) fn reap(
     }
 }
 
-/// Fills in the fates of all rows.
+/// Lets the scene's reapers choose.
 fn judge(view: &mut View<'_>, scene: &Scene<'_>) {
     let (rows, reapers) = (0..view.len(), scene.reapers);
     let layout = Layout::of(scene.plan(), view.capacity());
     // Reapers see everything but the fates and the memory of the index.
     let (fates, work) = (core::mem::take(&mut view.memory.fate), core::mem::take(&mut view.memory.work));
     let (state, mut verdicts) = (view.state(scene), Verdicts::on(&mut fates[rows.clone()]));
-    Lifetime.judge(&state, rows.clone(), &mut verdicts);
-    Nonfinite.judge(&state, rows.clone(), &mut verdicts);
     if reapers.reach() > 0.0 {
         let (position, words) = layout.crowd(work, rows.len());
         for ((place, &x), &fate) in position.iter_mut().zip(state.position).zip(&*verdicts.fates) {
@@ -187,7 +187,7 @@ fn judge(view: &mut View<'_>, scene: &Scene<'_>) {
         scene.index.arrange(words, position, reapers.reach(), &mut |near| {
             reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
         });
-    } else if !reapers.is_empty() {
+    } else {
         reapers.judge(&state, rows, &mut verdicts);
     }
     (view.memory.fate, view.memory.work) = (fates, work);

@@ -7,7 +7,7 @@ use core::ops::Range;
 
 /// Ends those whose place or velocity is not finite.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Nonfinite;
+pub(crate) struct Nonfinite;
 
 impl Reaper for Nonfinite {
     fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {

@@ -7,16 +7,29 @@ use crate::observe::{Observer, Phase};
 use crate::rows::each_row_with;
 use crate::scene::Scene;
 use crate::time::Time;
+use core::ops::Range;
 use glam::Vec3;
 
 /// What particles are besides places and velocities: one entry a row.
 #[derive(Clone, Copy)]
-pub(super) struct Attributes<'a> {
+pub(crate) struct Attributes<'a> {
     /// All that forces see of them.
-    pub(super) lives: State<'a>,
-    pub(super) inverse_mass: &'a [f32],
-    pub(super) elasticity: &'a [f32],
-    pub(super) material: &'a [u16],
+    pub(crate) lives: State<'a>,
+    pub(crate) inverse_mass: &'a [f32],
+    pub(crate) elasticity: &'a [f32],
+    pub(crate) material: &'a [u16],
+}
+
+impl<'a> Attributes<'a> {
+    /// Those of some rows.
+    pub(super) fn rows(&self, rows: Range<usize>) -> Self {
+        Self {
+            inverse_mass: &self.inverse_mass[rows.clone()],
+            elasticity: &self.elasticity[rows.clone()],
+            material: &self.material[rows.clone()],
+            lives: self.lives.attributes_of(rows),
+        }
+    }
 }
 
 /// The scene's forces over the masses, from row `first` on.
