@@ -3,7 +3,7 @@
 use super::grip::on_surface;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
-use crate::math::{aside, largest, length, max, min, sqrt, unit};
+use crate::math::{aside, length, max, min, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::Fate;
@@ -117,17 +117,20 @@ impl Flight<'_> {
     /// What a path begins on that leaves it only to come back to it within the step. The place is within rounding of its surface,
     /// but not within that of being behind it.
     fn seat(&self, path: &Path, acceleration: Vec3) -> Option<Contact> {
-        let slack = 4.0 * f32::EPSILON * (2.0 * largest(path.x0) + self.radius);
+        let time = path.duration();
+        let fall = |acceleration: f32| 0.5 * acceleration * time * time;
         let (mut faces, mut seat) = (0, None);
-        self.scene.colliders.contacts(path.x0, self.radius + LAIN * slack, path.during[0], &mut |contact| {
+        let reach = self.radius + fall(length(acceleration));
+        self.scene.colliders.contacts(path.x0, reach, path.during[0], &mut |contact| {
             faces += 1;
             seat = Some(*contact);
         });
         let seat = seat.filter(|seat| faces == 1 && seat.velocity == Vec3::ZERO)?;
-        let (gap, time) = (seat.distance - self.radius, path.duration());
+        let (gap, slack) = (seat.distance - self.radius, seat.slack);
         let (leaving, pressing) = (path.v0.dot(seat.normal).abs(), -acceleration.dot(seat.normal));
+        let is_there = gap >= 0.5 * slack && gap <= LAIN * slack && fall(pressing) > gap;
         let rests = leaving * time <= LAIN * slack && 2.0 * leaving < RESTING * self.dt * pressing;
-        (rests && gap >= 0.5 * slack && 0.5 * pressing * time * time > gap).then_some(seat)
+        (is_there && rests).then_some(seat)
     }
 
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {

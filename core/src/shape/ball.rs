@@ -83,23 +83,27 @@ pub(super) fn first_hit(solid: &impl Hollow, segment: &Segment) -> Option<Hit> {
 /// What a ball leans on, of a hollow solid.
 pub(super) fn contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
     if solid.contains(center) {
-        solid.walls(center, &mut |normal, distance| lean(center, normal * distance, normal, reach, visit));
+        solid.walls(center, &mut |normal, distance| {
+            lean(center, normal * distance, normal, [reach, solid.reach()], visit);
+        });
     } else {
-        lean_on(solid, center, reach, visit);
+        lean_on(solid, center, [reach, solid.reach()], visit);
     }
 }
 
 /// What a ball outside leans on: the nearest place of a set, if it is within reach. A centre in the set has no side.
-pub(super) fn lean_on(set: &impl Filled, center: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
+pub(super) fn lean_on(set: &impl Filled, center: Vec3, reach: [f32; 2], visit: &mut dyn FnMut(&Contact)) {
     let gap = set.gap(center);
     lean(center, gap, unit(gap), reach, visit);
 }
 
-/// Visits the place `gap` before `center`, if it is within reach and there is a normal.
-pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
+/// Visits the place `gap` before `center`, if it is within reach and there is a normal; the surface itself reaches so far
+/// from the origin.
+pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32; 2], visit: &mut dyn FnMut(&Contact)) {
     let distance = gap.dot(normal);
     if distance <= reach && normal != Vec3::ZERO {
-        visit(&Contact { point: center - gap, normal, distance, velocity: Vec3::ZERO, material: None });
+        let slack = Segment { radius: distance, ..Segment::new(center, center) }.slack(size);
+        visit(&Contact { point: center - gap, normal, distance, slack, velocity: Vec3::ZERO, material: None });
     }
 }
 

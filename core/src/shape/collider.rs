@@ -104,6 +104,8 @@ pub struct Contact {
     pub normal: Vec3,
     /// How far the centre is \[m\].
     pub distance: f32,
+    /// How far from the computed place the surface may really be \[m\], as for a [`Hit`].
+    pub slack: f32,
     /// How the surface itself moves there \[m/s\].
     pub velocity: Vec3,
     /// Number of its material in the scene, if it has one.

@@ -72,7 +72,8 @@ impl Collider for Disc {
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let gap = self.gap(center);
-        lean(center, gap, if gap == Vec3::ZERO { unit(self.normal) } else { unit(gap) }, reach, visit);
+        let normal = if gap == Vec3::ZERO { unit(self.normal) } else { unit(gap) };
+        lean(center, gap, normal, [reach, largest(self.center) + self.radius], visit);
     }
 }
 

@@ -66,11 +66,10 @@ impl Hulls {
         Aabb { min: corner(&self.min) - self.room, max: corner(&self.max) + self.room }
     }
 
-    /// Marks those that a box may share a point with.
+    /// Marks those that a box may share a point with, and what lies on it: by so much as it is set off by rounding.
     pub fn near_box(&self, bounds: &Aabb, marks: &mut Marks) {
-        let wide = |edge: f32| edge.abs() * (16.0 * f32::EPSILON);
-        let from = bounds.min.map(|edge| edge - wide(edge) - self.room);
-        let to = bounds.max.map(|edge| edge + wide(edge) + self.room);
+        let room = self.room + (32.0 * f32::EPSILON) * (largest(bounds.min) + largest(bounds.max));
+        let (from, to) = (bounds.min - room, bounds.max + room);
         for (i, mark) in marks.iter_mut().enumerate() {
             let meets = |axis: usize| (self.min[axis][i] <= to[axis]) & (self.max[axis][i] >= from[axis]);
             *mark |= u32::from(meets(0) & meets(1) & meets(2)).wrapping_neg();

@@ -69,7 +69,7 @@ impl Collider for Line {
     }
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
-        lean_on(self, center, reach, visit);
+        lean_on(self, center, [reach, crate::math::largest(self.from)], visit);
     }
 
     fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {

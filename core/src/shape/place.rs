@@ -180,7 +180,8 @@ impl<C: Collider> Collider for Placed<C> {
             let distance = contact.distance * scale;
             let point = center - normal * distance;
             let velocity = carried(to_world, contact.velocity);
-            visit(&Contact { point, normal, distance, velocity, material: self.material });
+            let slack = contact.slack * scale + Segment::new(center, center).slack(largest(to_world.shift));
+            visit(&Contact { point, normal, distance, slack, velocity, material: self.material });
         });
     }
 

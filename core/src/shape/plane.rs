@@ -52,7 +52,8 @@ impl Collider for Plane {
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let normal = unit(self.normal);
         let distance = normal.dot(center - self.point);
-        lean(center, normal * distance, if distance < 0.0 { -normal } else { normal }, reach, visit);
+        let toward = if distance < 0.0 { -normal } else { normal };
+        lean(center, normal * distance, toward, [reach, largest(self.point)], visit);
     }
 
     fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {

@@ -107,7 +107,7 @@ impl Collider for Triangle {
         let (across, is_plain) = self.normal();
         let gap = if is_plain { self.gap(center) } else { Sliver::new(self, across).gap(center) };
         let normal = if gap == Vec3::ZERO { unit(across) } else { unit(gap) };
-        ball::lean(center, gap, normal, reach, visit);
+        ball::lean(center, gap, normal, [reach, size(self)], visit);
     }
 
     fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {

@@ -5,6 +5,7 @@ mod blocks;
 mod bounces;
 mod elastic;
 mod heights;
+mod lying;
 mod moving;
 mod nearest;
 mod needles;
