@@ -1,4 +1,4 @@
-//! A fountain over the ground beside the least that a loop can do, in turns:
+//! A fountain over the ground, and what falls freely, beside the least that a loop can do, in turns:
 //! `cargo run --release -p pointmass-bench --example fountain -- [PARTICLES] [STEPS] [ROUNDS]`.
 //!
 //! 10 m/s, a drag of 0.2/s, lives of 3 to 5 s, a restitution of 0.5: in a step about a tenth of the particles touch the
@@ -39,6 +39,25 @@ fn main() {
     let share = hits as f64 / (steps * system.len()) as f64;
     println!("{} particles, {:.1} % hit in a step, hash {:016x}", system.len(), 100.0 * share, system.hash());
     println!("fountain {ours:.2} ns, bare loop {least:.2} ns, {:.1} times", ours / least);
+    if rounds > 0 {
+        falling(particles, steps, rounds);
+    }
+}
+
+/// The same without births, deaths and ground, beside the loop.
+fn falling(particles: usize, steps: usize, rounds: usize) {
+    let start = cloud(particles as u32);
+    let scene = Scene { start: &start, forces: &(Gravity::EARTH, Drag {}), integrator: &Symplectic, ..Scene::EMPTY };
+    let (mut system, mut bare) = (started(&scene, particles), Bare::new(&start));
+    let (mut ours, mut least) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..rounds {
+        ours = ours.min(timed(steps, || {
+            system.step(&scene, FRAME);
+        }));
+        least = least.min(timed(steps, || bare.step(FRAME.seconds())));
+    }
+    let [ours, least] = [ours, least].map(|all| all / particles as f64);
+    println!("falling {ours:.2} ns, bare loop {least:.2} ns, {:.1} times", ours / least);
 }
 
 /// About so many drops in the air at once.

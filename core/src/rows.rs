@@ -60,29 +60,17 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
     *total = Vec3::new(f(total.x, vector.x, factor), f(total.y, vector.y, factor), f(total.z, vector.z, factor));
 }
 
-/// What all numbers of a column are like.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Survey {
-    /// The largest, whatever its sign; what is no number does not count.
-    pub(crate) farthest: f32,
-    pub(crate) is_finite: bool,
-}
-
-/// Looks at all numbers of a column.
+/// The largest number of a column, whatever its sign; what is no number does not count.
 #[inline]
-pub(crate) fn survey(column: &[Vec3]) -> Survey {
-    let (mut farthest, mut wrong) = ([0.0; 8], [0; 8]);
-    let mut add = |numbers: &[f32]| {
-        for (&x, (farthest, wrong)) in numbers.iter().zip(farthest.iter_mut().zip(&mut wrong)) {
-            *farthest = max(x.abs(), *farthest);
-            // Zero, unless it is not finite.
-            *wrong |= (x - x).to_bits();
-        }
-    };
+pub(crate) fn farthest(column: &[Vec3]) -> f32 {
     let (blocks, rest) = flat(column).as_chunks::<8>();
-    blocks.iter().for_each(|block| add(block));
-    add(rest);
-    Survey { farthest: farthest.into_iter().fold(0.0, max), is_finite: wrong.iter().all(|&wrong| wrong == 0) }
+    let mut most = [0.0; 8];
+    for block in blocks {
+        for (most, x) in most.iter_mut().zip(block) {
+            *most = max(x.abs(), *most);
+        }
+    }
+    rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most))
 }
 
 /// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
@@ -111,12 +99,12 @@ mod tests {
         for n in 0..20 {
             let mut column = std::vec![Vec3::new(f32::MAX, -f32::MAX, -0.0); n];
             assert!(are_finite(&column));
-            assert_eq!(survey(&column), Survey { farthest: if n > 0 { f32::MAX } else { 0.0 }, is_finite: true });
+            assert_eq!(farthest(&column), if n > 0 { f32::MAX } else { 0.0 });
             for (i, bad) in (0..3 * n).zip([f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().cycle())
             {
                 let good = core::mem::replace(&mut column[i / 3][i % 3], bad);
-                assert!(!are_finite(&column) && !survey(&column).is_finite, "{bad} at {i} of {n}");
-                assert_eq!(survey(&column).farthest == f32::INFINITY, bad.is_infinite());
+                assert!(!are_finite(&column), "{bad} at {i} of {n}");
+                assert_eq!(farthest(&column) == f32::INFINITY, bad.is_infinite());
                 column[i / 3][i % 3] = good;
             }
         }

@@ -1,5 +1,6 @@
 //! Motion that rounding swallows: steps so short, so far from the origin, that positions stay where they are.
 
+use crate::math::min;
 use crate::rows::flat;
 use glam::Vec3;
 
@@ -27,7 +28,7 @@ pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
         // Hardly ever is there one: whole blocks are passed by, in a loop that compilers make vectors of.
         let mut any = 0;
         for (&x, &v) in flat(x).iter().zip(flat(v)) {
-            any |= u32::from(is_swallowed(x, v, h));
+            any |= u32::from(may_be_swallowed(x, v, h));
         }
         if any > 0 {
             let stalls = |(x, v): &(&Vec3, &Vec3)| (0..3).any(|axis| is_swallowed(x[axis], v[axis], h));
@@ -37,18 +38,17 @@ pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
     stalled
 }
 
-/// Whether a coordinate moves, at a speed that counts, and is where it was after a step.
+/// Whether a coordinate moves, at a speed that counts, and is where it was after a step: without shortcuts, so that the loop
+/// has no branches.
 #[inline(always)]
+fn may_be_swallowed(x: f32, v: f32, h: f32) -> bool {
+    (x + v * h == x) & (v.abs() > min(x.abs() * SHARE, NOTABLE))
+}
+
+/// The same of what is somewhere, in steps that take time.
 fn is_swallowed(x: f32, v: f32, h: f32) -> bool {
-    let (speed, share) = (v.abs(), x.abs() * SHARE);
-    let counts = (speed > share) | (speed > NOTABLE);
-    // Without shortcuts, so that the loop has no branches. What is not finite is nowhere.
-    (x + v * h == x)
-        & (h > 0.0)
-        & counts
-        & (speed > f32::MIN_POSITIVE)
-        & (share < f32::INFINITY)
-        & (speed < f32::INFINITY)
+    let is_motion = v.abs() > f32::MIN_POSITIVE && v.abs() < f32::INFINITY && x.abs() < f32::INFINITY;
+    may_be_swallowed(x, v, h) && h > 0.0 && is_motion
 }
 
 #[cfg(test)]

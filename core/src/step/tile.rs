@@ -5,7 +5,7 @@ use super::field::Attributes;
 use crate::force::{Springs, State};
 use crate::memory::Storage;
 use crate::reap::{Fate, Lifetime, Nonfinite, Reaper, Verdicts};
-use crate::rows::survey;
+use crate::rows::farthest;
 use crate::scene::Scene;
 use crate::stall;
 use crate::time::Time;
@@ -98,13 +98,11 @@ impl Tile<'_> {
     /// Finds out who has come to the end of its life, and who is nowhere any more. Returns how many stall in parts of a step
     /// of `h` \[s\].
     pub(super) fn judge(&mut self, h: f32) -> u64 {
-        let (rows, survey) = (0..self.position.len(), [survey(self.position), survey(self.velocity)]);
+        let rows = 0..self.position.len();
         let state = self.attributes.lives.moved(self.end(), self.position, self.velocity);
         let mut verdicts = Verdicts::on(self.fate);
         Lifetime.judge(&state, rows.clone(), &mut verdicts);
-        if !survey.iter().all(|survey| survey.is_finite) {
-            Nonfinite.judge(&state, rows, &mut verdicts);
-        }
-        if stall::may_be(survey[0].farthest, h) { stall::count(self.position, self.velocity, h) } else { 0 }
+        Nonfinite.judge(&state, rows, &mut verdicts);
+        if stall::may_be(farthest(self.position), h) { stall::count(self.position, self.velocity, h) } else { 0 }
     }
 }
