@@ -10,6 +10,7 @@ use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::Limit;
 use pointmass::{ForceKind, Heap, Method, Observer, Report, Response, System, Time};
+use rayon::ThreadPool;
 
 /// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
 const TOLERANCE: f64 = 1e-4;
@@ -29,7 +30,12 @@ pub struct World {
     pub dt: f64,
     /// How steps are divided.
     pub pace: Pace,
+    /// What steps run on, if that is more than this thread.
+    threads: Option<ThreadPool>,
 }
+
+/// Particles from which on more than one thread is of use.
+const WORTH_THREADS: usize = 4096;
 
 impl World {
     /// Loads the scene and puts in what it begins with.
@@ -76,7 +82,8 @@ impl World {
         let limit = if chosen { Bounds::of(&model).largest_step(method) } else { Limit::Unconditional };
         let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
         let pace = Pace::new(args.substeps, limit, tolerance);
-        Ok(Self { file, model, system, duration, dt, pace })
+        let threads = threads(args.threads, capacity)?;
+        Ok(Self { file, model, system, duration, dt, pace, threads })
     }
 
     /// The method of the run.
@@ -112,12 +119,35 @@ impl World {
 
     /// Steps to the instant `end`.
     pub fn step_to(&mut self, end: Time) -> Report {
-        self.pace.step(&mut self.system, &self.model.scene(), end, None)
+        let Self { model, system, pace, threads, .. } = self;
+        let scene = model.scene();
+        match threads {
+            Some(pool) => pool.install(|| pace.step(system, &scene, end, None)),
+            None => pace.step(system, &scene, end, None),
+        }
     }
 
     /// Steps to the instant `end` while somebody watches.
     pub fn step_observed(&mut self, end: Time, observer: &mut dyn Observer) -> Report {
         self.pace.step(&mut self.system, &self.model.scene(), end, Some(observer))
+    }
+}
+
+/// As many threads as asked for, or as the machine has, where there may be particles enough for more than one.
+fn threads(asked: Option<u16>, capacity: usize) -> Outcome<Option<ThreadPool>> {
+    let count = match asked {
+        Some(count) => usize::from(count),
+        None if capacity < WORTH_THREADS => 1,
+        None => std::thread::available_parallelism().map_or(1, usize::from),
+    };
+    if count == 1 {
+        return Ok(None);
+    }
+    match rayon::ThreadPoolBuilder::new().num_threads(count).build() {
+        Ok(pool) => Ok(Some(pool)),
+        Err(error) if asked.is_some() => Err(Failure::new(format!("--threads {count}: {error}"))),
+        // One thread does it as well.
+        Err(_) => Ok(None),
     }
 }
 

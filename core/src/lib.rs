@@ -70,7 +70,7 @@ pub use measure::{Energy, Measures};
 #[cfg(feature = "alloc")]
 pub use memory::Heap;
 pub use memory::{Columns, Inline, Size, Slices, Storage};
-pub use observe::{Impact, Observer, Passing, Phase, Sliding};
+pub use observe::{Attention, Impact, Observer, Passing, Phase, Sliding};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use reap::{Cause, Chance, Dense, Fate, Reaper, ReaperKind};
 pub use report::{Caps, Died, Effort, Report};

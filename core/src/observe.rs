@@ -13,10 +13,10 @@ pub trait Observer {
         let _ = (phase, state);
     }
 
-    /// Whether `after` has anything to do. A step that nobody watches takes particles that have nothing to do with each other
-    /// through all its phases a few at a time, to the same bits.
-    fn watches_phases(&self) -> bool {
-        true
+    /// What it wants to know of. A step in which no particle looks at another and nobody watches the phases takes them through all
+    /// of these a few at a time; and many at once, if nothing is to be told and the program has threads. To the same bits.
+    fn attention(&self) -> Attention {
+        Attention::Phases
     }
 
     /// A particle met a collider or another particle, and was answered.
@@ -52,9 +52,20 @@ pub trait Observer {
 }
 
 impl Observer for () {
-    fn watches_phases(&self) -> bool {
-        false
+    fn attention(&self) -> Attention {
+        Attention::Nothing
     }
+}
+
+/// What an observer wants to know of: each of these is more than the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Attention {
+    /// Nothing at all.
+    Nothing,
+    /// What happens to particles: all but [`Observer::after`].
+    Events,
+    /// The state after each phase as well.
+    Phases,
 }
 
 /// Where in a step one is.

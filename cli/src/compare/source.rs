@@ -104,6 +104,7 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),
         tolerance: None,
+        threads: Some(1),
     };
     let mut world = World::load(&settings)?;
     let clock = Clock::new(world.duration, world.dt);

@@ -206,6 +206,7 @@ fn from_file(path: &Path, args: &args::Lab) -> Outcome<Problem> {
         capacity: None,
         substeps: crate::substeps::Substeps::Fixed(1),
         tolerance: None,
+        threads: Some(1),
     })?;
     let World { file, model, system, duration, dt, .. } = world;
     if !(duration > 0.0) {

@@ -97,6 +97,7 @@ impl Flight<'_> {
     }
 
     /// The way of what lies on one surface that stands still, and is pressed on to it: along that, from its own place.
+    #[inline(never)]
     pub(super) fn lying(&mut self, path: &Path) -> Option<Path> {
         let acceleration = path.acceleration();
         let seat = self.seat(path, acceleration)?;
@@ -155,12 +156,6 @@ impl Flight<'_> {
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
         }
-        if chords == 1 {
-            let chord = Segment { from: path.x0, to: path.x1, radius: self.radius, during: path.during };
-            let (hit, is_sink) = self.first_hit(&chord)?;
-            let meeting = Meeting { time: hit.time, place: chord.at(hit.time), chord, begun: 0.0, hit, is_sink };
-            return Some(self.on_path(path, &cubic, meeting, 1.0));
-        }
         let chords = chords.min(MAX_CHORDS);
         let whole = chords as f32;
         path.pieces(chords, self.radius).zip(0_u8..).find_map(|(chord, i)| {
@@ -208,6 +203,9 @@ impl Flight<'_> {
 
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
     /// braked by friction, the mean acceleration of the path so far for the time that is left.
+    ///
+    /// Apart, so that what it works out is off the stack when the next hit is sought.
+    #[inline(never)]
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
@@ -267,6 +265,7 @@ impl Flight<'_> {
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
     /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
     /// to. A surface that moves takes what is back on the path along to the instant of the hit.
+    #[inline(never)]
     fn set_off(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Vec3 {
         let Meeting { chord, hit, begun, time: s, .. } = meeting;
         let now = path.instant(*s);

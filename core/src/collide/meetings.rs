@@ -83,6 +83,7 @@ pub(crate) struct Passage<'p, 'v> {
 
 impl Passage<'_, '_> {
     /// Sends all past each other.
+    #[inline(never)]
     pub(super) fn each_by_itself(self) {
         let Self { view, scene, old, now, dt, report, observer } = self;
         let (rows, capacity) = (0..view.len(), view.capacity());

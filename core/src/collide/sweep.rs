@@ -45,11 +45,11 @@ fn near(tile: &Tile<'_>, past: &Past<'_>, first: usize) -> Marks {
 /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
 #[inline(never)]
 fn follow(tile: &mut Tile<'_>, past: &Past<'_>, row: usize, report: &mut Report, observer: &mut dyn Observer) {
-    let Tile { scene, old, dt, attributes: m, .. } = *tile;
+    let Tile { scene, old, dt, attributes: ref m, .. } = *tile;
     if m.inverse_mass[row] == 0.0 {
         return;
     }
-    let (lives, end) = (m.lives, tile.end());
+    let (lives, end) = (&m.lives, tile.end());
     // A newborn has come only part of the way.
     let start = end - (end - lives.born[row]).min(dt);
     let [[x0, v0], [x1, v1]] = [past.start.map(|column| column[row]), [tile.position[row], tile.velocity[row]]];

@@ -69,7 +69,7 @@ use glam::Vec3;
 ///
 /// Rows are the positions of points in the slice the index was built from. Rows that are not finite are left out and
 /// counted in [`Stats::skipped`]. A negative or undefined radius finds nothing.
-pub trait SpatialIndex {
+pub trait SpatialIndex: Sync {
     /// Sorts `points` in. `reach` \[m\] is the radius that most queries will have; grids make their cells as large,
     /// trees do not need it. Zero: choose by the density.
     ///

@@ -9,7 +9,7 @@ use wide::f32x4;
 pub(super) const CHILDREN: usize = 8;
 
 /// How a tree divides points among a node's children.
-pub trait Split: Default {
+pub trait Split: Default + Sync {
     /// Points in a leaf, at most.
     const LEAF: usize;
     /// Bytes of nodes for every point; the leaves become larger if that is not enough.

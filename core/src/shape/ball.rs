@@ -65,6 +65,7 @@ pub(super) fn approach(set: &impl Filled, segment: &Segment, slack: f32) -> Opti
 }
 
 /// The first hit of a segment on a hollow solid. Where rounding should fool the ball, its centre is still stopped.
+#[inline(never)]
 pub(super) fn first_hit(solid: &impl Hollow, segment: &Segment) -> Option<Hit> {
     let center = convex::first_hit(solid, segment);
     let slack = segment.slack(solid.reach());

@@ -15,7 +15,7 @@ impl Tile<'_> {
     /// Moves the old by the integrator. The newborn fly on from their places of birth with the acceleration they have there at
     /// the step's beginning; they act on the old from the next step on.
     pub(super) fn advance(&mut self, hint: &mut Time, report: &mut Report, observer: &mut dyn Observer) {
-        let Self { scene, now, dt, old, attributes, capacity, .. } = *self;
+        let Self { scene, now, dt, old, capacity, ref attributes, .. } = *self;
         let len = self.position.len();
         let Shares { start: [start_x, start_v], before, marks, step: kept, mut scratch } =
             Layout::of(scene.plan(), capacity).shares(self.work);

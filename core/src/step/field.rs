@@ -35,7 +35,7 @@ impl<'a> Attributes<'a> {
 /// The scene's forces over the masses, from row `first` on.
 pub(super) struct Field<'a> {
     pub(super) scene: &'a Scene<'a>,
-    pub(super) attributes: Attributes<'a>,
+    pub(super) attributes: &'a Attributes<'a>,
     /// What the forces need to find, and memory for it.
     pub(super) needs: Needs,
     pub(super) tree: &'a mut [u32],

@@ -8,6 +8,7 @@ use crate::scene::Scene;
 
 impl View<'_> {
     /// Breaks the springs that are stretched too far.
+    #[inline(never)]
     pub(super) fn snap(&mut self, scene: &Scene<'_>, report: &mut Report) {
         for (number, spring) in scene.springs.iter().enumerate() {
             if spring.breaks_at.is_some() && spring.is_overstretched(number, &self.state(scene)) {

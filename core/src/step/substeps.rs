@@ -14,7 +14,7 @@ use glam::Vec3;
 /// The particles that a step moves through its sub-steps, and the memory for it.
 pub(super) struct Moved<'a> {
     pub(super) scene: &'a Scene<'a>,
-    pub(super) attributes: Attributes<'a>,
+    pub(super) attributes: &'a Attributes<'a>,
     pub(super) needs: Needs,
     pub(super) position: &'a mut [Vec3],
     pub(super) velocity: &'a mut [Vec3],
@@ -101,7 +101,7 @@ impl Moved<'_> {
     /// Asks the constraints for a phase of theirs.
     fn constrain(&mut self, phase: Phase, substep: Substep) {
         let (scene, constraints) = (self.scene, self.scene.constraints);
-        let Attributes { lives, inverse_mass, elasticity, material } = self.attributes;
+        let Attributes { lives, inverse_mass, elasticity, material } = *self.attributes;
         let len = self.position.len();
         let [memory, scratch] = self.scratch.constraining();
         let mut bodies = Bodies {

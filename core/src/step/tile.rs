@@ -2,9 +2,12 @@
 
 use super::View;
 use super::field::Attributes;
+use crate::collide::each_by_itself;
 use crate::force::{Springs, State};
 use crate::memory::Storage;
+use crate::observe::Observer;
 use crate::reap::{Fate, Lifetime, Nonfinite, Reaper, Verdicts};
+use crate::report::Report;
 use crate::rows::farthest;
 use crate::scene::Scene;
 use crate::stall;
@@ -14,6 +17,10 @@ use glam::Vec3;
 
 /// Rows of a tile: enough to share the cost of the calls, few enough for the innermost cache.
 pub(super) const TILE: usize = 256;
+
+/// Rows that are worth a thread's while.
+#[cfg(feature = "rayon")]
+const SHARE: usize = 8 * TILE;
 
 /// Rows in the middle of a step.
 pub(crate) struct Tile<'a> {
@@ -44,6 +51,30 @@ impl Scene<'_> {
 }
 
 impl View<'_> {
+    /// Moves all rows at once.
+    ///
+    /// Apart, as all that takes room on the stack, for which chips have little: paths are followed beyond it.
+    #[inline(never)]
+    pub(super) fn advance(
+        &mut self,
+        scene: &Scene<'_>,
+        span: [Time; 2],
+        old: usize,
+        report: &mut Report,
+        observer: &mut dyn Observer,
+    ) {
+        let (rows, capacity, mut hint) = (0..self.len(), self.capacity(), self.status.hint);
+        self.tile(scene, span, old, rows, capacity).advance(&mut hint, report, observer);
+        self.status.hint = hint;
+    }
+
+    /// Judges all rows at once; parts of a step take `h` \[s\].
+    #[inline(never)]
+    pub(super) fn judge(&mut self, scene: &Scene<'_>, span: [Time; 2], old: usize, h: f32) -> u64 {
+        let (rows, capacity) = (0..self.len(), self.capacity());
+        self.tile(scene, span, old, rows, capacity).judge(h)
+    }
+
     /// Rows in a step that begins with `old` of all. Memory is laid out as for `capacity` rows.
     pub(crate) fn tile<'s>(
         &'s mut self,
@@ -83,10 +114,71 @@ impl View<'_> {
     }
 }
 
-/// The rows of a range, a tile at a time.
-pub(super) fn tiles(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    let end = rows.end;
-    rows.step_by(TILE).map(move |first| first..end.min(first + TILE))
+impl<'a> Tile<'a> {
+    /// The first so many rows, and the others. Both have the memory that is asked for, one behind the other.
+    fn split_at(self, rows: usize, work: usize) -> [Self; 2] {
+        let Self { scene, now, dt, first, old, attributes, capacity, .. } = self;
+        let len = self.position.len();
+        let (position, velocity) = (self.position.split_at_mut(rows), self.velocity.split_at_mut(rows));
+        let (fate, work) = (self.fate.split_at_mut(rows), self.work.split_at_mut(work));
+        let part = |position, velocity, fate, work, rows: Range<usize>| Self {
+            scene,
+            now,
+            dt,
+            first: first + rows.start,
+            old: old.clamp(rows.start, rows.end) - rows.start,
+            position,
+            velocity,
+            fate,
+            attributes: attributes.rows(rows),
+            work,
+            capacity,
+        };
+        [part(position.0, velocity.0, fate.0, work.0, 0..rows), part(position.1, velocity.1, fate.1, work.1, rows..len)]
+    }
+
+    /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
+    /// after the other are evaluated once.
+    pub(super) fn pass(self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
+        let (mut rest, mut hint) = (self, Time::ZERO);
+        let is_swept = rest.scene.is_swept();
+        let before = report.effort.evaluations;
+        let mut evaluations = 0;
+        while !rest.position.is_empty() {
+            report.effort.evaluations = before;
+            let rows = rest.position.len().min(TILE);
+            let [mut tile, others] = rest.split_at(rows, 0);
+            rest = others;
+            // The memory is in the cache from the tile before.
+            tile.work = &mut *rest.work;
+            tile.advance(&mut hint, report, observer);
+            evaluations = report.effort.evaluations - before;
+            if is_swept {
+                each_by_itself(&mut tile, report, observer);
+            }
+            report.caps.stalled += tile.judge(h);
+        }
+        report.effort.evaluations = before + evaluations;
+    }
+
+    /// The same on all threads of the pool that this one belongs to, each with its share of the rows and of the memory.
+    #[cfg(feature = "rayon")]
+    pub(super) fn pass_side_by_side(self, h: f32) -> Report {
+        let len = self.position.len();
+        if len < 2 * SHARE {
+            let mut report = Report::default();
+            self.pass(h, &mut report, &mut ());
+            return report;
+        }
+        let rows = (len / 2).next_multiple_of(TILE);
+        let work = self.work.len() / len * rows;
+        let [front, back] = self.split_at(rows, work);
+        let (mut report, others) = rayon::join(|| front.pass_side_by_side(h), || back.pass_side_by_side(h));
+        let evaluations = report.effort.evaluations.max(others.effort.evaluations);
+        report += others;
+        report.effort.evaluations = evaluations;
+        report
+    }
 }
 
 impl Tile<'_> {
@@ -97,6 +189,7 @@ impl Tile<'_> {
 
     /// Finds out who has come to the end of its life, and who is nowhere any more. Returns how many stall in parts of a step
     /// of `h` \[s\].
+    #[inline(never)]
     pub(super) fn judge(&mut self, h: f32) -> u64 {
         let rows = 0..self.position.len();
         let state = self.attributes.lives.moved(self.end(), self.position, self.velocity);

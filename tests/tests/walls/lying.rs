@@ -128,13 +128,14 @@ struct Onlooker;
 
 impl Observer for Onlooker {}
 
-/// Tile by tile or all at once is the same to the bit, and is told the same.
+/// Tile by tile, on several threads or all at once is the same to the bit, and is told the same.
 #[test]
 fn rows_a_few_at_a_time_do_as_all_at_once() {
     let floor = Plane { point: Vec3::Y * -3.0, normal: Vec3::new(0.1, 1.0, 0.0) };
     let drain = Sphere { center: Vec3::new(1.5, -3.0, 0.5), radius: 0.4 };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
     for &method in Method::ALL {
-        for (rate, substeps) in [(300.0, 1), (2000.0, 1), (1100.0, 3)] {
+        for (rate, substeps) in [(300.0, 1), (9000.0, 1), (1100.0, 3)] {
             let emitter = pointmass::Emitter {
                 spread: Spread::Uniform(1.0),
                 drag: Varied::exactly(0.1),
@@ -152,14 +153,17 @@ fn rows_a_few_at_a_time_do_as_all_at_once() {
                 integrator: &integrator,
                 ..Scene::EMPTY
             };
-            let [mut alone, mut seen] = [(); 2].map(|()| started(&scene, 2600, 3));
+            let [mut alone, mut seen, mut shared] = [(); 3].map(|()| started(&scene, 9000, 3));
             for _ in 0..100 {
                 let dt = pointmass::Time::frame(1, 50);
-                assert_eq!(alone.step(&scene, dt), seen.step_observed(&scene, dt, &mut Onlooker), "{method}");
+                let report = alone.step(&scene, dt);
+                assert_eq!(report, seen.step_observed(&scene, dt, &mut Onlooker), "{method}");
+                assert_eq!(report, pool.install(|| shared.step(&scene, dt)), "{method}");
             }
             let totals = alone.totals();
             assert!(totals.hits > 100 && totals.died.total() > 100, "{totals:?}");
             assert_eq!(alone.hash(), seen.hash(), "{method}");
+            assert_eq!(alone.hash(), shared.hash(), "{method}");
             assert_eq!(alone.state(&scene).position, seen.state(&scene).position);
         }
     }
