@@ -1,6 +1,6 @@
 //! What happened in a step, one record each, for whoever wants to hear, count or draw it.
 
-use crate::observe::{Impact, Observer, Passing};
+use crate::observe::{Attention, Impact, Observer, Passing};
 use crate::particles::Id;
 use crate::reap::Cause;
 use crate::time::Time;
@@ -116,6 +116,10 @@ impl<'a> Events<'a> {
 }
 
 impl Observer for Events<'_> {
+    fn attention(&self) -> Attention {
+        Attention::Events
+    }
+
     fn hit(&mut self, hit: &Impact) {
         let kind = hit.other.map_or(EventKind::Hit, EventKind::Contact);
         let Impact { id, place, normal, closing, time, .. } = *hit;

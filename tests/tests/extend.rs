@@ -1,18 +1,21 @@
-//! Everything that a user can bring along: forces, integrators, emitters, colliders, memory.
+//! Everything that a user can bring along: forces, integrators, constraints, emitters, colliders, reapers, indices, observers,
+//! memory.
 
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::{Births, Tally};
 use pointmass::force::State;
-use pointmass::index::{Arrange, Structure};
+use pointmass::index::{Arrange, Cost, Neighbour, SpatialIndex, Stats, Structure, TooSmall};
 use pointmass::integrate::{Dynamics, Motion};
 use pointmass::reap::Verdicts;
-use pointmass::shape::{Collider, Hit, Plane, Segment};
+use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
 use pointmass::{
-    Cause, Chance, Columns, Constraint, Distance, Drag, Emit, Emitter, Fate, Force, Gravity, Heap, Integrator,
-    Measures, Meetings, Method, Particle, Reaper, Scene, Size, Slices, Storage, System, Time, Vec3,
+    Attention, Cause, Chance, Columns, Constraint, Contacts, Dense, Distance, Drag, Emit, Emitter, Fate, Force,
+    Gravity, Heap, Impact, Integrator, Measures, Meetings, Method, Observer, Particle, Phase, Reaper, Scene, Size,
+    Slices, Storage, System, Time, Vec3, Viscosity, WhereSparse,
 };
-use pointmass_tests::{f64s, gap, point, run, started};
+use pointmass_tests::{Random, f64s, gap, point, run, started};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A magnetic field along z: it turns velocities, here by one radian a second.
 struct Magnet;
@@ -355,6 +358,207 @@ fn a_reaper() {
     // Four of eight tenths have passed: half of those that are no seventh.
     assert!((300..386).contains(&died.lifetime), "{died:?}");
     assert!(lists.iter().all(|&list| outcome(list) == (hash, died)));
+}
+
+/// Points along x, each with its row: whoever is near is near along it.
+#[derive(Default)]
+struct AlongX {
+    points: Vec<(Vec3, u32)>,
+    order: Vec<u32>,
+}
+
+impl AlongX {
+    /// Those that may lie within a radius of a place, by their x.
+    fn slab(&self, x: f32, radius: f32) -> &[(Vec3, u32)] {
+        let [low, high] = [x - radius, x + radius];
+        let first = self.points.partition_point(|(point, _)| point.x < low);
+        let behind = self.points.partition_point(|(point, _)| point.x <= high);
+        self.points.get(first..behind).unwrap_or_default()
+    }
+}
+
+impl SpatialIndex for AlongX {
+    fn build(&mut self, points: &[Vec3], _: f32) -> Result<(), TooSmall> {
+        self.points = points.iter().copied().zip(0..).filter(|(point, _)| point.is_finite()).collect();
+        self.points.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+        self.order = self.points.iter().map(|&(_, row)| row).collect();
+        Ok(())
+    }
+
+    fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
+        self.build(points, 0.0)
+    }
+
+    fn stats(&self) -> Stats {
+        Stats { points: self.points.len(), ..Stats::default() }
+    }
+
+    fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    fn count(&self, center: Vec3, radius: f32) -> Cost {
+        self.within(center, radius, &mut |_| {})
+    }
+
+    fn within(&self, center: Vec3, radius: f32, visit: &mut dyn FnMut(&[u32])) -> Cost {
+        let (mut cost, slab) = (Cost::default(), self.slab(center.x, radius));
+        for (point, row) in slab.iter().filter(|(point, _)| (*point - center).length_squared() <= radius * radius) {
+            assert!(point.is_finite());
+            visit(&[*row]);
+            cost.found += 1;
+        }
+        Cost { visits: 1, tests: slab.len() as u64, ..cost }
+    }
+
+    fn nearest(&self, center: Vec3, radius: f32, found: &mut [Neighbour]) -> Cost {
+        let mut near: Vec<_> = self
+            .slab(center.x, radius)
+            .iter()
+            .map(|&(point, row)| Neighbour { row, distance: (point - center).length() })
+            .filter(|near| near.distance <= radius)
+            .collect();
+        near.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.row.cmp(&b.row)));
+        for (place, near) in found.iter_mut().zip(&near) {
+            *place = *near;
+        }
+        Cost { found: near.len().min(found.len()) as u64, ..Cost::default() }
+    }
+
+    fn counts(&self, radius: f32, counts: &mut [u32]) -> Cost {
+        counts.fill(0);
+        self.neighbours(radius, &mut |row, others| counts[row as usize] += others.len() as u32)
+    }
+
+    fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+        let mut cost = Cost::default();
+        for &(point, row) in &self.points {
+            cost += self.within(point, radius, &mut |run| {
+                if run != [row] {
+                    visit(row, run);
+                }
+            });
+        }
+        cost
+    }
+
+    fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+        self.neighbours(radius, &mut |row, others| {
+            if others.iter().all(|&other| row < other) {
+                visit(row, others);
+            }
+        })
+    }
+
+    fn all_nearest(&self, radius: f32, found: &mut [Neighbour], visit: &mut dyn FnMut(u32, &[Neighbour])) -> Cost {
+        let mut cost = Cost::default();
+        for &(point, row) in &self.points {
+            let more = self.nearest(point, radius, found);
+            visit(row, &found[..more.found as usize]);
+            cost += more;
+        }
+        cost
+    }
+}
+
+/// The choice of it, which counts how often it is asked.
+#[derive(Default)]
+struct InOrder(AtomicUsize);
+
+impl Arrange for InOrder {
+    fn columns(&self) -> usize {
+        0
+    }
+
+    fn arrange(&self, _: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        let mut index = AlongX::default();
+        assert!(reach > 0.0 && index.build(points, reach).is_ok());
+        then(Some(&index));
+    }
+}
+
+/// Forces, contacts by position and by impulse, births and deaths find their neighbours by an index of one's own.
+#[test]
+fn an_index() {
+    let mut random = Random::new(9);
+    let start: Vec<_> = (0..200)
+        .map(|_| Particle {
+            position: random.vector(1.0),
+            velocity: random.vector(1.0),
+            radius: 0.08,
+            ..Particle::REST
+        })
+        .collect();
+    let viscosity = Viscosity { coefficient: 0.5, reach: 0.4 };
+    let sparse = Emitter {
+        inside: true,
+        where_sparse: Some(WhereSparse { radius: 0.3, fewest: 4 }),
+        ..Emitter::new(Cuboid { min: Vec3::splat(-1.0), max: Vec3::ONE }, 60.0)
+    };
+    let dense = Dense { radius: 0.3, most: 6 };
+    let apart = Contacts { compliance: 0.0 };
+    let base = Scene { start: &start, ..Scene::EMPTY };
+    let scenes = [
+        Scene { forces: &viscosity, ..base },
+        Scene { constraints: &apart, substeps: 4, ..base },
+        Scene { meetings: Meetings::IMPULSE, ..base },
+        Scene { emitters: &sparse, reapers: &dense, ..base },
+    ];
+    for (i, scene) in scenes.iter().enumerate() {
+        let own = InOrder::default();
+        let end = |index: &dyn Arrange| {
+            let scene = Scene { index, ..*scene };
+            let mut system = started(&scene, 400, 1);
+            run(&mut system, &scene, 1.0 / 60.0, 30);
+            let state = system.state(&scene);
+            let mut all: Vec<_> = (0..state.position.len()).map(|row| (state.slot[row], state.position[row])).collect();
+            all.sort_by_key(|&(slot, _)| slot);
+            all
+        };
+        let (ours, all_pairs) = (end(&own), end(&()));
+        assert!(own.0.load(Ordering::Relaxed) >= 30, "{i}: it is asked in every step");
+        assert_eq!(ours.len(), all_pairs.len(), "{i}");
+        let off = ours.iter().zip(&all_pairs).map(|(a, b)| (a.1 - b.1).length()).fold(0.0, f32::max);
+        // Sums of forces run in another order.
+        assert!(off < if i == 0 { 1e-4 } else { f32::MIN_POSITIVE }, "{i}: {off}");
+    }
+}
+
+/// What is told of a step.
+#[derive(Default)]
+struct Diary {
+    phases: Vec<Phase>,
+    hits: u64,
+    only_events: bool,
+}
+
+impl Observer for Diary {
+    fn attention(&self) -> Attention {
+        if self.only_events { Attention::Events } else { Attention::Phases }
+    }
+
+    fn after(&mut self, phase: Phase, _: &State<'_>) {
+        self.phases.push(phase);
+    }
+
+    fn hit(&mut self, _: &Impact) {
+        self.hits += 1;
+    }
+}
+
+#[test]
+fn an_observer() {
+    let start = [Particle { position: Vec3::Y, velocity: Vec3::Y * -70.0, ..Particle::REST }];
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let scene = Scene { start: &start, colliders: &floor, ..Scene::EMPTY };
+    for only_events in [false, true] {
+        let mut diary = Diary { only_events, ..Diary::default() };
+        let report = started(&scene, 1, 1).step_observed(&scene, Time::frame(1, 60), &mut diary);
+        assert_eq!((diary.hits, report.hits), (1, 1));
+        let phases = [Phase::Begin, Phase::Create, Phase::Move, Phase::Collide, Phase::Delete];
+        assert!(only_events || diary.phases == phases, "{:?}", diary.phases);
+    }
 }
 
 /// Memory of a user's own: plain vectors, each longer than need be by another number.
