@@ -30,7 +30,7 @@ pub struct World {
     pub dt: f64,
     /// How steps are divided.
     pub pace: Pace,
-    /// What steps run on, if that is more than this thread.
+    /// The threads that steps run on, if there are more than this one.
     threads: Option<ThreadPool>,
 }
 

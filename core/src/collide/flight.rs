@@ -115,7 +115,7 @@ impl Flight<'_> {
         Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
     }
 
-    /// What a path begins on that leaves it only to come back to it within the step. The place is within rounding of its surface,
+    /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding of its surface,
     /// but not within that of being behind it.
     fn seat(&self, path: &Path, acceleration: Vec3) -> Option<Contact> {
         let time = path.duration();
