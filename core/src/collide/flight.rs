@@ -115,8 +115,8 @@ impl Flight<'_> {
         Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
     }
 
-    /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding of its surface,
-    /// but not within that of being behind it.
+    /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
+    /// of it, but not within that of being behind it.
     fn seat(&self, path: &Path, acceleration: Vec3) -> Option<Contact> {
         let time = path.duration();
         let fall = |acceleration: f32| 0.5 * acceleration * time * time;
