@@ -28,7 +28,7 @@ pub fn run(args: &args::Run) -> Outcome {
         if recorders.is_empty() {
             return Ok(());
         }
-        let frame = Frame::of(step, &world.system, world.model.has_balls());
+        let frame = Frame::of(step, &world.system, &world.model.scene(), world.model.has_balls());
         recorders.iter_mut().try_for_each(|recorder| recorder.record(&frame))
     };
 

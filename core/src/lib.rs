@@ -16,6 +16,7 @@ extern crate std;
 
 mod collide;
 pub mod constrain;
+mod custom;
 pub mod emit;
 mod events;
 pub mod force;
@@ -51,11 +52,14 @@ pub use collide::{Grip, Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
 pub use constrain::{Constraint, Contacts, Distance};
+#[cfg(feature = "alloc")]
+pub use custom::CustomBuf;
+pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};
 pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
     AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, Penalty, PowerLaw,
-    Pressure, QuadraticDrag, Radial, Sink, Spring, Viscosity, Wind,
+    Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, Viscosity, Wind,
 };
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;

@@ -1,5 +1,6 @@
 //! Looking on while a step is made.
 
+use crate::custom::CustomColumnsMut;
 use crate::force::State;
 use crate::particles::Id;
 use crate::reap::Cause;
@@ -17,6 +18,12 @@ pub trait Observer {
     /// of these a few at a time; and many at once, if nothing is to be told and the program has threads. To the same bits.
     fn attention(&self) -> Attention {
         Attention::Phases
+    }
+
+    /// May change columns of a user's own, at the step's end when the dead are gone. The state's own columns of that kind are
+    /// empty, as `custom` has them.
+    fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
+        let _ = (state, custom);
     }
 
     /// A particle met a collider or another particle, and was answered.

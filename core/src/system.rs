@@ -1,8 +1,9 @@
 //! The state of the world and its one verb, `step`.
 
-use crate::force::{self, Spring, Springs, State};
+use crate::custom::{CustomColumns, CustomColumnsMut};
+use crate::force::{self, Springs, State};
 use crate::hash::Fnv;
-use crate::memory::{Columns, Storage};
+use crate::memory::{Columns, Layout, Storage};
 use crate::observe::Observer;
 use crate::particles::{Full, Id, Particle};
 use crate::report::Report;
@@ -81,6 +82,7 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         self.status.is_reaped |= !scene.reapers.is_empty();
+        self.status.kept = scene.plan().kept();
         if scene.fits(self.memory.columns().size()) {
             self.view().step(scene, dt, &mut report, observer);
         } else {
@@ -90,7 +92,7 @@ impl<B: Storage> System<B> {
         report
     }
 
-    /// Puts a particle in now.
+    /// Puts a particle in now; what it has in columns of a user's own is zero.
     ///
     /// # Errors
     /// If there is no room; that is counted.
@@ -142,15 +144,28 @@ impl<B: Storage> System<B> {
 
     /// The particles as forces see them.
     pub fn state<'a>(&'a self, scene: &Scene<'a>) -> State<'a> {
-        self.memory.columns().state(scene.springs, &self.status)
+        self.memory.columns().state(scene, &self.status)
+    }
+
+    /// Columns of a user's own, one entry a row: those that `scene` lists.
+    pub fn custom<'a>(&'a self, scene: &Scene<'a>) -> CustomColumns<'a> {
+        self.memory.columns().custom(scene, self.status.len)
+    }
+
+    /// The same, for writing.
+    pub fn custom_mut<'a>(&'a mut self, scene: &Scene<'a>) -> CustomColumnsMut<'a> {
+        let (capacity, len) = (self.capacity(), self.status.len);
+        let (values, _) = Layout::of(scene.plan(), capacity).kept(self.memory.slices().kept);
+        CustomColumnsMut::new(scene.custom, values, capacity, len)
     }
 
     /// A fingerprint of time, counters, and every column in the order of ids (keys once a scene has had reapers, which die
-    /// by them): equal on all targets for equal states. The
+    /// by them; a user's own, and what constraints keep): equal on all targets for equal states. The
     /// order of rows and of free slots, which decides how sums round and which ids come next, is not in it.
     pub fn hash(&self) -> u64 {
         let mut hash = Fnv::new();
-        let Status { time, seed, taken, given, is_reaped, emitters, totals, .. } = self.status;
+        let Status { time, seed, taken, given, is_reaped, emitters, kept, totals, .. } = self.status;
+        let capacity = self.capacity();
         hash.long(time.ticks());
         hash.long(seed);
         hash.word(taken);
@@ -180,8 +195,11 @@ impl<B: Storage> System<B> {
                 if is_reaped {
                     hash.word(columns.key[row]);
                 }
+                (0..kept.per_row).for_each(|number| hash.word(columns.kept[number * capacity + row]));
             }
         }
+        let besides = columns.kept.get(kept.per_row * capacity..).unwrap_or(&[]);
+        besides.iter().take(kept.fixed).for_each(|&word| hash.word(word));
         hash.finish()
     }
 
@@ -192,12 +210,18 @@ impl<B: Storage> System<B> {
 
 impl<'a> Columns<'a> {
     /// The living as forces and reapers see them.
-    pub(crate) fn state(self, springs: &'a [Spring], status: &Status) -> State<'a> {
+    pub(crate) fn state(self, scene: &Scene<'a>, status: &Status) -> State<'a> {
+        let (springs, custom) = (scene.springs, self.custom(scene, status.len));
         let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, .. } = self;
         let Columns { serial, row_of, last_spring, incident, .. } = self;
         let springs = Springs { springs, start: status.start, serial, row_of, last_spring, incident };
-        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, ..State::EMPTY };
+        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, custom, ..State::EMPTY };
         lives.moved(status.time, &position[..status.len], &velocity[..status.len])
+    }
+
+    /// Columns of a user's own, of the first `len` rows.
+    pub(crate) fn custom(&self, scene: &Scene<'a>, len: usize) -> CustomColumns<'a> {
+        CustomColumns::kept(scene.custom, self.kept, self.capacity(), len)
     }
 
     /// The columns by row, cut to the rows in use.

@@ -66,10 +66,11 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         max_bounces: Scene::EMPTY.max_bounces,
         sinks: &sink,
         reapers: &(),
+        custom: &(),
         integrator: Method::Rk4.integrator(),
         index: &(),
     })
 }
 
 /// Memory for it that is too small for all its births.
-pub const SIZE: Size = Size { particles: 30, emitters: 3, springs: 8, columns: 5 };
+pub const SIZE: Size = Size { particles: 30, emitters: 3, springs: 8, columns: 5, kept: 0 };

@@ -1,5 +1,8 @@
 //! Everything that a user can bring along: forces, integrators, constraints, emitters, colliders, reapers, indices, observers,
-//! memory.
+//! memory; and columns of their own.
+
+#[path = "extend/custom.rs"]
+mod custom;
 
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
@@ -10,7 +13,7 @@ use pointmass::integrate::{Dynamics, Motion};
 use pointmass::reap::Verdicts;
 use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
 use pointmass::{
-    Attention, Cause, Chance, Columns, Constraint, Contacts, Dense, Distance, Drag, Emit, Emitter, Fate, Force,
+    Attention, Cause, Chance, Columns, Constraint, Contacts, Custom, Dense, Distance, Drag, Emit, Emitter, Fate, Force,
     Gravity, Heap, Impact, Integrator, Measures, Meetings, Method, Observer, Particle, Phase, Reaper, Scene, Size,
     Slices, Storage, System, Time, Vec3, Viscosity, WhereSparse,
 };
@@ -128,6 +131,7 @@ impl Constraint for Wire {
             step: Words { per_row: 1, fixed: 2 },
             scratch: Words { per_row: 3, fixed: 0 },
             finds_near: self.reach > 0.0,
+            ..Demand::NONE
         }
     }
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -567,7 +571,7 @@ struct Arena {
     vectors: [Vec<Vec3>; 3],
     numbers: [Vec<f32>; 6],
     times: [Vec<Time>; 2],
-    words: [Vec<u32>; 6],
+    words: [Vec<u32>; 7],
     colors: Vec<[u8; 4]>,
     materials: Vec<u16>,
     fates: Vec<Fate>,
@@ -577,12 +581,13 @@ struct Arena {
 impl Arena {
     fn new(size: Size) -> Self {
         let n = size.particles;
-        let work = n * size.columns;
+        let (work, kept) = (n * size.columns, n * size.kept);
+        let extra = |i| [n, n + 3, n + 6, n + 9, 2 * size.springs, n + 15, kept][i];
         Self {
             vectors: [vec![Vec3::ZERO; n], vec![Vec3::ZERO; n + 1], vec![Vec3::ZERO; work]],
             numbers: core::array::from_fn(|i| vec![0.0; n + i]),
             times: core::array::from_fn(|i| vec![Time::ZERO; n + 2 * i]),
-            words: core::array::from_fn(|i| vec![0; if i == 4 { 2 * size.springs } else { n + 3 * i }]),
+            words: core::array::from_fn(|i| vec![0; extra(i)]),
             colors: vec![[0; 4]; n + 5],
             materials: vec![0; n],
             fates: vec![Fate::Lives; n + 7],
@@ -596,7 +601,7 @@ impl Storage for Arena {
         let [position, velocity, work] = &mut self.vectors;
         let [radius, mass, inverse_mass, drag, charge, elasticity] = &mut self.numbers;
         let [born, dies] = &mut self.times;
-        let [serial, slot, row_of, last_spring, incident, key] = &mut self.words;
+        let [serial, slot, row_of, last_spring, incident, key, kept] = &mut self.words;
         Slices {
             position,
             velocity,
@@ -618,6 +623,7 @@ impl Storage for Arena {
             last_spring,
             tallies: &mut self.tallies,
             incident,
+            kept,
             work,
         }
     }
@@ -625,7 +631,7 @@ impl Storage for Arena {
         let [position, velocity, work] = &self.vectors;
         let [radius, mass, inverse_mass, drag, charge, elasticity] = &self.numbers;
         let [born, dies] = &self.times;
-        let [serial, slot, row_of, last_spring, incident, key] = &self.words;
+        let [serial, slot, row_of, last_spring, incident, key, kept] = &self.words;
         Columns {
             position,
             velocity,
@@ -647,6 +653,7 @@ impl Storage for Arena {
             last_spring,
             tallies: &self.tallies,
             incident,
+            kept,
             work,
         }
     }
@@ -667,6 +674,7 @@ fn memory() {
         colliders: &floor,
         sinks: &(),
         reapers: &(Doom, Chance { rate: 0.3 }),
+        custom: &[Custom::new("heat")],
         grips: &[],
         constraints: &(),
         substeps: 1,

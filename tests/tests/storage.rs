@@ -40,7 +40,7 @@ fn it_does_not_matter_who_owns_the_memory() {
         assert_eq!(hashes(&mut System::with(Box::new(heap.clone())), scene), expected, "boxed");
         // Memory that was in use before is as good as fresh.
         assert_eq!(hashes(&mut System::with(heap.slices()), scene), expected, "slices");
-        let mut larger = Heap::new(Size { particles: 30, emitters: 9, springs: 20, columns: 7 });
+        let mut larger = Heap::new(Size { particles: 30, emitters: 9, springs: 20, columns: 7, kept: 2 });
         // More tallies are hashed, so only the particles can be compared.
         let mut system = System::with(&mut larger);
         let _ = hashes(&mut system, scene);

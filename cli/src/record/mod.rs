@@ -8,7 +8,7 @@ use crate::clock::nanoseconds;
 use crate::formats::RecordFormat;
 use crate::whole::{WholeFile, Written, publish};
 use crate::{Failure, Outcome};
-use pointmass::{Columns, Heap, System};
+use pointmass::{Columns, Heap, Scene, System};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -38,12 +38,15 @@ pub(crate) struct Frame {
     rows: Vec<Row>,
     /// Whether rows have radii.
     balls: bool,
+    /// What columns of a user's own are called, and what each row has in them.
+    names: Vec<String>,
+    custom: Vec<Vec<f32>>,
     colors: Vec<[u8; 4]>,
 }
 
 impl Frame {
     /// That of a system; of balls with their radii.
-    pub(crate) fn of(step: u64, system: &System<Heap>, balls: bool) -> Self {
+    pub(crate) fn of(step: u64, system: &System<Heap>, scene: &Scene<'_>, balls: bool) -> Self {
         let now = system.time();
         let time = nanoseconds(now.seconds_f64());
         let Columns { serial, position, velocity, mass, radius, born, color, .. } = system.particles();
@@ -56,7 +59,11 @@ impl Frame {
             Row { step, time, id: serial[i], x, y, z, vx, vy, vz, mass: mass[i], age, radius }
         };
         let colors = order.iter().map(|&i| color[i]).collect();
-        Self { step, time, rows: order.iter().map(row).collect(), balls, colors }
+        let own = system.custom(scene);
+        let numbers = 0..own.count();
+        let names = numbers.clone().filter_map(|number| own.name(number)).map(str::to_string).collect();
+        let custom = order.iter().map(|&i| numbers.clone().map(|number| own.column(number)[i]).collect()).collect();
+        Self { step, time, rows: order.iter().map(row).collect(), balls, names, custom, colors }
     }
 }
 

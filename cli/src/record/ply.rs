@@ -62,22 +62,26 @@ fn cloud(frame: &Frame) -> Cloud<DefaultElement> {
         ("radius", Float),
     ];
     let columns = if frame.balls { &columns[..] } else { &columns[..columns.len() - 1] };
+    let own = frame.names.iter().map(|name| (name.as_str(), Float));
+    let columns: Vec<_> = columns.iter().cloned().chain(own).collect();
     let mut vertex = ElementDef::new("vertex".to_string());
-    for (name, kind) in columns {
+    for (name, kind) in &columns {
         vertex.properties.add(PropertyDef::new(name.to_string(), PropertyType::Scalar(kind.clone())));
     }
-    let point = |(row, color): (&Row, &[u8; 4])| {
+    let point = |((row, color), custom): ((&Row, &[u8; 4]), &Vec<f32>)| {
         let Row { x, y, z, vx, vy, vz, mass, age, id, radius, .. } = *row;
         let floats = [x, y, z, vx, vy, vz, mass].into_iter().map(Property::Float);
         let rest = [Property::Double(age), Property::UInt(id)];
         let values =
             floats.chain(rest).chain(color.iter().map(|&c| Property::UChar(c))).chain(radius.map(Property::Float));
+        let values = values.chain(custom.iter().copied().map(Property::Float));
         columns.iter().map(|(name, _)| name.to_string()).zip(values).collect()
     };
+    let points = frame.rows.iter().zip(&frame.colors).zip(&frame.custom);
     let mut cloud = Cloud::new();
     cloud.header.encoding = Encoding::BinaryLittleEndian;
     cloud.header.comments.push(format!("time {} step {}", frame.time, frame.step));
     cloud.header.elements.add(vertex);
-    cloud.payload.insert("vertex".to_string(), frame.rows.iter().zip(&frame.colors).map(point).collect());
+    cloud.payload.insert("vertex".to_string(), points.map(point).collect());
     cloud
 }

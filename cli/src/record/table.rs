@@ -1,8 +1,9 @@
 //! Tables: CSV and lines of JSON, with the same columns.
 
-use super::{Frame, Writer};
+use super::{Frame, Row, Writer};
 use crate::whole::{WholeFile, Written};
 use crate::{Failure, Outcome};
+use serde::{Serialize, Serializer};
 use std::io::{self, Write};
 
 pub(super) struct Csv {
@@ -20,9 +21,11 @@ impl Writer for Csv {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         if frame.step == 0 {
             let head = ["step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age"];
-            self.writer.write_record(head.into_iter().chain(frame.balls.then_some("radius")))?;
+            let head = head.into_iter().chain(frame.balls.then_some("radius"));
+            self.writer.write_record(head.chain(frame.names.iter().map(String::as_str)))?;
         }
-        frame.rows.iter().try_for_each(|row| self.writer.serialize(row)).map_err(io::Error::from)
+        let mut rows = frame.rows.iter().zip(&frame.custom);
+        rows.try_for_each(|row| self.writer.serialize(row)).map_err(io::Error::from)
     }
 
     fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
@@ -30,6 +33,19 @@ impl Writer for Csv {
         let file = file.map_err(|error| Failure::new(format!("the table cannot be written: {}", error.error())))?;
         Ok(vec![file.close()?])
     }
+}
+
+/// A particle with what columns of a user's own are called.
+#[derive(Serialize)]
+struct Line<'a> {
+    #[serde(flatten)]
+    row: &'a Row,
+    #[serde(flatten, serialize_with = "as_map")]
+    custom: Vec<(&'a String, &'a f32)>,
+}
+
+fn as_map<S: Serializer>(pairs: &[(&String, &f32)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().copied())
 }
 
 pub(super) struct Jsonl {
@@ -44,8 +60,9 @@ impl Jsonl {
 
 impl Writer for Jsonl {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
-        for row in &frame.rows {
-            serde_json::to_writer(&mut self.file, row)?;
+        for (row, custom) in frame.rows.iter().zip(&frame.custom) {
+            let custom = frame.names.iter().zip(custom).collect();
+            serde_json::to_writer(&mut self.file, &Line { row, custom })?;
             self.file.write_all(b"\n")?;
         }
         Ok(())

@@ -20,11 +20,13 @@ impl Writer for Xyz {
         let out = &mut self.file;
         writeln!(out, "{}", frame.rows.len())?;
         let radius = if frame.balls { ":radius:R:1" } else { "" };
-        let columns = format!("species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1{radius}");
+        let own: String = frame.names.iter().map(|name| format!(":{name}:R:1")).collect();
+        let columns = format!("species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1{radius}{own}");
         writeln!(out, "Properties={columns} Time={} Step={}", frame.time, frame.step)?;
-        for Row { id, x, y, z, vx, vy, vz, mass, radius, .. } in &frame.rows {
+        for (Row { id, x, y, z, vx, vy, vz, mass, radius, .. }, custom) in frame.rows.iter().zip(&frame.custom) {
             write!(out, "X {x} {y} {z} {vx} {vy} {vz} {mass} {id}")?;
             radius.map_or(Ok(()), |radius| write!(out, " {radius}"))?;
+            custom.iter().try_for_each(|value| write!(out, " {value}"))?;
             writeln!(out)?;
         }
         Ok(())

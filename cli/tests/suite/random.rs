@@ -6,7 +6,7 @@ use pointmass::index::Structure;
 use pointmass::rays;
 use pointmass::scene::{Camera, Files, Group, Item, Light, Material, Run, SceneFile};
 use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
-use pointmass::{Chance, Method, Particle, ReaperKind, Tuning, Vec3};
+use pointmass::{Chance, CustomBuf, Method, Particle, ReaperKind, Tuning, Vec3};
 use proptest::array::{uniform3, uniform4};
 use proptest::collection::vec;
 use proptest::num::f32 as kinds;
@@ -383,13 +383,17 @@ fn run() -> impl Strategy<Value = Run> {
 pub(crate) fn any_scene() -> impl Strategy<Value = SceneFile> {
     let shapes = prop_oneof![6 => common_shape(), 1 => circle(), 1 => triangle(), 1 => plane()];
     let reapers = vec(positive().prop_map(|rate| ReaperKind::Chance(Chance { rate })), 0..3);
-    let more = (vec(any_emitter(), 0..3), vec(force(), 0..4), vec((shapes, any::<u32>()), 0..3), reapers);
+    let custom =
+        (vec(number(), 0..3), number()).prop_map(|(start, newborn)| CustomBuf { name: "heat".into(), start, newborn });
+    let custom = vec(custom, 0..2);
+    let more = (vec(any_emitter(), 0..3), vec(force(), 0..4), vec((shapes, any::<u32>()), 0..3), reapers, custom);
     let words = (option::of("(?s).{0,20}"), "(?s).{0,40}", run(), any::<[u8; 4]>(), uniform3(positive()));
-    (scene(), more, words).prop_map(|(mut scene, (emitters, forces, items, reapers), words)| {
+    (scene(), more, words).prop_map(|(mut scene, (emitters, forces, items, reapers, custom), words)| {
         let (schema, about, run, color, [size, glow, softness]) = words;
         (scene.schema, scene.about, scene.run) = (schema, about, run);
         scene.emitters.extend(emitters);
         scene.reapers = reapers;
+        scene.custom = custom;
         if !forces.is_empty() {
             scene.forces = forces;
         }

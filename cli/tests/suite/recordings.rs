@@ -66,6 +66,42 @@ fn a_table_tells_the_state() {
     assert!(rows[4].iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{:?}", rows[4]);
 }
 
+/// Every format has the columns that a scene adds, under their names, and the file that cannot be meant is refused.
+#[test]
+fn columns_of_a_users_own_are_recorded() {
+    let scene = r#"{"run": {"dt": 0.25}, "particles": [{}, {"lifetime": 0.3}, {"radius": 1}],
+        "custom": [{"name": "heat", "start": [80], "newborn": 20}, {"name": "worn", "newborn": 0.5}],
+        "forces": [{"relaxation": {"column": "heat", "toward": 20, "rate": 1.5}}]}"#;
+    let folder = Folder::with("a.json", scene);
+    folder.run("run a.json --steps 4 --out a.csv --out a.jsonl --out a.xyz --out a.ply").fine();
+    let csv = folder.read("a.csv");
+    assert_eq!(csv.lines().next(), Some(&*format!("{HEAD},radius,heat,worn")));
+    let last: Vec<&str> = csv.lines().last().expect("it is not empty").split(',').collect();
+    assert_eq!(last[11..], ["1.0", "20.0", "0.5"]);
+    let first = csv.lines().rev().nth(1).expect("two live");
+    let heat: f64 = first.split(',').nth(12).and_then(|x| x.parse().ok()).expect("a number");
+    assert!((heat - (20.0 + 60.0 * (-1.5f64).exp())).abs() < 1e-4, "{heat}");
+    let lines: Vec<serde_json::Value> =
+        folder.read("a.jsonl").lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!((lines.len(), &lines[0]["heat"], &lines[1]["worn"]), (3 + 3 + 2 * 3, &80.0.into(), &0.5.into()));
+    assert!(folder.read("a.xyz").contains("id:I:1:radius:R:1:heat:R:1:worn:R:1"));
+    let mut cloud = BufReader::new(File::open(folder.path("a_000000.ply")).expect("it is there"));
+    let cloud = Parser::<DefaultElement>::new().read_ply(&mut cloud).expect("PLY");
+    let heat: Vec<_> = cloud.payload["vertex"].iter().map(|vertex| vertex["heat"].clone()).collect();
+    assert_eq!(heat, [80.0, 20.0, 20.0].map(Property::Float));
+    for (from, to, error) in [
+        ("\"column\": \"heat\"", "\"column\": \"fuel\"", "a.json:forces[0].column: there is no \"fuel\""),
+        ("\"name\": \"worn\"", "\"name\": \"heat\"", "a.json:custom[1].name: there is a \"heat\" already"),
+        ("\"name\": \"worn\"", "\"name\": \"age\"", "a.json:custom[1].name: there is a \"age\" already"),
+        ("\"name\": \"worn\"", "\"name\": \"a,b\"", "a.json:custom[1].name: has to begin with a letter"),
+        ("[80]", "[1e39]", "a.json:"),
+    ] {
+        folder.write("a.json", scene.replace(from, to));
+        let answer = folder.run("run a.json --steps 1");
+        assert!(answer.error().contains(error), "{}", answer.error());
+    }
+}
+
 #[test]
 fn ids_count_the_first_particles_and_are_never_given_twice() {
     let folder = Folder::with("busy.scn", BUSY);

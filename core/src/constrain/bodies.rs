@@ -1,8 +1,9 @@
 //! The particles as a constraint sees and moves them.
 
 use crate::collide::Grip;
+use crate::custom::CustomColumnsMut;
 use crate::index::Arrange;
-use crate::memory::{Demand, take};
+use crate::memory::{Demand, Kept, take};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
 use crate::report::Report;
@@ -62,6 +63,8 @@ pub struct Bodies<'a> {
     pub elasticity: &'a [f32],
     /// Numbers of their materials plus one; zero: none.
     pub material: &'a [u16],
+    /// Columns of a user's own.
+    pub custom: CustomColumnsMut<'a>,
     /// The sub-step.
     pub substep: Substep,
     /// The scene's colliders.
@@ -167,6 +170,8 @@ impl Near<'_> {
 /// A constraint's own memory.
 #[derive(Debug)]
 pub struct Share<'a> {
+    /// What it keeps from step to step.
+    pub kept: Kept<'a>,
     /// What it keeps through the step: at the first sub-step it holds anything.
     pub step: &'a mut [u32],
     /// What it works with while it is called.
@@ -178,13 +183,14 @@ pub struct Share<'a> {
 impl Share<'_> {
     /// The shares of its parts, one after the other.
     pub(super) fn parts(&mut self) -> Parts<'_> {
-        let Share { step, scratch, capacity } = self;
-        Parts { step, scratch, capacity: *capacity }
+        let Share { kept, step, scratch, capacity } = self;
+        Parts { kept: kept.again(), step, scratch, capacity: *capacity }
     }
 }
 
 /// A share that is being cut into those of parts.
 pub(super) struct Parts<'a> {
+    kept: Kept<'a>,
     step: &'a mut [u32],
     scratch: &'a mut [u32],
     capacity: usize,
@@ -194,6 +200,8 @@ impl Parts<'_> {
     /// The next one's.
     pub(super) fn next(&mut self, demand: Demand) -> Share<'_> {
         let step = take(&mut self.step, demand.step.of(self.capacity));
-        Share { step, scratch: self.scratch, capacity: self.capacity }
+        let rows = take(&mut self.kept.rows, demand.kept.per_row * self.capacity);
+        let kept = Kept { rows, fixed: take(&mut self.kept.fixed, demand.kept.fixed) };
+        Share { kept, step, scratch: self.scratch, capacity: self.capacity }
     }
 }

@@ -18,7 +18,7 @@ pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
 
-pub use crate::memory::{Demand, Words};
+pub use crate::memory::{Demand, Kept, Words};
 
 /// Something that the places and velocities of particles have to satisfy.
 ///

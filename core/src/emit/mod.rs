@@ -9,14 +9,15 @@ mod vary;
 pub use emitter::{Burst, Emitter, WhereSparse};
 pub use vary::{Spread, Varied};
 
+use crate::custom::CustomColumnsMut;
 use crate::force::{State, count_of};
 use crate::index::SpatialIndex;
 use crate::math::max;
-use crate::memory::Storage;
 use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::rng::Stream;
+use crate::scene::Scene;
 use crate::step::View;
 use crate::time::{Time, fixed_32};
 use glam::Vec3;
@@ -53,6 +54,7 @@ pub struct Tally {
 #[allow(missing_debug_implementations)]
 pub struct Births<'a> {
     pub(crate) view: View<'a>,
+    pub(crate) scene: &'a Scene<'a>,
     pub(crate) report: &'a mut Report,
     pub(crate) observer: &'a mut dyn Observer,
     /// Those who were there when the step began, in an index if anybody asks for it, and how many they were.
@@ -106,7 +108,12 @@ impl Births<'_> {
     /// The particles there are, those born in this step among them.
     #[must_use]
     pub fn state(&self) -> State<'_> {
-        State { near: None, ..self.view.memory.columns().state(&[], self.view.status) }
+        self.view.state(self.scene)
+    }
+
+    /// Columns of a user's own, for writing: the last row is that of the particle just born.
+    pub fn custom_mut(&mut self) -> CustomColumnsMut<'_> {
+        self.view.custom_mut(self.scene)
     }
 
     /// A birth of emitter `number` at the instant `at`, made from the random numbers that belong to it.
@@ -141,6 +148,7 @@ impl Births<'_> {
 
     fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
         let id = self.view.spawn(particle, at, stream.name())?;
+        self.view.give_custom(self.scene, self.view.len() - 1, |custom, _| custom.newborn);
         self.report.born += 1;
         let Particle { position: place, velocity, .. } = *particle;
         self.observer.born(&Passing { id, place, velocity, time: at });

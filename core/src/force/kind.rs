@@ -2,7 +2,9 @@
 
 use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
 #[cfg(feature = "alloc")]
-use super::{FlowKind, Pressure, Wind};
+use super::{FlowKind, Pressure, Relaxation, Wind};
+#[cfg(feature = "alloc")]
+use alloc::string::String;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 
@@ -51,6 +53,8 @@ kinds! {
     PowerLaw = "power_law", Radial<PowerLaw>;
     /// Neighbours drag each other along.
     Viscosity = "viscosity", Viscosity;
+    /// A column of a user's own comes to rest.
+    Relaxation = "relaxation", Relaxation<String>, if "alloc";
     /// Gas in a closed mesh of particles.
     Pressure = "pressure", Pressure<Vec<[u32; 3]>>, if "alloc";
 }

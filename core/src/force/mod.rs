@@ -15,6 +15,7 @@ mod penalty;
 mod pressure;
 mod quadratic;
 mod radial;
+mod relaxation;
 mod sink;
 pub(crate) mod spring;
 mod viscosity;
@@ -33,12 +34,14 @@ pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
 pub use radial::{LennardJones, Pair, PowerLaw, Radial, RadialLaw, Weight};
+pub use relaxation::Relaxation;
 pub use sink::Sink;
 pub(crate) use spring::is_broken;
 pub use spring::{Drive, Held, Spring, Springs};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 
+use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::index::{Arrange, BarnesHut, SpatialIndex};
 use crate::math::max;
 use crate::particles::Id;
@@ -65,6 +68,18 @@ pub trait Force: Sync {
     /// through all its phases, while they are in the cache; the state has no other rows in it.
     fn is_local(&self) -> bool {
         false
+    }
+
+    /// Whether it changes columns of a user's own, by [`Force::write`].
+    fn writes(&self) -> bool {
+        false
+    }
+
+    /// Changes columns of a user's own, once in each step of `dt` \[s\], when all have moved and been held against colliders
+    /// and before anybody is taken out: what burns or cools. The state is that at the step's end; its own columns of that kind
+    /// are empty, as `custom` has them. Of several forces each sees what those before it have written.
+    fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
+        let _ = (state, custom, dt);
     }
 
     /// Adds how the force on each particle changes as they move: (∂f/∂x) δx + (∂f/∂v) δv \[N\], for methods that solve for
@@ -199,6 +214,8 @@ pub struct State<'a> {
     pub slot: &'a [u32],
     /// What their random numbers are drawn by; see [`word`](State::word).
     pub key: &'a [u32],
+    /// What they have beside all that: columns of a user's own.
+    pub custom: CustomColumns<'a>,
     /// The springs between them.
     pub springs: Springs<'a>,
     /// Them in an index, while a step is made, if a force asks for neighbours and the scene has one.
@@ -223,6 +240,7 @@ impl<'a> State<'a> {
         dies: &[],
         slot: &[],
         key: &[],
+        custom: CustomColumns::NONE,
         springs: Springs { springs: &[], start: 0, serial: &[], row_of: &[], last_spring: &[], incident: &[] },
         near: None,
         mass_tree: None,
@@ -248,6 +266,7 @@ impl<'a> State<'a> {
             dies: &self.dies[..len],
             slot: &self.slot[..len],
             key: &self.key[..len],
+            custom: self.custom.rows(0..len),
             springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
             near: None,
             mass_tree: None,
@@ -268,6 +287,7 @@ impl<'a> State<'a> {
             dies: &self.dies[rows.clone()],
             slot: &self.slot[rows.clone()],
             key: &self.key[rows.clone()],
+            custom: self.custom.rows(rows.clone()),
             springs: Springs { serial: &self.springs.serial[rows], ..self.springs },
             ..*self
         }
@@ -326,6 +346,16 @@ macro_rules! sum_of {
             let $this = self;
             for part in $parts {
                 part.add_to(state, rows.clone(), total);
+            }
+        }
+        fn writes(&self) -> bool {
+            let $this = self;
+            $parts.into_iter().any(|part| part.writes())
+        }
+        fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
+            let $this = self;
+            for part in $parts {
+                part.write(state, custom, dt);
             }
         }
         fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
@@ -394,6 +424,14 @@ macro_rules! same_as {
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()
+        }
+        fn writes(&self) -> bool {
+            let $this = self;
+            $force.writes()
+        }
+        fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
+            let $this = self;
+            $force.write(state, custom, dt);
         }
         fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
             let $this = self;

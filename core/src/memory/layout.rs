@@ -42,6 +42,9 @@ impl Words {
 /// What a part of a scene asks for, to work with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
+    /// What it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
+    /// the particles, and is in the system's hash.
+    pub kept: Words,
     /// What it keeps through a step; at the step's beginning it holds anything.
     pub step: Words,
     /// What it works with while it is called.
@@ -52,12 +55,13 @@ pub struct Demand {
 
 impl Demand {
     /// Nothing.
-    pub const NONE: Self = Self { step: Words::NONE, scratch: Words::NONE, finds_near: false };
+    pub const NONE: Self = Self { kept: Words::NONE, step: Words::NONE, scratch: Words::NONE, finds_near: false };
 
     /// What two ask for.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
+            kept: self.kept.and(other.kept),
             step: self.step.and(other.step),
             scratch: self.scratch.or(other.scratch),
             finds_near: self.finds_near || other.finds_near,
@@ -68,6 +72,8 @@ impl Demand {
 /// What a whole scene's step asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Plan {
+    /// Columns of a user's own.
+    pub(crate) custom: usize,
     /// Whether anybody asks for places and velocities at the step's beginning, and at each sub-step's.
     pub(crate) start: bool,
     pub(crate) before: bool,
@@ -91,6 +97,17 @@ impl Plan {
     pub(crate) fn columns(&self, capacity: usize) -> usize {
         let words = self.lasting().and(self.passing()).of(capacity.max(1));
         words.div_ceil(3 * capacity.max(1))
+    }
+
+    /// What is kept from step to step: columns of a user's own, and what constraints keep.
+    pub(crate) fn kept(&self) -> Words {
+        Words { per_row: self.custom, fixed: 0 }.and(self.constraints.kept)
+    }
+
+    /// Words for each of so many particles that it takes.
+    pub(crate) fn kept_columns(&self, capacity: usize) -> usize {
+        let Words { per_row, fixed } = self.kept();
+        per_row.saturating_add(fixed.div_ceil(capacity.max(1)))
     }
 
     /// What lasts through the step.
@@ -132,6 +149,22 @@ pub(crate) struct Shares<'m> {
     pub(crate) scratch: Scratch<'m>,
 }
 
+/// What constraints keep from step to step.
+#[derive(Debug, Default)]
+pub struct Kept<'m> {
+    /// Of each particle: one column of [`Share::capacity`](crate::constrain::Share::capacity) words behind the other, by row.
+    pub rows: &'m mut [u32],
+    /// Besides.
+    pub fixed: &'m mut [u32],
+}
+
+impl Kept<'_> {
+    /// The same, lent on.
+    pub(crate) fn again(&mut self) -> Kept<'_> {
+        Kept { rows: self.rows, fixed: self.fixed }
+    }
+}
+
 /// Memory that is used for one thing after the other.
 #[derive(Debug)]
 pub(crate) struct Scratch<'m> {
@@ -171,6 +204,15 @@ impl Layout {
         let words = bytemuck::cast_slice_mut(rest);
         let len = (3 * self.plan.index * len).min(words.len());
         (places, &mut words[..len])
+    }
+
+    /// Columns of a user's own, and what constraints keep.
+    pub(crate) fn kept<'m>(&self, words: &'m mut [u32]) -> (&'m mut [f32], Kept<'m>) {
+        let Words { per_row, fixed } = self.plan.constraints.kept;
+        let mut rest = words;
+        let custom = take(&mut rest, self.plan.custom * self.capacity);
+        let rows = take(&mut rest, per_row * self.capacity);
+        (bytemuck::cast_slice_mut(custom), Kept { rows, fixed: take(&mut rest, fixed) })
     }
 
     /// What is remembered of a step's beginning.

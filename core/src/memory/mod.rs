@@ -3,7 +3,7 @@
 mod layout;
 mod storage;
 
-pub use layout::{Demand, Words};
+pub use layout::{Demand, Kept, Words};
 pub(crate) use layout::{Layout, Past, Plan, Scratch, Shares, take, take_vectors};
 #[cfg(feature = "alloc")]
 pub use storage::Heap;

@@ -22,6 +22,7 @@ macro_rules! storage {
         particle { $($(#[$p_doc:meta])* $p:ident: $p_ty:ty = $p_zero:expr,)+ }
         emitter { $($(#[$e_doc:meta])* $e:ident: $e_ty:ty = $e_zero:expr,)+ }
         spring { $($(#[$s_doc:meta])* $s:ident: $s_ty:ty = $s_zero:expr,)+ }
+        kept { $($(#[$k_doc:meta])* $k:ident: $k_ty:ty = $k_zero:expr,)+ }
         work { $($(#[$w_doc:meta])* $w:ident: $w_ty:ty = $w_zero:expr,)+ }
     ) => {
         /// A system's memory, borrowed: one slice a column. It is an owner itself, for memory that lies elsewhere.
@@ -32,6 +33,7 @@ macro_rules! storage {
             $($(#[$p_doc])* pub $p: &'a mut [$p_ty],)+
             $($(#[$e_doc])* pub $e: &'a mut [$e_ty],)+
             $($(#[$s_doc])* pub $s: &'a mut [$s_ty],)+
+            $($(#[$k_doc])* pub $k: &'a mut [$k_ty],)+
             $($(#[$w_doc])* pub $w: &'a mut [$w_ty],)+
         }
 
@@ -41,18 +43,19 @@ macro_rules! storage {
             $($(#[$p_doc])* pub $p: &'a [$p_ty],)+
             $($(#[$e_doc])* pub $e: &'a [$e_ty],)+
             $($(#[$s_doc])* pub $s: &'a [$s_ty],)+
+            $($(#[$k_doc])* pub $k: &'a [$k_ty],)+
             $($(#[$w_doc])* pub $w: &'a [$w_ty],)+
         }
 
         impl Storage for Slices<'_> {
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
-                    $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($w: self.$w,)+
+                    $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
                 }
             }
             fn columns(&self) -> Columns<'_> {
                 Columns {
-                    $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($w: self.$w,)+
+                    $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
                 }
             }
         }
@@ -75,17 +78,24 @@ macro_rules! storage {
 
         /// Memory in the value itself: a `static`, a field, or a small stack variable.
         ///
-        /// `COLUMNS` is how many `Vec3` the scene needs to work with for each particle: see
-        /// [`Scene::columns`](crate::Scene::columns).
+        /// `COLUMNS` is how many `Vec3` the scene needs to work with for each particle, `KEPT` how many words it keeps of each:
+        /// see [`Scene::columns`](crate::Scene::columns) and [`Scene::kept`](crate::Scene::kept).
         #[derive(Clone, Debug)]
-        pub struct Inline<const PARTICLES: usize, const EMITTERS: usize, const SPRINGS: usize, const COLUMNS: usize> {
+        pub struct Inline<
+            const PARTICLES: usize,
+            const EMITTERS: usize,
+            const SPRINGS: usize,
+            const COLUMNS: usize,
+            const KEPT: usize = 0,
+        > {
             $($p: [$p_ty; PARTICLES],)+
             $($e: [$e_ty; EMITTERS],)+
             $($s: [[$s_ty; 2]; SPRINGS],)+
+            $($k: [[$k_ty; PARTICLES]; KEPT],)+
             $($w: [[$w_ty; PARTICLES]; COLUMNS],)+
         }
 
-        impl<const P: usize, const E: usize, const S: usize, const C: usize> Inline<P, E, S, C> {
+        impl<const P: usize, const E: usize, const S: usize, const C: usize, const K: usize> Inline<P, E, S, C, K> {
             /// Fresh memory, all zeros: in a `static` it costs no flash.
             #[must_use]
             pub const fn new() -> Self {
@@ -93,23 +103,29 @@ macro_rules! storage {
                     $($p: [$p_zero; P],)+
                     $($e: [$e_zero; E],)+
                     $($s: [[$s_zero; 2]; S],)+
+                    $($k: [[$k_zero; P]; K],)+
                     $($w: [[$w_zero; P]; C],)+
                 }
             }
         }
 
-        impl<const P: usize, const E: usize, const S: usize, const C: usize> Default for Inline<P, E, S, C> {
+        impl<const P: usize, const E: usize, const S: usize, const C: usize, const K: usize> Default
+            for Inline<P, E, S, C, K>
+        {
             fn default() -> Self {
                 Self::new()
             }
         }
 
-        impl<const P: usize, const E: usize, const S: usize, const C: usize> Storage for Inline<P, E, S, C> {
+        impl<const P: usize, const E: usize, const S: usize, const C: usize, const K: usize> Storage
+            for Inline<P, E, S, C, K>
+        {
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
                     $($p: &mut self.$p,)+
                     $($e: &mut self.$e,)+
                     $($s: self.$s.as_flattened_mut(),)+
+                    $($k: self.$k.as_flattened_mut(),)+
                     $($w: self.$w.as_flattened_mut(),)+
                 }
             }
@@ -118,6 +134,7 @@ macro_rules! storage {
                     $($p: &self.$p,)+
                     $($e: &self.$e,)+
                     $($s: self.$s.as_flattened(),)+
+                    $($k: self.$k.as_flattened(),)+
                     $($w: self.$w.as_flattened(),)+
                 }
             }
@@ -130,6 +147,7 @@ macro_rules! storage {
             $($p: alloc::vec::Vec<$p_ty>,)+
             $($e: alloc::vec::Vec<$e_ty>,)+
             $($s: alloc::vec::Vec<$s_ty>,)+
+            $($k: alloc::vec::Vec<$k_ty>,)+
             $($w: alloc::vec::Vec<$w_ty>,)+
         }
 
@@ -142,6 +160,7 @@ macro_rules! storage {
                     $($p: alloc::vec![$p_zero; size.particles],)+
                     $($e: alloc::vec![$e_zero; size.emitters],)+
                     $($s: alloc::vec![$s_zero; 2 * size.springs],)+
+                    $($k: alloc::vec![$k_zero; size.particles * size.kept],)+
                     $($w: alloc::vec![$w_zero; size.particles * size.columns],)+
                 }
             }
@@ -151,17 +170,20 @@ macro_rules! storage {
             /// # Errors
             /// If there is not so much: nothing has been written then, and all is given back.
             pub fn try_new(size: Size) -> Result<Self, alloc::collections::TryReserveError> {
-                let Size { particles, emitters, springs, columns } = size;
+                let Size { particles, emitters, springs, columns, kept } = size;
                 let (ends, work) = (springs.saturating_mul(2), particles.saturating_mul(columns));
+                let kept = particles.saturating_mul(kept);
                 let mut new = Self {
                     $($p: reserved(particles)?,)+
                     $($e: reserved(emitters)?,)+
                     $($s: reserved(ends)?,)+
+                    $($k: reserved(kept)?,)+
                     $($w: reserved(work)?,)+
                 };
                 $(new.$p.resize(particles, $p_zero);)+
                 $(new.$e.resize(emitters, $e_zero);)+
                 $(new.$s.resize(ends, $s_zero);)+
+                $(new.$k.resize(kept, $k_zero);)+
                 $(new.$w.resize(work, $w_zero);)+
                 Ok(new)
             }
@@ -171,12 +193,12 @@ macro_rules! storage {
         impl Storage for Heap {
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
-                    $($p: &mut self.$p,)+ $($e: &mut self.$e,)+ $($s: &mut self.$s,)+ $($w: &mut self.$w,)+
+                    $($p: &mut self.$p,)+ $($e: &mut self.$e,)+ $($s: &mut self.$s,)+ $($k: &mut self.$k,)+ $($w: &mut self.$w,)+
                 }
             }
             fn columns(&self) -> Columns<'_> {
                 Columns {
-                    $($p: &self.$p,)+ $($e: &self.$e,)+ $($s: &self.$s,)+ $($w: &self.$w,)+
+                    $($p: &self.$p,)+ $($e: &self.$e,)+ $($s: &self.$s,)+ $($k: &self.$k,)+ $($w: &self.$w,)+
                 }
             }
         }
@@ -239,6 +261,11 @@ storage! {
         /// The springs at each particle of the start, one list behind the other.
         incident: u32 = 0,
     }
+    kept {
+        /// What is kept of particles beside all that: columns of a user's own, then what constraints keep of each, then what
+        /// else they keep, one behind the other.
+        kept: u32 = 0,
+    }
     work {
         /// Columns to work with, one behind the other.
         work: Vec3 = Vec3::ZERO,
@@ -263,6 +290,8 @@ pub struct Size {
     pub springs: usize,
     /// Vectors to work with for each particle.
     pub columns: usize,
+    /// Words kept of each particle: columns of a user's own, and what constraints keep.
+    pub kept: usize,
 }
 
 impl<T: Storage + ?Sized> Storage for &mut T {
@@ -294,6 +323,7 @@ impl Columns<'_> {
             emitters: self.tallies.len(),
             springs: self.incident.len() / 2,
             columns: self.work.len().checked_div(particles).unwrap_or(usize::MAX),
+            kept: self.kept.len().checked_div(particles).unwrap_or(usize::MAX),
         }
     }
 }
@@ -306,17 +336,20 @@ mod tests {
     fn a_particle_takes_the_bytes_that_the_readme_says() {
         let one = size_of::<Inline<1001, 0, 0, 4>>() - size_of::<Inline<1, 0, 0, 4>>();
         assert_eq!(one, 1000 * (91 + 4 * 12));
+        let kept = size_of::<Inline<1000, 0, 0, 4, 3>>() - size_of::<Inline<1000, 0, 0, 4>>();
+        assert_eq!(kept, 1000 * 3 * 4);
     }
 
     #[cfg(feature = "alloc")]
     #[test]
     fn memory_that_is_not_there_is_an_error() {
-        let size = Size { particles: 7, emitters: 3, springs: 5, columns: 2 };
+        let size = Size { particles: 7, emitters: 3, springs: 5, columns: 2, kept: 4 };
         for more in [usize::MAX, usize::MAX / 2, usize::MAX / 64, isize::MAX as usize / 12] {
             assert!(Heap::try_new(Size { particles: more, ..size }).is_err(), "{more} particles");
             assert!(Heap::try_new(Size { emitters: more, ..size }).is_err(), "{more} emitters");
             assert!(Heap::try_new(Size { springs: more, ..size }).is_err(), "{more} springs");
             assert!(Heap::try_new(Size { columns: more, ..size }).is_err(), "{more} columns");
+            assert!(Heap::try_new(Size { kept: more, ..size }).is_err(), "{more} kept words");
         }
         let heap = Heap::try_new(size).expect("a little memory");
         assert_eq!(heap.columns().size(), size);

@@ -13,6 +13,7 @@ pub use chance::Chance;
 pub use dense::Dense;
 pub use kind::ReaperKind;
 
+use crate::custom::CustomColumns;
 use crate::force::State;
 use crate::math::max;
 use crate::memory::Layout;
@@ -175,10 +176,13 @@ pub(crate) fn reap(
 /// Lets the scene's reapers choose.
 fn judge(view: &mut View<'_>, scene: &Scene<'_>) {
     let (rows, reapers) = (0..view.len(), scene.reapers);
-    let layout = Layout::of(scene.plan(), view.capacity());
+    let capacity = view.capacity();
+    let layout = Layout::of(scene.plan(), capacity);
     // Reapers see everything but the fates and the memory of the index.
     let (fates, work) = (core::mem::take(&mut view.memory.fate), core::mem::take(&mut view.memory.work));
-    let (state, mut verdicts) = (view.state(scene), Verdicts::on(&mut fates[rows.clone()]));
+    let custom = CustomColumns::kept(scene.custom, view.memory.kept, capacity, rows.len());
+    let state = State { custom, ..view.state(scene) };
+    let mut verdicts = Verdicts::on(&mut fates[rows.clone()]);
     if reapers.reach() > 0.0 {
         let (position, words) = layout.crowd(work, rows.len());
         for ((place, &x), &fate) in position.iter_mut().zip(state.position).zip(&*verdicts.fates) {

@@ -85,6 +85,7 @@ impl SceneFile {
         for (i, force) in self.forces.iter().enumerate() {
             check_force(&format!("forces[{i}]"), force)?;
         }
+        self.check_custom()?;
         for (i, reaper) in self.reapers.iter().enumerate() {
             match reaper {
                 ReaperKind::Chance(chance) => zero_or_more(&format!("reapers[{i}].rate"), chance.rate)?,

@@ -33,6 +33,44 @@ impl SceneFile {
     }
 }
 
+/// What recordings call the engine's own attributes.
+const OWN: [&str; 19] = [
+    "step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age", "radius", "species", "pos", "velo", "red",
+    "green", "blue", "alpha",
+];
+
+impl SceneFile {
+    /// Checks columns of a user's own, and that forces name those that are there.
+    pub(super) fn check_custom(&self) -> Checked {
+        let is_word = |name: &str| {
+            let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
+            name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(letters)
+        };
+        for (i, custom) in self.custom.iter().enumerate() {
+            let (at, name) = (format!("custom[{i}]"), &custom.name);
+            let refuse = |message| Err(SceneError::value(format!("{at}.name"), message));
+            if !is_word(name) {
+                return refuse(format!(
+                    "has to begin with a letter and go on with letters, digits and _, not \"{name}\""
+                ));
+            }
+            if OWN.contains(&name.as_str()) || self.custom[..i].iter().any(|other| other.name == *name) {
+                return refuse(format!("there is a \"{name}\" already: choose another name"));
+            }
+            finite(&format!("{at}.newborn"), &[custom.newborn])?;
+            finite(&format!("{at}.start"), &custom.start)?;
+        }
+        for (i, force) in self.forces.iter().enumerate() {
+            let ForceKind::Relaxation(relaxation) = force else { continue };
+            if !self.custom.iter().any(|custom| custom.name == relaxation.column) {
+                let message = format!("there is no \"{}\" in the scene's list `custom`", relaxation.column);
+                return Err(SceneError::value(format!("forces[{i}].column"), message));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Checks the numbers of a force.
 pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
     let name = |name: &str| format!("{at}.{name}");
@@ -60,6 +98,10 @@ pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
         ForceKind::Viscosity(v) => {
             zero_or_more(&name("coefficient"), v.coefficient)?;
             reach(&name("reach"), v.reach)
+        }
+        ForceKind::Relaxation(relaxation) => {
+            finite(&name("toward"), &[relaxation.toward])?;
+            zero_or_more(&name("rate"), relaxation.rate)
         }
         ForceKind::Pressure(pressure) => {
             zero_or_more(&name("amount"), pressure.amount)?;

@@ -4,6 +4,7 @@ use super::Fabric;
 use super::Response;
 use crate::collide::Grip;
 use crate::constrain::ConstraintKind;
+use crate::custom::CustomBuf;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Sink, Spring};
 use crate::index::Structure;
@@ -55,6 +56,9 @@ pub struct SceneFile {
     /// What else they die of, beside age and sinks.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub reapers: Vec<ReaperKind>,
+    /// What each particle has beside the engine's own attributes: numbers with names.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub custom: Vec<CustomBuf>,
     /// What they bounce off and what is drawn.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub scenery: Vec<Item>,
@@ -257,6 +261,7 @@ impl SceneFile {
             constraints: Vec::new(),
             sinks: Vec::new(),
             reapers: Vec::new(),
+            custom: Vec::new(),
             scenery: Vec::new(),
             groups: Vec::new(),
             materials: Vec::new(),

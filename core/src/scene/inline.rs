@@ -131,6 +131,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             colliders: &self.colliders,
             sinks: &self.forces.3,
             reapers: &(),
+            custom: &(),
             grips: &[],
             constraints: &(),
             substeps: 1,

@@ -5,6 +5,7 @@ use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
 use crate::collide::{Grip, Meetings};
 use crate::constrain::{ConstraintKind, Contacts};
+use crate::custom::CustomBuf;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Penalty, Sink, Spring};
 use crate::index::Structure;
@@ -42,6 +43,8 @@ pub struct Model {
     pub colliders: Vec<Moving<Placed<Shape<Arc<MeshBuf>>>>>,
     /// What else they die of, beside age and sinks.
     pub reapers: Vec<ReaperKind>,
+    /// What each particle has beside the engine's own attributes.
+    pub custom: Vec<CustomBuf>,
     /// How materials feel, by their numbers.
     pub grips: Vec<Grip>,
     /// What is drawn.
@@ -134,6 +137,7 @@ impl Model {
             constraints: (file.constraints.clone(), file.contacts.and_then(|response| response.contacts())),
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
+            custom: file.custom.clone(),
             grips: file.materials.iter().map(|material| material.grip).collect(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
@@ -160,6 +164,7 @@ impl Model {
             colliders: &self.colliders,
             sinks: &self.forces.1,
             reapers: &self.reapers,
+            custom: &self.custom,
             grips: &self.grips,
             constraints: &self.constraints,
             substeps: self.substeps,

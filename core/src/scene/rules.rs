@@ -2,6 +2,7 @@
 
 use crate::collide::{Grip, Meetings};
 use crate::constrain::Constraint;
+use crate::custom::CustomList;
 use crate::emit::Emit;
 use crate::force::{Force, Spring};
 use crate::index::Arrange;
@@ -33,6 +34,8 @@ pub struct Scene<'a> {
     pub sinks: &'a dyn Collider,
     /// What else they die of, beside age and sinks.
     pub reapers: &'a dyn Reaper,
+    /// What each particle has beside the engine's own attributes: numbers with names.
+    pub custom: &'a dyn CustomList,
     /// How materials feel, by their numbers; those beyond have no friction.
     pub grips: &'a [Grip],
     /// What binds them together and keeps them apart.
@@ -66,6 +69,7 @@ impl Scene<'_> {
         colliders: &(),
         sinks: &(),
         reapers: &(),
+        custom: &(),
         grips: &[],
         constraints: &(),
         substeps: 1,
@@ -81,11 +85,18 @@ impl Scene<'_> {
         self.plan().columns(self.start.len())
     }
 
+    /// Words that are kept of each particle, if there is room for as many as it begins with or more.
+    #[must_use]
+    pub fn kept(&self) -> usize {
+        self.plan().kept_columns(self.start.len())
+    }
+
     /// What a step works with.
     pub(crate) fn plan(&self) -> Plan {
         let needs = self.forces.needs();
         let constrained = !self.constraints.is_empty();
         Plan {
+            custom: self.custom.count(),
             start: self.needs_start(),
             before: constrained || self.pieces() > 1,
             constrained,
@@ -113,6 +124,7 @@ impl Scene<'_> {
             emitters: self.emitters.count(),
             springs: self.springs.len(),
             columns: self.columns(),
+            kept: self.kept(),
         }
     }
 
@@ -128,7 +140,8 @@ impl Scene<'_> {
     /// Whether a step can be made in memory of size `have`: all but the particles must fit.
     pub(crate) fn fits(&self, have: Size) -> bool {
         let need = self.size();
-        need.emitters <= have.emitters && need.springs <= have.springs && need.columns <= have.columns
+        let pairs = [[need.emitters, have.emitters], [need.springs, have.springs], [need.columns, have.columns]];
+        pairs.iter().all(|[need, have]| need <= have) && need.kept <= have.kept
     }
 }
 
@@ -146,8 +159,8 @@ impl core::fmt::Display for Unfit {
         let Self { need, have } = self;
         write!(
             f,
-            "the scene needs {} emitters, {} springs and {} columns, the system has {}, {} and {}",
-            need.emitters, need.springs, need.columns, have.emitters, have.springs, have.columns
+            "the scene needs {} emitters, {} springs, {} columns and {} kept words, the system has {}, {}, {} and {}",
+            need.emitters, need.springs, need.columns, need.kept, have.emitters, have.springs, have.columns, have.kept
         )
     }
 }

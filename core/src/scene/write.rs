@@ -73,6 +73,9 @@ impl Writer {
         if scene.contacts.is_some() {
             self.warn("contacts: in .scn particles pass through each other; that is left out");
         }
+        if !scene.custom.is_empty() {
+            self.warn("custom: in .scn particles have no further columns; they are left out");
+        }
         if !scene.reapers.is_empty() {
             self.warn("reapers: in .scn particles die of age and at sinks alone; that is left out");
         }

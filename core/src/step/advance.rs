@@ -1,7 +1,7 @@
 //! Update: the old go through the step's sub-steps; the newborn fly on from their births.
 
 use super::field::Field;
-use super::substeps::Moved;
+use super::substeps::{Moved, custom};
 use super::tile::Tile;
 use crate::integrate::Dynamics;
 use crate::memory::{Layout, Shares};
@@ -14,10 +14,17 @@ use glam::Vec3;
 impl Tile<'_> {
     /// Moves the old by the integrator. The newborn fly on from their places of birth with the acceleration they have there at
     /// the step's beginning; they act on the old from the next step on.
-    pub(super) fn advance(&mut self, hint: &mut Time, report: &mut Report, observer: &mut dyn Observer) {
+    /// `kept` is what is kept from step to step, for constraints to change.
+    pub(super) fn advance(
+        &mut self,
+        kept: &mut [u32],
+        hint: &mut Time,
+        report: &mut Report,
+        observer: &mut dyn Observer,
+    ) {
         let Self { scene, now, dt, old, capacity, ref attributes, .. } = *self;
         let len = self.position.len();
-        let Shares { start: [start_x, start_v], before, marks, step: kept, mut scratch } =
+        let Shares { start: [start_x, start_v], before, marks, step: lasting, mut scratch } =
             Layout::of(scene.plan(), capacity).shares(self.work);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(self.position);
@@ -26,7 +33,9 @@ impl Tile<'_> {
         let needs = scene.forces.needs();
         if old < len {
             let ([tree, near], memory) = scratch.moving();
-            let mut field = Field { scene, attributes, needs, tree, near, first: old, evaluations: 0, observer };
+            let custom = custom(scene, attributes, kept, capacity);
+            let mut field =
+                Field { scene, attributes, custom, needs, tree, near, first: old, evaluations: 0, observer };
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, [now, now + dt], memory);
             report.effort.evaluations += field.evaluations;
@@ -40,6 +49,7 @@ impl Tile<'_> {
             start: [start_x, start_v].map(|column| &*first(column, old)),
             before: before.map(|column| first(column, old)),
             marks: first(marks, old),
+            lasting,
             kept,
             scratch,
             capacity,

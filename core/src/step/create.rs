@@ -24,7 +24,7 @@ impl View<'_> {
         let mut emit = |memory: &mut Slices<'_>, near: Option<&dyn SpatialIndex>| {
             let view = View { memory: memory.slices(), status: &mut *status };
             let (report, observer) = (&mut *report, &mut *observer);
-            scene.emitters.emit(now, end, &mut Births { view, report, observer, near, old, end, number: 0 });
+            scene.emitters.emit(now, end, &mut Births { view, scene, report, observer, near, old, end, number: 0 });
         };
         if reach > 0.0 {
             let (places, words) = layout.crowd(core::mem::take(&mut memory.work), old);

@@ -1,5 +1,6 @@
 //! Forces over masses: what a method asks for accelerations.
 
+use crate::custom::CustomColumns;
 use crate::force::{Force, Grow, Needs, State};
 use crate::index::{BarnesHut, SpatialIndex};
 use crate::integrate::{Dynamics, Linear};
@@ -21,6 +22,14 @@ pub(crate) struct Attributes<'a> {
 }
 
 impl<'a> Attributes<'a> {
+    /// The first rows somewhere, at some time, with columns of a user's own.
+    pub(super) fn state<'s>(&self, custom: CustomColumns<'s>, time: Time, [x, v]: [&'s [Vec3]; 2]) -> State<'s>
+    where
+        'a: 's,
+    {
+        State { custom: custom.rows(0..x.len()), ..self.lives.moved(time, x, v) }
+    }
+
     /// Those of some rows.
     pub(super) fn rows(&self, rows: Range<usize>) -> Self {
         Self {
@@ -36,6 +45,8 @@ impl<'a> Attributes<'a> {
 pub(super) struct Field<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) attributes: &'a Attributes<'a>,
+    /// Columns of a user's own.
+    pub(super) custom: CustomColumns<'a>,
     /// What the forces need to find, and memory for it.
     pub(super) needs: Needs,
     pub(super) tree: &'a mut [u32],
@@ -47,9 +58,15 @@ pub(super) struct Field<'a> {
 
 impl Field<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
-    fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&State<'_>)) {
+    pub(super) fn with_state(
+        &mut self,
+        time: Time,
+        position: &[Vec3],
+        velocity: &[Vec3],
+        then: &mut dyn FnMut(&State<'_>),
+    ) {
         self.evaluations += u64::from(!position.is_empty());
-        let state = self.attributes.lives.moved(time, position, velocity);
+        let state = self.attributes.state(self.custom, time, [position, velocity]);
         if self.needs.tree_columns() > 0 && position.len() >= BarnesHut::FEWEST {
             self.with_trees(&state, then);
         } else {
@@ -108,7 +125,7 @@ impl Dynamics for Field<'_> {
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
-        let state = self.attributes.lives.moved(time, position, velocity);
+        let state = self.attributes.state(self.custom, time, [position, velocity]);
         self.observer.after(Phase::Advance, &state);
     }
 }

@@ -8,6 +8,7 @@ mod snap;
 mod substeps;
 mod tile;
 mod view;
+mod write;
 
 pub(crate) use tile::Tile;
 pub(crate) use view::{Status, View};
@@ -35,12 +36,18 @@ impl View<'_> {
         } else {
             self.phase_by_phase(scene, span, old, report, observer);
         }
+        if scene.forces.writes() {
+            self.write(scene, span, report);
+        }
         let before = report.died.total();
         reap(self, scene, self.status.time, report, observer);
         if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {
             self.status.hint = Time::ZERO;
         }
         self.tell(Phase::Delete, scene, observer);
+        if scene.custom.count() > 0 {
+            self.let_write(scene, observer);
+        }
     }
 
     /// Takes all rows through one phase after the other.

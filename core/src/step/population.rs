@@ -58,6 +58,8 @@ impl View<'_> {
         m.color[row] = particle.color.unwrap_or(WHITE);
         m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
         m.fate[row] = Fate::Lives;
+        let capacity = m.columns().capacity();
+        (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;
         status.taken = serial.wrapping_add(1);
         Ok(Id { slot, serial })
@@ -75,6 +77,10 @@ impl View<'_> {
         let slot = self.memory.slot[row];
         if row != last {
             self.memory.move_row(last, row);
+            let capacity = self.capacity();
+            for column in self.memory.kept.chunks_mut(capacity).take(self.status.kept.per_row) {
+                column[row] = column[last];
+            }
             self.memory.row_of[self.memory.slot[row] as usize] = row as u32;
         }
         self.memory.row_of[slot as usize] = self.status.free;

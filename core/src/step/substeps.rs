@@ -2,9 +2,10 @@
 
 use super::field::{Attributes, Field};
 use crate::constrain::{Bodies, Near, Share, Substep};
+use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::Needs;
 use crate::integrate::{Motion, Work};
-use crate::memory::Scratch;
+use crate::memory::{Layout, Scratch};
 use crate::observe::{self, Observer};
 use crate::report::Report;
 use crate::scene::Scene;
@@ -23,6 +24,8 @@ pub(super) struct Moved<'a> {
     pub(super) before: [&'a mut [Vec3]; 2],
     /// What constraints do to each, and what they keep through the step.
     pub(super) marks: &'a mut [u32],
+    pub(super) lasting: &'a mut [u32],
+    /// What is kept from step to step, for writing where there are constraints.
     pub(super) kept: &'a mut [u32],
     pub(super) scratch: Scratch<'a>,
     pub(super) capacity: usize,
@@ -77,8 +80,9 @@ impl Moved<'_> {
         let len = self.position.len();
         let ([tree, near], memory) = self.scratch.moving();
         let (scene, attributes, needs) = (self.scene, self.attributes, self.needs);
+        let custom = custom(scene, attributes, self.kept, self.capacity);
         let mut field =
-            Field { scene, attributes, needs, tree, near, first: 0, evaluations: 0, observer: self.observer };
+            Field { scene, attributes, custom, needs, tree, near, first: 0, evaluations: 0, observer: self.observer };
         let start = if self.before[0].is_empty() { self.start } else { self.before.each_ref().map(|column| &**column) };
         let motion = Motion {
             position: self.position,
@@ -94,7 +98,8 @@ impl Moved<'_> {
 
     /// Says that the sub-step has come so far.
     fn tell(&mut self, phase: observe::Phase, time: Time) {
-        let state = self.attributes.lives.moved(time, self.position, self.velocity);
+        let custom = custom(self.scene, self.attributes, self.kept, self.capacity);
+        let state = self.attributes.state(custom, time, [self.position, self.velocity]);
         self.observer.after(phase, &state);
     }
 
@@ -104,6 +109,7 @@ impl Moved<'_> {
         let Attributes { lives, inverse_mass, elasticity, material } = *self.attributes;
         let len = self.position.len();
         let [memory, scratch] = self.scratch.constraining();
+        let (custom, kept) = Layout::of(scene.plan(), self.capacity).kept(self.kept);
         let mut bodies = Bodies {
             position: self.position,
             velocity: self.velocity,
@@ -113,6 +119,7 @@ impl Moved<'_> {
             inverse_mass: &inverse_mass[..len],
             elasticity: &elasticity[..len],
             material: &material[..len],
+            custom: CustomColumnsMut::new(scene.custom, custom, self.capacity, len),
             substep,
             colliders: scene.colliders,
             grips: scene.grips,
@@ -125,11 +132,21 @@ impl Moved<'_> {
             marks: self.marks,
             observer: self.observer,
         };
-        let mut share = Share { step: self.kept, scratch, capacity: self.capacity };
+        let mut share = Share { kept, step: self.lasting, scratch, capacity: self.capacity };
         match phase {
             Phase::Prepare => constraints.prepare(&mut bodies, &mut share),
             Phase::Project => constraints.project(&mut bodies, &mut share),
             Phase::Settle => constraints.settle(&mut bodies, &mut share),
         }
     }
+}
+
+/// Columns of a user's own as they are now: where constraints may change them, those that are lent for it.
+pub(super) fn custom<'a>(
+    scene: &'a Scene<'a>,
+    attributes: &Attributes<'a>,
+    kept: &'a [u32],
+    capacity: usize,
+) -> CustomColumns<'a> {
+    if kept.is_empty() { attributes.lives.custom } else { CustomColumns::kept(scene.custom, kept, capacity, capacity) }
 }

@@ -3,6 +3,7 @@
 use super::View;
 use super::field::Attributes;
 use crate::collide::each_by_itself;
+use crate::custom::CustomColumns;
 use crate::force::{Springs, State};
 use crate::memory::Storage;
 use crate::observe::Observer;
@@ -64,7 +65,9 @@ impl View<'_> {
         observer: &mut dyn Observer,
     ) {
         let (rows, capacity, mut hint) = (0..self.len(), self.capacity(), self.status.hint);
-        self.tile(scene, span, old, rows, capacity).advance(&mut hint, report, observer);
+        let kept = core::mem::take(&mut self.memory.kept);
+        self.tile(scene, span, old, rows, capacity).advance(kept, &mut hint, report, observer);
+        self.memory.kept = kept;
         self.status.hint = hint;
     }
 
@@ -84,6 +87,7 @@ impl View<'_> {
         rows: Range<usize>,
         capacity: usize,
     ) -> Tile<'s> {
+        let whole = self.capacity();
         let m = self.memory.slices();
         let springs = Springs {
             springs: scene.springs,
@@ -95,7 +99,8 @@ impl View<'_> {
         };
         let (radius, mass, drag, charge) = (&*m.radius, &*m.mass, &*m.drag, &*m.charge);
         let (born, dies, slot, key) = (&*m.born, &*m.dies, &*m.slot, &*m.key);
-        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, ..State::EMPTY };
+        let custom = CustomColumns::kept(scene.custom, m.kept, whole, whole);
+        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, custom, ..State::EMPTY };
         let attributes =
             Attributes { lives, inverse_mass: m.inverse_mass, elasticity: m.elasticity, material: m.material };
         Tile {
@@ -151,7 +156,7 @@ impl<'a> Tile<'a> {
             rest = others;
             // The memory is in the cache from the tile before.
             tile.work = &mut *rest.work;
-            tile.advance(&mut hint, report, observer);
+            tile.advance(&mut [], &mut hint, report, observer);
             evaluations = report.effort.evaluations - before;
             if is_swept {
                 each_by_itself(&mut tile, report, observer);

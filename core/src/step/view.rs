@@ -1,7 +1,8 @@
 //! A system with its memory at hand: every phase of a step works on it.
 
+use crate::custom::{Custom, CustomColumnsMut};
 use crate::force::{Spring, State, spring};
-use crate::memory::{Slices, Storage};
+use crate::memory::{Layout, Slices, Storage, Words};
 use crate::particles::Full;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -33,6 +34,8 @@ pub(crate) struct Status {
     pub(crate) is_reaped: bool,
     /// Emitters that the scene had then.
     pub(crate) emitters: usize,
+    /// What the scene keeps of particles.
+    pub(crate) kept: Words,
     pub(crate) time: Time,
     /// The step that an integrator which chooses its own goes on with.
     pub(crate) hint: Time,
@@ -50,6 +53,7 @@ impl Status {
         given: 0,
         is_reaped: false,
         emitters: 0,
+        kept: Words::NONE,
         time: Time::ZERO,
         hint: Time::ZERO,
         seed: 0,
@@ -78,6 +82,8 @@ impl View<'_> {
         self.memory.tallies.fill(Default::default());
         self.status.emitters = scene.emitters.count();
         self.status.is_reaped = !scene.reapers.is_empty();
+        self.status.kept = scene.plan().kept();
+        self.memory.kept.fill(0);
         let mut report = Report::default();
         for particle in scene.start {
             match self.put(particle, Time::ZERO) {
@@ -86,6 +92,7 @@ impl View<'_> {
             }
         }
         self.status.start = self.status.taken;
+        self.give_custom(scene, 0, |custom, row| custom.of_start(row));
         spring::sort_by_ends(scene.springs, self.memory.last_spring, self.memory.incident);
         let lost = |s: &&Spring| s.ends.iter().any(|&end| end >= self.status.start);
         report.caps.springs = scene.springs.iter().filter(lost).count() as u64;
@@ -94,6 +101,24 @@ impl View<'_> {
 
     /// The particles as forces see them.
     pub(crate) fn state<'s>(&'s self, scene: &Scene<'s>) -> State<'s> {
-        self.memory.columns().state(scene.springs, self.status)
+        self.memory.columns().state(scene, self.status)
+    }
+
+    /// Columns of a user's own, for writing.
+    pub(crate) fn custom_mut<'s>(&'s mut self, scene: &Scene<'s>) -> CustomColumnsMut<'s> {
+        let (capacity, len) = (self.capacity(), self.len());
+        let (values, _) = Layout::of(scene.plan(), capacity).kept(self.memory.kept);
+        CustomColumnsMut::new(scene.custom, values, capacity, len)
+    }
+
+    /// Gives rows from `first` on what they have in columns of a user's own.
+    pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize, value: impl Fn(&Custom<'_>, usize) -> f32) {
+        let mut columns = self.custom_mut(scene);
+        for number in 0..scene.custom.count() {
+            let Some(custom) = scene.custom.get(number) else { continue };
+            for (row, to) in columns.column_mut(number).iter_mut().enumerate().skip(first) {
+                *to = value(&custom, row);
+            }
+        }
     }
 }

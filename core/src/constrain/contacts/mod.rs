@@ -4,7 +4,7 @@ mod lists;
 mod solver;
 mod touch;
 
-use super::{Bodies, Constraint, Demand, Share, Words};
+use super::{Bodies, Constraint, Demand, Share};
 use lists::{KEPT, Kept};
 
 /// Contacts held by position, for heaps of balls: in each sub-step the integrator moves everything, then whatever overlaps is
@@ -41,7 +41,7 @@ impl Contacts {
 
 impl Constraint for Contacts {
     fn demand(&self) -> Demand {
-        Demand { step: KEPT, scratch: Words::NONE, finds_near: true }
+        Demand { step: KEPT, finds_near: true, ..Demand::NONE }
     }
 
     #[inline(never)]

@@ -1,0 +1,47 @@
+//! A column of a user's own that comes to rest: heat that is lost, fuel that burns down.
+
+use super::{Force, State};
+use crate::custom::CustomColumnsMut;
+use crate::math::exp;
+use core::ops::Range;
+use glam::Vec3;
+
+/// Brings a column of a user's own toward a value, by a share of the difference in each second (Newton's law of cooling):
+/// c(t) = c∞ + (c(0) − c∞) e^(−λ t), at any step. It pushes nothing.
+///
+/// Without such a column in the scene it does nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Relaxation<N = &'static str> {
+    /// The column's name.
+    pub column: N,
+    /// What it comes to, c∞.
+    pub toward: f32,
+    /// How fast, λ \[1/s\]; zero or more.
+    pub rate: f32,
+}
+
+impl<N: AsRef<str> + Sync> Force for Relaxation<N> {
+    fn add_to(&self, _: &State<'_>, _: Range<usize>, _: &mut [Vec3]) {}
+
+    fn is_local(&self) -> bool {
+        true
+    }
+
+    fn writes(&self) -> bool {
+        true
+    }
+
+    fn write(&self, _: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
+        let left = exp(-self.rate * dt);
+        for value in custom.get_mut(self.column.as_ref()).into_iter().flatten() {
+            *value = self.toward + (*value - self.toward) * left;
+        }
+    }
+
+    #[cfg(feature = "std")]
+    fn name(&self) -> &'static str {
+        "relaxation"
+    }
+}
