@@ -117,7 +117,7 @@ fn a_step_that_does_not_fit_is_counted_and_changes_nothing() {
             let mut system = System::with(Heap::new(size));
             let error = system.start(scene, 1).expect_err("it does not fit");
             assert_eq!((error.need, error.have), (scene.size(), size));
-            assert!(error.to_string().contains("needs 3 emitters, 8 springs and 5 columns"));
+            assert!(error.to_string().contains("needs 3 emitters, 8 springs, 5 columns"));
             assert!(system.is_empty());
             system.start(&small, 1).expect("it fits");
             system.step(&small, Time::SECOND);

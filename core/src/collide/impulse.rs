@@ -1,7 +1,7 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
-use super::meetings::Passage;
 use super::melee::Melee;
+use super::passage::Passage;
 use super::queue::Queue;
 use crate::memory::{Layout, Shares, Slices, Storage};
 
@@ -33,10 +33,7 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
         ..
     } = view.memory.slices();
     let Shares { start: [start_x, start_v], scratch, .. } = Layout::of(scene.plan(), capacity).shares(work);
-    let (clocks, scratch) = scratch.meeting().split_at_mut(3 * len);
-    let (home, scratch) = scratch.split_at_mut(len);
-    let words = scene.index.columns() * len;
-    let index_memory = bytemuck::cast_slice_mut(&mut scratch[..words]);
+    let (clocks, home, index_memory) = scratch.meeting(len);
     let unit = (dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
     let mut melee = Melee {
         scene,

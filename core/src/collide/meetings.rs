@@ -1,12 +1,7 @@
 //! How particles that have a radius meet each other on their way through a step.
 
 use super::impulse;
-use super::sweep::each_by_itself;
-use crate::observe::Observer;
-use crate::report::Report;
-use crate::scene::Scene;
-use crate::step::View;
-use crate::time::Time;
+use super::passage::Passage;
 
 /// What particles that have a radius do where their paths meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,28 +60,5 @@ impl Meetings {
             Self::Through => passage.each_by_itself(),
             Self::Impulse(Impulse { follow }) => follow(passage),
         }
-    }
-}
-
-/// A step whose particles have been moved and are now to be held against colliders, sinks and each other.
-pub(crate) struct Passage<'p, 'v> {
-    pub(crate) view: &'p mut View<'v>,
-    pub(crate) scene: &'p Scene<'p>,
-    /// Those from this row on are newborn.
-    pub(crate) old: usize,
-    /// When it began, and how long it takes.
-    pub(crate) now: Time,
-    pub(crate) dt: Time,
-    pub(crate) report: &'p mut Report,
-    pub(crate) observer: &'p mut dyn Observer,
-}
-
-impl Passage<'_, '_> {
-    /// Sends all past each other.
-    #[inline(never)]
-    pub(super) fn each_by_itself(self) {
-        let Self { view, scene, old, now, dt, report, observer } = self;
-        let (rows, capacity) = (0..view.len(), view.capacity());
-        each_by_itself(&mut view.tile(scene, [now, dt], old, rows, capacity), report, observer);
     }
 }

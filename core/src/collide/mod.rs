@@ -6,6 +6,7 @@ mod impulse;
 mod meeting;
 mod meetings;
 mod melee;
+mod passage;
 mod path;
 mod queue;
 mod slide;
@@ -14,8 +15,8 @@ mod sweep;
 pub(crate) use flight::RESTING;
 pub use grip::Grip;
 pub(crate) use grip::{Feel, of_two, on_surface};
-pub(crate) use meetings::Passage;
 pub use meetings::{Impulse, Meetings};
+pub(crate) use passage::Passage;
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub(crate) use sweep::each_by_itself;

@@ -1,6 +1,6 @@
 //! Sums over all points in which far groups act as one.
 
-use super::near::Region;
+use super::region::Region;
 use super::sums::{GROUP, Sums};
 use super::tree::Node;
 use super::{Cost, Octree, SpatialIndex, Stats, TooSmall};

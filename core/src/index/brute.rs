@@ -1,8 +1,9 @@
 //! No structure at all: every query looks at every point. What the others are held against.
 
 use super::domain::{Domain, Image};
-use super::near::{Region, Run};
-use super::search::{Partition, Search};
+use super::partition::Partition;
+use super::region::{Region, Run};
+use super::search::Search;
 use super::sorted::Sorted;
 use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
 use core::ops::Range;

@@ -1,6 +1,6 @@
 //! How points are placed in an index: wrapped into a periodic domain, scaled where squares would leave an `f32`.
 
-use super::near::widened;
+use super::region::widened;
 use crate::math::{self, floor, largest, max, min};
 use glam::Vec3;
 

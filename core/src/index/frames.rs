@@ -1,7 +1,7 @@
 //! Frames: the axes of boxes that are turned against those of the coordinates.
 
 use super::domain::around;
-use super::near::Region;
+use super::region::Region;
 use crate::math;
 use glam::{Mat3, Vec3};
 

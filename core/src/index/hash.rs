@@ -3,8 +3,9 @@
 use super::cells::{self, sort_by_cell};
 use super::domain::{Domain, Image};
 use super::grid::Layout;
-use super::near::{Region, Run, widened};
-use super::search::{Partition, Search};
+use super::partition::Partition;
+use super::region::{Region, Run, widened};
+use super::search::Search;
 use super::sorted::Sorted;
 use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
 use crate::math::{floor, largest, max, min};

@@ -40,6 +40,8 @@ mod kd;
 mod near;
 mod nearest;
 mod octree;
+mod partition;
+mod region;
 mod search;
 mod sorted;
 mod split;

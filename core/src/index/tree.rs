@@ -5,9 +5,10 @@
 
 use super::domain::{Domain, Image};
 use super::frames::Frames;
-use super::near::{Region, Run};
 use super::nearest::Nearest;
-use super::search::{Partition, Search};
+use super::partition::Partition;
+use super::region::{Region, Run};
+use super::search::Search;
 use super::sorted::{LANES, Probe, Sorted};
 use super::split::{CHILDREN, Split, bounds};
 use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};

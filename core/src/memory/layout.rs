@@ -215,6 +215,12 @@ impl Layout {
         (bytemuck::cast_slice_mut(custom), Kept { rows, fixed: take(&mut rest, fixed) })
     }
 
+    /// Memory for `rows` of `len`, and for the others, who work at the same time.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn divided(work: &mut [Vec3], rows: usize, len: usize) -> (&mut [Vec3], &mut [Vec3]) {
+        work.split_at_mut(work.len() / len.max(1) * rows)
+    }
+
     /// What is remembered of a step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
         let pair = if self.plan.start { self.capacity } else { 0 };
@@ -245,9 +251,13 @@ impl Scratch<'_> {
 }
 
 impl<'m> Scratch<'m> {
-    /// For meetings, when all have been moved.
-    pub(crate) fn meeting(self) -> &'m mut [Vec3] {
-        vectors(self.words)
+    /// For meetings of so many, when all have been moved: for their clocks, for where they were at the step's beginning, and for an
+    /// index of that.
+    pub(crate) fn meeting(self, len: usize) -> (&'m mut [u32], &'m mut [Vec3], &'m mut [u32]) {
+        let (plan, mut rest) = (self.layout.plan, self.words);
+        let clocks = take(&mut rest, 9 * len);
+        let home = take_vectors(&mut rest, len);
+        (clocks, home, take(&mut rest, 3 * plan.index * len))
     }
 }
 

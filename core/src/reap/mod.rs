@@ -3,33 +3,26 @@
 //! Age and numbers that are no longer finite end everybody; sinks end whoever touches them, which collisions find out; a
 //! scene's reapers end whom they choose. All judge the same state before anyone goes.
 
+mod cause;
 mod chance;
 mod dense;
 mod kind;
 mod lifetime;
 mod nonfinite;
 
+pub use cause::{Cause, Fate};
 pub use chance::Chance;
 pub use dense::Dense;
 pub use kind::ReaperKind;
 
-use crate::custom::CustomColumns;
 use crate::force::State;
 use crate::math::max;
-use crate::memory::Layout;
-use crate::observe::{Observer, Passing};
-use crate::particles::Id;
-use crate::report::Report;
-use crate::scene::Scene;
-use crate::step::View;
-use crate::time::Time;
 use core::ops::Range;
-use glam::Vec3;
 pub(crate) use lifetime::Lifetime;
 pub(crate) use nonfinite::Nonfinite;
 
 /// Rows that are looked at together.
-const CHUNK: usize = 64;
+pub(crate) const CHUNK: usize = 64;
 
 /// A rule by which particles die.
 ///
@@ -50,73 +43,6 @@ pub trait Reaper: Sync {
     /// Whether it takes nobody, whatever the state: no row is looked at then.
     fn is_empty(&self) -> bool {
         false
-    }
-}
-
-/// Why a particle died. Of several causes in one step the last in this list counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
-pub enum Cause {
-    /// Of age.
-    Lifetime,
-    /// By a rule of the program's own.
-    Other,
-    /// Where too many were.
-    Density,
-    /// By chance.
-    Chance,
-    /// It touched a sink.
-    Sink,
-    /// A number of its was no longer finite.
-    Nonfinite,
-}
-
-/// What becomes of a particle at the end of the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Fate {
-    /// It lives on.
-    #[default]
-    Lives,
-    /// It dies of age.
-    Lifetime,
-    /// It dies by a rule of the program's own.
-    Other,
-    /// It dies where too many are.
-    Density,
-    /// It dies by chance.
-    Chance,
-    /// It touched a sink.
-    Sink,
-    /// A number of its is no longer finite.
-    Nonfinite,
-}
-
-impl Fate {
-    /// Why it has to go, if it has.
-    #[must_use]
-    pub const fn cause(self) -> Option<Cause> {
-        match self {
-            Self::Lives => None,
-            Self::Lifetime => Some(Cause::Lifetime),
-            Self::Other => Some(Cause::Other),
-            Self::Density => Some(Cause::Density),
-            Self::Chance => Some(Cause::Chance),
-            Self::Sink => Some(Cause::Sink),
-            Self::Nonfinite => Some(Cause::Nonfinite),
-        }
-    }
-}
-
-impl From<Cause> for Fate {
-    fn from(cause: Cause) -> Self {
-        match cause {
-            Cause::Lifetime => Self::Lifetime,
-            Cause::Other => Self::Other,
-            Cause::Density => Self::Density,
-            Cause::Chance => Self::Chance,
-            Cause::Sink => Self::Sink,
-            Cause::Nonfinite => Self::Nonfinite,
-        }
     }
 }
 
@@ -148,61 +74,6 @@ impl<'a> Verdicts<'a> {
             *fate = (*fate).max(cause.into());
         }
     }
-}
-
-/// Removes those whom the step has ended by `now`.
-pub(crate) fn reap(
-    view: &mut View<'_>,
-    scene: &Scene<'_>,
-    now: Time,
-    report: &mut Report,
-    observer: &mut dyn Observer,
-) {
-    if !scene.reapers.is_empty() {
-        judge(view, scene);
-    }
-    // From the back, so that the row that fills a gap has been looked at already.
-    let mut end = view.len();
-    while let Some((row, cause)) = last_doomed(&view.memory.fate[..end]) {
-        report.died.count(cause);
-        let m = &view.memory;
-        let id = Id { slot: m.slot[row], serial: m.serial[row] };
-        observer.died(&Passing { id, place: m.position[row], velocity: m.velocity[row], time: now }, cause);
-        view.remove(row, scene.springs, report);
-        end = row;
-    }
-}
-
-/// Lets the scene's reapers choose.
-fn judge(view: &mut View<'_>, scene: &Scene<'_>) {
-    let (rows, reapers) = (0..view.len(), scene.reapers);
-    let capacity = view.capacity();
-    let layout = Layout::of(scene.plan(), capacity);
-    // Reapers see everything but the fates and the memory of the index.
-    let (fates, work) = (core::mem::take(&mut view.memory.fate), core::mem::take(&mut view.memory.work));
-    let custom = CustomColumns::kept(scene.custom, view.memory.kept, capacity, rows.len());
-    let state = State { custom, ..view.state(scene) };
-    let mut verdicts = Verdicts::on(&mut fates[rows.clone()]);
-    if reapers.reach() > 0.0 {
-        let (position, words) = layout.crowd(work, rows.len());
-        for ((place, &x), &fate) in position.iter_mut().zip(state.position).zip(&*verdicts.fates) {
-            *place = if fate == Fate::Lives { x } else { Vec3::NAN };
-        }
-        scene.index.arrange(words, position, reapers.reach(), &mut |near| {
-            reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
-        });
-    } else {
-        reapers.judge(&state, rows, &mut verdicts);
-    }
-    (view.memory.fate, view.memory.work) = (fates, work);
-}
-
-/// The last row that has to go. Hardly any has, so whole chunks are passed over.
-fn last_doomed(fates: &[Fate]) -> Option<(usize, Cause)> {
-    let has_doomed = |chunk: &[Fate]| chunk.iter().fold(0, |any, &fate| any | fate as u8) != 0;
-    let behind = fates.rchunks(CHUNK).position(has_doomed)?;
-    let row = fates[..fates.len() - CHUNK * behind].iter().rposition(|&fate| fate != Fate::Lives)?;
-    Some((row, fates[row].cause()?))
 }
 
 impl Reaper for () {

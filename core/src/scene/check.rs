@@ -1,17 +1,15 @@
 //! What a declared scene may say: every number finite, every reference to something that is there.
 
 use super::check_force::check_force;
+use super::numbers::{Checked, check_breaking, check_direction, finite, zero_or_more};
 use super::{Group, Light, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
-use crate::math::unit;
 use crate::reap::ReaperKind;
 use crate::shape::{Affine, Shape};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
-
-pub(super) type Checked = Result<(), SceneError>;
 
 /// How many births a second there may be: rates are kept as fixed-point numbers.
 const MAX_RATE: f32 = 4e9;
@@ -331,42 +329,6 @@ impl Group {
     pub fn affine(&self) -> Result<Affine, &'static str> {
         super::inline::affine(self.matrix)
     }
-}
-
-pub(super) fn finite(at: &str, numbers: &[f32]) -> Checked {
-    match numbers.iter().find(|x| !x.is_finite()) {
-        Some(x) => {
-            Err(SceneError::value(at, format!("has to be finite and within the range of a 32-bit float, not {x}")))
-        }
-        None => Ok(()),
-    }
-}
-
-/// What springs break at.
-pub(super) fn check_breaking(at: &str, ratio: Option<f32>) -> Checked {
-    let Some(ratio) = ratio else { return Ok(()) };
-    finite(at, &[ratio])?;
-    if ratio > 1.0 {
-        return Ok(());
-    }
-    Err(SceneError::value(at, format!("has to be above one, a length over that at rest, not {ratio}")))
-}
-
-/// A number from zero on.
-pub(super) fn zero_or_more(at: &str, number: f32) -> Checked {
-    finite(at, &[number])?;
-    if number >= 0.0 { Ok(()) } else { Err(SceneError::value(at, format!("has to be zero or more, not {number}"))) }
-}
-
-/// A number above zero.
-pub(super) fn above_zero(at: &str, number: f32) -> Checked {
-    finite(at, &[number])?;
-    if number > 0.0 { Ok(()) } else { Err(SceneError::value(at, format!("has to be above zero, not {number}"))) }
-}
-
-pub(super) fn check_direction(at: &str, direction: Vec3) -> Checked {
-    finite(at, &direction.to_array())?;
-    if unit(direction) == Vec3::ZERO { Err(SceneError::value(at, "has to have a direction")) } else { Ok(()) }
 }
 
 fn check_shape(at: &str, shape: &Shape<String>) -> Checked {

@@ -1,6 +1,6 @@
 //! What a declared scene may say of its forces.
 
-use super::check::{Checked, above_zero, check_direction, finite, zero_or_more};
+use super::numbers::{Checked, above_zero, check_direction, finite, zero_or_more};
 use super::{SceneError, SceneFile};
 use crate::force::{FlowKind, ForceKind, PowerLaw};
 use alloc::format;

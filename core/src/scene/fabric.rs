@@ -1,6 +1,6 @@
 //! Spring meshes in scene files, and what they are woven into.
 
-use super::check::{above_zero, check_breaking, finite, zero_or_more};
+use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
 use super::{SceneError, SceneFile};
 use crate::force::{Pressure, Spring};
 use crate::particles::{Color, Particle};

@@ -20,6 +20,8 @@ mod json;
 #[cfg(feature = "alloc")]
 mod model;
 #[cfg(feature = "alloc")]
+mod numbers;
+#[cfg(feature = "alloc")]
 mod read;
 #[cfg(feature = "alloc")]
 mod remarks;

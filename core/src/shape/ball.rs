@@ -4,11 +4,8 @@
 //! from afar nearer and nearer to the first contact and never past it. From inside a hollow solid the places where a
 //! ball fits are the same solid, smaller by the radius, which the path leaves where the ball touches.
 
-use super::convex::{self, Convex};
-use super::sliver::Sliver;
-use super::sphere::circle_span;
-use super::{Affine, Collider, Contact, Hit, Segment, earlier};
-use crate::math::{clamp, length, max, unit};
+use super::{Contact, Hit, Segment};
+use crate::math::{clamp, length, max, sqrt, unit};
 use glam::Vec3;
 
 /// How many times Newton's method looks again.
@@ -22,19 +19,6 @@ const MAX_STEPS: u32 = 24;
 pub(super) trait Filled {
     /// The way to `point` from the place of the set that is nearest to it; zero for what lies in the set.
     fn gap(&self, point: Vec3) -> Vec3;
-}
-
-/// A closed convex solid that a ball can also be inside of.
-pub(super) trait Hollow: Filled + Convex {
-    /// When a ball that starts inside first touches, and the unit normal inward there. One too large to fit is free to
-    /// move toward the middle only.
-    fn leave(&self, segment: &Segment) -> Option<(f32, Vec3)>;
-
-    /// Visits the walls around a point inside: the unit normal inward and the distance.
-    fn walls(&self, point: Vec3, visit: &mut dyn FnMut(Vec3, f32));
-
-    /// As `Collider::image`.
-    fn stretched(&self, map: &Affine, visit: &mut dyn FnMut(u32, &dyn Collider));
 }
 
 /// Where a ball outside first touches a set. One that overlaps it touches at once if it moves nearer, else never.
@@ -62,34 +46,6 @@ pub(super) fn approach(set: &impl Filled, segment: &Segment, slack: f32) -> Opti
         time = next;
     }
     None
-}
-
-/// The first hit of a segment on a hollow solid. Where rounding should fool the ball, its centre is still stopped.
-#[inline(never)]
-pub(super) fn first_hit(solid: &impl Hollow, segment: &Segment) -> Option<Hit> {
-    let center = convex::first_hit(solid, segment);
-    let slack = segment.slack(solid.reach());
-    // What is smaller than rounding is a point.
-    if !(segment.radius > slack) {
-        return center;
-    }
-    let ball = if solid.contains(segment.from) {
-        solid.leave(segment).map(|(time, normal)| Hit::new(time, normal, slack))
-    } else {
-        approach(solid, segment, slack)
-    };
-    earlier(ball, center)
-}
-
-/// What a ball leans on, of a hollow solid.
-pub(super) fn contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
-    if solid.contains(center) {
-        solid.walls(center, &mut |normal, distance| {
-            lean(center, normal * distance, normal, [reach, solid.reach()], visit);
-        });
-    } else {
-        lean_on(solid, center, [reach, solid.reach()], visit);
-    }
 }
 
 /// What a ball outside leans on: the nearest place of a set, if it is within reach. A centre in the set has no side.
@@ -154,26 +110,17 @@ pub(super) fn gap_to_line(point: Vec3, from: Vec3, along: Vec3) -> Vec3 {
     offset - along * t
 }
 
-/// Where a segment of a ball or a point first meets a triangle, from either side.
-#[inline]
-pub(super) fn on_triangle(triangle: &super::Triangle, segment: &Segment, center: Option<Hit>) -> Option<Hit> {
-    let [a, ..] = triangle.corners;
-    let slack = segment.slack(super::triangle::size(triangle));
-    if !(segment.radius > slack) {
-        return center;
+/// Where the line `offset` + t × `step` lies within `radius` of the origin.
+///
+/// It measures from the point of nearest approach, which keeps its digits where the textbook's b² − 4ac loses them.
+pub(super) fn circle_span(offset: Vec3, step: Vec3, radius: f32) -> Option<(f32, f32)> {
+    let square = step.dot(step);
+    let middle = -offset.dot(step) / square;
+    let nearest = offset + step * middle;
+    let rest = radius * radius - nearest.dot(nearest);
+    if !(rest > 0.0) {
+        return None;
     }
-    // Most triangles are out of reach of the ball all along.
-    let (normal, is_plain) = triangle.normal();
-    let (before, after) = (normal.dot(segment.from - a), normal.dot(segment.to - a));
-    let reach = segment.radius + slack;
-    let far = reach * reach * normal.dot(normal);
-    if before * after > 0.0 && before * before > far && after * after > far {
-        return center;
-    }
-    let ball = if is_plain {
-        approach(triangle, segment, slack)
-    } else {
-        approach(&Sliver::new(triangle, normal), segment, slack)
-    };
-    earlier(ball, center)
+    let half = sqrt(rest / square);
+    Some((middle - half, middle + half))
 }

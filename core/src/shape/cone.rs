@@ -1,7 +1,7 @@
 //! A cone about the y axis.
 
-use super::ball::{Filled, Hollow, first, leave_span};
-use super::convex::{Convex, Span, convex_collider};
+use super::ball::{Filled, first, leave_span};
+use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, revolve};
 use crate::math::{clamp, largest, max, min, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;

@@ -1,6 +1,7 @@
 //! First hits on closed convex solids: shapes say what is inside and where a line runs inside; the rest is here, once.
 
-use super::{Hit, Segment};
+use super::ball::{Filled, approach, lean, lean_on};
+use super::{Affine, Collider, Contact, Hit, Segment, earlier};
 use crate::math::{clamp, unit};
 use glam::Vec3;
 
@@ -53,6 +54,19 @@ impl Span {
     }
 }
 
+/// A closed convex solid that a ball can also be inside of.
+pub(super) trait Hollow: Filled + Convex {
+    /// When a ball that starts inside first touches, and the unit normal inward there. One too large to fit is free to
+    /// move toward the middle only.
+    fn leave(&self, segment: &Segment) -> Option<(f32, Vec3)>;
+
+    /// Visits the walls around a point inside: the unit normal inward and the distance.
+    fn walls(&self, point: Vec3, visit: &mut dyn FnMut(Vec3, f32));
+
+    /// As `Collider::image`.
+    fn stretched(&self, map: &Affine, visit: &mut dyn FnMut(u32, &dyn Collider));
+}
+
 /// The first hit of a segment on a convex solid, from outside or from inside.
 ///
 /// Which side an end lies on is decided by `contains` alone, so that what a particle crosses it also hits, whatever
@@ -83,13 +97,41 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
     }
 }
 
+/// The first hit of a segment on a hollow solid. Where rounding should fool the ball, its centre is still stopped.
+#[inline(never)]
+pub(super) fn ball_first_hit(solid: &impl Hollow, segment: &Segment) -> Option<Hit> {
+    let center = first_hit(solid, segment);
+    let slack = segment.slack(solid.reach());
+    // What is smaller than rounding is a point.
+    if !(segment.radius > slack) {
+        return center;
+    }
+    let ball = if solid.contains(segment.from) {
+        solid.leave(segment).map(|(time, normal)| Hit::new(time, normal, slack))
+    } else {
+        approach(solid, segment, slack)
+    };
+    earlier(ball, center)
+}
+
+/// What a ball leans on, of a hollow solid.
+pub(super) fn ball_contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
+    if solid.contains(center) {
+        solid.walls(center, &mut |normal, distance| {
+            lean(center, normal * distance, normal, [reach, solid.reach()], visit);
+        });
+    } else {
+        lean_on(solid, center, [reach, solid.reach()], visit);
+    }
+}
+
 /// Implements `Collider` for convex solids.
 macro_rules! convex_collider {
     ($($solid:ty),+) => {$(
         impl crate::shape::Collider for $solid {
             fn first_hit(&self, segment: &crate::shape::Segment) -> Option<crate::shape::Hit> {
                 if segment.radius > 0.0 {
-                    return crate::shape::ball::first_hit(self, segment);
+                    return crate::shape::convex::ball_first_hit(self, segment);
                 }
                 crate::shape::convex::first_hit(self, segment)
             }
@@ -100,7 +142,7 @@ macro_rules! convex_collider {
                 _: crate::time::Time,
                 visit: &mut dyn FnMut(&crate::shape::Contact),
             ) {
-                crate::shape::ball::contacts(self, center, reach, visit);
+                crate::shape::convex::ball_contacts(self, center, reach, visit);
             }
             fn image(
                 &self,
@@ -108,7 +150,7 @@ macro_rules! convex_collider {
                 _: &crate::shape::Aabb,
                 visit: &mut dyn FnMut(u32, &dyn crate::shape::Collider),
             ) {
-                crate::shape::ball::Hollow::stretched(self, map, visit);
+                crate::shape::convex::Hollow::stretched(self, map, visit);
             }
             fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
                 crate::shape::Surface::bounds(self).overlaps(bounds)

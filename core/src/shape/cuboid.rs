@@ -1,7 +1,7 @@
 //! The surface of an axis-aligned box.
 
-use super::ball::{Filled, Hollow, leave_span};
-use super::convex::{Convex, Span, convex_collider};
+use super::ball::{Filled, leave_span};
+use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, Triangle};
 use crate::math::{high, largest, max};
 use glam::Vec3;

@@ -1,8 +1,7 @@
 //! A cylinder about the y axis.
 
-use super::ball::{Filled, Hollow, first, leave_circle, leave_span};
-use super::convex::{Convex, Span, convex_collider};
-use super::sphere::circle_span;
+use super::ball::{Filled, circle_span, first, leave_circle, leave_span};
+use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, revolve};
 use crate::math::{largest, length, max, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;

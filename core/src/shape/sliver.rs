@@ -1,6 +1,5 @@
 //! A triangle so narrow that its normal needs more digits than single precision has.
 
-use super::Triangle;
 use super::ball::{Filled, gap_to_line};
 use glam::Vec3;
 
@@ -12,8 +11,8 @@ pub(super) struct Sliver {
 }
 
 impl Sliver {
-    pub(super) fn new(triangle: &Triangle, normal: Vec3) -> Self {
-        Self { corners: triangle.corners, normal }
+    pub(super) fn new(corners: [Vec3; 3], normal: Vec3) -> Self {
+        Self { corners, normal }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The surface of a sphere.
 
-use super::ball::{Filled, Hollow, leave_circle};
-use super::convex::{Convex, Span, convex_collider};
+use super::ball::{Filled, circle_span, leave_circle};
+use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Segment, Spot, Surface};
 use crate::math::{largest, length, max, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
@@ -87,18 +87,3 @@ impl Hollow for Sphere {
     fn stretched(&self, _: &Affine, _: &mut dyn FnMut(u32, &dyn Collider)) {}
 }
 convex_collider!(Sphere);
-
-/// Where the line `offset` + t × `step` lies within `radius` of the origin.
-///
-/// It measures from the point of nearest approach, which keeps its digits where the textbook's b² − 4ac loses them.
-pub(super) fn circle_span(offset: Vec3, step: Vec3, radius: f32) -> Option<(f32, f32)> {
-    let square = step.dot(step);
-    let middle = -offset.dot(step) / square;
-    let nearest = offset + step * middle;
-    let rest = radius * radius - nearest.dot(nearest);
-    if !(rest > 0.0) {
-        return None;
-    }
-    let half = sqrt(rest / square);
-    Some((middle - half, middle + half))
-}

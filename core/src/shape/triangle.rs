@@ -1,10 +1,10 @@
 //! One triangle, and the arithmetic that meshes share with it.
 
-use super::ball::{self, Filled, gap_to_line};
+use super::ball::{Filled, approach, gap_to_line, lean};
 use super::exact::{Lattice, cross, volume};
 use super::plane::crossing;
 use super::sliver::Sliver;
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{clamp, high, largest, length, max, min, power_to_one, sqrt, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -37,7 +37,7 @@ impl Surface for Triangle {
     fn nearest(&self, p: Vec3) -> Vec3 {
         let (normal, is_plain) = self.normal();
         if !is_plain {
-            return p - Sliver::new(self, normal).gap(p);
+            return p - Sliver::new(self.corners, normal).gap(p);
         }
         let [a, b, c] = self.corners;
         let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -105,9 +105,9 @@ impl Collider for Triangle {
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let (across, is_plain) = self.normal();
-        let gap = if is_plain { self.gap(center) } else { Sliver::new(self, across).gap(center) };
+        let gap = if is_plain { self.gap(center) } else { Sliver::new(self.corners, across).gap(center) };
         let normal = if gap == Vec3::ZERO { unit(across) } else { unit(gap) };
-        ball::lean(center, gap, normal, [reach, size(self)], visit);
+        lean(center, gap, normal, [reach, size(self)], visit);
     }
 
     fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
@@ -251,7 +251,31 @@ impl Triangle {
     #[inline]
     fn met(&self, segment: &Segment, sides: Sides) -> Option<Hit> {
         let center = self.crossed(segment, sides);
-        if segment.radius > 0.0 { ball::on_triangle(self, segment, center) } else { center }
+        if segment.radius > 0.0 { self.met_by_ball(segment, center) } else { center }
+    }
+
+    /// Where the path of a ball, or of a point, first meets it from either side; `center` is where its middle does.
+    #[inline]
+    fn met_by_ball(&self, segment: &Segment, center: Option<Hit>) -> Option<Hit> {
+        let [a, ..] = self.corners;
+        let slack = segment.slack(size(self));
+        if !(segment.radius > slack) {
+            return center;
+        }
+        // Most triangles are out of reach of the ball all along.
+        let (normal, is_plain) = self.normal();
+        let (before, after) = (normal.dot(segment.from - a), normal.dot(segment.to - a));
+        let reach = segment.radius + slack;
+        let far = reach * reach * normal.dot(normal);
+        if before * after > 0.0 && before * before > far && after * after > far {
+            return center;
+        }
+        let ball = if is_plain {
+            approach(self, segment, slack)
+        } else {
+            approach(&Sliver::new(self.corners, normal), segment, slack)
+        };
+        earlier(ball, center)
     }
 
     /// Where the path of a point crosses it.

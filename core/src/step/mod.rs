@@ -4,6 +4,7 @@ mod advance;
 mod create;
 mod field;
 mod population;
+mod reap;
 mod snap;
 mod substeps;
 mod tile;
@@ -15,7 +16,6 @@ pub(crate) use view::{Status, View};
 
 use crate::collide::Passage;
 use crate::observe::{Attention, Observer, Phase};
-use crate::reap::reap;
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
@@ -40,7 +40,7 @@ impl View<'_> {
             self.write(scene, span, report);
         }
         let before = report.died.total();
-        reap(self, scene, self.status.time, report, observer);
+        self.reap(scene, report, observer);
         if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {
             self.status.hint = Time::ZERO;
         }

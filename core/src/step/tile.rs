@@ -5,6 +5,8 @@ use super::field::Attributes;
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
 use crate::force::{Springs, State};
+#[cfg(feature = "rayon")]
+use crate::memory::Layout;
 use crate::memory::Storage;
 use crate::observe::Observer;
 use crate::reap::{Fate, Lifetime, Nonfinite, Reaper, Verdicts};
@@ -120,12 +122,12 @@ impl View<'_> {
 }
 
 impl<'a> Tile<'a> {
-    /// The first so many rows, and the others. Both have the memory that is asked for, one behind the other.
-    fn split_at(self, rows: usize, work: usize) -> [Self; 2] {
+    /// The first so many rows, and the others, each with its memory.
+    fn split_at(self, rows: usize, work: [&'a mut [Vec3]; 2]) -> [Self; 2] {
         let Self { scene, now, dt, first, old, attributes, capacity, .. } = self;
         let len = self.position.len();
         let (position, velocity) = (self.position.split_at_mut(rows), self.velocity.split_at_mut(rows));
-        let (fate, work) = (self.fate.split_at_mut(rows), self.work.split_at_mut(work));
+        let (fate, [front, back]) = (self.fate.split_at_mut(rows), work);
         let part = |position, velocity, fate, work, rows: Range<usize>| Self {
             scene,
             now,
@@ -139,7 +141,7 @@ impl<'a> Tile<'a> {
             work,
             capacity,
         };
-        [part(position.0, velocity.0, fate.0, work.0, 0..rows), part(position.1, velocity.1, fate.1, work.1, rows..len)]
+        [part(position.0, velocity.0, fate.0, front, 0..rows), part(position.1, velocity.1, fate.1, back, rows..len)]
     }
 
     /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
@@ -152,23 +154,23 @@ impl<'a> Tile<'a> {
         while !rest.position.is_empty() {
             report.effort.evaluations = before;
             let rows = rest.position.len().min(TILE);
-            let [mut tile, others] = rest.split_at(rows, 0);
-            rest = others;
-            // The memory is in the cache from the tile before.
-            tile.work = &mut *rest.work;
+            // Memory that is in the cache goes from tile to tile.
+            let work = core::mem::take(&mut rest.work);
+            let [mut tile, others] = rest.split_at(rows, [work, &mut []]);
             tile.advance(&mut [], &mut hint, report, observer);
             evaluations = report.effort.evaluations - before;
             if is_swept {
                 each_by_itself(&mut tile, report, observer);
             }
             report.caps.stalled += tile.judge(h);
+            rest = Self { work: tile.work, ..others };
         }
         report.effort.evaluations = before + evaluations;
     }
 
     /// The same on all threads of the pool that this one belongs to, each with its share of the rows and of the memory.
     #[cfg(feature = "rayon")]
-    pub(super) fn pass_side_by_side(self, h: f32) -> Report {
+    pub(super) fn pass_side_by_side(mut self, h: f32) -> Report {
         let len = self.position.len();
         if len < 2 * SHARE {
             let mut report = Report::default();
@@ -176,8 +178,8 @@ impl<'a> Tile<'a> {
             return report;
         }
         let rows = (len / 2).next_multiple_of(TILE);
-        let work = self.work.len() / len * rows;
-        let [front, back] = self.split_at(rows, work);
+        let work = Layout::divided(core::mem::take(&mut self.work), rows, len);
+        let [front, back] = self.split_at(rows, work.into());
         let (mut report, others) = rayon::join(|| front.pass_side_by_side(h), || back.pass_side_by_side(h));
         let evaluations = report.effort.evaluations.max(others.effort.evaluations);
         report += others;

@@ -1,0 +1,31 @@
+//! A step's sweep, as it is handed to whatever answers the meetings.
+
+use super::sweep::each_by_itself;
+use crate::observe::Observer;
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::step::View;
+use crate::time::Time;
+
+/// A step whose particles have been moved and are now to be held against colliders, sinks and each other.
+pub(crate) struct Passage<'p, 'v> {
+    pub(crate) view: &'p mut View<'v>,
+    pub(crate) scene: &'p Scene<'p>,
+    /// Those from this row on are newborn.
+    pub(crate) old: usize,
+    /// When it began, and how long it takes.
+    pub(crate) now: Time,
+    pub(crate) dt: Time,
+    pub(crate) report: &'p mut Report,
+    pub(crate) observer: &'p mut dyn Observer,
+}
+
+impl Passage<'_, '_> {
+    /// Sends all past each other.
+    #[inline(never)]
+    pub(super) fn each_by_itself(self) {
+        let Self { view, scene, old, now, dt, report, observer } = self;
+        let (rows, capacity) = (0..view.len(), view.capacity());
+        each_by_itself(&mut view.tile(scene, [now, dt], old, rows, capacity), report, observer);
+    }
+}
