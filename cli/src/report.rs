@@ -194,8 +194,24 @@ impl Summary {
 
 /// What the method did.
 fn method_effort(effort: &pointmass::Effort) -> String {
-    let pointmass::Effort { evaluations, accepted, rejected, solves, iterations, residual, capped } = *effort;
+    let pointmass::Effort {
+        evaluations,
+        lists,
+        streamed,
+        all_pairs,
+        accepted,
+        rejected,
+        solves,
+        iterations,
+        residual,
+        capped,
+    } = *effort;
     let mut text = format!("{evaluations} evaluations of all forces");
+    let ways = [("listed", lists), ("looked up without a list", streamed), ("sought among all pairs", all_pairs)];
+    let ways: Vec<_> = ways.iter().filter(|way| way.1 > 0).map(|(how, times)| format!("{how} {times} times")).collect();
+    if !ways.is_empty() {
+        text.push_str(&format!(" (neighbours {})", ways.join(", ")));
+    }
     if accepted > 0 {
         text.push_str(&format!(", {accepted} inner steps and {rejected} that erred too much"));
     }

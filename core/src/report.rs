@@ -33,6 +33,12 @@ pub struct Report {
 pub struct Effort {
     /// Evaluations of all forces.
     pub evaluations: u64,
+    /// Times that neighbours were listed, to last for a while.
+    pub lists: u64,
+    /// Evaluations for which neighbours were looked up in an index, without a list.
+    pub streamed: u64,
+    /// Evaluations for which all pairs were looked at.
+    pub all_pairs: u64,
     /// Steps that a method which chooses its own accepted.
     pub accepted: u64,
     /// Steps that it tried and took back.
@@ -48,8 +54,18 @@ pub struct Effort {
 }
 
 impl Effort {
-    const NONE: Self =
-        Self { evaluations: 0, accepted: 0, rejected: 0, solves: 0, iterations: 0, residual: 0.0, capped: 0 };
+    pub(crate) const NONE: Self = Self {
+        evaluations: 0,
+        lists: 0,
+        streamed: 0,
+        all_pairs: 0,
+        accepted: 0,
+        rejected: 0,
+        solves: 0,
+        iterations: 0,
+        residual: 0.0,
+        capped: 0,
+    };
 
     /// Counts a solution.
     pub(crate) fn solved(&mut self, iterations: u32, residual: f32, capped: bool) {
@@ -110,7 +126,7 @@ macro_rules! add_fields {
 add_fields! {
     Died { lifetime sink density chance other nonfinite }
     Caps { bounces chords springs contacts stalled unfit }
-    Effort { evaluations accepted rejected solves iterations capped }
+    Effort { evaluations lists streamed all_pairs accepted rejected solves iterations capped }
 }
 
 impl core::ops::AddAssign for Report {

@@ -10,8 +10,8 @@ pub use emitter::{Burst, Emitter, WhereSparse};
 pub use vary::{Spread, Varied};
 
 use crate::custom::CustomColumnsMut;
-use crate::force::{State, count_of};
-use crate::index::SpatialIndex;
+use crate::force::State;
+use crate::index::{SpatialIndex, count_of};
 use crate::math::max;
 use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};

@@ -42,7 +42,7 @@ pub use viscosity::Viscosity;
 pub use wind::Wind;
 
 use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::index::{Arrange, BarnesHut, SpatialIndex};
+use crate::index::{Arrange, BarnesHut, Neighbours};
 use crate::math::max;
 use crate::particles::Id;
 use crate::rng::later;
@@ -218,8 +218,8 @@ pub struct State<'a> {
     pub custom: CustomColumns<'a>,
     /// The springs between them.
     pub springs: Springs<'a>,
-    /// Them in an index, while a step is made, if a force asks for neighbours and the scene has one.
-    pub near: Option<&'a dyn SpatialIndex>,
+    /// Who of them is near whom.
+    pub near: Neighbours<'a>,
     /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
     pub mass_tree: Option<&'a BarnesHut<'a>>,
     /// Their charges in a tree, likewise.
@@ -242,7 +242,7 @@ impl<'a> State<'a> {
         key: &[],
         custom: CustomColumns::NONE,
         springs: Springs { springs: &[], start: 0, serial: &[], row_of: &[], last_spring: &[], incident: &[] },
-        near: None,
+        near: Neighbours::among(&[]),
         mass_tree: None,
         charge_tree: None,
     };
@@ -268,7 +268,7 @@ impl<'a> State<'a> {
             key: &self.key[..len],
             custom: self.custom.rows(0..len),
             springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
-            near: None,
+            near: Neighbours::among(position),
             mass_tree: None,
             charge_tree: None,
         }
@@ -296,10 +296,7 @@ impl<'a> State<'a> {
     /// How many particles lie within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking at all.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
-        match self.near {
-            Some(index) => index.count(place, radius).found,
-            None => count_of(self.position, place, radius),
-        }
+        self.near.count_within(place, radius)
     }
 
     /// The particle in a row.
@@ -318,16 +315,6 @@ impl<'a> State<'a> {
     pub fn word(&self, row: usize, place: u32) -> Option<u32> {
         Some(later(*self.key.get(row)?, place))
     }
-}
-
-/// How many of these points lie within `radius` \[m\] of a place.
-pub(crate) fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
-    let square = radius * radius;
-    let is_near = |&&point: &&Vec3| {
-        let d = point - place;
-        d.x * d.x + d.y * d.y + d.z * d.z <= square
-    };
-    if radius >= 0.0 { points.iter().filter(is_near).count() as u64 } else { 0 }
 }
 
 impl Force for () {

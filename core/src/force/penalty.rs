@@ -1,8 +1,8 @@
 //! Balls that push each other apart.
 
+use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::radial::add_up;
 use super::{Change, Force, Friction, Needs, State};
 use crate::math::{length, max, min, sqrt};
 use core::ops::Range;

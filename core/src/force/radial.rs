@@ -1,6 +1,6 @@
 //! Forces between neighbours, along the line that joins them.
 
-use super::near::neighbours;
+use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
 use super::{Change, Force, Needs, State};
@@ -159,31 +159,6 @@ impl<L: RadialLaw> Force for Radial<L> {
     fn name(&self) -> &'static str {
         self.0.name()
     }
-}
-
-/// Adds to each of `rows` the sum of something over its neighbours; what is not finite is left out, so that it harms
-/// nobody else.
-#[inline(always)]
-pub(super) fn add_up(
-    state: &State<'_>,
-    reach: f32,
-    rows: Range<usize>,
-    total: &mut [Vec3],
-    term: impl Fn(usize, usize) -> Vec3,
-) {
-    let first = rows.start;
-    neighbours(state, reach, rows, &mut |row, others| {
-        let mut sum = Vec3::ZERO;
-        for &other in others {
-            let term = term(row, other as usize);
-            if term.is_finite() {
-                sum += term;
-            }
-        }
-        if let Some(total) = total.get_mut(row - first) {
-            *total += sum;
-        }
-    });
 }
 
 impl<L: RadialLaw + ?Sized> RadialLaw for &L {

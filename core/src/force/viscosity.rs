@@ -1,8 +1,8 @@
 //! Friction between neighbours.
 
+use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::radial::add_up;
 use super::{Change, Force, Needs, State};
 use crate::math::{length, max};
 use core::ops::Range;

@@ -147,6 +147,8 @@ pub(crate) struct Shares<'m> {
     pub(crate) step: &'m mut [u32],
     /// For whatever is at work.
     pub(crate) scratch: Scratch<'m>,
+    /// For lists of neighbours, from step to step: all that is lent beyond what the plan takes.
+    pub(crate) lists: &'m mut [u32],
 }
 
 /// What constraints keep from step to step.
@@ -187,6 +189,8 @@ impl Layout {
 
     /// All shares.
     pub(crate) fn shares<'m>(&self, work: &'m mut [Vec3]) -> Shares<'m> {
+        let least = self.plan.columns(self.capacity).saturating_mul(self.capacity).min(work.len());
+        let (work, lists) = work.split_at_mut(least);
         let mut rest: &'m mut [u32] = bytemuck::cast_slice_mut(work);
         let pair = if self.plan.start { self.capacity } else { 0 };
         let start = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
@@ -194,7 +198,14 @@ impl Layout {
         let before = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
         let marks = take(&mut rest, if self.plan.constrained { self.capacity } else { 0 });
         let step = take(&mut rest, self.plan.constraints.step.of(self.capacity));
-        Shares { start, before, marks, step, scratch: Scratch { words: rest, layout: *self } }
+        Shares {
+            start,
+            before,
+            marks,
+            step,
+            scratch: Scratch { words: rest, layout: *self },
+            lists: bytemuck::cast_slice_mut(lists),
+        }
     }
 
     /// Before anything has been moved, or when all has been done: for a copy of the places of `len` particles, and for an index

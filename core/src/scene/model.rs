@@ -175,10 +175,11 @@ impl Model {
         }
     }
 
-    /// The memory it needs for `particles` alive at once.
+    /// The memory it needs for `particles` alive at once, lists of neighbours included.
     #[must_use]
     pub fn size(&self, particles: usize) -> Size {
-        Size { particles, ..self.scene().size() }
+        let scene = self.scene();
+        Size { particles, columns: scene.columns_with_lists(), ..scene.size() }
     }
 }
 

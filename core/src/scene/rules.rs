@@ -59,6 +59,9 @@ impl core::fmt::Debug for Scene<'_> {
     }
 }
 
+/// Vectors a particle for lists of neighbours.
+const LISTS: usize = 22;
+
 impl Scene<'_> {
     /// Nothing at all, moved by symplectic Euler.
     pub const EMPTY: Scene<'static> = Scene {
@@ -83,6 +86,13 @@ impl Scene<'_> {
     #[must_use]
     pub fn columns(&self) -> usize {
         self.plan().columns(self.start.len())
+    }
+
+    /// Vectors for each particle with which neighbours are kept in lists, where forces ask for them: room for some 60 of each.
+    /// With less memory they are looked up anew in each evaluation, to the same bits.
+    #[must_use]
+    pub fn columns_with_lists(&self) -> usize {
+        self.columns() + if self.forces.needs().reach > 0.0 { LISTS } else { 0 }
     }
 
     /// Words that are kept of each particle, if there is room for as many as it begins with or more.

@@ -3,28 +3,38 @@
 use super::field::Field;
 use super::substeps::{Moved, custom};
 use super::tile::Tile;
+use crate::index::{ListMemory, Listed};
 use crate::integrate::Dynamics;
 use crate::memory::{Layout, Shares};
 use crate::observe::Observer;
-use crate::report::Report;
+use crate::report::{Effort, Report};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
 
+/// What goes on from step to step beside the particles, in tiles nothing.
+pub(super) struct Carried<'a> {
+    /// What is kept of particles, for constraints to change.
+    pub(super) kept: &'a mut [u32],
+    /// The step that a method which chooses its own goes on with.
+    pub(super) hint: &'a mut Time,
+    /// What is known of lists of neighbours, and how many particles have come and gone.
+    pub(super) listed: &'a mut Listed,
+    pub(super) changes: u32,
+}
+
 impl Tile<'_> {
     /// Moves the old by the integrator. The newborn fly on from their places of birth with the acceleration they have there at
     /// the step's beginning; they act on the old from the next step on.
-    /// `kept` is what is kept from step to step, for constraints to change.
     pub(super) fn advance(
         &mut self,
-        kept: &mut [u32],
-        hint: &mut Time,
+        Carried { kept, hint, listed, changes }: Carried<'_>,
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
         let Self { scene, now, dt, old, capacity, ref attributes, .. } = *self;
         let len = self.position.len();
-        let Shares { start: [start_x, start_v], before, marks, step: lasting, mut scratch } =
+        let Shares { start: [start_x, start_v], before, marks, step: lasting, mut scratch, lists } =
             Layout::of(scene.plan(), capacity).shares(self.work);
         if scene.needs_start() {
             start_x[..len].copy_from_slice(self.position);
@@ -34,11 +44,21 @@ impl Tile<'_> {
         if old < len {
             let ([tree, near], memory) = scratch.moving();
             let custom = custom(scene, attributes, kept, capacity);
-            let mut field =
-                Field { scene, attributes, custom, needs, tree, near, first: old, evaluations: 0, observer };
+            let mut field = Field {
+                scene,
+                attributes,
+                custom,
+                needs,
+                tree,
+                near,
+                first: old,
+                lists: None,
+                effort: Effort::NONE,
+                observer,
+            };
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, [now, now + dt], memory);
-            report.effort.evaluations += field.evaluations;
+            report.effort += field.effort;
         }
         let mut moved = Moved {
             scene,
@@ -50,6 +70,7 @@ impl Tile<'_> {
             before: before.map(|column| first(column, old)),
             marks: first(marks, old),
             lasting,
+            lists: ListMemory { words: lists, listed, changes, step: dt.seconds() },
             kept,
             scratch,
             capacity,

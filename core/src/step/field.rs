@@ -2,9 +2,10 @@
 
 use crate::custom::CustomColumns;
 use crate::force::{Force, Grow, Needs, State};
-use crate::index::{BarnesHut, SpatialIndex};
+use crate::index::{BarnesHut, ListMemory, Neighbours};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
+use crate::report::Effort;
 use crate::rows::each_row_with;
 use crate::scene::Scene;
 use crate::time::Time;
@@ -51,8 +52,10 @@ pub(super) struct Field<'a> {
     pub(super) needs: Needs,
     pub(super) tree: &'a mut [u32],
     pub(super) near: &'a mut [u32],
+    /// Lists of neighbours, where there is memory for them.
+    pub(super) lists: Option<ListMemory<'a>>,
     pub(super) first: usize,
-    pub(super) evaluations: u64,
+    pub(super) effort: Effort,
     pub(super) observer: &'a mut dyn Observer,
 }
 
@@ -65,7 +68,7 @@ impl Field<'_> {
         velocity: &[Vec3],
         then: &mut dyn FnMut(&State<'_>),
     ) {
-        self.evaluations += u64::from(!position.is_empty());
+        self.effort.evaluations += u64::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         if self.needs.tree_columns() > 0 && position.len() >= BarnesHut::FEWEST {
             self.with_trees(&state, then);
@@ -96,9 +99,23 @@ impl Field<'_> {
         if !(reach > 0.0) {
             return then(state);
         }
-        let words = (3 * self.scene.index.columns() * state.position.len()).min(self.near.len());
-        let then = &mut |near: Option<&dyn SpatialIndex>| then(&State { near, ..*state });
-        self.scene.index.arrange(&mut self.near[..words], state.position, reach, then);
+        let points = state.position;
+        if let Some(lists) = self.lists.as_mut().and_then(|lists| lists.kept(points, reach)) {
+            return then(&State { near: Neighbours::listed(lists, points), ..*state });
+        }
+        let words = (3 * self.scene.index.columns() * points.len()).min(self.near.len());
+        let skin = self.lists.as_mut().and_then(|lists| lists.skin(points, state.velocity, reach));
+        let (lists, effort) = (&mut self.lists, &mut self.effort);
+        let room = reach + skin.unwrap_or(0.0);
+        self.scene.index.arrange(&mut self.near[..words], points, room, &mut |index| {
+            let made = skin.zip(index).zip(lists.as_mut());
+            let made = made.and_then(|((skin, index), lists)| lists.make(index, points, [reach, skin]));
+            effort.lists += u64::from(made.is_some());
+            effort.streamed += u64::from(made.is_none() && index.is_some());
+            effort.all_pairs += u64::from(index.is_none());
+            let near = made.map_or(Neighbours::by(index, points), |lists| Neighbours::listed(lists, points));
+            then(&State { near, ..*state });
+        });
     }
 }
 
@@ -108,8 +125,7 @@ impl Dynamics for Field<'_> {
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
         self.with_state(time, position, velocity, &mut |state| {
             acceleration.fill(Vec3::ZERO);
-            forces.add_to(state, rows.clone(), acceleration);
-            state.springs.add_to(state, rows.clone(), acceleration);
+            add_up(&(forces, state.springs), state, rows.clone(), acceleration);
         });
         each_row_with(acceleration, Vec3::ZERO, inverse_mass, |force, _, inverse| {
             // What is fixed stays so under a force that is beyond an f32.
@@ -128,4 +144,33 @@ impl Dynamics for Field<'_> {
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         self.observer.after(Phase::Advance, &state);
     }
+}
+
+/// Rows that are worth a thread's while.
+#[cfg(feature = "rayon")]
+const SHARE: usize = 2048;
+
+/// Adds the forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
+fn add_up(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+    #[cfg(feature = "rayon")]
+    if rayon::current_thread_index().is_some() && state.near.can_be_divided() && rows.len() >= 2 * SHARE {
+        return add_up_side_by_side(forces, state, rows, total, rayon::current_num_threads());
+    }
+    forces.add_to(state, rows, total);
+}
+
+/// The same by so many threads.
+#[cfg(feature = "rayon")]
+fn add_up_side_by_side(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3], threads: usize) {
+    let parts = threads.min(rows.len() / SHARE);
+    if parts < 2 {
+        return forces.add_to(state, rows, total);
+    }
+    let len = rows.len() * (parts / 2) / parts;
+    let (front, back) = total.split_at_mut(len);
+    let middle = rows.start + len;
+    rayon::join(
+        || add_up_side_by_side(forces, state, rows.start..middle, front, parts / 2),
+        || add_up_side_by_side(forces, state, middle..rows.end, back, parts - parts / 2),
+    );
 }

@@ -61,6 +61,7 @@ impl View<'_> {
         let capacity = m.columns().capacity();
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;
+        status.changes = status.changes.wrapping_add(1);
         status.taken = serial.wrapping_add(1);
         Ok(Id { slot, serial })
     }
@@ -86,6 +87,7 @@ impl View<'_> {
         self.memory.row_of[slot as usize] = self.status.free;
         self.status.free = slot + 1;
         self.status.len = last;
+        self.status.changes = self.status.changes.wrapping_add(1);
     }
 }
 

@@ -3,6 +3,7 @@
 use super::View;
 use crate::custom::CustomColumns;
 use crate::force::State;
+use crate::index::Neighbours;
 use crate::memory::Layout;
 use crate::observe::{Observer, Passing};
 use crate::particles::Id;
@@ -45,7 +46,11 @@ impl View<'_> {
             }
             let mut verdicts = Verdicts::on(living);
             scene.index.arrange(words, position, reapers.reach(), &mut |near| {
-                reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
+                reapers.judge(
+                    &State { position, near: Neighbours::by(near, position), ..state },
+                    rows.clone(),
+                    &mut verdicts,
+                );
             });
         } else {
             reapers.judge(&state, rows, &mut Verdicts::on(living));

@@ -4,10 +4,11 @@ use super::field::{Attributes, Field};
 use crate::constrain::{Bodies, Near, Share, Substep};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::Needs;
+use crate::index::ListMemory;
 use crate::integrate::{Motion, Work};
 use crate::memory::{Layout, Scratch};
 use crate::observe::{self, Observer};
-use crate::report::Report;
+use crate::report::{Effort, Report};
 use crate::scene::Scene;
 use crate::time::Time;
 use glam::Vec3;
@@ -25,6 +26,7 @@ pub(super) struct Moved<'a> {
     /// What constraints do to each, and what they keep through the step.
     pub(super) marks: &'a mut [u32],
     pub(super) lasting: &'a mut [u32],
+    pub(super) lists: ListMemory<'a>,
     /// What is kept from step to step, for writing where there are constraints.
     pub(super) kept: &'a mut [u32],
     pub(super) scratch: Scratch<'a>,
@@ -81,8 +83,18 @@ impl Moved<'_> {
         let ([tree, near], memory) = self.scratch.moving();
         let (scene, attributes, needs) = (self.scene, self.attributes, self.needs);
         let custom = custom(scene, attributes, self.kept, self.capacity);
-        let mut field =
-            Field { scene, attributes, custom, needs, tree, near, first: 0, evaluations: 0, observer: self.observer };
+        let mut field = Field {
+            scene,
+            attributes,
+            custom,
+            needs,
+            tree,
+            near,
+            lists: Some(self.lists.again()),
+            first: 0,
+            effort: Effort::NONE,
+            observer: self.observer,
+        };
         let start = if self.before[0].is_empty() { self.start } else { self.before.each_ref().map(|column| &**column) };
         let motion = Motion {
             position: self.position,
@@ -93,7 +105,8 @@ impl Moved<'_> {
             effort: &mut self.report.effort,
         };
         scene.integrator.advance(motion, from, to - from, &mut field);
-        self.report.effort.evaluations += field.evaluations;
+        let effort = field.effort;
+        self.report.effort += effort;
     }
 
     /// Says that the sub-step has come so far.

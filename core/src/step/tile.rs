@@ -1,10 +1,12 @@
 //! Rows that go through a step together: all that there are, or few enough to stay in the cache meanwhile.
 
-use super::View;
+use super::advance::Carried;
 use super::field::Attributes;
+use super::{Status, View};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
 use crate::force::{Springs, State};
+use crate::index::Listed;
 #[cfg(feature = "rayon")]
 use crate::memory::Layout;
 use crate::memory::Storage;
@@ -66,10 +68,13 @@ impl View<'_> {
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
-        let (rows, capacity, mut hint) = (0..self.len(), self.capacity(), self.status.hint);
+        let (rows, capacity) = (0..self.len(), self.capacity());
+        let Status { mut hint, mut listed, changes, .. } = *self.status;
         let kept = core::mem::take(&mut self.memory.kept);
-        self.tile(scene, span, old, rows, capacity).advance(kept, &mut hint, report, observer);
+        let carried = Carried { kept: &mut *kept, hint: &mut hint, listed: &mut listed, changes };
+        self.tile(scene, span, old, rows, capacity).advance(carried, report, observer);
         self.memory.kept = kept;
+        self.status.listed = listed;
         self.status.hint = hint;
     }
 
@@ -147,7 +152,7 @@ impl<'a> Tile<'a> {
     /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
     /// after the other are evaluated once.
     pub(super) fn pass(self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
-        let (mut rest, mut hint) = (self, Time::ZERO);
+        let (mut rest, mut hint, mut listed) = (self, Time::ZERO, Listed::NONE);
         let is_swept = rest.scene.is_swept();
         let before = report.effort.evaluations;
         let mut evaluations = 0;
@@ -157,7 +162,8 @@ impl<'a> Tile<'a> {
             // Memory that is in the cache goes from tile to tile.
             let work = core::mem::take(&mut rest.work);
             let [mut tile, others] = rest.split_at(rows, [work, &mut []]);
-            tile.advance(&mut [], &mut hint, report, observer);
+            let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
+            tile.advance(carried, report, observer);
             evaluations = report.effort.evaluations - before;
             if is_swept {
                 each_by_itself(&mut tile, report, observer);

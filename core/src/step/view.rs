@@ -2,6 +2,7 @@
 
 use crate::custom::{Custom, CustomColumnsMut};
 use crate::force::{Spring, State, spring};
+use crate::index::Listed;
 use crate::memory::{Layout, Slices, Storage, Words};
 use crate::particles::Full;
 use crate::report::Report;
@@ -34,6 +35,9 @@ pub(crate) struct Status {
     pub(crate) is_reaped: bool,
     /// Emitters that the scene had then.
     pub(crate) emitters: usize,
+    /// Lists of neighbours, and how many particles have come and gone, which ends them.
+    pub(crate) listed: Listed,
+    pub(crate) changes: u32,
     /// What the scene keeps of particles.
     pub(crate) kept: Words,
     pub(crate) time: Time,
@@ -53,6 +57,8 @@ impl Status {
         given: 0,
         is_reaped: false,
         emitters: 0,
+        listed: Listed::NONE,
+        changes: 0,
         kept: Words::NONE,
         time: Time::ZERO,
         hint: Time::ZERO,

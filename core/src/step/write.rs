@@ -5,7 +5,7 @@ use super::field::Field;
 use crate::custom::CustomColumnsMut;
 use crate::memory::Layout;
 use crate::observe::Observer;
-use crate::report::Report;
+use crate::report::{Effort, Report};
 use crate::scene::Scene;
 use crate::time::Time;
 
@@ -22,12 +22,22 @@ impl View<'_> {
         let ([tree, near], _) = scratch.moving();
         let (attributes, needs, observer) = (&tile.attributes, scene.forces.needs(), &mut ());
         let seen = attributes.lives.custom;
-        let mut field =
-            Field { scene, attributes, custom: seen, needs, tree, near, first: 0, evaluations: 0, observer };
+        let mut field = Field {
+            scene,
+            attributes,
+            custom: seen,
+            needs,
+            tree,
+            near,
+            lists: None,
+            first: 0,
+            effort: Effort::NONE,
+            observer,
+        };
         field.with_state(now + dt, tile.position, tile.velocity, &mut |state| {
             scene.forces.write(state, &mut custom, dt.seconds());
         });
-        report.effort.evaluations += field.evaluations;
+        report.effort += field.effort;
         self.memory.kept = kept;
     }
 

@@ -2,11 +2,12 @@
 
 use super::{cloud, forces};
 use pointmass::force::{Pair, Radial, RadialLaw, State, Weight};
-use pointmass::index::{Arrange, SpatialIndex, Structure};
+use pointmass::index::{Arrange, Neighbours, SpatialIndex, Structure};
 use pointmass::{
-    Coulomb, Force, LennardJones, Measures, Method, Particle, PowerLaw, Pressure, Scene, Time, Vec3, Viscosity,
+    Coulomb, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw, Pressure,
+    Scene, Size, System, Time, Varied, Vec3, Viscosity,
 };
-use pointmass_tests::{f64s, gap, run, started};
+use pointmass_tests::{f64s, gap, point, run, started};
 
 const ATOMS: Radial<LennardJones> = Radial(LennardJones { epsilon: 1.0, sigma: 0.3, cutoff: 0.75 });
 const SOFT: Radial<PowerLaw> =
@@ -18,7 +19,7 @@ fn indexed(state: State<'_>, structure: Structure, reach: f32, then: impl FnOnce
     let mut memory = vec![0; structure.words(state.position.len())];
     let mut index = structure.index(&mut memory);
     index.build(state.position, reach).expect("there is room");
-    then(&State { near: Some(&index), ..state });
+    then(&State { near: Neighbours::by(Some(&index), state.position), ..state });
 }
 
 #[test]
@@ -35,10 +36,7 @@ fn every_structure_gives_the_same_force() {
             indexed(state, structure, force.needs().reach, |state| {
                 let mut whole = vec![Vec3::ZERO; 400];
                 force.add_to(state, 0..400, &mut whole);
-                for (a, b) in whole.iter().zip(&plain) {
-                    // Some tens of terms in another order.
-                    assert!((*a - *b).length() <= 1e-5 * size, "{structure}: {a} {b}");
-                }
+                assert_eq!(whole, plain, "{structure}");
                 // Any division of the rows gives the same bits.
                 for cuts in [&[0, 1, 400][..], &[0, 100, 101, 399, 400]] {
                     let mut parts = vec![Vec3::ZERO; 400];
@@ -47,7 +45,8 @@ fn every_structure_gives_the_same_force() {
                     }
                     assert_eq!(parts, whole, "{structure}");
                 }
-                let energies = [force.energy(state), force.energy(&State { near: None, ..*state })];
+                let energies =
+                    [force.energy(state), force.energy(&State { near: Neighbours::among(state.position), ..*state })];
                 assert!((energies[0] - energies[1]).abs() <= 1e-12 * energies[1].abs());
             });
         }
@@ -56,21 +55,77 @@ fn every_structure_gives_the_same_force() {
     assert_eq!(SOFT.needs().columns(&()), 0);
 }
 
+/// A run of a scene by an index, with so many vectors a particle to work with; its hash after every tenth step, and its effort.
+fn history(scene: &Scene<'_>, columns: usize, h: f64) -> (Vec<u64>, Effort) {
+    let mut system = System::with(Heap::new(Size { particles: 420, columns, ..scene.size() }));
+    system.start(scene, 3).expect("it fits");
+    let hashes = (1..=40).map(|i| {
+        system.step(scene, Time::from_seconds_f64(h * f64::from(i)) - system.time());
+        system.hash()
+    });
+    (hashes.collect(), system.totals().effort)
+}
+
+/// Whether neighbours are looked for among all, streamed from any index, or kept in lists is the same to the bit: by all methods,
+/// at slow and fast steps, while some are born and die, in threads too.
 #[test]
-fn runs_by_any_structure_end_nearly_alike() {
-    let start = cloud(300);
-    let force = (SOFT, THICK);
-    let end = |index: &dyn Arrange| {
-        let scene =
-            Scene { start: &start, forces: &force, index, integrator: Method::Verlet.integrator(), ..Scene::EMPTY };
-        let mut system = started(&scene, 320, 0);
-        run(&mut system, &scene, 1e-3, 20);
-        system.particles().position.to_vec()
+fn however_neighbours_are_found_runs_are_the_same() {
+    let start = cloud(320);
+    let force = (SOFT, THICK, Gravity::EARTH);
+    let jet = Emitter { lifetime: Varied::exactly(0.02), ..Emitter::new(point(Vec3::ZERO), 150.0) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
+    let none = Scene { start: &start, forces: &force, ..Scene::EMPTY };
+    let (mut listed, mut streamed) = (0, 0);
+    for (i, method) in Method::ALL.iter().enumerate() {
+        for h in [1e-3, 0.02] {
+            let emitters: &dyn Emit = if i % 2 == 0 { &jet } else { &() };
+            let plain = Scene { integrator: method.integrator(), emitters, ..none };
+            let (expected, effort) = history(&plain, plain.columns(), h);
+            assert!(effort.all_pairs > 0 && effort.lists + effort.streamed == 0);
+            // All structures give the same neighbours by all methods alike.
+            for &structure in &Structure::ALL[..if i < 2 { Structure::ALL.len() } else { 1 }] {
+                let scene = Scene { index: &structure, ..plain };
+                let (least, more) = (scene.columns(), scene.columns_with_lists());
+                let (hashes, effort) = history(&scene, least, h);
+                assert_eq!(hashes, expected, "{method}, {structure}");
+                assert!(effort.all_pairs + effort.lists == 0 && effort.streamed > 0);
+                let (hashes, effort) = history(&scene, more, h);
+                assert_eq!(hashes, expected, "{method}, {structure}, listed");
+                (listed, streamed) = (listed + effort.evaluations - effort.streamed, streamed + effort.streamed);
+                if i % 2 == 1 && h < 0.01 {
+                    // Lists are kept over steps.
+                    assert!(
+                        effort.lists > 0 && 3 * (effort.lists + effort.streamed) < effort.evaluations,
+                        "{effort:?}"
+                    );
+                }
+            }
+            let scene = Scene { index: &Structure::Grid, ..plain };
+            let (hashes, _) = pool.install(|| history(&scene, scene.columns_with_lists(), h));
+            assert_eq!(hashes, expected, "{method} in threads");
+        }
+    }
+    assert!(listed > 1000 && streamed > 1000, "{listed} {streamed}");
+}
+
+/// Too little memory for lists is none; a row with more neighbours than the stack has room for still comes in order.
+#[test]
+fn crowds_are_listed_or_not_to_the_same_bits() {
+    let at = |i: u32| Vec3::new((i % 29) as f32, (i % 31) as f32, (i % 37) as f32) * 0.01;
+    let start: Vec<_> = (0..700).map(|i| Particle { position: at(i), ..Particle::REST }).collect();
+    let scene = Scene { start: &start, forces: &SOFT, index: &Structure::Kd, ..Scene::EMPTY };
+    let run = |scene: &Scene<'_>, columns: usize| {
+        let mut system = System::with(Heap::new(Size { columns, ..scene.size() }));
+        system.start(scene, 0).expect("it fits");
+        (0..4).for_each(|_| {
+            system.step(scene, Time::from_seconds(1e-4));
+        });
+        (system.hash(), system.totals().effort)
     };
-    let plain = end(&());
-    for &structure in Structure::ALL {
-        let off = end(&structure).iter().zip(&plain).map(|(a, b)| (*a - *b).length()).fold(0.0, f32::max);
-        assert!(off < 1e-5, "{structure}: {off}");
+    let (expected, _) = run(&Scene { index: &(), ..scene }, scene.columns());
+    for (columns, is_listed) in [(0, false), (1, false), (3, false), (22, false), (500, true)] {
+        let (hash, effort) = run(&scene, scene.columns() + columns);
+        assert_eq!((hash, effort.lists > 0), (expected, is_listed), "{columns}: {effort:?}");
     }
 }
 

@@ -1,0 +1,155 @@
+//! Who is near whom: from lists that last for a while, from an index, or by looking at all; to the same bits.
+
+use super::SpatialIndex;
+use super::lists::Lists;
+use core::fmt;
+use core::ops::Range;
+use glam::Vec3;
+
+/// Neighbours that are handed over at once.
+pub(super) const RUN: usize = 32;
+/// How many a row may have that are sorted on the stack.
+const MOST: usize = if cfg!(target_os = "none") { 64 } else { 512 };
+
+/// Some points, and who of them is near whom.
+///
+/// The neighbours of a row come in ascending order, in runs of 32 but for the last, so that sums over them have the same bits
+/// whatever finds them.
+#[derive(Clone, Copy)]
+pub struct Neighbours<'a> {
+    points: &'a [Vec3],
+    source: Source<'a>,
+}
+
+/// What finds them.
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    All,
+    Index(&'a dyn SpatialIndex),
+    Lists(Lists<'a>),
+}
+
+impl<'a> Neighbours<'a> {
+    /// Found by looking at all points.
+    #[must_use]
+    pub const fn among(points: &'a [Vec3]) -> Self {
+        Self { points, source: Source::All }
+    }
+
+    /// Found by an index of these points, if there is one.
+    #[must_use]
+    pub fn by(index: Option<&'a dyn SpatialIndex>, points: &'a [Vec3]) -> Self {
+        Self { points, source: index.map_or(Source::All, Source::Index) }
+    }
+
+    /// Found in lists of these points.
+    pub(crate) const fn listed(lists: Lists<'a>, points: &'a [Vec3]) -> Self {
+        Self { points, source: Source::Lists(lists) }
+    }
+
+    /// Visits each of `rows` that has others within `reach` \[m\] with these, in ascending order, in runs of 32 and a last one
+    /// that may be shorter; all runs of a row follow each other. Rows come in an order of the index's own. Points that are not
+    /// finite are near nobody.
+    ///
+    /// Lists and indices are made for the reach that the scene's forces ask for, and answer a larger one by looking at all.
+    pub fn of(&self, rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &[u32])) {
+        let rows = rows.start..rows.end.min(self.points.len());
+        match self.source {
+            _ if !(reach > 0.0) => {}
+            Source::Lists(lists) if lists.reaches(reach) => lists.of(self.points, rows, reach, visit),
+            Source::Index(index) => self.by_index(index, rows, reach, visit),
+            _ => rows.for_each(|row| self.by_all(row, reach, visit)),
+        }
+    }
+
+    /// How many points lie within `radius` \[m\] of a place, whoever lies there included.
+    #[must_use]
+    pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
+        match self.source {
+            Source::Index(index) => index.count(place, radius).found,
+            _ => count_of(self.points, place, radius),
+        }
+    }
+
+    /// Whether any division of the rows costs as much as all of them together.
+    pub(crate) fn can_be_divided(&self) -> bool {
+        !matches!(self.source, Source::Index(_))
+    }
+
+    /// The neighbours by an index, which has them in an order of its own.
+    #[inline(never)]
+    fn by_index(&self, index: &dyn SpatialIndex, rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &[u32])) {
+        let (mut found, mut len, mut of) = ([0; MOST], 0, None);
+        let mut finish = |row: Option<usize>, found: &mut [u32; MOST], len: usize| match row {
+            Some(row) if len <= MOST => {
+                found[..len].sort_unstable();
+                found[..len].chunks(RUN).for_each(|run| visit(row, run));
+            }
+            // Of so many there are a good part of all points.
+            Some(row) => self.by_all(row, reach, &mut *visit),
+            None => {}
+        };
+        index.neighbours(reach, &mut |row, others| {
+            let row = row as usize;
+            if !rows.contains(&row) {
+                return;
+            }
+            if of != Some(row) {
+                finish(of, &mut found, len);
+                (of, len) = (Some(row), 0);
+            }
+            if let Some(room) = found.get_mut(len..len + others.len()) {
+                room.copy_from_slice(others);
+            }
+            len += others.len();
+        });
+        finish(of, &mut found, len);
+    }
+
+    /// The neighbours of one row, found by looking at all others.
+    fn by_all(&self, row: usize, reach: f32, visit: &mut dyn FnMut(usize, &[u32])) {
+        let all = (0..self.points.len() as u32).filter(|&other| other as usize != row);
+        in_runs(self.points, row, all, reach, visit);
+    }
+}
+
+impl fmt::Debug for Neighbours<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Neighbours").field("points", &self.points.len()).finish_non_exhaustive()
+    }
+}
+
+/// Visits a row with those of some others that are within `reach` of it, in their order.
+#[inline]
+pub(super) fn in_runs(
+    points: &[Vec3],
+    row: usize,
+    others: impl Iterator<Item = u32>,
+    reach: f32,
+    visit: &mut dyn FnMut(usize, &[u32]),
+) {
+    let (mut run, mut len, place, square) = ([0; RUN], 0, points[row], reach * reach);
+    for other in others {
+        let d = points[other as usize] - place;
+        // Written before it is known whether it stays, so that there is no branch to guess.
+        run[len] = other;
+        len += usize::from(d.x * d.x + d.y * d.y + d.z * d.z <= square);
+        if len == RUN {
+            visit(row, &run);
+            len = 0;
+        }
+    }
+    if len > 0 {
+        visit(row, &run[..len]);
+    }
+}
+
+/// How many of these points lie within `radius` \[m\] of a place.
+pub(crate) fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
+    let square = radius * radius;
+    let is_near = |&&point: &&Vec3| {
+        let d = point - place;
+        d.x * d.x + d.y * d.y + d.z * d.z <= square
+    };
+    if radius >= 0.0 { points.iter().filter(is_near).count() as u64 } else { 0 }
+}
