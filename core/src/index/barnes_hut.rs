@@ -1,8 +1,8 @@
 //! Sums over all points in which far groups act as one.
 
-use super::near::Region;
-use super::sums::{GROUP, Sums};
-use super::tree::Node;
+use super::path::Path;
+use super::sums::{GROUP, Law, Sums, Wide};
+use super::view::{Seen, View, longest};
 use super::{Cost, Octree, SpatialIndex, Stats, TooSmall};
 use crate::math::max;
 use core::ops::Range;
@@ -23,6 +23,8 @@ pub struct BarnesHut<'m> {
     moments: &'m mut [Moments],
     /// The weights are divided by this power of two, so that their moments are within an `f32`.
     unit: f32,
+    /// Whether there are weights of both signs, and so dipoles.
+    signed: bool,
 }
 
 /// What counts as far, and how far groups act.
@@ -50,6 +52,8 @@ pub(super) struct Moments {
     pub(super) dipole: [f32; 3],
     /// Σ w d dᵀ: xx, yy, zz, xy, yz, zx.
     pub(super) second: [f32; 6],
+    /// The longest side of the node's box.
+    pub(super) side: f32,
 }
 
 impl Moments {
@@ -71,9 +75,12 @@ impl Moments {
                 second[k] += part.second[k] + d[i] * e[j] + d[j] * e[i] + w * e[i] * e[j];
             }
         }
-        Self { center: center.to_array(), weight, absolute, dipole: dipole.to_array(), second }
+        Self { center: center.to_array(), weight, absolute, dipole: dipole.to_array(), second, side: 0.0 }
     }
 }
+
+/// So many points are summed one by one as quickly as all their moments.
+const FEW: usize = 2;
 
 /// The axes of the six second moments.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
@@ -116,6 +123,7 @@ impl<'m> BarnesHut<'m> {
             weights: bytemuck::cast_slice_mut(weights),
             moments: bytemuck::cast_slice_mut(&mut moments[..whole]),
             unit: 1.0,
+            signed: false,
         }
     }
 
@@ -140,6 +148,10 @@ impl<'m> BarnesHut<'m> {
         for (weight, &row) in self.weights.iter_mut().zip(self.tree.order()) {
             *weight = given(row) / self.unit;
         }
+        let of_sign = |negative| {
+            self.weights[..self.tree.order().len()].iter().any(|&w| if negative { w < 0.0 } else { w > 0.0 })
+        };
+        self.signed = of_sign(true) && of_sign(false);
         let (tree, weights) = (&self.tree, &*self.weights);
         for node in (0..tree.nodes().len().saturating_sub(1)).rev() {
             let moments = if tree.is_leaf(node) {
@@ -153,7 +165,8 @@ impl<'m> BarnesHut<'m> {
                 let (moments, children) = (&*self.moments, tree.children(node));
                 Moments::of(children.map(|child| moments[child]))
             };
-            self.moments[node] = moments;
+            self.moments[node] =
+                Moments { side: longest(tree.nodes()[node].high() - tree.nodes()[node].low()), ..moments };
         }
         Ok(())
     }
@@ -171,78 +184,128 @@ impl<'m> BarnesHut<'m> {
     /// never part of another function.
     #[inline(never)]
     pub fn field(&self, law: Opening, rows: Range<usize>, visit: &mut dyn FnMut(usize, Vec3)) -> Cost {
-        let (order, mut cost, mut sums) = (self.tree.order(), Cost::default(), Sums::new(law, self.tree.points()));
+        let law = Law::new(law, self.tree.points(), self.signed);
+        let (order, mut cost, mut sums, mut wide) =
+            (self.tree.order(), Cost::default(), Sums::new(law), Wide::new(law));
+        let nodes = self.tree.nodes();
+        let mut path = Path::new(nodes.len().saturating_sub(1));
         let mut node = 0;
-        while node + 1 < self.tree.nodes().len() {
+        while node + 1 < nodes.len() {
             let slots = self.tree.all_slots(node);
             if slots.len() > GROUP && !self.tree.is_leaf(node) {
                 node += 1;
                 continue;
             }
-            node = self.tree.nodes()[node].next();
             for start in slots.clone().step_by(GROUP) {
                 let group = start..slots.end.min(start + GROUP);
                 if group.clone().any(|slot| rows.contains(&(order[slot] as usize))) {
-                    cost += self.group(group, &rows, &mut sums, visit);
+                    cost += self.approach(node, law, &mut path, &mut wide);
+                    cost += self.sum(group.clone(), law, &path, &mut wide, &mut sums);
+                    for (slot, sum) in group.zip(&sums.sums) {
+                        let row = order[slot] as usize;
+                        if rows.contains(&row) {
+                            cost.found += 1;
+                            visit(row, *sum * law.scale * self.unit * law.scale);
+                        }
+                    }
                 }
+            }
+            node = nodes[node].next();
+        }
+        cost
+    }
+
+    /// Goes into the boxes that hold a node, but for itself.
+    fn approach(&self, node: usize, law: Law, path: &mut Path, wide: &mut Wide) -> Cost {
+        let mut cost = Cost::default();
+        path.leave(node);
+        while path.node() != node && !path.is_full() {
+            let holds = |&child: &usize| node < self.tree.nodes()[child].next();
+            match self.tree.children(path.node()).find(holds) {
+                Some(child) if child != node && self.enter(child, law, path, wide, &mut cost) => {}
+                _ => break,
             }
         }
         cost
     }
 
-    /// The sums at the points of a group.
-    fn group(
-        &self,
-        group: Range<usize>,
-        rows: &Range<usize>,
-        sums: &mut Sums,
-        visit: &mut dyn FnMut(usize, Vec3),
-    ) -> Cost {
-        let (points, order, nodes) = (self.tree.points(), self.tree.order(), self.tree.nodes());
-        let region = Region::new(points.bounds(group.clone()));
-        sums.begin(group.clone().map(|slot| points.point(slot)));
-        let (mut node, mut cost) = (0, Cost::default());
-        while node + 1 < nodes.len() {
-            cost.visits += 1;
-            let moments = &self.moments[node];
-            let center = Vec3::from_array(moments.center);
-            let square = region.square_to(center, center, Vec3::ZERO);
-            let side = nodes[node].side();
-            let slots = self.tree.all_slots(node);
-            let itself = slots.start < group.end && group.start < slots.end;
-            if !itself && side * side < sums.theta_squared * square {
-                sums.push_far(moments);
-                cost.tests += group.len() as u64;
+    /// Goes into a box: nodes that are far from it add to its series, those that are as small are left to what is in it.
+    /// False if there is no room for them.
+    fn enter(&self, inner: usize, law: Law, path: &mut Path, wide: &mut Wide, cost: &mut Cost) -> bool {
+        let nodes = self.tree.nodes();
+        let view = View::new([nodes[inner].low(), nodes[inner].high()], self.tree.all_slots(inner), law);
+        let (given, first) = (path.nodes_left(), path.nodes_left().end);
+        wide.begin(&view.region);
+        for i in given {
+            let (mut node, end) = (path.at(i), nodes[path.at(i)].next());
+            while node < end {
+                cost.visits += 1;
+                let seen = view.sees(&self.moments[node], || self.tree.all_slots(node));
+                if seen == Seen::ByAll {
+                    wide.push(&self.moments[node]);
+                    cost.tests += 1;
+                } else if seen == Seen::Near && self.moments[node].side >= view.side && !self.tree.is_leaf(node) {
+                    node += 1;
+                    continue;
+                } else if !path.push(node) {
+                    path.truncate(first);
+                    return false;
+                }
                 node = nodes[node].next();
-                continue;
-            }
-            if self.tree.is_leaf(node) {
-                for slot in self.tree.slots(node) {
-                    sums.push(points.point(slot), self.weights[slot]);
-                }
-                cost.tests += (group.len() * self.tree.slots(node).len()) as u64;
-            }
-            node += 1;
-        }
-        sums.flush();
-        sums.flush_far();
-        for (slot, sum) in group.zip(&sums.sums) {
-            let row = order[slot] as usize;
-            if rows.contains(&row) {
-                cost.found += 1;
-                visit(row, *sum * sums.scale * self.unit * sums.scale);
             }
         }
-        cost
+        let series = wide.finish().and(path.series());
+        path.enter(inner..nodes[inner].next(), first, series);
+        true
     }
-}
 
-impl Node {
-    /// The longest side of its box.
+    /// The places and weights of some slots.
     #[inline(always)]
-    fn side(&self) -> f32 {
-        let side = self.high() - self.low();
-        max(side.x, max(side.y, side.z))
+    fn sources(&self, slots: Range<usize>) -> [&[f32]; 4] {
+        let [x, y, z] = self.tree.points().run(&slots);
+        [x, y, z, &self.weights[slots]]
+    }
+
+    /// Takes the sums at the points of a group, of what the way to it has left and of its series.
+    fn sum(&self, group: Range<usize>, law: Law, path: &Path, wide: &mut Wide, sums: &mut Sums) -> Cost {
+        let (points, nodes, mut cost) = (self.tree.points(), self.tree.nodes(), Cost::default());
+        let view = View::new(points.bounds(group.clone()), group.clone(), law);
+        wide.begin(&view.region);
+        sums.begin(group.clone().map(|slot| points.point(slot)));
+        for i in path.nodes_left() {
+            let (mut node, end) = (path.at(i), nodes[path.at(i)].next());
+            while node < end {
+                cost.visits += 1;
+                let moments = &self.moments[node];
+                match view.sees(&self.moments[node], || self.tree.all_slots(node)) {
+                    Seen::ByAll => {
+                        wide.push(moments);
+                        cost.tests += 1;
+                    }
+                    Seen::ByEach if law.quadrupole && self.tree.all_slots(node).len() <= FEW => {
+                        let slots = self.tree.all_slots(node);
+                        cost.tests += (group.len() * slots.len()) as u64;
+                        sums.push(self.sources(slots));
+                    }
+                    Seen::ByEach => {
+                        sums.push_far(moments);
+                        cost.tests += group.len() as u64;
+                    }
+                    Seen::Near => {
+                        if self.tree.is_leaf(node) {
+                            let slots = self.tree.slots(node);
+                            cost.tests += (group.len() * slots.len()) as u64;
+                            sums.push(self.sources(slots));
+                        }
+                        node += 1;
+                        continue;
+                    }
+                }
+                node = nodes[node].next();
+            }
+        }
+        sums.finish(&wide.finish().and(path.series()));
+        cost
     }
 }
 

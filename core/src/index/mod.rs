@@ -37,15 +37,19 @@ mod frames;
 mod grid;
 mod hash;
 mod kd;
+mod list;
+mod local;
 mod near;
 mod nearest;
 mod octree;
+mod path;
 mod search;
 mod sorted;
 mod split;
 mod structure;
 mod sums;
 mod tree;
+mod view;
 
 pub use arrange::{Arrange, InGrid, InKd};
 #[cfg(feature = "std")]
