@@ -13,7 +13,8 @@ use glam::Vec3;
 ///
 /// Nodes carry their weight, dipole and quadrupole about the centre of their absolute weights. Near points go through the
 /// tree together (Barnes 1990): a node acts on all of a group as one if it is small compared to its distance from the
-/// group's box, and what a group is to feel is put in one list and summed in lanes.
+/// group's box, and what a group is to feel is put in one list and summed in lanes. What is far from a whole box of groups,
+/// compared to the box's own size, acts by a Taylor series about its centre (Dehnen 2002).
 #[derive(Debug)]
 pub struct BarnesHut<'m> {
     tree: Octree<'m>,
@@ -236,27 +237,40 @@ impl<'m> BarnesHut<'m> {
         let view = View::new([nodes[inner].low(), nodes[inner].high()], self.tree.all_slots(inner), law);
         let (given, first) = (path.nodes_left(), path.nodes_left().end);
         wide.begin(&view.region);
+        let mut room = true;
         for i in given {
-            let (mut node, end) = (path.at(i), nodes[path.at(i)].next());
-            while node < end {
-                cost.visits += 1;
-                let seen = view.sees(&self.moments[node], || self.tree.all_slots(node));
+            cost.visits += self.walk(path.at(i), |node, moments| {
+                let seen = view.sees(moments, || self.tree.all_slots(node));
                 if seen == Seen::ByAll {
-                    wide.push(&self.moments[node]);
+                    wide.push(moments);
                     cost.tests += 1;
-                } else if seen == Seen::Near && self.moments[node].side >= view.side && !self.tree.is_leaf(node) {
-                    node += 1;
-                    continue;
-                } else if !path.push(node) {
-                    path.truncate(first);
-                    return false;
+                } else if seen == Seen::Near && moments.side >= view.side && !self.tree.is_leaf(node) {
+                    return true;
+                } else {
+                    room = room && path.push(node);
                 }
-                node = nodes[node].next();
-            }
+                false
+            });
+        }
+        if !room {
+            path.truncate(first);
+            return false;
         }
         let series = wide.finish().and(path.series());
         path.enter(inner..nodes[inner].next(), first, series);
         true
+    }
+
+    /// Visits a node and all below it, down to where it is told not to go into; returns how many that were.
+    #[inline(always)]
+    fn walk(&self, from: usize, mut into: impl FnMut(usize, &Moments) -> bool) -> u64 {
+        let nodes = self.tree.nodes();
+        let (mut node, end, mut visits) = (from, nodes[from].next(), 0);
+        while node < end {
+            visits += 1;
+            node = if into(node, &self.moments[node]) { node + 1 } else { nodes[node].next() };
+        }
+        visits
     }
 
     /// The places and weights of some slots.
@@ -268,41 +282,31 @@ impl<'m> BarnesHut<'m> {
 
     /// Takes the sums at the points of a group, of what the way to it has left and of its series.
     fn sum(&self, group: Range<usize>, law: Law, path: &Path, wide: &mut Wide, sums: &mut Sums) -> Cost {
-        let (points, nodes, mut cost) = (self.tree.points(), self.tree.nodes(), Cost::default());
+        let (points, mut cost) = (self.tree.points(), Cost::default());
         let view = View::new(points.bounds(group.clone()), group.clone(), law);
         wide.begin(&view.region);
         sums.begin(group.clone().map(|slot| points.point(slot)));
         for i in path.nodes_left() {
-            let (mut node, end) = (path.at(i), nodes[path.at(i)].next());
-            while node < end {
-                cost.visits += 1;
-                let moments = &self.moments[node];
-                match view.sees(&self.moments[node], || self.tree.all_slots(node)) {
+            cost.visits += self.walk(path.at(i), |node, moments| {
+                let slots = self.tree.all_slots(node);
+                let (seen, pairs) = (view.sees(moments, || slots.clone()), group.len() as u64);
+                match seen {
                     Seen::ByAll => {
                         wide.push(moments);
                         cost.tests += 1;
                     }
-                    Seen::ByEach if law.quadrupole && self.tree.all_slots(node).len() <= FEW => {
-                        let slots = self.tree.all_slots(node);
-                        cost.tests += (group.len() * slots.len()) as u64;
+                    Seen::ByEach if !law.quadrupole || slots.len() > FEW => {
+                        sums.push_far(moments);
+                        cost.tests += pairs;
+                    }
+                    Seen::Near if !self.tree.is_leaf(node) => return true,
+                    _ => {
+                        cost.tests += pairs * slots.len() as u64;
                         sums.push(self.sources(slots));
                     }
-                    Seen::ByEach => {
-                        sums.push_far(moments);
-                        cost.tests += group.len() as u64;
-                    }
-                    Seen::Near => {
-                        if self.tree.is_leaf(node) {
-                            let slots = self.tree.slots(node);
-                            cost.tests += (group.len() * slots.len()) as u64;
-                            sums.push(self.sources(slots));
-                        }
-                        node += 1;
-                        continue;
-                    }
                 }
-                node = nodes[node].next();
-            }
+                false
+            });
         }
         sums.finish(&wide.finish().and(path.series()));
         cost

@@ -6,7 +6,7 @@ use core::ops::Range;
 /// Boxes on the way, at most; from there on groups do on their own.
 const LEVELS: usize = 12;
 /// Nodes that boxes on the way leave to what is in them, at most; likewise.
-const LEFT: usize = 2048;
+const LEFT: usize = 1536;
 
 /// The boxes that hold a group, from the largest on.
 pub(super) struct Path {

@@ -15,6 +15,8 @@ pub(super) const GROUP: usize = 64;
 const LIST: usize = 256;
 /// Far nodes that are summed at once, if they act by all their moments.
 const FAR: usize = 32;
+/// Nodes that are added to a series at once.
+const WIDE: usize = 16;
 
 /// Between these distances weights of two and less over the third power are ordinary numbers, or too small to matter
 /// beside that of one which is within the farthest: 2⁻³⁹ and 2³⁰.
@@ -196,7 +198,7 @@ pub(super) struct Wide {
     law: Law,
     local: Local,
     /// The moments of the nodes to be added.
-    list: List<MOMENTS, FAR>,
+    list: List<MOMENTS, WIDE>,
 }
 
 impl Wide {
