@@ -63,6 +63,17 @@ impl Pull {
         }
     }
 
+    /// The same where no third power of a softened distance leaves the range of an `f32`, and s² is not zero.
+    #[inline(always)]
+    pub(crate) fn add_softened(&mut self, place: [f32x8; 3], x: [f32x8; 3], w: f32x8, square: f32x8) {
+        let d = [x[0] - place[0], x[1] - place[1], x[2] - place[2]];
+        let u2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + square;
+        let strength = w / (u2 * sqrt(u2));
+        for (sum, d) in self.0.iter_mut().zip(d) {
+            *sum += strength * d;
+        }
+    }
+
     /// The sum.
     #[inline(always)]
     pub(crate) fn total(self) -> Vec3 {

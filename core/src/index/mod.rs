@@ -48,7 +48,6 @@ mod search;
 mod sorted;
 mod split;
 mod structure;
-mod sums;
 mod tree;
 
 pub use arrange::{Arrange, InGrid, InKd};

@@ -178,6 +178,12 @@ impl<'m> Sorted<'m> {
         Vec3::new(self.columns[0][slot], self.columns[1][slot], self.columns[2][slot])
     }
 
+    /// The coordinates of some slots.
+    #[inline(always)]
+    pub(super) fn run(&self, slots: &Range<usize>) -> [&[f32]; 3] {
+        core::array::from_fn(|axis| &self.columns[axis][slots.clone()])
+    }
+
     /// The box around some slots.
     pub(super) fn bounds(&self, slots: Range<usize>) -> [Vec3; 2] {
         let side = |column: &[f32]| {

@@ -55,7 +55,7 @@ fn newborn_particles_feel_it_too() {
             assert_ne!(near, far, "{n}, {steps}");
             for ((x, v), (y, w)) in near.iter().zip(&far) {
                 assert!(v.x < -0.01 && (*v - *w).length() < 5e-3 * v.length(), "{n}, {steps}: {v} {w}");
-                assert!((*x - *y).length() < 1e-3, "{n}, {steps}: {x} {y}");
+                assert!((*x - *y).length() < 2e-3, "{n}, {steps}: {x} {y}");
             }
         }
     }

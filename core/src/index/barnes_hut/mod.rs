@@ -1,19 +1,30 @@
 //! Sums over all points in which far groups act as one.
 
-use super::region::Region;
-use super::sums::{GROUP, Sums};
-use super::tree::Node;
+mod list;
+mod local;
+mod moments;
+mod path;
+mod sums;
+mod view;
+
+pub use moments::Opening;
+
 use super::{Cost, Octree, SpatialIndex, Stats, TooSmall};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
+use moments::Moments;
+use path::Path;
+use sums::{GROUP, Law, Sums, Wide};
+use view::{Seen, View, longest};
 
 /// Points with weights in an octree, for sums of Σ w d⃗ / (d² + s²)^{3/2} (Barnes and Hut 1986): weights are masses, or
 /// charges of both signs.
 ///
 /// Nodes carry their weight, dipole and quadrupole about the centre of their absolute weights. Near points go through the
 /// tree together (Barnes 1990): a node acts on all of a group as one if it is small compared to its distance from the
-/// group's box, and what a group is to feel is put in one list and summed in lanes.
+/// group's box, and what a group is to feel is put in one list and summed in lanes. What is far from a whole box of groups,
+/// compared to the box's own size, acts by a Taylor series about its centre (Dehnen 2002).
 #[derive(Debug)]
 pub struct BarnesHut<'m> {
     tree: Octree<'m>,
@@ -23,60 +34,12 @@ pub struct BarnesHut<'m> {
     moments: &'m mut [Moments],
     /// The weights are divided by this power of two, so that their moments are within an `f32`.
     unit: f32,
+    /// Whether there are weights of both signs, and so dipoles.
+    signed: bool,
 }
 
-/// What counts as far, and how far groups act.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Opening {
-    /// A node acts as one if its longest side is less than this times its distance.
-    pub theta: f32,
-    /// Softening length s \[m\].
-    pub softening: f32,
-    /// Whether nodes act by their dipole and quadrupole as well; else by their weight alone.
-    pub quadrupole: bool,
-}
-
-/// Of a node's weights: about their centre c, with d⃗ = x⃗ − c⃗.
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(super) struct Moments {
-    /// c = Σ |w| x / Σ |w|.
-    pub(super) center: [f32; 3],
-    /// Σ w.
-    pub(super) weight: f32,
-    /// Σ |w|.
-    absolute: f32,
-    /// Σ w d.
-    pub(super) dipole: [f32; 3],
-    /// Σ w d dᵀ: xx, yy, zz, xy, yz, zx.
-    pub(super) second: [f32; 6],
-}
-
-impl Moments {
-    /// The moments of parts, or of points, together.
-    fn of(parts: impl Iterator<Item = Self> + Clone) -> Self {
-        let (mut sum, mut absolute, mut weight) = (Vec3::ZERO, 0.0, 0.0);
-        for part in parts.clone() {
-            sum += Vec3::from_array(part.center) * part.absolute;
-            absolute += part.absolute;
-            weight += part.weight;
-        }
-        let Some(first) = parts.clone().next() else { return Self::default() };
-        let center = if absolute > 0.0 { sum / absolute } else { Vec3::from_array(first.center) };
-        let (mut dipole, mut second) = (Vec3::ZERO, [0.0; 6]);
-        for part in parts {
-            let (e, d, w) = (Vec3::from_array(part.center) - center, Vec3::from_array(part.dipole), part.weight);
-            dipole += d + e * w;
-            for (k, (i, j)) in PAIRS.into_iter().enumerate() {
-                second[k] += part.second[k] + d[i] * e[j] + d[j] * e[i] + w * e[i] * e[j];
-            }
-        }
-        Self { center: center.to_array(), weight, absolute, dipole: dipole.to_array(), second }
-    }
-}
-
-/// The axes of the six second moments.
-const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+/// So many points are summed one by one as quickly as all their moments.
+const FEW: usize = 2;
 
 /// Words of a node's moments.
 const MOMENTS: usize = size_of::<Moments>() / 4;
@@ -116,6 +79,7 @@ impl<'m> BarnesHut<'m> {
             weights: bytemuck::cast_slice_mut(weights),
             moments: bytemuck::cast_slice_mut(&mut moments[..whole]),
             unit: 1.0,
+            signed: false,
         }
     }
 
@@ -140,6 +104,10 @@ impl<'m> BarnesHut<'m> {
         for (weight, &row) in self.weights.iter_mut().zip(self.tree.order()) {
             *weight = given(row) / self.unit;
         }
+        let of_sign = |negative| {
+            self.weights[..self.tree.order().len()].iter().any(|&w| if negative { w < 0.0 } else { w > 0.0 })
+        };
+        self.signed = of_sign(true) && of_sign(false);
         let (tree, weights) = (&self.tree, &*self.weights);
         for node in (0..tree.nodes().len().saturating_sub(1)).rev() {
             let moments = if tree.is_leaf(node) {
@@ -153,7 +121,8 @@ impl<'m> BarnesHut<'m> {
                 let (moments, children) = (&*self.moments, tree.children(node));
                 Moments::of(children.map(|child| moments[child]))
             };
-            self.moments[node] = moments;
+            self.moments[node] =
+                Moments { side: longest(tree.nodes()[node].high() - tree.nodes()[node].low()), ..moments };
         }
         Ok(())
     }
@@ -171,78 +140,131 @@ impl<'m> BarnesHut<'m> {
     /// never part of another function.
     #[inline(never)]
     pub fn field(&self, law: Opening, rows: Range<usize>, visit: &mut dyn FnMut(usize, Vec3)) -> Cost {
-        let (order, mut cost, mut sums) = (self.tree.order(), Cost::default(), Sums::new(law, self.tree.points()));
+        let law = Law::new(law, self.tree.points(), self.signed);
+        let (order, mut cost, mut sums, mut wide) =
+            (self.tree.order(), Cost::default(), Sums::new(law), Wide::new(law));
+        let nodes = self.tree.nodes();
+        let mut path = Path::new(nodes.len().saturating_sub(1));
         let mut node = 0;
-        while node + 1 < self.tree.nodes().len() {
+        while node + 1 < nodes.len() {
             let slots = self.tree.all_slots(node);
             if slots.len() > GROUP && !self.tree.is_leaf(node) {
                 node += 1;
                 continue;
             }
-            node = self.tree.nodes()[node].next();
             for start in slots.clone().step_by(GROUP) {
                 let group = start..slots.end.min(start + GROUP);
                 if group.clone().any(|slot| rows.contains(&(order[slot] as usize))) {
-                    cost += self.group(group, &rows, &mut sums, visit);
+                    cost += self.approach(node, law, &mut path, &mut wide);
+                    cost += self.sum(group.clone(), law, &path, &mut wide, &mut sums);
+                    for (slot, sum) in group.zip(&sums.sums) {
+                        let row = order[slot] as usize;
+                        if rows.contains(&row) {
+                            cost.found += 1;
+                            visit(row, *sum * law.scale * self.unit * law.scale);
+                        }
+                    }
                 }
+            }
+            node = nodes[node].next();
+        }
+        cost
+    }
+
+    /// Goes into the boxes that hold a node, but for itself.
+    fn approach(&self, node: usize, law: Law, path: &mut Path, wide: &mut Wide) -> Cost {
+        let mut cost = Cost::default();
+        path.leave(node);
+        while path.node() != node && !path.is_full() {
+            let holds = |&child: &usize| node < self.tree.nodes()[child].next();
+            match self.tree.children(path.node()).find(holds) {
+                Some(child) if child != node && self.enter(child, law, path, wide, &mut cost) => {}
+                _ => break,
             }
         }
         cost
     }
 
-    /// The sums at the points of a group.
-    fn group(
-        &self,
-        group: Range<usize>,
-        rows: &Range<usize>,
-        sums: &mut Sums,
-        visit: &mut dyn FnMut(usize, Vec3),
-    ) -> Cost {
-        let (points, order, nodes) = (self.tree.points(), self.tree.order(), self.tree.nodes());
-        let region = Region::new(points.bounds(group.clone()));
-        sums.begin(group.clone().map(|slot| points.point(slot)));
-        let (mut node, mut cost) = (0, Cost::default());
-        while node + 1 < nodes.len() {
-            cost.visits += 1;
-            let moments = &self.moments[node];
-            let center = Vec3::from_array(moments.center);
-            let square = region.square_to(center, center, Vec3::ZERO);
-            let side = nodes[node].side();
-            let slots = self.tree.all_slots(node);
-            let itself = slots.start < group.end && group.start < slots.end;
-            if !itself && side * side < sums.theta_squared * square {
-                sums.push_far(moments);
-                cost.tests += group.len() as u64;
-                node = nodes[node].next();
-                continue;
-            }
-            if self.tree.is_leaf(node) {
-                for slot in self.tree.slots(node) {
-                    sums.push(points.point(slot), self.weights[slot]);
+    /// Goes into a box: nodes that are far from it add to its series, those that are as small are left to what is in it.
+    /// False if there is no room for them.
+    fn enter(&self, inner: usize, law: Law, path: &mut Path, wide: &mut Wide, cost: &mut Cost) -> bool {
+        let nodes = self.tree.nodes();
+        let view = View::new([nodes[inner].low(), nodes[inner].high()], self.tree.all_slots(inner), law);
+        let (given, first) = (path.nodes_left(), path.nodes_left().end);
+        wide.begin(&view.region);
+        let mut room = true;
+        for i in given {
+            cost.visits += self.walk(path.at(i), |node, moments| {
+                let seen = view.sees(moments, || self.tree.all_slots(node));
+                if seen == Seen::ByAll {
+                    wide.push(moments);
+                    cost.tests += 1;
+                } else if seen == Seen::Near && moments.side >= view.side && !self.tree.is_leaf(node) {
+                    return true;
+                } else {
+                    room = room && path.push(node);
                 }
-                cost.tests += (group.len() * self.tree.slots(node).len()) as u64;
-            }
-            node += 1;
+                false
+            });
         }
-        sums.flush();
-        sums.flush_far();
-        for (slot, sum) in group.zip(&sums.sums) {
-            let row = order[slot] as usize;
-            if rows.contains(&row) {
-                cost.found += 1;
-                visit(row, *sum * sums.scale * self.unit * sums.scale);
-            }
+        if !room {
+            path.truncate(first);
+            return false;
         }
-        cost
+        let series = wide.finish().and(path.series());
+        path.enter(inner..nodes[inner].next(), first, series);
+        true
     }
-}
 
-impl Node {
-    /// The longest side of its box.
+    /// Visits a node and all below it, down to where it is told not to go into; returns how many that were.
     #[inline(always)]
-    fn side(&self) -> f32 {
-        let side = self.high() - self.low();
-        max(side.x, max(side.y, side.z))
+    fn walk(&self, from: usize, mut into: impl FnMut(usize, &Moments) -> bool) -> u64 {
+        let nodes = self.tree.nodes();
+        let (mut node, end, mut visits) = (from, nodes[from].next(), 0);
+        while node < end {
+            visits += 1;
+            node = if into(node, &self.moments[node]) { node + 1 } else { nodes[node].next() };
+        }
+        visits
+    }
+
+    /// The places and weights of some slots.
+    #[inline(always)]
+    fn sources(&self, slots: Range<usize>) -> [&[f32]; 4] {
+        let [x, y, z] = self.tree.points().run(&slots);
+        [x, y, z, &self.weights[slots]]
+    }
+
+    /// Takes the sums at the points of a group, of what the way to it has left and of its series.
+    fn sum(&self, group: Range<usize>, law: Law, path: &Path, wide: &mut Wide, sums: &mut Sums) -> Cost {
+        let (points, mut cost) = (self.tree.points(), Cost::default());
+        let view = View::new(points.bounds(group.clone()), group.clone(), law);
+        wide.begin(&view.region);
+        sums.begin(group.clone().map(|slot| points.point(slot)));
+        for i in path.nodes_left() {
+            cost.visits += self.walk(path.at(i), |node, moments| {
+                let slots = self.tree.all_slots(node);
+                let (seen, pairs) = (view.sees(moments, || slots.clone()), group.len() as u64);
+                match seen {
+                    Seen::ByAll => {
+                        wide.push(moments);
+                        cost.tests += 1;
+                    }
+                    Seen::ByEach if !law.quadrupole || slots.len() > FEW => {
+                        sums.push_far(moments);
+                        cost.tests += pairs;
+                    }
+                    Seen::Near if !self.tree.is_leaf(node) => return true,
+                    _ => {
+                        cost.tests += pairs * slots.len() as u64;
+                        sums.push(self.sources(slots));
+                    }
+                }
+                false
+            });
+        }
+        sums.finish(&wide.finish().and(path.series()));
+        cost
     }
 }
 
