@@ -33,7 +33,7 @@ pub use mutual::MutualGravity;
 pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
-pub use radial::{LennardJones, Pair, PowerLaw, Radial, RadialLaw, Weight};
+pub use radial::{LennardJones, Pair, PowerLaw, Radial, RadialLaw, Run, Weight};
 pub use relaxation::Relaxation;
 pub use sink::Sink;
 pub(crate) use spring::is_broken;

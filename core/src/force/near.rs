@@ -15,9 +15,9 @@ pub(super) fn add_up(
     term: impl Fn(usize, usize) -> Vec3,
 ) {
     let first = rows.start;
-    state.near.of(rows, reach, &mut |row, others| {
+    state.near.of(rows, reach, &mut |row, nearby| {
         let mut sum = Vec3::ZERO;
-        for &other in others {
+        for &other in nearby.rows() {
             let term = term(row, other as usize);
             if term.is_finite() {
                 sum += term;
@@ -33,8 +33,8 @@ pub(super) fn add_up(
 #[cfg(feature = "std")]
 pub(super) fn sum_of_pairs(state: &State<'_>, reach: f32, mut term: impl FnMut(usize, usize) -> f64) -> f64 {
     let mut sum = 0.0;
-    state.near.of(0..state.position.len(), reach, &mut |row, others| {
-        let later = others.iter().map(|&other| other as usize).filter(|&other| other > row);
+    state.near.of(0..state.position.len(), reach, &mut |row, nearby| {
+        let later = nearby.rows().iter().map(|&other| other as usize).filter(|&other| other > row);
         sum += later.map(|other| term(row, other)).sum::<f64>();
     });
     sum

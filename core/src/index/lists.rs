@@ -2,14 +2,14 @@
 //! Fluids", Phys. Rev. 159, 1967).
 
 use super::SpatialIndex;
-use super::neighbours::in_runs;
+use super::neighbours::{Nearby, in_runs};
 use crate::math::{max, sqrt};
 use crate::rows::farthest;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Words of a point's own: where it was, where its list begins and ends, and its place in the order of the lists.
-const OWN: usize = 6;
+/// Words of a point's own: its row, where its list ends, where it was when the lists were made and where it is.
+const OWN: usize = 8;
 /// Steps that go by without lists after these have been of no use.
 const PAUSE: u32 = 16;
 /// Within what the squares of coordinates and of radii are numbers \[m\].
@@ -18,9 +18,8 @@ const TAME: Range<f32> = 1e-15..1e15;
 /// What is known of the lists in a system's memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Listed {
-    /// Points that they are of, and rows that have any.
+    /// Points that they are of.
     points: u32,
-    rows: u32,
     /// The radius that they are good for, and how far anybody may go meanwhile \[m\].
     reach: f32,
     leash: f32,
@@ -41,18 +40,33 @@ pub(crate) struct ListMemory<'a> {
     pub(crate) step: f32,
 }
 
-/// Lists, for reading.
+/// Lists, for reading. Points are numbered anew, in the order in which the index has visited them: what is near in
+/// space is near in memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Lists<'a> {
     reach: f32,
-    order: &'a [u32],
-    spans: &'a [[u32; 2]],
+    /// Their rows.
+    rows: &'a [u32],
+    /// Where their lists end.
+    ends: &'a [u32],
+    /// Where they are.
+    places: &'a [Vec3],
+    /// The lists, one behind the other: in the order of rows.
     entries: &'a [u32],
+}
+
+/// The same, in the making.
+struct Parts<'a> {
+    rows: &'a mut [u32],
+    ends: &'a mut [u32],
+    made: &'a mut [Vec3],
+    places: &'a mut [Vec3],
+    entries: &'a mut [u32],
 }
 
 impl Listed {
     /// None.
-    pub(crate) const NONE: Self = Self { points: 0, rows: 0, reach: 0.0, leash: 0.0, changes: 0, uses: 0, pause: 0 };
+    pub(crate) const NONE: Self = Self { points: 0, reach: 0.0, leash: 0.0, changes: 0, uses: 0, pause: 0 };
 }
 
 impl Lists<'_> {
@@ -62,12 +76,14 @@ impl Lists<'_> {
     }
 
     /// As [`Neighbours::of`](super::Neighbours::of).
-    pub(super) fn of(&self, points: &[Vec3], rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &[u32])) {
-        for &row in self.order {
-            let row = row as usize;
+    pub(super) fn of(&self, rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
+        let mut start = 0;
+        for ((&row, &end), &place) in self.rows.iter().zip(self.ends).zip(self.places) {
+            let (row, list) = (row as usize, &self.entries[start..end as usize]);
+            start = end as usize;
             if rows.contains(&row) {
-                let [start, end] = self.spans[row].map(|at| at as usize);
-                in_runs(points, row, self.entries[start..end].iter().copied(), reach, visit);
+                let others = list.iter().map(|&other| (self.rows[other as usize], self.places[other as usize]));
+                in_runs((row, place), others, reach, visit);
             }
         }
     }
@@ -83,11 +99,11 @@ impl ListMemory<'_> {
     pub(crate) fn kept(&mut self, points: &[Vec3], reach: f32) -> Option<Lists<'_>> {
         let Listed { points: len, reach: listed, leash, changes, .. } = *self.listed;
         let is_same = len as usize == points.len() && listed == reach && changes == self.changes && leash > 0.0;
-        if !is_same || !self.are_near(points, leash) {
+        if !is_same || !self.follow(points, leash) {
             return None;
         }
         self.listed.uses += 1;
-        Some(self.read(points.len()))
+        Some(self.read())
     }
 
     /// How much farther than `reach` lists should look that are made now; none, if they would not last. A way in a step that is a
@@ -114,58 +130,78 @@ impl ListMemory<'_> {
         points: &[Vec3],
         [reach, skin]: [f32; 2],
     ) -> Option<Lists<'_>> {
-        let (places, rest) = self.words.split_at_mut(3 * points.len());
-        let (spans, rest) = rest.split_at_mut(2 * points.len());
-        let (order, entries) = rest.split_at_mut(points.len());
-        bytemuck::cast_slice_mut(places).copy_from_slice(points);
-        let spans: &mut [[u32; 2]] = bytemuck::cast_slice_mut(spans);
-        let (mut rows, mut len, mut fits) = (0, 0, true);
+        let Parts { rows, ends, made, places, entries } = parts(self.words, points.len());
+        let (mut count, mut len, mut fits) = (0, 0, true);
         index.neighbours(reach + skin, &mut |row, others| {
-            let is_next = rows == 0 || order[rows - 1] != row;
-            if is_next {
-                order[rows] = row;
-                rows += 1;
-                spans[row as usize] = [len as u32; 2];
+            if count == 0 || rows[count - 1] != row {
+                let Some(next) = rows.get_mut(count) else { return fits = false };
+                *next = row;
+                count += 1;
             }
             fits &= len + others.len() <= entries.len();
             if fits {
                 entries[len..len + others.len()].copy_from_slice(others);
                 len += others.len();
-                spans[row as usize][1] = len as u32;
+                ends[count - 1] = len as u32;
             }
         });
         // Not again as soon, if there is no room.
-        self.listed.uses = if fits { 0 } else { 1 };
         self.listed.pause = if fits { 0 } else { PAUSE };
         if !fits {
             return None;
         }
-        for &row in &order[..rows] {
-            let [start, end] = spans[row as usize].map(|at| at as usize);
-            entries[start..end].sort_unstable();
+        let numbers: &mut [u32] = bytemuck::cast_slice_mut(places);
+        let numbers = &mut numbers[..points.len()];
+        numbers.fill(u32::MAX);
+        (0..).zip(&rows[..count]).for_each(|(number, &row)| numbers[row as usize] = number);
+        // Whoever has no neighbours is watched as well: it may come near others.
+        for row in (0..).take(points.len()).filter(|&row| numbers[row as usize] == u32::MAX) {
+            let Some((next, end)) = rows.get_mut(count).zip(ends.get_mut(count)) else { break };
+            (*next, *end) = (row, len as u32);
+            count += 1;
+        }
+        let mut start = 0;
+        for &end in &*ends {
+            let list = &mut entries[start..end as usize];
+            list.sort_unstable();
+            list.iter_mut().for_each(|other| *other = numbers[*other as usize]);
+            start = end as usize;
+        }
+        for ((made, place), &row) in made.iter_mut().zip(places).zip(&*rows) {
+            (*made, *place) = (points[row as usize], points[row as usize]);
         }
         let (changes, uses, pause) = (self.changes, 1, 0);
         // Half of the skin each, less what rounding may come to.
         let leash = 0.499 * skin - 4.0 * f32::EPSILON * farthest(points);
-        *self.listed = Listed { points: points.len() as u32, rows: rows as u32, reach, leash, changes, uses, pause };
-        Some(self.read(points.len()))
+        *self.listed = Listed { points: points.len() as u32, reach, leash, changes, uses, pause };
+        Some(self.read())
     }
 
-    fn read(&self, points: usize) -> Lists<'_> {
-        let (spans, rest) = self.words[3 * points..].split_at(2 * points);
-        let (order, entries) = rest.split_at(points);
-        let order = &order[..self.listed.rows as usize];
-        Lists { reach: self.listed.reach, order, spans: bytemuck::cast_slice(spans), entries }
+    fn read(&mut self) -> Lists<'_> {
+        let Listed { points, reach, .. } = *self.listed;
+        let Parts { rows, ends, places, entries, .. } = parts(self.words, points as usize);
+        Lists { reach, rows, ends, places, entries }
     }
 
-    /// Whether nobody has gone farther than the leash.
-    fn are_near(&self, points: &[Vec3], leash: f32) -> bool {
-        let places: &[Vec3] = bytemuck::cast_slice(&self.words[..3 * points.len()]);
+    /// Takes up where all are, and says whether nobody has gone farther than the leash.
+    fn follow(&mut self, points: &[Vec3], leash: f32) -> bool {
         let square = leash * leash;
-        let far = |(&place, &point): (&Vec3, &Vec3)| {
-            let d = point - place;
-            u32::from(!(d.x * d.x + d.y * d.y + d.z * d.z <= square))
-        };
-        places.iter().zip(points).map(far).fold(0, |any, far| any | far) == 0
+        let Parts { rows, made, places, .. } = parts(self.words, points.len());
+        let mut any = 0;
+        for ((place, made), &row) in places.iter_mut().zip(made).zip(&*rows) {
+            *place = points[row as usize];
+            let d = *place - *made;
+            any |= u32::from(!(d.x * d.x + d.y * d.y + d.z * d.z <= square));
+        }
+        any == 0
     }
+}
+
+/// The parts of memory for lists of so many points.
+fn parts(words: &mut [u32], points: usize) -> Parts<'_> {
+    let (rows, rest) = words.split_at_mut(points);
+    let (ends, rest) = rest.split_at_mut(points);
+    let (made, rest) = rest.split_at_mut(3 * points);
+    let (places, entries) = rest.split_at_mut(3 * points);
+    Parts { rows, ends, made: bytemuck::cast_slice_mut(made), places: bytemuck::cast_slice_mut(places), entries }
 }
