@@ -75,6 +75,7 @@ impl<'a> Neighbours<'a> {
     }
 
     /// Whether any division of the rows costs as much as all of them together.
+    #[cfg(feature = "rayon")]
     pub(crate) fn can_be_divided(&self) -> bool {
         !matches!(self.source, Source::Index(_))
     }

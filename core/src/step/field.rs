@@ -153,10 +153,16 @@ const SHARE: usize = 2048;
 /// Adds the forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
 fn add_up(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
     #[cfg(feature = "rayon")]
-    if rayon::current_thread_index().is_some() && state.near.can_be_divided() && rows.len() >= 2 * SHARE {
+    if rayon::current_thread_index().is_some() && can_be_divided(state) && rows.len() >= 2 * SHARE {
         return add_up_side_by_side(forces, state, rows, total, rayon::current_num_threads());
     }
     forces.add_to(state, rows, total);
+}
+
+/// Whether a part of the rows costs as much as it is a part: trees divide themselves, and an index would be asked for all.
+#[cfg(feature = "rayon")]
+fn can_be_divided(state: &State<'_>) -> bool {
+    state.near.can_be_divided() && state.mass_tree.is_none() && state.charge_tree.is_none()
 }
 
 /// The same by so many threads.

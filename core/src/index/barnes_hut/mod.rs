@@ -38,6 +38,10 @@ pub struct BarnesHut<'m> {
     signed: bool,
 }
 
+/// Slots that are worth a thread's while.
+#[cfg(feature = "rayon")]
+const SHARE: usize = 512;
+
 /// So many points are summed one by one as quickly as all their moments.
 const FEW: usize = 2;
 
@@ -136,10 +140,52 @@ impl<'m> BarnesHut<'m> {
 
     /// Visits each of `rows` that is in the tree with the sum there, without what it does to itself.
     ///
-    /// Which rows are asked for together makes no difference to any sum. It takes some 20 kB of stack, which is why it is
-    /// never part of another function.
-    #[inline(never)]
+    /// Which rows are asked for together makes no difference to any sum. With the feature `rayon` all threads of the pool that
+    /// this one belongs to take their part of the groups, whose sums are put on the heap meanwhile.
     pub fn field(&self, law: Opening, rows: Range<usize>, visit: &mut dyn FnMut(usize, Vec3)) -> Cost {
+        let slots = 0..self.tree.order().len();
+        #[cfg(feature = "rayon")]
+        if rayon::current_thread_index().is_some() && rows.len().min(slots.len()) >= 2 * SHARE {
+            return self.field_side_by_side(law, slots, &rows, visit);
+        }
+        self.field_among(law, slots, &rows, visit)
+    }
+
+    /// The same by many threads, a share of the slots each.
+    #[cfg(feature = "rayon")]
+    fn field_side_by_side(
+        &self,
+        law: Opening,
+        slots: Range<usize>,
+        rows: &Range<usize>,
+        visit: &mut dyn FnMut(usize, Vec3),
+    ) -> Cost {
+        use rayon::prelude::*;
+        let share = |i: usize| i * SHARE..((i + 1) * SHARE).min(slots.end);
+        let part = |i: usize| {
+            let mut sums = std::vec::Vec::with_capacity(SHARE);
+            let cost = self.field_among(law, share(i), rows, &mut |row, sum| sums.push((row, sum)));
+            (cost, sums)
+        };
+        let parts: std::vec::Vec<_> = (0..slots.end.div_ceil(SHARE)).into_par_iter().map(part).collect();
+        let mut cost = Cost::default();
+        for (part, sums) in parts {
+            cost += part;
+            sums.into_iter().for_each(|(row, sum)| visit(row, sum));
+        }
+        cost
+    }
+
+    /// The same for the groups that begin in some of the slots. It takes some 20 kB of stack, which is why it is never part of
+    /// another function.
+    #[inline(never)]
+    fn field_among(
+        &self,
+        law: Opening,
+        among: Range<usize>,
+        rows: &Range<usize>,
+        visit: &mut dyn FnMut(usize, Vec3),
+    ) -> Cost {
         let law = Law::new(law, self.tree.points(), self.signed);
         let (order, mut cost, mut sums, mut wide) =
             (self.tree.order(), Cost::default(), Sums::new(law), Wide::new(law));
@@ -154,7 +200,7 @@ impl<'m> BarnesHut<'m> {
             }
             for start in slots.clone().step_by(GROUP) {
                 let group = start..slots.end.min(start + GROUP);
-                if group.clone().any(|slot| rows.contains(&(order[slot] as usize))) {
+                if among.contains(&start) && group.clone().any(|slot| rows.contains(&(order[slot] as usize))) {
                     cost += self.approach(node, law, &mut path, &mut wide);
                     cost += self.sum(group.clone(), law, &path, &mut wide, &mut sums);
                     for (slot, sum) in group.zip(&sums.sums) {
