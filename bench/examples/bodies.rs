@@ -34,9 +34,9 @@ fn main() {
             };
             let start = Instant::now();
             if threads > 1 {
-                pool.install(&mut evaluate)
+                pool.install(&mut evaluate);
             } else {
-                evaluate()
+                evaluate();
             }
             *least = least.min(start.elapsed().as_secs_f64());
         }
@@ -44,7 +44,8 @@ fn main() {
     }
     println!("{bodies} bodies, {threads} threads; particular {:.1} ms", theirs * 1e3);
     for (law, least) in laws.iter().zip(least) {
-        let (name, error) = (if law.quadrupole { "quadrupole" } else { "monopole" }, tree.error(*law, bodies.div_ceil(2000)));
+        let (name, error) =
+            (if law.quadrupole { "quadrupole" } else { "monopole" }, tree.error(*law, bodies.div_ceil(2000)));
         println!("{name} {}: {:.1} ms, {:.3} times, error {:.2e}", law.theta, least * 1e3, least / theirs, error.rms);
     }
 }

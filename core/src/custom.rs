@@ -25,11 +25,6 @@ impl<'a> Custom<'a> {
     pub const fn new(name: &'a str) -> Self {
         Self { name, start: &[], newborn: 0.0 }
     }
-
-    /// What the particle of the start with a number has.
-    pub(crate) fn of_start(&self, number: usize) -> f32 {
-        self.start.get(number).copied().unwrap_or(self.newborn)
-    }
 }
 
 /// The columns of a user's own that a scene has. A slice or reference of them is one.
@@ -230,7 +225,6 @@ mod tests {
         assert_eq!(read.rows(1..3).get("fuel"), Some(&[5.0, 7.0][..]));
         assert_eq!(read.rows(1..3).rows(1..9).column(0), [3.0]);
         assert_eq!((read.count(), read.name(1), read.name(2)), (2, Some("fuel"), None));
-        assert_eq!([0, 1].map(|number| list[1].of_start(number)), [5.0, 2.0]);
         assert!(CustomColumns::NONE.column(0).is_empty() && CustomColumns::NONE.get("").is_none());
     }
 }

@@ -144,7 +144,7 @@ impl<L: RadialLaw> Radial<L> {
             let finite = f32x8::splat(f32::INFINITY);
             let counts = terms
                 .iter()
-                .fold(block(&square).simd_gt(f32x8::ZERO), |counts, term| counts & term.abs().simd_lt(finite));
+                .fold(block(square).simd_gt(f32x8::ZERO), |counts, term| counts & term.abs().simd_lt(finite));
             for (sum, term) in sum.iter_mut().zip(terms) {
                 *sum += term & counts;
             }

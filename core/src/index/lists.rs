@@ -2,7 +2,7 @@
 //! Fluids", Phys. Rev. 159, 1967).
 
 use super::SpatialIndex;
-use super::neighbours::{Nearby, in_runs};
+use super::nearby::{Nearby, in_runs};
 use crate::math::{max, sqrt};
 use crate::rows::farthest;
 use core::ops::Range;

@@ -1,9 +1,9 @@
 //! Update: the old go through the step's sub-steps; the newborn fly on from their births.
 
 use super::field::Field;
-use super::substeps::{Moved, custom};
+use super::substeps::{Carried, Moved, custom};
 use super::tile::Tile;
-use crate::index::{ListMemory, Listed};
+use crate::index::ListMemory;
 use crate::integrate::Dynamics;
 use crate::memory::{Layout, Shares};
 use crate::observe::Observer;
@@ -11,17 +11,6 @@ use crate::report::{Effort, Report};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
-
-/// What goes on from step to step beside the particles, in tiles nothing.
-pub(super) struct Carried<'a> {
-    /// What is kept of particles, for constraints to change.
-    pub(super) kept: &'a mut [u32],
-    /// The step that a method which chooses its own goes on with.
-    pub(super) hint: &'a mut Time,
-    /// What is known of lists of neighbours, and how many particles have come and gone.
-    pub(super) listed: &'a mut Listed,
-    pub(super) changes: u32,
-}
 
 impl Tile<'_> {
     /// Moves the old by the integrator. The newborn fly on from their places of birth with the acceleration they have there at

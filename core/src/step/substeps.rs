@@ -4,7 +4,7 @@ use super::field::{Attributes, Field};
 use crate::constrain::{Bodies, Near, Share, Substep};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::Needs;
-use crate::index::ListMemory;
+use crate::index::{ListMemory, Listed};
 use crate::integrate::{Motion, Work};
 use crate::memory::{Layout, Scratch};
 use crate::observe::{self, Observer};
@@ -33,6 +33,17 @@ pub(super) struct Moved<'a> {
     pub(super) capacity: usize,
     pub(super) report: &'a mut Report,
     pub(super) observer: &'a mut dyn Observer,
+}
+
+/// What goes on from step to step beside the particles, in tiles nothing.
+pub(super) struct Carried<'a> {
+    /// What is kept of particles, for constraints to change.
+    pub(super) kept: &'a mut [u32],
+    /// The step that a method which chooses its own goes on with.
+    pub(super) hint: &'a mut Time,
+    /// What is known of lists of neighbours, and how many particles have come and gone.
+    pub(super) listed: &'a mut Listed,
+    pub(super) changes: u32,
 }
 
 /// What constraints are asked for.

@@ -1,7 +1,7 @@
 //! Rows that go through a step together: all that there are, or few enough to stay in the cache meanwhile.
 
-use super::advance::Carried;
 use super::field::Attributes;
+use super::substeps::Carried;
 use super::{Status, View};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;

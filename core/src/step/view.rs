@@ -1,6 +1,6 @@
 //! A system with its memory at hand: every phase of a step works on it.
 
-use crate::custom::{Custom, CustomColumnsMut};
+use crate::custom::CustomColumnsMut;
 use crate::force::{Spring, State, spring};
 use crate::index::Listed;
 use crate::memory::{Layout, Slices, Storage, Words};
@@ -98,7 +98,7 @@ impl View<'_> {
             }
         }
         self.status.start = self.status.taken;
-        self.give_custom(scene, 0, |custom, row| custom.of_start(row));
+        self.give_custom(scene, 0);
         spring::sort_by_ends(scene.springs, self.memory.last_spring, self.memory.incident);
         let lost = |s: &&Spring| s.ends.iter().any(|&end| end >= self.status.start);
         report.caps.springs = scene.springs.iter().filter(lost).count() as u64;
@@ -117,13 +117,15 @@ impl View<'_> {
         CustomColumnsMut::new(scene.custom, values, capacity, len)
     }
 
-    /// Gives rows from `first` on what they have in columns of a user's own.
-    pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize, value: impl Fn(&Custom<'_>, usize) -> f32) {
-        let mut columns = self.custom_mut(scene);
-        for number in 0..scene.custom.count() {
+    /// Gives rows from `first` on what they begin with in columns of a user's own.
+    pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize) {
+        let (capacity, len, start) = (self.capacity(), self.len(), self.status.start);
+        let Slices { serial, kept, .. } = self.memory.slices();
+        for (number, column) in kept.chunks_mut(capacity.max(1)).enumerate().take(scene.custom.count()) {
             let Some(custom) = scene.custom.get(number) else { continue };
-            for (row, to) in columns.column_mut(number).iter_mut().enumerate().skip(first) {
-                *to = value(&custom, row);
+            for (to, &serial) in column.iter_mut().zip(&*serial).take(len).skip(first) {
+                let given = custom.start.get(serial as usize).filter(|_| serial < start);
+                *to = given.copied().unwrap_or(custom.newborn).to_bits();
             }
         }
     }
