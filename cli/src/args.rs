@@ -83,8 +83,7 @@ pub struct World {
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<Method>,
     /// How forces between neighbours find them: brute, grid, hash, quadtree, octree, kd, bsp or bvh; by default what the
-    /// scene says, else grid. Sums over neighbours are rounded in its order: scenes with lennard_jones, power_law,
-    /// viscosity, or contacts by force end in other bits by another index
+    /// scene says, else grid. They end in the same bits by all of them
     #[arg(long, value_name = "NAME")]
     pub index: Option<Structure>,
     /// How particles that have a radius answer each other: impulse, force or position; by default what the scene says,

@@ -24,9 +24,6 @@ pub struct Summary {
     pub steps: u64,
     /// The instant reached \[s\].
     pub time: f64,
-    /// What is summed over neighbours in the order of the index, so that another ends in other bits.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub summed_by_index: Vec<&'static str>,
     /// How steps were divided.
     pub substeps: Told,
     /// Particles put in at the beginning.
@@ -95,7 +92,6 @@ impl Summary {
             seed: world.system.seed(),
             steps: effort.steps,
             time: nanoseconds(world.system.time().seconds_f64()),
-            summed_by_index: world.summed_by_index(),
             substeps: world.pace.told(),
             initial: totals.initial,
             born: totals.born,
@@ -140,9 +136,6 @@ impl Summary {
             ("time", format!("{} s", self.time)),
         ];
         rows.extend(substeps(&self.substeps, self.steps).map(|told| ("sub-steps", told)));
-        if !self.summed_by_index.is_empty() {
-            rows.push(("index", format!("{}: another --index ends in other bits", self.summed_by_index.join(", "))));
-        }
         rows.push((
             "particles",
             format!("{} at first + {} born = {} live + {} died", self.initial, self.born, self.live, self.died.total()),

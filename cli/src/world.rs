@@ -9,7 +9,7 @@ use crate::substeps::{Pace, Substeps};
 use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::Limit;
-use pointmass::{ForceKind, Heap, Method, Observer, Report, Response, System, Time};
+use pointmass::{Heap, Method, Observer, Report, Response, System, Time};
 use rayon::ThreadPool;
 
 /// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
@@ -90,22 +90,6 @@ impl World {
     #[must_use]
     pub fn integrator(&self) -> Method {
         self.model.integrator.method
-    }
-
-    /// What is summed over neighbours in the order of the index: forces, and contacts by force.
-    #[must_use]
-    pub fn summed_by_index(&self) -> Vec<&'static str> {
-        let is_summed = |force: &&ForceKind| {
-            matches!(force, ForceKind::LennardJones(_) | ForceKind::PowerLaw(_) | ForceKind::Viscosity(_))
-        };
-        let mut names: Vec<_> = self.model.forces.0.iter().filter(is_summed).map(ForceKind::kind).collect();
-        let has_balls = self.model.has_balls();
-        names.extend(self.file.contacts.filter(|_| has_balls).and_then(|response| match response {
-            Response::Impulse {} | Response::Position(_) => None,
-            Response::Force(_) => Some("contacts by force"),
-        }));
-        names.dedup();
-        names
     }
 
     /// Warns of steps \[s\] that are going to explode in a run of some duration \[s\], unless they are divided as need be.

@@ -133,6 +133,7 @@ impl<'a> CustomColumns<'a> {
     }
 
     /// The same, at the beginning of what is kept.
+    #[inline(never)]
     pub(crate) fn kept(list: &'a dyn CustomList, words: &'a [u32], stride: usize, len: usize) -> Self {
         let words = words.get(..list.count().saturating_mul(stride)).unwrap_or(&[]);
         Self::new(list, bytemuck::cast_slice(words), stride, len)

@@ -67,6 +67,14 @@ impl Effort {
         capped: 0,
     };
 
+    /// Counts what it took to find forces.
+    pub(crate) fn found(&mut self, more: &Self) {
+        self.evaluations += more.evaluations;
+        self.lists += more.lists;
+        self.streamed += more.streamed;
+        self.all_pairs += more.all_pairs;
+    }
+
     /// Counts a solution.
     pub(crate) fn solved(&mut self, iterations: u32, residual: f32, capped: bool) {
         self.solves += 1;

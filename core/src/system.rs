@@ -82,8 +82,8 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         self.status.is_reaped |= !scene.reapers.is_empty();
-        self.status.kept = scene.plan().kept();
         if scene.fits(self.memory.columns().size()) {
+            self.status.kept = scene.plan().kept();
             self.view().step(scene, dt, &mut report, observer);
         } else {
             report.caps.unfit = 1;

@@ -42,7 +42,7 @@ pub use viscosity::Viscosity;
 pub use wind::Wind;
 
 use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::index::{Arrange, BarnesHut, Neighbours};
+use crate::index::{Arrange, BarnesHut, Listing, Neighbours};
 use crate::math::max;
 use crate::particles::Id;
 use crate::rng::later;
@@ -163,9 +163,17 @@ pub struct Needs {
     pub charge_tree: Option<Grow>,
     /// The radius within which [`State::near`] is asked for neighbours \[m\]; zero: it is not.
     pub reach: f32,
+    /// What keeps lists of them: [`Listing::KEPT`]. A function, likewise; without it they are looked up in each evaluation.
+    pub lists: Option<Listing>,
 }
 
 impl Needs {
+    /// Neighbours within a radius \[m\], in lists where there is memory for them.
+    #[must_use]
+    pub fn within(reach: f32) -> Self {
+        Self { reach: max(reach, 0.0), lists: Some(Listing::KEPT), ..Self::default() }
+    }
+
     /// What two forces need.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
@@ -173,6 +181,7 @@ impl Needs {
             mass_tree: self.mass_tree.or(other.mass_tree),
             charge_tree: self.charge_tree.or(other.charge_tree),
             reach: max(self.reach, other.reach),
+            lists: self.lists.or(other.lists),
         }
     }
 

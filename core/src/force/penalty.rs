@@ -99,7 +99,7 @@ impl Force for Penalty {
     }
 
     fn needs(&self) -> Needs {
-        Needs { reach: max(self.reach, 0.0), ..Needs::default() }
+        Needs::within(self.reach)
     }
 
     /// Along the line of centres; how the line turns, and friction, are left out.

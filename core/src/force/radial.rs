@@ -182,7 +182,7 @@ impl<L: RadialLaw> Force for Radial<L> {
     }
 
     fn needs(&self) -> Needs {
-        Needs { reach: max(self.0.reach(), 0.0), ..Needs::default() }
+        Needs::within(self.0.reach())
     }
 
     fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {

@@ -41,7 +41,7 @@ impl Force for Viscosity {
     }
 
     fn needs(&self) -> Needs {
-        Needs { reach: max(self.reach, 0.0), ..Needs::default() }
+        Needs::within(self.reach)
     }
 
     /// Exact in the velocities; how the weights change with the places is left out, and all of a coefficient below zero.

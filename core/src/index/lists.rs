@@ -25,6 +25,8 @@ pub(crate) struct Listed {
     leash: f32,
     /// How many had come and gone before them.
     changes: u32,
+    /// Words that were lent for them: others are not theirs.
+    words: usize,
     /// How often they have been of use, and how many more times there are to be none.
     uses: u32,
     pause: u32,
@@ -32,12 +34,12 @@ pub(crate) struct Listed {
 
 /// The memory of lists, and what is known of them.
 pub(crate) struct ListMemory<'a> {
-    pub(crate) words: &'a mut [u32],
-    pub(crate) listed: &'a mut Listed,
+    words: &'a mut [u32],
+    listed: &'a mut Listed,
     /// How many particles have come and gone.
-    pub(crate) changes: u32,
+    changes: u32,
     /// How long a step is \[s\].
-    pub(crate) step: f32,
+    step: f32,
 }
 
 /// Lists, for reading. Points are numbered anew, in the order in which the index has visited them: what is near in
@@ -66,7 +68,7 @@ struct Parts<'a> {
 
 impl Listed {
     /// None.
-    pub(crate) const NONE: Self = Self { points: 0, reach: 0.0, leash: 0.0, changes: 0, uses: 0, pause: 0 };
+    pub(crate) const NONE: Self = Self { points: 0, reach: 0.0, leash: 0.0, changes: 0, words: 0, uses: 0, pause: 0 };
 }
 
 impl Lists<'_> {
@@ -89,7 +91,15 @@ impl Lists<'_> {
     }
 }
 
-impl ListMemory<'_> {
+impl<'a> ListMemory<'a> {
+    /// Memory for lists; those in it count no longer if it is not the same as before.
+    pub(crate) fn new(words: &'a mut [u32], listed: &'a mut Listed, changes: u32, step: f32) -> Self {
+        if listed.words != words.len() {
+            *listed = Listed::NONE;
+        }
+        Self { words, listed, changes, step }
+    }
+
     /// The same, lent on.
     pub(crate) fn again(&mut self) -> ListMemory<'_> {
         ListMemory { words: self.words, listed: self.listed, ..*self }
@@ -156,7 +166,8 @@ impl ListMemory<'_> {
         (0..).zip(&rows[..count]).for_each(|(number, &row)| numbers[row as usize] = number);
         // Whoever has no neighbours is watched as well: it may come near others.
         for row in (0..).take(points.len()).filter(|&row| numbers[row as usize] == u32::MAX) {
-            let Some((next, end)) = rows.get_mut(count).zip(ends.get_mut(count)) else { break };
+            // An index that comes back to a row has none for another.
+            let (next, end) = rows.get_mut(count).zip(ends.get_mut(count))?;
             (*next, *end) = (row, len as u32);
             count += 1;
         }
@@ -170,10 +181,10 @@ impl ListMemory<'_> {
         for ((made, place), &row) in made.iter_mut().zip(places).zip(&*rows) {
             (*made, *place) = (points[row as usize], points[row as usize]);
         }
-        let (changes, uses, pause) = (self.changes, 1, 0);
+        let (changes, words, uses, pause) = (self.changes, self.words.len(), 1, 0);
         // Half of the skin each, less what rounding may come to.
         let leash = 0.499 * skin - 4.0 * f32::EPSILON * farthest(points);
-        *self.listed = Listed { points: points.len() as u32, reach, leash, changes, uses, pause };
+        *self.listed = Listed { points: points.len() as u32, reach, leash, changes, words, uses, pause };
         Some(self.read())
     }
 

@@ -63,6 +63,7 @@ macro_rules! storage {
         impl Columns<'_> {
             /// How many particles fit.
             #[must_use]
+            #[inline(never)]
             pub fn capacity(&self) -> usize {
                 [$(self.$p.len()),+].into_iter().fold(usize::MAX, usize::min)
             }

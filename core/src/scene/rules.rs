@@ -92,7 +92,7 @@ impl Scene<'_> {
     /// With less memory they are looked up anew in each evaluation, to the same bits.
     #[must_use]
     pub fn columns_with_lists(&self) -> usize {
-        self.columns() + if self.forces.needs().reach > 0.0 { LISTS } else { 0 }
+        self.columns() + if self.forces.needs().lists.is_some() { LISTS } else { 0 }
     }
 
     /// Words that are kept of each particle, if there is room for as many as it begins with or more.
@@ -101,7 +101,8 @@ impl Scene<'_> {
         self.plan().kept_columns(self.start.len())
     }
 
-    /// What a step works with.
+    /// What a step works with. Asked for in many places: apart, it is in a chip's flash once.
+    #[inline(never)]
     pub(crate) fn plan(&self) -> Plan {
         let needs = self.forces.needs();
         let constrained = !self.constraints.is_empty();

@@ -47,7 +47,7 @@ impl Tile<'_> {
             };
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, [now, now + dt], memory);
-            report.effort += field.effort;
+            report.effort.found(&field.effort);
         }
         let mut moved = Moved {
             scene,
@@ -59,7 +59,7 @@ impl Tile<'_> {
             before: before.map(|column| first(column, old)),
             marks: first(marks, old),
             lasting,
-            lists: ListMemory { words: lists, listed, changes, step: dt.seconds() },
+            lists: ListMemory::new(lists, listed, changes, dt.seconds()),
             kept,
             scratch,
             capacity,

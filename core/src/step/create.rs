@@ -11,6 +11,7 @@ use crate::time::Time;
 
 impl View<'_> {
     /// Lets the emitters emit, and returns how many particles there were before.
+    #[inline(never)]
     pub(super) fn create(
         &mut self,
         scene: &Scene<'_>,

@@ -2,7 +2,7 @@
 
 use crate::custom::CustomColumns;
 use crate::force::{Force, Grow, Needs, State};
-use crate::index::{BarnesHut, ListMemory, Neighbours};
+use crate::index::{BarnesHut, Found, ListMemory, Neighbours, stream};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
@@ -99,23 +99,21 @@ impl Field<'_> {
         if !(reach > 0.0) {
             return then(state);
         }
-        let points = state.position;
-        if let Some(lists) = self.lists.as_mut().and_then(|lists| lists.kept(points, reach)) {
-            return then(&State { near: Neighbours::listed(lists, points), ..*state });
-        }
-        let words = (3 * self.scene.index.columns() * points.len()).min(self.near.len());
-        let skin = self.lists.as_mut().and_then(|lists| lists.skin(points, state.velocity, reach));
-        let (lists, effort) = (&mut self.lists, &mut self.effort);
-        let room = reach + skin.unwrap_or(0.0);
-        self.scene.index.arrange(&mut self.near[..words], points, room, &mut |index| {
-            let made = skin.zip(index).zip(lists.as_mut());
-            let made = made.and_then(|((skin, index), lists)| lists.make(index, points, [reach, skin]));
-            effort.lists += u64::from(made.is_some());
-            effort.streamed += u64::from(made.is_none() && index.is_some());
-            effort.all_pairs += u64::from(index.is_none());
-            let near = made.map_or(Neighbours::by(index, points), |lists| Neighbours::listed(lists, points));
+        let (points, scene, effort) = (state.position, self.scene, &mut self.effort);
+        let words = (3 * scene.index.columns() * points.len()).min(self.near.len());
+        let memory = &mut self.near[..words];
+        let then = &mut |near: Neighbours<'_>, found| {
+            effort.lists += u64::from(found == Found::Listed);
+            effort.streamed += u64::from(found == Found::Streamed);
+            effort.all_pairs += u64::from(found == Found::AllPairs);
             then(&State { near, ..*state });
-        });
+        };
+        match (self.needs.lists, &mut self.lists) {
+            (Some(lists), Some(listing)) => {
+                lists.find(scene.index, memory, listing.again(), [points, state.velocity], reach, then);
+            }
+            _ => stream(scene.index, memory, points, reach, then),
+        }
     }
 }
 

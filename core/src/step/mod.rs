@@ -15,6 +15,7 @@ pub(crate) use tile::Tile;
 pub(crate) use view::{Status, View};
 
 use crate::collide::Passage;
+use crate::index::Listed;
 use crate::observe::{Attention, Observer, Phase};
 use crate::report::Report;
 use crate::scene::Scene;
@@ -26,6 +27,7 @@ const TILED: bool = !cfg!(target_os = "none");
 
 impl View<'_> {
     /// The whole of a step: create, update, collide, delete.
+    #[inline(never)]
     pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
         let span = [self.status.time, dt];
         self.tell(Phase::Begin, scene, observer);
@@ -96,6 +98,8 @@ impl View<'_> {
     ) {
         let h = span[1].seconds() / scene.pieces() as f32;
         let capacity = self.capacity().min(TILE);
+        // Tiles work in the memory of lists as well.
+        self.status.listed = Listed::NONE;
         for rows in [0..old, old..self.len()] {
             let tile = self.tile(scene, span, old, rows, capacity);
             #[cfg(feature = "rayon")]

@@ -14,6 +14,7 @@ use glam::Vec3;
 
 impl View<'_> {
     /// Removes those whom the step has ended by now.
+    #[inline(never)]
     pub(super) fn reap(&mut self, scene: &Scene<'_>, report: &mut Report, observer: &mut dyn Observer) {
         if !scene.reapers.is_empty() {
             self.judge_all(scene);
@@ -31,6 +32,7 @@ impl View<'_> {
     }
 
     /// Lets the scene's reapers choose.
+    #[inline(never)]
     fn judge_all(&mut self, scene: &Scene<'_>) {
         let (rows, reapers, capacity) = (0..self.len(), scene.reapers, self.capacity());
         let layout = Layout::of(scene.plan(), capacity);

@@ -117,7 +117,7 @@ impl Moved<'_> {
         };
         scene.integrator.advance(motion, from, to - from, &mut field);
         let effort = field.effort;
-        self.report.effort += effort;
+        self.report.effort.found(&effort);
     }
 
     /// Says that the sub-step has come so far.

@@ -84,6 +84,7 @@ impl View<'_> {
         self.memory.columns().capacity()
     }
 
+    #[inline(never)]
     pub(crate) fn start(&mut self, scene: &Scene<'_>) {
         self.memory.tallies.fill(Default::default());
         self.status.emitters = scene.emitters.count();

@@ -37,7 +37,7 @@ impl View<'_> {
         field.with_state(now + dt, tile.position, tile.velocity, &mut |state| {
             scene.forces.write(state, &mut custom, dt.seconds());
         });
-        report.effort += field.effort;
+        report.effort.found(&field.effort);
         self.memory.kept = kept;
     }
 

@@ -4,8 +4,8 @@ use super::{cloud, forces};
 use pointmass::force::{Pair, Radial, RadialLaw, State, Weight};
 use pointmass::index::{Arrange, Neighbours, SpatialIndex, Structure};
 use pointmass::{
-    Coulomb, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw, Pressure,
-    Scene, Size, System, Time, Varied, Vec3, Viscosity,
+    Coulomb, Custom, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw,
+    Pressure, Scene, Size, System, Time, Varied, Vec3, Viscosity,
 };
 use pointmass_tests::{f64s, gap, point, run, started};
 
@@ -106,6 +106,34 @@ fn however_neighbours_are_found_runs_are_the_same() {
         }
     }
     assert!(listed > 1000 && streamed > 1000, "{listed} {streamed}");
+}
+
+/// Another scene, whose step works in the memory of the lists, ends them; one that does not fit changes nothing.
+#[test]
+fn lists_are_not_kept_over_other_scenes() {
+    let start = cloud(400);
+    let listed = Scene { start: &start, forces: &SOFT, index: &Structure::Grid, ..Scene::EMPTY };
+    let local = Scene { start: &start, forces: &Gravity::EARTH, ..Scene::EMPTY };
+    let wide = Scene { start: &start, forces: &THICK, integrator: Method::Implicit.integrator(), ..Scene::EMPTY };
+    let custom = [Custom::new("heat")];
+    let unfit = Scene { custom: &custom, ..local };
+    let run = |columns: usize| {
+        let mut system = System::with(Heap::new(Size { particles: 500, columns, ..listed.size() }));
+        system.start(&listed, 0).expect("it fits");
+        for (i, scene) in
+            [&listed, &local, &listed, &listed, &wide, &listed, &unfit, &listed].iter().cycle().take(40).enumerate()
+        {
+            system.step(scene, Time::from_seconds(1e-4));
+            if i % 7 == 6 {
+                system.spawn(&Particle { position: Vec3::Y, ..Particle::REST }).expect("there is room");
+            }
+        }
+        assert_eq!(system.totals().caps.unfit, 5);
+        (system.hash(), system.totals().effort)
+    };
+    let [(few, _), (many, effort)] = [wide.columns().max(listed.columns()), 90].map(run);
+    assert_eq!(few, many);
+    assert!(effort.lists > 4 && effort.evaluations > effort.lists + effort.streamed + effort.all_pairs, "{effort:?}");
 }
 
 /// Too little memory for lists is none; a row with more neighbours than the stack has room for still comes in order.
