@@ -138,6 +138,22 @@ test("files are given to as many worlds as one likes, each for what it is", () =
   refuses(() => new World(scene, files), /files have to be Files/);
 });
 
+test("columns of a user's own are views", () => {
+  const warm = {
+    particles: [{}, {}],
+    custom: [{ name: "worn" }, { name: "heat", start: [80], newborn: 20 }],
+    forces: [{ relaxation: { column: "heat", toward: 20, rate: 1.5 } }],
+  };
+  const world = new World(warm, null, 5);
+  const heat = world.custom("heat");
+  assert.deepEqual([heat.length, ...heat.subarray(0, 2), world.custom("worn")[1]], [5, 80, 20, 0]);
+  for (let i = 1; i <= 60; i++) world.stepTo(i / 60);
+  assert.ok(Math.abs(heat[0] - (20 + 60 * Math.exp(-1.5))) < 1e-3, `${heat[0]}`);
+  refuses(() => world.custom("fuel"), /no column "fuel"/);
+  refuses(() => world.custom(7), /string/);
+  world.free();
+});
+
 test("views cover the capacity and outlive steps", () => {
   const world = new World(scene, null, 300);
   const [positions, velocities, radii] = [world.positions(), world.velocities(), world.radii()];

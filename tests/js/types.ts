@@ -19,6 +19,7 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
     draw(world.positions(), world.count);
     draw(world.velocities(), world.capacity);
     draw(world.radii(), world.time);
+    if (world.count > 5) draw(world.custom("heat"), world.count);
     const [colors, ids]: [Uint8Array, Uint32Array] = [world.colors(), world.ids()];
     const said: string[] = [world.hash(), world.report(), ...world.warnings];
     draw(new Float32Array(colors.length + ids.length), said.length);

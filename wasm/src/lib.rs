@@ -19,7 +19,7 @@ mod memory;
 pub use files::Files;
 
 use arguments::{capacity, seconds, seed, text};
-use js_sys::{Float32Array, Uint8Array, Uint32Array};
+use js_sys::{Float32Array, JsString, Uint8Array, Uint32Array};
 use pointmass::scene::{Model, SceneFile, read_scn};
 use pointmass::{Heap, Storage, System};
 use wasm_bindgen::prelude::*;
@@ -148,6 +148,19 @@ impl World {
     #[must_use]
     pub fn radii(&self) -> Float32Array {
         view(self.system.memory().columns().radius)
+    }
+
+    /// A column of the scene's list `custom`, one number a particle: a view as `positions`.
+    ///
+    /// # Errors
+    /// If it is no string, or the scene has no column of that name.
+    pub fn custom(&self, name: &JsString) -> Result<Float32Array, JsError> {
+        let name = name.as_string().ok_or_else(|| JsError::new("the name of a column has to be a string"))?;
+        let (columns, capacity) = (self.system.memory().columns(), self.system.capacity());
+        let number = self.model.custom.iter().position(|custom| custom.name == name);
+        let column = number.and_then(|number| columns.kept.get(number * capacity..(number + 1) * capacity));
+        let column = column.ok_or_else(|| JsError::new(&format!("the scene has no column \"{name}\" in `custom`")))?;
+        Ok(view(bytemuck::cast_slice(column)))
     }
 
     /// Colours of the living, four bytes a particle: red, green, blue, opacity. A copy.
