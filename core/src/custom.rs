@@ -11,11 +11,11 @@ use core::ops::Range;
 /// whoever owns the system ([`System::custom_mut`](crate::System::custom_mut)) change it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Custom<'a> {
-    /// What it is called.
+    /// Its name.
     pub name: &'a str,
-    /// What the particles of the scene's start have, by their numbers; those beyond have what newborns have.
+    /// The values of the scene's start, by the particles' numbers; those beyond have what newborns have.
     pub start: &'a [f32],
-    /// What those have that emitters bring.
+    /// The value of those that emitters bring.
     pub newborn: f32,
 }
 
@@ -78,12 +78,12 @@ impl<const N: usize> CustomList for [Custom<'_>; N] {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CustomBuf {
-    /// What it is called.
+    /// Its name.
     pub name: alloc::string::String,
-    /// What the particles of the scene's start have, by their places; those beyond have what newborns have.
+    /// The values of the scene's start, by the particles' places; those beyond have what newborns have.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "alloc::vec::Vec::is_empty"))]
     pub start: alloc::vec::Vec<f32>,
-    /// What those have that emitters bring.
+    /// The value of those that emitters bring.
     #[cfg_attr(feature = "serde", serde(default))]
     pub newborn: f32,
 }

@@ -38,7 +38,7 @@ pub(crate) struct Frame {
     rows: Vec<Row>,
     /// Whether rows have radii.
     balls: bool,
-    /// What columns of a user's own are called, and what each row has in them.
+    /// Names of columns of a user's own, and the values of each row in them.
     names: Vec<String>,
     custom: Vec<Vec<f32>>,
     colors: Vec<[u8; 4]>,

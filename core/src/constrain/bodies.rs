@@ -170,7 +170,7 @@ impl Near<'_> {
 /// A constraint's own memory.
 #[derive(Debug)]
 pub struct Share<'a> {
-    /// What it keeps from step to step.
+    /// The words that it keeps from step to step.
     pub kept: Kept<'a>,
     /// What it keeps through the step: at the first sub-step it holds anything.
     pub step: &'a mut [u32],

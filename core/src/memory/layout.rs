@@ -42,7 +42,7 @@ impl Words {
 /// What a part of a scene asks for, to work with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
-    /// What it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
+    /// The words that it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
     /// the particles, and is in the system's hash.
     pub kept: Words,
     /// What it keeps through a step; at the step's beginning it holds anything.
@@ -151,7 +151,7 @@ pub(crate) struct Shares<'m> {
     pub(crate) lists: &'m mut [u32],
 }
 
-/// What constraints keep from step to step.
+/// The words that constraints keep from step to step.
 #[derive(Debug, Default)]
 pub struct Kept<'m> {
     /// Of each particle: one column of [`Share::capacity`](crate::constrain::Share::capacity) words behind the other, by row.
