@@ -109,8 +109,8 @@ pub struct World {
     /// inner step may err; by default what the scene says, 1e-4
     #[arg(long, value_name = "M", value_parser = tolerance)]
     pub tolerance: Option<f64>,
-    /// On how many threads many particles are stepped that have nothing to do with each other, to the same bits; by default as
-    /// many as the machine has
+    /// On how many threads many particles are stepped, to the same bits: whole steps where they have nothing to do with each
+    /// other, else the sums of their forces; by default as many as the machine has
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }

@@ -153,13 +153,13 @@ impl<'a> CustomColumns<'a> {
         number_of(self.list, name).map(|number| self.column(number))
     }
 
-    /// How many columns there are.
+    /// The number of columns.
     #[must_use]
     pub fn count(&self) -> usize {
         self.list.count()
     }
 
-    /// What a column is called.
+    /// The name of a column.
     #[must_use]
     pub fn name(&self, number: usize) -> Option<&'a str> {
         self.list.get(number).map(|custom| custom.name)

@@ -163,7 +163,7 @@ pub struct Needs {
     pub charge_tree: Option<Grow>,
     /// The radius within which [`State::near`] is asked for neighbours \[m\]; zero: it is not.
     pub reach: f32,
-    /// What keeps lists of them: [`Listing::KEPT`]. A function, likewise; without it they are looked up in each evaluation.
+    /// The keeper of lists of them: [`Listing::KEPT`]. A function, likewise; without it they are looked up in each evaluation.
     pub lists: Option<Listing>,
 }
 
@@ -223,11 +223,11 @@ pub struct State<'a> {
     pub slot: &'a [u32],
     /// What their random numbers are drawn by; see [`word`](State::word).
     pub key: &'a [u32],
-    /// What they have beside all that: columns of a user's own.
+    /// Columns of a user's own.
     pub custom: CustomColumns<'a>,
     /// The springs between them.
     pub springs: Springs<'a>,
-    /// Who of them is near whom.
+    /// The neighbours of each.
     pub near: Neighbours<'a>,
     /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
     pub mass_tree: Option<&'a BarnesHut<'a>>,
