@@ -4,7 +4,7 @@
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
 use glam::Vec3;
-use wide::f32x8;
+use wide::{f32x4, f32x8};
 
 /// How many there are.
 pub(crate) const LANES: usize = 8;
@@ -41,7 +41,7 @@ pub(crate) fn dot(a: &[Vec3], b: &[Vec3]) -> f32 {
 /// A vector in every lane.
 #[inline(always)]
 pub(crate) fn splat(v: Vec3) -> [f32x8; 3] {
-    v.to_array().map(f32x8::splat)
+    [f32x8::splat(v.x), f32x8::splat(v.y), f32x8::splat(v.z)]
 }
 
 /// Σ w d⃗ / (d² + s²)^{3/2}, eight sums side by side.
@@ -111,6 +111,16 @@ pub(crate) fn not(mask: f32x8) -> f32x8 {
     mask ^ f32x8::splat(f32::from_bits(u32::MAX))
 }
 
+/// Four vectors, coordinate by coordinate.
+#[inline(always)]
+pub(crate) fn turned(vectors: &[Vec3; 4]) -> [f32x4; 3] {
+    let flat: &[f32; 12] = bytemuck::cast_ref(vectors);
+    // Four numbers from where each vector begins on: the last one is not its own.
+    let at = |i: usize| f32x4::new(*flat[i..].first_chunk().unwrap_or(&[flat[9], flat[10], flat[11], 0.0]));
+    let [x, y, z, _] = f32x4::transpose([at(0), at(3), at(6), at(9)]);
+    [x, y, z]
+}
+
 /// Eight vectors side by side. Sums and products are taken in glam's order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vectors(pub(crate) [f32x8; 3]);
@@ -154,8 +164,8 @@ impl Vectors {
     /// The magnitude of the largest coordinate.
     #[inline(always)]
     pub(crate) fn largest(self) -> f32x8 {
-        let [x, y, z] = self.0.map(f32x8::abs);
-        max(max(x, y), z)
+        let [x, y, z] = self.0;
+        max(max(x.abs(), y.abs()), z.abs())
     }
 
     /// As [`crate::math::unit`].
@@ -170,13 +180,15 @@ impl Vectors {
     /// The first of two where a mask says so, else the second.
     #[inline(always)]
     pub(crate) fn select(mask: f32x8, a: Self, b: Self) -> Self {
-        Self(core::array::from_fn(|axis| select(mask, a.0[axis], b.0[axis])))
+        let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
+        Self([select(mask, ax, bx), select(mask, ay, by), select(mask, az, bz)])
     }
 
     /// Zero where a mask does not hold.
     #[inline(always)]
     pub(crate) fn masked(self, mask: f32x8) -> Self {
-        Self(self.0.map(|x| x & mask))
+        let [x, y, z] = self.0;
+        Self([x & mask, y & mask, z & mask])
     }
 }
 
@@ -184,7 +196,8 @@ impl core::ops::Add for Vectors {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(core::array::from_fn(|axis| self.0[axis] + other.0[axis]))
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([x + a, y + b, z + c])
     }
 }
 
@@ -192,7 +205,8 @@ impl core::ops::Sub for Vectors {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(core::array::from_fn(|axis| self.0[axis] - other.0[axis]))
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([x - a, y - b, z - c])
     }
 }
 
@@ -200,7 +214,8 @@ impl core::ops::Mul<f32x8> for Vectors {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: f32x8) -> Self {
-        Self(self.0.map(|x| x * factor))
+        let [x, y, z] = self.0;
+        Self([x * factor, y * factor, z * factor])
     }
 }
 
@@ -208,7 +223,8 @@ impl core::ops::Div<f32x8> for Vectors {
     type Output = Self;
     #[inline(always)]
     fn div(self, divisor: f32x8) -> Self {
-        Self(self.0.map(|x| x / divisor))
+        let [x, y, z] = self.0;
+        Self([x / divisor, y / divisor, z / divisor])
     }
 }
 
@@ -216,6 +232,7 @@ impl core::ops::Neg for Vectors {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(negated))
+        let [x, y, z] = self.0;
+        Self([negated(x), negated(y), negated(z)])
     }
 }

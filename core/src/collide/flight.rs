@@ -3,13 +3,13 @@
 use super::grip::on_surface;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
-use crate::math::{aside, length, max, min, sqrt, unit};
+use crate::math::{aside, largest, length, max, min, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::Fate;
 use crate::report::Report;
 use crate::scene::Scene;
-use crate::shape::{Aabb, Collider, Contact, Hit, Ride, Segment};
+use crate::shape::{Aabb, Collider, Contact, Facing, Hit, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -77,6 +77,25 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
     pub(super) fn past<W: Collider>(self, walls: &'a W) -> Flight<'a, W> {
         let Self { scene, sinks, id, row, radius, mass, elasticity, material, dt, report, observer, .. } = self;
         Flight { scene, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
+    }
+
+    /// What it faces wherever a path may lead it that it follows on after hits. These take no speed from it but by what they set
+    /// it off.
+    pub(super) fn facing(&self, path: &Path) -> Facing {
+        if !(self.elasticity <= 1.0) {
+            return Facing::Several;
+        }
+        let (hull, speed) = (path.hull(self.radius), max(length(path.v0), length(path.v1)));
+        // Newborns look ahead as far as they would go in a whole step.
+        let reach = self.dt * (speed + 4.0 * length(path.v1 - path.v0));
+        let within = |size: f32| {
+            let room = reach + 64.0 * f32::EPSILON * (max(largest(hull.min), largest(hull.max)) + size);
+            self.walls.facing(&Aabb { min: hull.min - room, max: hull.max + room })
+        };
+        match within(0.0) {
+            Facing::Face(face) => within(face.size()),
+            other => other,
+        }
     }
 
     /// Its way through the step, if it may touch anything.

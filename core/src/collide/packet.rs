@@ -5,11 +5,11 @@
 
 use super::flight::{LAIN, MAX_LOOKS, RESTING};
 use super::path::{CHORD_ERROR, MAX_CHORDS};
-use crate::lanes::{Vectors, max, min, negated, not, select, sqrt};
+use crate::lanes::{Vectors, max, min, negated, not, select, sqrt, turned};
 use crate::shape::Face;
 use crate::time::Time;
 use glam::Vec3;
-use wide::f32x8;
+use wide::{f32x4, f32x8};
 
 /// Eight cubics, as `Path`.
 #[derive(Clone, Copy)]
@@ -47,7 +47,8 @@ impl Segments {
     #[inline(always)]
     fn first_hits(&self, face: &Face, radius: f32x8) -> Hits {
         let Self { from, to } = *self;
-        let [point, normal, unit] = face.vectors().map(Vectors::splat);
+        let [point, normal, unit] = face.vectors();
+        let (point, normal, unit) = (Vectors::splat(point), Vectors::splat(normal), Vectors::splat(unit));
         let size = all(face.size());
         let slack = all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + radius + size);
         let (before, after) = (normal.dot(from - point), normal.dot(to - point));
@@ -158,6 +159,31 @@ fn all(x: f32) -> f32x8 {
     f32x8::splat(x)
 }
 
+/// Who of balls on four paths between these places and velocities may touch a face, as far as boxes around them tell: a bit each,
+/// and never fewer than [`Plane::may_touch`](crate::shape::Plane) would name.
+#[inline(always)]
+pub(super) fn near(face: &Face, [x0, v0, x1, v1]: [&[Vec3; 4]; 4], radius: &[f32; 4], time: f32) -> u8 {
+    let (x0, v0, x1, v1) = (turned(x0), turned(v0), turned(x1), turned(v1));
+    let [point, _, unit] = face.vectors();
+    let third = time * (1.0 / 3.0);
+    let span = |axis: usize| {
+        let (a, b) = (x0[axis] + v0[axis] * third, x1[axis] - v1[axis] * third);
+        let low = x0[axis].fast_min(x1[axis]).fast_min(a.fast_min(b));
+        (low, x0[axis].fast_max(x1[axis]).fast_max(a.fast_max(b)))
+    };
+    let ((ax, bx), (ay, by), (az, bz)) = (span(0), span(1), span(2));
+    // Twice the distance of the middle, and twice how far the corners are from it.
+    let middle = (ax + bx) * unit.x + (ay + by) * unit.y + (az + bz) * unit.z - 2.0 * unit.dot(point);
+    let half = (bx - ax) * unit.x.abs() + (by - ay) * unit.y.abs() + (bz - az) * unit.z.abs();
+    let far = |low: f32x4, high: f32x4| high.fast_max(-low);
+    let largest = far(ax, bx).fast_max(far(ay, by)).fast_max(far(az, bz)) + face.size();
+    // A box around a ball reaches by less than twice the radius farther along a normal.
+    let radius = f32x4::new(*radius);
+    let room = radius + radius + (largest + radius) * (128.0 * f32::EPSILON);
+    // What is no number is near.
+    !(middle.abs().simd_gt(half + room + room).to_bitmask() as u8) & 15
+}
+
 impl Paths {
     #[inline(always)]
     fn acceleration(&self) -> Vectors {
@@ -176,10 +202,11 @@ impl Paths {
     fn cubics(&self) -> Cubics {
         let half = all(0.5) * self.time;
         let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * half;
-        let excess = Vectors(core::array::from_fn(|axis| {
-            let rounding = (self.x0.0[axis].abs() + self.x1.0[axis].abs()) * all(f32::EPSILON);
-            excess.0[axis] & not(excess.0[axis].abs().simd_le(rounding))
-        }));
+        let noticed = |axis: usize| {
+            let (excess, rounding) = (excess.0[axis], self.x0.0[axis].abs() + self.x1.0[axis].abs());
+            excess & not(excess.abs().simd_le(rounding * all(f32::EPSILON)))
+        };
+        let excess = Vectors([noticed(0), noticed(1), noticed(2)]);
         let bend = (self.v1 - self.v0) * half;
         let coefficients = [self.v0 * self.time, bend + excess * all(3.0), excess * all(-2.0)];
         Cubics { start: self.x0, coefficients, bend, excess }
@@ -190,8 +217,9 @@ impl Paths {
     fn velocity(&self, cubics: &Cubics, s: f32x8) -> Vectors {
         let Cubics { bend, excess, .. } = *cubics;
         let steady = self.v0 + (self.v1 - self.v0) * s;
-        let [x, y, z] = excess.0.map(|x| not(x.simd_eq(f32x8::ZERO)));
-        let is_smooth = (x | y | z) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
+        let ([x, y, z], zero) = (excess.0, f32x8::ZERO);
+        let is_none = x.simd_eq(zero) & y.simd_eq(zero) & z.simd_eq(zero);
+        let is_smooth = not(is_none) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
         let share = all(6.0) * s * (f32x8::ONE - s) / self.time;
         Vectors::select(is_smooth, steady + excess * share, steady)
     }
@@ -246,7 +274,8 @@ impl Cubics {
     /// normal to the other.
     #[inline(always)]
     fn crossings(&self, hits: &Hits, place: Vectors, [begun, end]: [f32x8; 2]) -> f32x8 {
-        let [c1, c2, c3] = self.coefficients.map(|c| c.dot(hits.normal));
+        let [c1, c2, c3] = self.coefficients;
+        let (c1, c2, c3) = (c1.dot(hits.normal), c2.dot(hits.normal), c3.dot(hits.normal));
         let c0 = (self.start - place).dot(hits.normal);
         let (mut low, mut high, mut s, mut sought) = (begun, end, end, hits.are);
         for _ in 0..MAX_LOOKS {
@@ -310,7 +339,8 @@ impl Riders {
     fn seated(&self, paths: &Paths, face: &Face, acceleration: Vectors) -> (f32x8, Vectors) {
         let (time, zero) = (paths.time, f32x8::ZERO);
         let fall = |acceleration: f32x8| all(0.5) * acceleration * time * time;
-        let [point, _, unit] = face.vectors().map(Vectors::splat);
+        let [point, _, unit] = face.vectors();
+        let (point, unit) = (Vectors::splat(point), Vectors::splat(unit));
         let away = unit.dot(paths.x0 - point);
         let normal = Vectors::select(away.simd_lt(zero), -unit, unit);
         let distance = (unit * away).dot(normal);
@@ -333,17 +363,18 @@ impl Riders {
         let going = |acceleration: Vectors, time: f32x8| (velocity + acceleration * (all(0.5) * time)) * time;
         let steady = braked((velocity + drive * time).unit());
         let (mut way, mut end) = (going(steady, time), velocity + steady * time);
-        let along = velocity / speed;
-        let acceleration = braked(along);
-        let braking = negated(acceleration.dot(along));
-        let moves = not(speed.simd_eq(zero));
-        let stops = moves & self.sliding.simd_gt(zero) & (braking * time).simd_gt(speed);
-        if (stops | not(moves)).any() {
+        let stays = speed.simd_eq(zero);
+        let brakes = self.sliding.simd_gt(zero) & not(stays);
+        if (stays | brakes).any() {
+            let along = velocity / speed;
+            let acceleration = braked(along);
+            let braking = negated(acceleration.dot(along));
+            let stops = brakes & (braking * time).simd_gt(speed);
             let until = speed / braking;
-            let (rest, velocity) = self.start(drive, pressing, select(moves, time - until, time));
+            let (rest, velocity) = self.start(drive, pressing, select(stays, time, time - until));
             let stopped = going(acceleration, until) + rest;
-            way = Vectors::select(moves, Vectors::select(stops, stopped, way), rest);
-            end = Vectors::select(stops | not(moves), velocity, end);
+            way = Vectors::select(stays, rest, Vectors::select(stops, stopped, way));
+            end = Vectors::select(stops | stays, velocity, end);
         }
         (way, end)
     }

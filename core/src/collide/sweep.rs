@@ -2,7 +2,7 @@
 
 use super::flight::Flight;
 use super::grip::on_surface;
-use super::packet::{Outcome, Paths, Riders};
+use super::packet::{Outcome, Paths, Riders, near};
 use super::path::Path;
 use crate::constrain::{SHIFTED, TOUCHING};
 use crate::lanes::{LANES, Vectors};
@@ -14,11 +14,15 @@ use crate::report::Report;
 use crate::shape::{Aabb, Face, Facing, Hulls, Marks};
 use crate::step::Tile;
 use crate::time::Time;
+use core::ops::Range;
 use glam::Vec3;
 use wide::f32x8;
 
 /// Whether what faces one flat wall alone is followed by code of its own: chips are spared that.
 const SHORT_WAY: bool = !cfg!(target_os = "none");
+
+/// Rows that are held against a face at once.
+const BLOCK: usize = 256;
 
 /// Everything.
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
@@ -48,7 +52,7 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
     let mut sweep = Sweep { tile: &mut *tile, past, facing, report, observer };
     match facing {
-        Facing::Face(face) if sweep.goes_in_packets() => sweep.go_in_packets(&face),
+        Facing::Face(face) if SHORT_WAY => sweep.go_past(&face),
         _ => sweep.go(),
     }
     tile.work = work;
@@ -63,6 +67,11 @@ impl Queue {
     }
 }
 
+/// Four of which the last ones are nothing.
+fn filled<T: Copy + Default>(rest: &[T]) -> [T; 4] {
+    core::array::from_fn(|i| rest.get(i).copied().unwrap_or_default())
+}
+
 /// Which bits of a packet are set.
 fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
     core::iter::from_fn(move || {
@@ -74,10 +83,10 @@ fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
 }
 
 impl Sweep<'_, '_> {
-    /// Takes one row after the other.
+    /// Follows one row after the other.
     fn go(&mut self) {
         for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
-            for (i, mark) in near(self.tile, &self.past, first).into_iter().enumerate() {
+            for (i, mark) in marked(self.tile, &self.past, first).into_iter().enumerate() {
                 if mark != 0 {
                     self.follow(first + i);
                 }
@@ -85,30 +94,22 @@ impl Sweep<'_, '_> {
         }
     }
 
-    /// Whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
-    fn goes_in_packets(&self) -> bool {
-        let Tile { scene, dt, .. } = *self.tile;
-        self.observer.is_none()
-            && scene.sinks.is_empty()
-            && scene.max_bounces > 1
-            && self.past.marks.is_empty()
-            && dt > Time::ZERO
-    }
-
-    /// Takes those who were there before the step in packets of eight: first as if they lay on the face, then as if they bounced
-    /// off it.
-    fn go_in_packets(&mut self, face: &Face) {
+    /// Follows all past a face: those who were there before the step in packets of eight, first as if they lay on it, then as if
+    /// they bounced off it.
+    fn go_past(&mut self, face: &Face) {
         let (mut lying, mut bouncing) = (Queue::default(), Queue::default());
-        for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
-            for (i, mark) in near(self.tile, &self.past, first).into_iter().enumerate() {
-                let row = first + i;
-                if mark == 0 || self.tile.attributes.inverse_mass[row] == 0.0 {
-                    continue;
-                }
-                if row >= self.tile.old {
-                    self.follow(row);
-                } else if let Some(rows) = lying.push(row) {
-                    self.lie(&rows, face, &mut bouncing);
+        let (old, in_packets) = (self.tile.old, self.goes_in_packets());
+        for first in (0..old).step_by(BLOCK) {
+            let marks = self.near(first..old.min(first + BLOCK), face);
+            for (i, marks) in marks.into_iter().enumerate() {
+                for j in ones(marks.into()) {
+                    let row = first + 4 * i + j;
+                    let is_fixed = self.tile.attributes.inverse_mass[row] == 0.0;
+                    if !in_packets || is_fixed {
+                        self.follow(row);
+                    } else if let Some(rows) = lying.push(row) {
+                        self.lie(&rows, face, &mut bouncing);
+                    }
                 }
             }
         }
@@ -118,6 +119,36 @@ impl Sweep<'_, '_> {
         if bouncing.len > 0 {
             self.bounce(&bouncing.rows[..bouncing.len], face);
         }
+        (old..self.tile.position.len()).for_each(|row| self.follow(row));
+    }
+
+    /// Whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
+    fn goes_in_packets(&self) -> bool {
+        let Tile { scene, dt, .. } = *self.tile;
+        let alone = self.observer.is_none() && scene.sinks.is_empty() && self.past.marks.is_empty();
+        alone && scene.max_bounces > 1 && dt > Time::ZERO
+    }
+
+    /// Who of some rows may touch the face: a bit for each of four.
+    #[inline(never)]
+    fn near(&self, rows: Range<usize>, face: &Face) -> [u8; BLOCK / 4] {
+        let (mut marks, tile, time) = ([0; BLOCK / 4], &*self.tile, self.tile.dt.seconds());
+        let [start_x, start_v] = self.past.start;
+        let (x0, x0_rest) = start_x[rows.clone()].as_chunks();
+        let (v0, v0_rest) = start_v[rows.clone()].as_chunks();
+        let (x1, x1_rest) = tile.position[rows.clone()].as_chunks();
+        let (v1, v1_rest) = tile.velocity[rows.clone()].as_chunks();
+        let (radius, radius_rest) = tile.attributes.lives.radius[rows.clone()].as_chunks();
+        let columns = x0.iter().zip(v0).zip(x1.iter().zip(v1)).zip(radius);
+        for (mark, (((x0, v0), (x1, v1)), radius)) in marks.iter_mut().zip(columns) {
+            *mark = near(face, [x0, v0, x1, v1], radius, time);
+        }
+        if !x0_rest.is_empty() {
+            let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
+            let last = near(face, [&x0, &v0, &x1, &v1], &filled(radius_rest), time);
+            marks[rows.len() / 4] = last & ((1 << x0_rest.len()) - 1);
+        }
+        marks
     }
 
     /// Lets those who lie on the face do so; the others bounce.
@@ -143,10 +174,10 @@ impl Sweep<'_, '_> {
     fn settle(&mut self, rows: &[usize], outcome: &Outcome) -> u32 {
         let of_all = (1 << rows.len()) - 1;
         self.report.hits += u64::from((outcome.hit & of_all).count_ones());
-        let columns = [outcome.position.columns(), outcome.velocity.columns()];
+        let ([x, y, z], [u, v, w]) = (outcome.position.columns(), outcome.velocity.columns());
         for i in ones(outcome.settled & of_all) {
-            let [x, v] = columns.each_ref().map(|[x, y, z]| Vec3::new(x[i], y[i], z[i]));
-            (self.tile.position[rows[i]], self.tile.velocity[rows[i]]) = (x, v);
+            self.tile.position[rows[i]] = Vec3::new(x[i], y[i], z[i]);
+            self.tile.velocity[rows[i]] = Vec3::new(u[i], v[i], w[i]);
         }
         for i in ones(outcome.left & of_all) {
             self.follow(rows[i]);
@@ -162,13 +193,20 @@ impl Sweep<'_, '_> {
         let (mut at_rest, mut sliding) = ([0.0; LANES], [0.0; LANES]);
         all[..rows.len()].copy_from_slice(rows);
         for (i, &row) in all.iter().enumerate() {
-            let own = m.material[row].checked_sub(1);
-            let feel = on_surface(scene.grips, m.elasticity[row], own, face.material());
-            (radius[i], elasticity[i]) = (m.lives.radius[row], feel.elasticity);
-            (at_rest[i], sliding[i]) = (feel.friction.resting, feel.friction.sliding);
+            (radius[i], elasticity[i]) = (m.lives.radius[row], m.elasticity[row]);
         }
-        let [radius, elasticity, at_rest, sliding] = [radius, elasticity, at_rest, sliding].map(f32x8::new);
-        let [x0, v0] = self.past.start.map(|column| Vectors::gather(column, &all));
+        if !scene.grips.is_empty() {
+            for (i, &row) in all.iter().enumerate() {
+                let own = m.material[row].checked_sub(1);
+                let feel = on_surface(scene.grips, elasticity[i], own, face.material());
+                (elasticity[i], at_rest[i], sliding[i]) =
+                    (feel.elasticity, feel.friction.resting, feel.friction.sliding);
+            }
+        }
+        let (radius, elasticity) = (f32x8::new(radius), f32x8::new(elasticity));
+        let (at_rest, sliding) = (f32x8::new(at_rest), f32x8::new(sliding));
+        let [start_x, start_v] = self.past.start;
+        let (x0, v0) = (Vectors::gather(start_x, &all), Vectors::gather(start_v, &all));
         let (x1, v1) = (Vectors::gather(self.tile.position, &all), Vectors::gather(self.tile.velocity, &all));
         let time = f32x8::splat(self.tile.dt.seconds());
         (Riders { radius, elasticity, at_rest, sliding }, Paths { x0, v0, x1, v1, time })
@@ -219,8 +257,13 @@ impl Sweep<'_, '_> {
         };
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
         let is_newborn = row >= old;
+        // Whoever is near one face alone goes the short way, among however many things.
+        let facing = match *facing {
+            Facing::Several if SHORT_WAY => flight.facing(&path),
+            facing => facing,
+        };
         let arrival = match facing {
-            Facing::Face(face) => flight.past(face).travel(&path, is_newborn, may_lie),
+            Facing::Face(face) if SHORT_WAY => flight.past(&face).travel(&path, is_newborn, may_lie),
             _ => { flight }.travel(&path, is_newborn, may_lie),
         };
         let Some(end) = arrival else { return };
@@ -233,7 +276,7 @@ impl Sweep<'_, '_> {
 
 /// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.
 #[inline(never)]
-fn near(tile: &Tile<'_>, past: &Past<'_>, first: usize) -> Marks {
+fn marked(tile: &Tile<'_>, past: &Past<'_>, first: usize) -> Marks {
     let Tile { scene, old, dt, .. } = *tile;
     let rows = first..tile.position.len().min(first + Hulls::MANY);
     let [start_x, start_v] = past.start;

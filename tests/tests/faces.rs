@@ -1,0 +1,163 @@
+//! One flat face: what is followed the short way past it, several paths at once, has the bits of the long way.
+
+use pointmass::force::Friction;
+use pointmass::shape::{Aabb, Collider, Contact, Cuboid, Hit, Hulls, Marks, Plane, Ride, Segment, Sphere};
+use pointmass::{Drag, Emitter, Gravity, Grip, Heap, Integrator, Method, Particle, Scene, System, Time};
+use pointmass::{Observer, Spread, Varied, Vec3};
+use pointmass_tests::{Random, started};
+
+/// A collider that does not say what of it is near.
+struct Silent<C>(C);
+
+impl<C: Collider> Collider for Silent<C> {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        self.0.first_hit(segment)
+    }
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.0.may_touch(bounds)
+    }
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        self.0.mark_near(hulls, marks);
+    }
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        self.0.contacts(center, reach, at, visit);
+    }
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        self.0.ride(seat)
+    }
+}
+
+/// Someone who wants to know of hits, and therefore of the order in which they are found.
+struct Listener(u64);
+
+impl Observer for Listener {
+    fn attention(&self) -> pointmass::Attention {
+        pointmass::Attention::Events
+    }
+    fn hit(&mut self, _: &pointmass::Impact) {
+        self.0 += 1;
+    }
+}
+
+/// Particles about a plane of which some fall, some slide, some have their own ideas.
+fn crowd(random: &mut Random, plane: &Plane, scale: f32, radius: f32) -> Vec<Particle> {
+    let up = plane.normal.normalize();
+    (0..163)
+        .map(|i| {
+            let aside = random.vector(3.0 * scale);
+            let height = [0.0, 1e-6, 0.01, 0.3, 1.0, -0.2][i % 6] * scale * random.between(0.5, 1.0);
+            let velocity = random.vector([0.0, 0.01, 1.0, 12.0][i % 4] * scale);
+            let strange = [f32::NAN, f32::INFINITY, 1e30][i % 3];
+            Particle {
+                position: plane.point + aside - up * aside.dot(up) + up * (height + radius),
+                velocity: if i % 97 == 96 { velocity * strange } else { velocity },
+                radius,
+                drag: [0.0, 0.2, 3.0][i % 3],
+                mass: random.between(0.5, 2.0),
+                elasticity: [0.0, 0.5, 0.9, 1.0, random.unit()][i % 5],
+                material: [None, Some(0), Some(1), Some(2)][i % 4],
+                fixed: i % 41 == 40,
+                lifetime: if i % 13 == 12 { 0.4 } else { 0.0 },
+                ..Particle::REST
+            }
+        })
+        .collect()
+}
+
+fn fountain(plane: &Plane, scale: f32) -> Emitter<Sphere> {
+    let form = Sphere { center: plane.point + plane.normal.normalize() * (0.5 * scale), radius: 0.1 * scale };
+    Emitter {
+        speed: Varied { mean: 2.0 * scale, variance: 1.0 * scale },
+        spread: Spread::Uniform(1.0),
+        elasticity: Varied { mean: 0.5, variance: 0.5 },
+        lifetime: Varied::exactly(0.5),
+        ..Emitter::new(form, 100.0)
+    }
+}
+
+#[test]
+fn the_short_way_has_the_bits_of_the_long_one() {
+    let mut random = Random::new(2611);
+    let friction = |resting, sliding| Grip { friction: Some(Friction { resting, sliding }), elasticity: None };
+    let grips = [friction(0.5, 0.4), friction(0.0, 0.0), Grip { elasticity: Some(0.3), friction: None }];
+    let (mut hits, mut scenes) = (0, 0);
+    for (number, method) in Method::ALL.iter().cycle().take(54).enumerate() {
+        let scale = [1.0, 1e-3, 40.0][number % 3];
+        let far = [0.0, 0.0, 1e3][number / 3 % 3] * scale;
+        let normal = [Vec3::Y, Vec3::NEG_Y, Vec3::new(0.0, 3.0, 0.0), random.direction() * 0.7][number / 2 % 4];
+        let plane = Plane { point: random.vector(far), normal };
+        let radius = [0.0, 0.0, 0.02, 1e-7][number / 4 % 4] * scale;
+        let start = crowd(&mut random, &plane, scale, radius);
+        let emitter = fountain(&plane, scale);
+        let gravity = Gravity { acceleration: (Vec3::NEG_Y * 9.8 + random.vector(2.0)) * scale };
+        let max_bounces = [8, 8, 1, 2, 0][number % 5];
+        let grips = if number % 2 == 0 { &grips[..] } else { &[] };
+        let integrator: &dyn Integrator = method.integrator();
+        let base = Scene {
+            start: &start,
+            emitters: &emitter,
+            forces: &(gravity, Drag {}),
+            grips,
+            integrator,
+            max_bounces,
+            substeps: [1, 3][number / 7 % 2],
+            ..Scene::EMPTY
+        };
+        let dt = Time::from_seconds([1.0 / 60.0, 1.0 / 24.0, 1.0 / 144.0, 0.2][number / 5 % 4]);
+        let faced = Scene { colliders: &plane, ..base };
+        let silent = Silent(plane);
+        let plain = Scene { colliders: &silent, ..base };
+        let mut systems: [System<Heap>; 3] = [&faced, &plain, &faced].map(|scene| started(scene, 400, 5));
+        for step in 0..30 {
+            let [short, long, told] = &mut systems;
+            let (a, b) = (short.step(&faced, dt), long.step(&plain, dt));
+            let mut listener = Listener(0);
+            let c = told.step_observed(&faced, dt, &mut listener);
+            assert_eq!([a.hits, a.caps.bounces], [b.hits, b.caps.bounces], "{number} {step}");
+            assert_eq!((a.hits, a.caps, listener.0), (c.hits, c.caps, c.hits), "{number} {step}");
+            let same = short.particles().position.iter().zip(long.particles().position);
+            for (row, (x, y)) in same.enumerate() {
+                assert_eq!(
+                    x.to_array().map(f32::to_bits),
+                    y.to_array().map(f32::to_bits),
+                    "{number} {step} {row} {method}"
+                );
+            }
+            assert_eq!([short.hash(), told.hash()], [long.hash(); 2], "{number} {step} {method}");
+            hits += a.hits;
+        }
+        scenes += 1;
+    }
+    assert!(scenes == 54 && hits > 20_000, "{hits}");
+}
+
+/// What is near one face of many things goes the short way, too.
+#[test]
+fn a_floor_among_other_things_has_the_same_bits() {
+    let mut random = Random::new(77);
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for number in 0..12 {
+        let radius = [0.0, 0.05][number % 2];
+        let start = crowd(&mut random, &floor, 1.0, radius);
+        let balls: Vec<Sphere> =
+            (0..6).map(|_| Sphere { center: random.vector(3.0), radius: random.between(0.1, 0.6) }).collect();
+        let low = random.vector(2.0);
+        let chest = Cuboid { min: low, max: low + Vec3::new(0.5, 0.3, 0.8) };
+        let things = (floor, &balls[..], chest);
+        let silent = Silent((floor, &balls[..], chest));
+        let base = Scene {
+            start: &start,
+            forces: &(Gravity::EARTH, Drag {}),
+            integrator: &pointmass::Symplectic,
+            ..Scene::EMPTY
+        };
+        let (faced, plain) = (Scene { colliders: &things, ..base }, Scene { colliders: &silent, ..base });
+        let mut systems: [System<Heap>; 2] = [&faced, &plain].map(|scene| started(scene, 400, 5));
+        for step in 0..120 {
+            let [short, long] = &mut systems;
+            let dt = Time::from_seconds([1.0 / 60.0, 1.0 / 24.0][number / 2 % 2]);
+            let (a, b) = (short.step(&faced, dt), long.step(&plain, dt));
+            assert_eq!((a.hits, short.hash()), (b.hits, long.hash()), "{number} {step}");
+        }
+    }
+}
