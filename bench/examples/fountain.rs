@@ -1,12 +1,13 @@
-//! A fountain over the ground, and what falls freely, beside the least that a loop can do, in turns:
+//! A fountain over the ground, the same among a hundred spheres and boxes, and what falls freely, beside the least that a loop can do, in turns:
 //! `cargo run --release -p pointmass-bench --example fountain -- [PARTICLES] [STEPS] [ROUNDS]`.
 //!
 //! 10 m/s, a drag of 0.2/s, lives of 3 to 5 s, a restitution of 0.5: in a step about a tenth of the particles touch the
 //! ground. Prints the least time a particle and step of all rounds, and what our step is to the loop's. With ROUNDS 0 the
 //! steps are done once and nothing else: for counting instructions, as the difference of two runs of unlike many STEPS.
 
-use pointmass::shape::{Disc, Mesh, Plane, Shape};
-use pointmass::{Drag, Emitter, Gravity, Scene, Spread, Symplectic, Varied, Vec3};
+use pointmass::rng::Stream;
+use pointmass::shape::{Cuboid, Disc, Mesh, Plane, Scenery, Shape, Sphere, Surface};
+use pointmass::{Drag, Emitter, Gravity, Heap, Scene, Spread, Symplectic, System, Varied, Vec3};
 use pointmass_bench::{Bare, FRAME, cloud, started};
 use std::time::Instant;
 
@@ -40,8 +41,36 @@ fn main() {
     println!("{} particles, {:.1} % hit in a step, hash {:016x}", system.len(), 100.0 * share, system.hash());
     println!("fountain {ours:.2} ns, bare loop {least:.2} ns, {:.1} times", ours / least);
     if rounds > 0 {
+        println!("among 100 spheres and boxes {:.1} times one plane", cluttered(&scene, &system, steps, rounds));
         falling(particles, steps, rounds);
     }
+}
+
+/// The fountain among a hundred spheres and boxes that lie about on the ground, in turns with that over the ground alone: what a
+/// particle and step takes there to what it takes here.
+fn cluttered(open: &Scene<'_>, filled: &System<Heap>, steps: usize, rounds: usize) -> f64 {
+    let thing = |i: u32| {
+        let ([x, z], [size, _]) = (Stream::new(3, 0, i).units(0), Stream::new(3, 0, i).units(1));
+        let (center, size) = (Vec3::new(8.0 * x - 4.0, 0.0, 8.0 * z - 4.0), 0.1 + 0.2 * size);
+        let ball = Shape::Sphere(Sphere { center, radius: size });
+        let chest = Shape::Box(Cuboid { min: center - size, max: center + size });
+        if i % 2 == 0 { ball } else { chest }
+    };
+    let ground: Shape<Mesh<'_>> = Shape::Plane(Plane { point: Vec3::ZERO, normal: Vec3::Y });
+    let things = core::iter::once(ground).chain((0..100).map(thing));
+    let scenery = Scenery::new(things.map(|thing| (thing.clone(), thing.bounds())).collect());
+    let scene = Scene { colliders: &scenery, ..*open };
+    let mut systems = [(open, filled.clone()), (&scene, filled.clone())];
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..rounds {
+        for ((scene, system), least) in systems.iter_mut().zip(&mut least) {
+            let taken = timed(steps, || {
+                system.step(scene, FRAME);
+            });
+            *least = least.min(taken / system.len() as f64);
+        }
+    }
+    least[1] / least[0]
 }
 
 /// The same without births, deaths and ground, beside the loop.

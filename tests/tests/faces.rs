@@ -1,7 +1,12 @@
 //! One flat face: what is followed the short way past it, several paths at once, has the bits of the long way.
 
+use pointmass::Response;
 use pointmass::force::Friction;
-use pointmass::shape::{Aabb, Collider, Contact, Cuboid, Hit, Hulls, Marks, Plane, Ride, Segment, Sphere};
+use pointmass::scene::Position;
+use pointmass::shape::{
+    Aabb, Affine, Collider, Contact, Cuboid, Cylinder, Hit, Hulls, Marks, Mesh, Motion, Moving, Placed, Plane, Ride,
+    Scenery, Segment, Shape, Sphere,
+};
 use pointmass::{Drag, Emitter, Gravity, Grip, Heap, Integrator, Method, Particle, Scene, System, Time};
 use pointmass::{Observer, Spread, Varied, Vec3};
 use pointmass_tests::{Random, started};
@@ -159,5 +164,51 @@ fn a_floor_among_other_things_has_the_same_bits() {
             let (a, b) = (short.step(&faced, dt), long.step(&plain, dt));
             assert_eq!((a.hits, short.hash()), (b.hits, long.hash()), "{number} {step}");
         }
+    }
+}
+
+/// Many things behind an index of their boxes are what the list of them is.
+#[test]
+fn scenery_has_the_bits_of_the_list() {
+    let mut random = Random::new(78);
+    for number in 0..6 {
+        let radius = [0.0, 0.05][number % 2];
+        let mut things: Vec<Moving<Placed<Shape<Mesh<'_>>>>> = Vec::new();
+        let mut boxes = Vec::new();
+        for i in 0..60 {
+            let low = random.vector(4.0);
+            let form = match i % 3 {
+                0 => Shape::Sphere(Sphere { center: low, radius: random.between(0.05, 0.4) }),
+                1 => Shape::Box(Cuboid { min: low, max: low + Vec3::new(0.4, 0.2, 0.5) }),
+                _ if i == 8 || i == 44 => Shape::Plane(Plane { point: Vec3::NEG_Y * i as f32 * 0.1, normal: Vec3::Y }),
+                _ => Shape::Cylinder(Cylinder { center: low, radius: 0.2, height: 0.7 }),
+            };
+            let placed =
+                Placed::new(form, Affine::IDENTITY).expect("it stands as it is").made_of((i % 4 == 0).then_some(0));
+            let swing = if i % 7 == 6 { random.vector(0.5) } else { Vec3::ZERO };
+            let moving =
+                Moving::new(placed.clone(), &placed.bounds(), Motion { swing, frequency: 0.7, ..Motion::STILL });
+            boxes.push(moving.reach());
+            things.push(moving);
+        }
+        let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let start = crowd(&mut random, &floor, 1.0, radius);
+        let grips = [Grip { friction: Some(Friction { resting: 0.5, sliding: 0.4 }), elasticity: Some(0.4) }];
+        let scenery = Scenery::new(things.iter().cloned().zip(boxes).collect());
+        let response = [Response::Position(Position::default()), Response::Impulse {}][number / 2 % 2];
+        let base = Scene { start: &start, forces: &(Gravity::EARTH, Drag {}), grips: &grips, ..Scene::EMPTY };
+        let base = Scene { integrator: &pointmass::Symplectic, ..base };
+        let contacts = response.contacts();
+        let base =
+            if number < 4 { base } else { Scene { constraints: &contacts, meetings: response.meetings(), ..base } };
+        let (sorted, listed) = (Scene { colliders: &scenery, ..base }, Scene { colliders: &things, ..base });
+        let mut systems: [System<Heap>; 2] = [&sorted, &listed].map(|scene| started(scene, 400, 5));
+        for step in 0..60 {
+            let [a, b] = &mut systems;
+            let dt = Time::from_seconds(1.0 / 60.0);
+            let (x, y) = (a.step(&sorted, dt), b.step(&listed, dt));
+            assert_eq!((x.hits, a.hash()), (y.hits, b.hash()), "{number} {step}");
+        }
+        assert!(systems[0].totals().hits > 300);
     }
 }

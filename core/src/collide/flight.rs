@@ -79,25 +79,6 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
         Flight { scene, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
     }
 
-    /// What it faces wherever a path may lead it that it follows on after hits. These take no speed from it but by what they set
-    /// it off.
-    pub(super) fn facing(&self, path: &Path) -> Facing {
-        if !(self.elasticity <= 1.0) {
-            return Facing::Several;
-        }
-        let (hull, speed) = (path.hull(self.radius), max(length(path.v0), length(path.v1)));
-        // Newborns look ahead as far as they would go in a whole step.
-        let reach = self.dt * (speed + 4.0 * length(path.v1 - path.v0));
-        let within = |size: f32| {
-            let room = reach + 64.0 * f32::EPSILON * (max(largest(hull.min), largest(hull.max)) + size);
-            self.walls.facing(&Aabb { min: hull.min - room, max: hull.max + room })
-        };
-        match within(0.0) {
-            Facing::Face(face) => within(face.size()),
-            other => other,
-        }
-    }
-
     /// Its way through the step, if it may touch anything.
     #[inline(always)]
     pub(super) fn travel(&mut self, path: &Path, is_newborn: bool, may_lie: bool) -> Option<Arrival> {
@@ -344,6 +325,26 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
             back *= 4.0;
         }
         self.walls.carry(chord.from, self.radius, [chord.during[0], now])
+    }
+}
+
+/// What a ball faces in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits. Of elasticities up
+/// to one these take no speed from it but by what they set it off.
+pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f32; 2], dt: f32) -> Facing {
+    if !(elasticity <= 1.0) {
+        return Facing::Several;
+    }
+    let hull = path.hull(radius);
+    let (size, speed) = (max(largest(hull.min), largest(hull.max)), max(length(path.v0), length(path.v1)));
+    // Newborns look ahead as far as they would go in a whole step.
+    let reach = dt * (speed + 4.0 * length(path.v1 - path.v0));
+    let within = |size: f32| {
+        let room = reach + 128.0 * f32::EPSILON * size;
+        walls.facing(&Aabb { min: hull.min - room, max: hull.max + room })
+    };
+    match within(size) {
+        Facing::Face(face) if face.size() > size => within(face.size()),
+        other => other,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
-use super::flight::Flight;
+use super::flight::{Flight, facing};
 use super::grip::on_surface;
 use super::packet::{Outcome, Paths, Riders, near};
 use super::path::Path;
@@ -43,6 +43,13 @@ struct Queue {
     len: usize,
 }
 
+/// Rows that wait to go past a face: as if they lay on it, and as if they bounced off it.
+struct Waiting {
+    face: Face,
+    lying: Queue,
+    bouncing: Queue,
+}
+
 /// Sends every free particle of a tile along its path through the step, past all others.
 pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
     let work = core::mem::take(&mut tile.work);
@@ -56,6 +63,12 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
         _ => sweep.go(),
     }
     tile.work = work;
+}
+
+impl Waiting {
+    fn before(face: Face) -> Self {
+        Self { face, lying: Queue::default(), bouncing: Queue::default() }
+    }
 }
 
 impl Queue {
@@ -83,43 +96,79 @@ fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
 }
 
 impl Sweep<'_, '_> {
-    /// Follows one row after the other.
+    /// Follows one row after the other; those who are near the same face alone go past it in packets.
     fn go(&mut self) {
+        let in_packets = SHORT_WAY && self.goes_in_packets();
+        let mut waiting = None;
         for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
             for (i, mark) in marked(self.tile, &self.past, first).into_iter().enumerate() {
-                if mark != 0 {
-                    self.follow(first + i);
+                let row = first + i;
+                if mark == 0 {
+                    continue;
+                }
+                match if in_packets { self.face_of(row) } else { None } {
+                    None => self.follow(row),
+                    Some(face) => {
+                        let waiting = waiting.get_or_insert_with(|| Waiting::before(face));
+                        if waiting.face == face { self.queue(row, waiting) } else { self.follow(row) }
+                    }
                 }
             }
         }
+        if let Some(waiting) = waiting {
+            self.go_on(waiting);
+        }
     }
 
-    /// Follows all past a face: those who were there before the step in packets of eight, first as if they lay on it, then as if
-    /// they bounced off it.
+    /// Follows all past a face, those who were there before the step in packets.
     fn go_past(&mut self, face: &Face) {
-        let (mut lying, mut bouncing) = (Queue::default(), Queue::default());
         let (old, in_packets) = (self.tile.old, self.goes_in_packets());
+        let mut waiting = Waiting::before(*face);
         for first in (0..old).step_by(BLOCK) {
             let marks = self.near(first..old.min(first + BLOCK), face);
             for (i, marks) in marks.into_iter().enumerate() {
                 for j in ones(marks.into()) {
                     let row = first + 4 * i + j;
                     let is_fixed = self.tile.attributes.inverse_mass[row] == 0.0;
-                    if !in_packets || is_fixed {
-                        self.follow(row);
-                    } else if let Some(rows) = lying.push(row) {
-                        self.lie(&rows, face, &mut bouncing);
-                    }
+                    if in_packets && !is_fixed { self.queue(row, &mut waiting) } else { self.follow(row) }
                 }
             }
         }
-        if lying.len > 0 {
-            self.lie(&lying.rows[..lying.len], face, &mut bouncing);
-        }
-        if bouncing.len > 0 {
-            self.bounce(&bouncing.rows[..bouncing.len], face);
-        }
+        self.go_on(waiting);
         (old..self.tile.position.len()).for_each(|row| self.follow(row));
+    }
+
+    /// The face that an old row is near, if that is all.
+    fn face_of(&self, row: usize) -> Option<Face> {
+        let Tile { scene, old, dt, attributes: ref m, .. } = *self.tile;
+        let path = self.path(row);
+        if row >= old || m.inverse_mass[row] == 0.0 || !path.is_finite() {
+            return None;
+        }
+        match facing(scene.colliders, &path, [m.lives.radius[row], m.elasticity[row]], dt.seconds()) {
+            Facing::Face(face) => Some(face),
+            _ => None,
+        }
+    }
+
+    /// Lets a row wait for others.
+    #[inline(always)]
+    fn queue(&mut self, row: usize, waiting: &mut Waiting) {
+        if let Some(rows) = waiting.lying.push(row) {
+            self.lie(&rows, waiting);
+        }
+    }
+
+    /// Lets those go who still wait.
+    fn go_on(&mut self, mut waiting: Waiting) {
+        let lying = waiting.lying;
+        if lying.len > 0 {
+            self.lie(&lying.rows[..lying.len], &mut waiting);
+        }
+        let Waiting { face, bouncing, .. } = waiting;
+        if bouncing.len > 0 {
+            self.bounce(&bouncing.rows[..bouncing.len], &face);
+        }
     }
 
     /// Whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
@@ -153,7 +202,7 @@ impl Sweep<'_, '_> {
 
     /// Lets those who lie on the face do so; the others bounce.
     #[inline(never)]
-    fn lie(&mut self, rows: &[usize], face: &Face, bouncing: &mut Queue) {
+    fn lie(&mut self, rows: &[usize], Waiting { face, bouncing, .. }: &mut Waiting) {
         let (riders, paths) = self.packet(rows, face);
         for i in ones(self.settle(rows, &riders.lie(&paths, face))) {
             if let Some(rows) = bouncing.push(rows[i]) {
@@ -212,10 +261,21 @@ impl Sweep<'_, '_> {
         (Riders { radius, elasticity, at_rest, sliding }, Paths { x0, v0, x1, v1, time })
     }
 
+    /// A row's path through the step.
+    fn path(&self, row: usize) -> Path {
+        let (Tile { dt, attributes, .. }, end) = (&*self.tile, self.tile.end());
+        // A newborn has come only part of the way.
+        let start = end - (end - attributes.lives.born[row]).min(*dt);
+        let [x0, v0] = self.past.start;
+        let (x1, v1) = (self.tile.position[row], self.tile.velocity[row]);
+        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
+    }
+
     /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
     #[inline(never)]
     fn follow(&mut self, row: usize) {
-        let Self { tile, past, facing, report, observer } = self;
+        let path = self.path(row);
+        let Self { tile, past, facing: known, report, observer } = self;
         let observer: Option<&mut dyn Observer> = match observer {
             Some(observer) => Some(&mut **observer),
             None => None,
@@ -224,11 +284,7 @@ impl Sweep<'_, '_> {
         if m.inverse_mass[row] == 0.0 {
             return;
         }
-        let (lives, end) = (&m.lives, tile.end());
-        // A newborn has come only part of the way.
-        let start = end - (end - lives.born[row]).min(dt);
-        let [[x0, v0], [x1, v1]] = [past.start.map(|column| column[row]), [tile.position[row], tile.velocity[row]]];
-        let path = Path { x0, v0, x1, v1, during: [start, end] };
+        let lives = &m.lives;
         // Constraints know nothing of the newborn.
         let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) } else { 0 };
         // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
@@ -258,9 +314,9 @@ impl Sweep<'_, '_> {
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
         let is_newborn = row >= old;
         // Whoever is near one face alone goes the short way, among however many things.
-        let facing = match *facing {
-            Facing::Several if SHORT_WAY => flight.facing(&path),
-            facing => facing,
+        let facing = match *known {
+            Facing::Several if SHORT_WAY => facing(scene.colliders, &path, [radius, flight.elasticity], flight.dt),
+            known => known,
         };
         let arrival = match facing {
             Facing::Face(face) if SHORT_WAY => flight.past(&face).travel(&path, is_newborn, may_lie),

@@ -15,7 +15,7 @@ use crate::memory::Size;
 use crate::particles::{Color, Particle};
 use crate::rays;
 use crate::reap::ReaperKind;
-use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Shape};
+use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Scenery, Shape};
 use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -40,7 +40,7 @@ pub struct Model {
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// What they bounce off.
-    pub colliders: Vec<Moving<Placed<Shape<Arc<MeshBuf>>>>>,
+    pub colliders: Scenery<Moving<Placed<Shape<Arc<MeshBuf>>>>>,
     /// What else they die of, beside age and sinks.
     pub reapers: Vec<ReaperKind>,
     /// What each particle has beside the engine's own attributes.
@@ -122,7 +122,7 @@ impl Model {
             let placed = Placed::new(solid.shape.clone(), solid.to_world);
             let placed = placed.map(|placed| placed.made_of(solid.material));
             let moving = placed.map(|placed| Moving::new(placed.clone(), &placed.bounds(), solid.motion));
-            moving.ok_or_else(|| {
+            moving.map(|moving| (moving.clone(), moving.reach())).ok_or_else(|| {
                 let message = "its groups together flatten space: there is no inverse";
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
             })
@@ -131,7 +131,7 @@ impl Model {
             particles: start.particles,
             springs: start.springs,
             emitters,
-            colliders: colliders.collect::<Result<_, _>>()?,
+            colliders: Scenery::new(colliders.collect::<Result<_, _>>()?),
             forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes),
             contacts: file.contacts,
             constraints: (file.constraints.clone(), file.contacts.and_then(|response| response.contacts())),

@@ -22,6 +22,8 @@ mod moving;
 mod place;
 mod plane;
 mod revolve;
+#[cfg(feature = "alloc")]
+mod scenery;
 mod sliver;
 mod sphere;
 mod triangle;
@@ -45,6 +47,8 @@ pub use mesh::{BadMesh, Mesh};
 pub use moving::{Motion, Moving};
 pub use place::{Affine, Placed};
 pub use plane::Plane;
+#[cfg(feature = "alloc")]
+pub use scenery::Scenery;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 

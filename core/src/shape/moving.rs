@@ -176,6 +176,12 @@ impl<C> Moving<C> {
     pub const fn still(collider: C) -> Self {
         Self { collider, motion: None, reach: EVERYWHERE }
     }
+
+    /// A box around all that it ever reaches.
+    #[must_use]
+    pub const fn reach(&self) -> Aabb {
+        self.reach
+    }
 }
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };

@@ -1,0 +1,152 @@
+//! Many things to run into, behind an index of their boxes.
+
+use super::{Aabb, Collider, Contact, Facing, Hit, Hulls, Marks, Ride, Segment, earlier};
+use crate::math::{largest, max};
+use crate::rays::{Index, Pieces, Structure};
+use crate::time::Time;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Deref;
+use glam::Vec3;
+
+/// Fewer things than this are looked at one by one.
+const WORTH_AN_INDEX: usize = 8;
+
+/// A list of colliders of which only those are asked whose boxes are near: what a hundred things cost is little more than what one
+/// costs that a particle is near.
+///
+/// It answers what the list of them answers, to the bit, in the same order.
+#[derive(Clone, Debug)]
+pub struct Scenery<C> {
+    things: Vec<C>,
+    boxes: Boxes,
+    /// Those whose boxes have no end, and which are therefore always near.
+    endless: Vec<usize>,
+    /// An index of the other boxes; none, if there are few.
+    words: Vec<u32>,
+}
+
+/// Boxes as an index sees them.
+#[derive(Clone, Debug)]
+struct Boxes(Vec<Aabb>);
+
+impl Pieces for Boxes {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+    fn box_of(&self, piece: usize) -> Aabb {
+        self.0.get(piece).copied().unwrap_or(Aabb::EMPTY)
+    }
+    fn hit(&self, _: usize, _: &Segment) -> Option<Hit> {
+        None
+    }
+}
+
+impl<C: Collider> Scenery<C> {
+    /// Things, each with a box around all that it ever reaches. Takes n log n time.
+    #[must_use]
+    pub fn new(things: Vec<(C, Aabb)>) -> Self {
+        let (things, boxes): (Vec<C>, Vec<Aabb>) = things.into_iter().unzip();
+        let boxes = Boxes(boxes.iter().map(with_room).collect());
+        let is_endless = |&number: &usize| !(boxes.0[number].min.is_finite() && boxes.0[number].max.is_finite());
+        let endless = (0..things.len()).filter(is_endless).collect();
+        let mut memory = vec![0; if things.len() < WORTH_AN_INDEX { 0 } else { Structure::Bvh.words(things.len()) }];
+        let words = match Structure::Bvh.build(&boxes, &mut memory) {
+            Ok(index) => index.words().to_vec(),
+            // Too few to be worth it, or more than can be numbered.
+            Err(_) => Vec::new(),
+        };
+        Self { things, boxes, endless, words }
+    }
+
+    /// Visits those that a box may share a point with, in their order.
+    fn near(&self, bounds: &Aabb, visit: &mut dyn FnMut(&C)) {
+        let mut ask = |thing: &C| {
+            if thing.may_touch(bounds) {
+                visit(thing);
+            }
+        };
+        if self.words.is_empty() {
+            return self.things.iter().for_each(ask);
+        }
+        let mut endless = self.endless.iter().copied().peekable();
+        Index::trusted(&self.words).near(&self.boxes, bounds, &mut |number| {
+            while let Some(before) = endless.next_if(|&before| before < number) {
+                ask(&self.things[before]);
+            }
+            ask(&self.things[number]);
+        });
+        endless.for_each(|number| ask(&self.things[number]));
+    }
+}
+
+/// A box with room for what rounding may do to whoever is held against it.
+fn with_room(bounds: &Aabb) -> Aabb {
+    let room = 64.0 * f32::EPSILON * max(largest(bounds.min), largest(bounds.max));
+    Aabb { min: bounds.min - room, max: bounds.max + room }
+}
+
+impl<C> Deref for Scenery<C> {
+    type Target = [C];
+    fn deref(&self) -> &[C] {
+        &self.things
+    }
+}
+
+impl<C: Collider> Collider for Scenery<C> {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let mut best = None;
+        self.near(&segment.bounds(), &mut |thing| best = earlier(best, thing.first_hit(segment)));
+        best
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        let mut may = false;
+        self.near(bounds, &mut |_| may = true);
+        may
+    }
+
+    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        if self.words.is_empty() {
+            return self.things.mark_near(hulls, marks);
+        }
+        self.endless.iter().for_each(|&number| self.things[number].mark_near(hulls, marks));
+        for (i, mark) in marks.iter_mut().enumerate().filter(|(_, mark)| **mark == 0) {
+            let hull = hulls.get(i);
+            Index::trusted(&self.words).near(&self.boxes, &hull, &mut |number| {
+                if self.things[number].may_touch(&hull) {
+                    *mark = u32::MAX;
+                }
+            });
+        }
+    }
+
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        let mut facing = Facing::Nothing;
+        self.near(bounds, &mut |thing| {
+            if facing != Facing::Several {
+                facing = facing.and(thing.facing(bounds));
+            }
+        });
+        facing
+    }
+
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach };
+        self.near(&bounds, &mut |thing| thing.contacts(center, reach, at, visit));
+    }
+
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.things.carry(point, radius, during)
+    }
+
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        let mut ride = None;
+        self.near(&seat.bounds(), &mut |thing| ride = ride.or_else(|| thing.ride(seat)));
+        ride
+    }
+
+    fn is_empty(&self) -> bool {
+        Collider::is_empty(&self.things[..])
+    }
+}
