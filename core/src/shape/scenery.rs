@@ -20,6 +20,8 @@ const WORTH_AN_INDEX: usize = 8;
 pub struct Scenery<C> {
     things: Vec<C>,
     boxes: Boxes,
+    /// A box around those that have one.
+    all: Aabb,
     /// Those whose boxes have no end, and which are therefore always near.
     endless: Vec<usize>,
     /// An index of the other boxes; none, if there are few.
@@ -48,15 +50,16 @@ impl<C: Collider> Scenery<C> {
     pub fn new(things: Vec<(C, Aabb)>) -> Self {
         let (things, boxes): (Vec<C>, Vec<Aabb>) = things.into_iter().unzip();
         let boxes = Boxes(boxes.iter().map(with_room).collect());
-        let is_endless = |&number: &usize| !(boxes.0[number].min.is_finite() && boxes.0[number].max.is_finite());
-        let endless = (0..things.len()).filter(is_endless).collect();
+        let is_endless = |bounds: &Aabb| !(bounds.min.is_finite() && bounds.max.is_finite());
+        let endless = (0..things.len()).filter(|&number| is_endless(&boxes.0[number])).collect();
+        let all = boxes.0.iter().filter(|bounds| !is_endless(bounds)).fold(Aabb::EMPTY, |all, one| all.join(*one));
         let mut memory = vec![0; if things.len() < WORTH_AN_INDEX { 0 } else { Structure::Bvh.words(things.len()) }];
         let words = match Structure::Bvh.build(&boxes, &mut memory) {
             Ok(index) => index.words().to_vec(),
             // Too few to be worth it, or more than can be numbered.
             Err(_) => Vec::new(),
         };
-        Self { things, boxes, endless, words }
+        Self { things, boxes, all, endless, words }
     }
 
     /// Visits those that a box may share a point with, in their order.
@@ -111,7 +114,9 @@ impl<C: Collider> Collider for Scenery<C> {
             return self.things.mark_near(hulls, marks);
         }
         self.endless.iter().for_each(|&number| self.things[number].mark_near(hulls, marks));
-        for (i, mark) in marks.iter_mut().enumerate().filter(|(_, mark)| **mark == 0) {
+        let mut near_any = [0; Hulls::MANY];
+        hulls.near_box(&self.all, &mut near_any);
+        for (i, mark) in marks.iter_mut().enumerate().filter(|(i, mark)| **mark == 0 && near_any[*i] != 0) {
             let hull = hulls.get(i);
             Index::trusted(&self.words).near(&self.boxes, &hull, &mut |number| {
                 if self.things[number].may_touch(&hull) {
