@@ -176,7 +176,9 @@ impl<L: RadialLaw> Force for Radial<L> {
         let first = rows.start;
         state.near.of(rows, self.0.reach(), &mut |row, nearby| {
             if let Some(total) = total.get_mut(row - first) {
-                *total += self.sum(state, row, nearby);
+                // Rows come in no order of memory: it is fetched while the sum is made.
+                let before = *total;
+                *total = before + self.sum(state, row, nearby);
             }
         });
     }

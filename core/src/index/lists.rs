@@ -13,6 +13,9 @@ use glam::Vec3;
 const OWN: usize = 9;
 /// Fills a list up: the number of no point.
 const NO_POINT: u32 = u32::MAX;
+/// Lists whose entries are fetched together, and room for these.
+const BATCH: usize = 16;
+const ROOM: usize = 1024;
 /// Points that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 2048;
@@ -81,15 +84,34 @@ impl Lists<'_> {
 
     /// As [`Neighbours::of`](super::Neighbours::of).
     pub(super) fn of(&self, rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
-        let mut runs = Runs::EMPTY;
-        for (&[start, end], place) in self.spans.iter().zip(self.places) {
-            let row = place.row as usize;
-            if rows.contains(&row) {
-                let list = self.entries.get(start as usize..end as usize).unwrap_or_default();
-                let place_of = |other: u32| self.places.get(other as usize).copied().unwrap_or(NOBODY);
-                let others = list.as_chunks().0.iter().map(|four| four.map(place_of));
-                runs.visit((row, Vec3::from_array(place.x)), others, reach, visit);
+        let (mut runs, mut room) = (Runs::EMPTY, [0; ROOM]);
+        let place_of = |other: u32| self.places.get(other as usize).copied().unwrap_or(NOBODY);
+        for (spans, places) in self.spans.chunks(BATCH).zip(self.places.chunks(BATCH)) {
+            let (entries, first) = self.fetched(spans, &mut room);
+            for (span, place) in spans.iter().zip(places) {
+                let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
+                if rows.contains(&row) {
+                    let list = entries.get(start..end).unwrap_or_default();
+                    let others = list.as_chunks().0.iter().map(|four| four.map(place_of));
+                    runs.visit((row, Vec3::from_array(place.x)), others, reach, visit);
+                }
             }
+        }
+    }
+
+    /// The entries of some lists, and the number of the first: fetched from memory all at once, if there is room for them, which
+    /// takes less than to wait for each list in turn.
+    fn fetched<'r>(&'r self, spans: &[[u32; 2]], room: &'r mut [u32; ROOM]) -> (&'r [u32], usize) {
+        let [start, end] = match spans {
+            [[start, end]] | [[start, _], .., [_, end]] => [*start as usize, *end as usize],
+            [] => [0; 2],
+        };
+        match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
+            Some((room, entries)) => {
+                room.copy_from_slice(entries);
+                (room, start)
+            }
+            None => (self.entries, 0),
         }
     }
 }
@@ -240,18 +262,20 @@ impl Making<'_> {
         spans: &mut [[u32; 2]],
         (first, entries): (usize, &mut [u32]),
     ) -> bool {
-        let (start, mut len, mut fits) = (points.start, 0, true);
+        let (mut next, start, mut len, mut fits) = (0, points.start, 0, true);
         let all = self.index.in_order(points, self.radius, &mut |point, others| {
             let end = len + others.len().next_multiple_of(4);
-            match spans.get_mut(point.wrapping_sub(start)).zip(entries.get_mut(len..end)) {
-                Some((span, room)) => {
+            let place = point.wrapping_sub(start);
+            match spans.get_mut(place).zip(entries.get_mut(len..end)) {
+                Some((span, room)) if place >= next => {
+                    next = place + 1;
                     *span = [first + len, first + end].map(|at| at as u32);
                     let (list, rest) = room.split_at_mut(others.len());
                     list.copy_from_slice(others);
                     rest.fill(NO_POINT);
                     len = end;
                 }
-                None => fits = false,
+                _ => fits = false,
             }
         });
         all && fits

@@ -121,8 +121,8 @@ pub trait SpatialIndex: Sync {
     /// in the structure's order. Rows without neighbours are not visited.
     fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost;
 
-    /// Visits the points at some places of [`SpatialIndex::order`] with the places of all others within `radius`, in ascending
-    /// order of their rows; true if all have been visited. Lists of neighbours are made of that, where there are threads by
+    /// Visits the points at some places of [`SpatialIndex::order`], each once and in this order, with the places of all others within
+    /// `radius` in ascending order of their rows; true if all have been visited. Lists of neighbours are made of that, where there are threads by
     /// several at once.
     ///
     /// An index need not be able to, nor to the end: the built-in ones are not in a periodic box, nor where a point has more
