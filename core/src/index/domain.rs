@@ -48,6 +48,11 @@ impl Domain {
         Self { low, sides, scale: 1.0 }
     }
 
+    /// Whether it is all of space.
+    pub(super) fn is_open(&self) -> bool {
+        self.sides == Vec3::ZERO
+    }
+
     /// Chooses the scale for points like these.
     pub(super) fn fit(&mut self, points: &[Vec3]) {
         let sound = points.iter().filter(|point| point.is_finite());

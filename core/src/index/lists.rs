@@ -2,14 +2,23 @@
 //! Fluids", Phys. Rev. 159, 1967).
 
 use super::SpatialIndex;
-use super::nearby::{Nearby, in_runs};
+use super::nearby::{NOBODY, Nearby, Runs};
+use super::sorted::Entry;
 use crate::math::{max, sqrt};
 use crate::rows::farthest;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Words of a point's own: its row, where its list ends, where it was when the lists were made and where it is.
-const OWN: usize = 8;
+/// Words of a point's own: where its list begins and ends, where it was when the lists were made, where it is, and its row.
+const OWN: usize = 9;
+/// Fills a list up: the number of no point.
+const NO_POINT: u32 = u32::MAX;
+/// Lists whose entries are fetched together, and room for these.
+const BATCH: usize = 16;
+const ROOM: usize = 1024;
+/// Points that are worth a thread's while.
+#[cfg(feature = "rayon")]
+const SHARE: usize = 2048;
 /// Steps that go by without lists after these have been of no use.
 const PAUSE: u32 = 16;
 /// Within what the squares of coordinates and of radii are numbers \[m\].
@@ -42,27 +51,23 @@ pub(crate) struct ListMemory<'a> {
     step: f32,
 }
 
-/// Lists, for reading. Points are numbered anew, in the order in which the index has visited them: what is near in
-/// space is near in memory.
+/// Lists, for reading. Points are numbered anew, in the order of the index: what is near in space is near in memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Lists<'a> {
     reach: f32,
-    /// Their rows.
-    rows: &'a [u32],
-    /// Where their lists end.
-    ends: &'a [u32],
-    /// Where they are.
-    places: &'a [Vec3],
-    /// The lists, one behind the other: in the order of rows.
+    /// Where among the entries each point's list begins and ends.
+    spans: &'a [[u32; 2]],
+    /// Where they are, and their rows.
+    places: &'a [Entry],
+    /// The numbers of the near, in ascending order of rows, each list filled up to a multiple of four.
     entries: &'a [u32],
 }
 
 /// The same, in the making.
 struct Parts<'a> {
-    rows: &'a mut [u32],
-    ends: &'a mut [u32],
+    spans: &'a mut [[u32; 2]],
     made: &'a mut [Vec3],
-    places: &'a mut [Vec3],
+    places: &'a mut [Entry],
     entries: &'a mut [u32],
 }
 
@@ -79,14 +84,34 @@ impl Lists<'_> {
 
     /// As [`Neighbours::of`](super::Neighbours::of).
     pub(super) fn of(&self, rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
-        let mut start = 0;
-        for ((&row, &end), &place) in self.rows.iter().zip(self.ends).zip(self.places) {
-            let (row, list) = (row as usize, &self.entries[start..end as usize]);
-            start = end as usize;
-            if rows.contains(&row) {
-                let others = list.iter().map(|&other| (self.rows[other as usize], self.places[other as usize]));
-                in_runs((row, place), others, reach, visit);
+        let (mut runs, mut room) = (Runs::EMPTY, [0; ROOM]);
+        let place_of = |other: u32| self.places.get(other as usize).copied().unwrap_or(NOBODY);
+        for (spans, places) in self.spans.chunks(BATCH).zip(self.places.chunks(BATCH)) {
+            let (entries, first) = self.fetched(spans, &mut room);
+            for (span, place) in spans.iter().zip(places) {
+                let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
+                if rows.contains(&row) {
+                    let list = entries.get(start..end).unwrap_or_default();
+                    let others = list.as_chunks().0.iter().map(|four| four.map(place_of));
+                    runs.visit((row, Vec3::from_array(place.x)), others, reach, visit);
+                }
             }
+        }
+    }
+
+    /// The entries of some lists, and the number of the first: fetched from memory all at once, if there is room for them, which
+    /// takes less than to wait for each list in turn.
+    fn fetched<'r>(&'r self, spans: &[[u32; 2]], room: &'r mut [u32; ROOM]) -> (&'r [u32], usize) {
+        let [start, end] = match spans {
+            [[start, end]] | [[start, _], .., [_, end]] => [*start as usize, *end as usize],
+            [] => [0; 2],
+        };
+        match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
+            Some((room, entries)) => {
+                room.copy_from_slice(entries);
+                (room, start)
+            }
+            None => (self.entries, 0),
         }
     }
 }
@@ -140,46 +165,23 @@ impl<'a> ListMemory<'a> {
         points: &[Vec3],
         [reach, skin]: [f32; 2],
     ) -> Option<Lists<'_>> {
-        let Parts { rows, ends, made, places, entries } = parts(self.words, points.len());
-        let (mut count, mut len, mut fits) = (0, 0, true);
-        index.neighbours(reach + skin, &mut |row, others| {
-            if count == 0 || rows[count - 1] != row {
-                let Some(next) = rows.get_mut(count) else { return fits = false };
-                *next = row;
-                count += 1;
-            }
-            fits &= len + others.len() <= entries.len();
-            if fits {
-                entries[len..len + others.len()].copy_from_slice(others);
-                len += others.len();
-                ends[count - 1] = len as u32;
-            }
-        });
+        let Parts { spans, made, places, entries } = parts(self.words, points.len());
+        let order = index.order();
+        // Whoever is in no index is watched as well: it may come near others.
+        let absent = (0..).zip(points).filter(|(_, point)| !point.is_finite()).map(|(row, _)| row);
+        let mut count = 0;
+        for ((made, place), row) in made.iter_mut().zip(places).zip(order.iter().copied().chain(absent)) {
+            *made = *points.get(row as usize)?;
+            *place = Entry { x: made.to_array(), row };
+            count += 1;
+        }
+        spans.fill([0; 2]);
+        let making = Making { index, radius: reach + skin };
+        let fits = count == points.len() && making.fill(0..order.len().min(count), spans, entries);
         // Not again as soon, if there is no room.
         self.listed.pause = if fits { 0 } else { PAUSE };
         if !fits {
             return None;
-        }
-        let numbers: &mut [u32] = bytemuck::cast_slice_mut(places);
-        let numbers = &mut numbers[..points.len()];
-        numbers.fill(u32::MAX);
-        (0..).zip(&rows[..count]).for_each(|(number, &row)| numbers[row as usize] = number);
-        // Whoever has no neighbours is watched as well: it may come near others.
-        for row in (0..).take(points.len()).filter(|&row| numbers[row as usize] == u32::MAX) {
-            // An index that comes back to a row has none for another.
-            let (next, end) = rows.get_mut(count).zip(ends.get_mut(count))?;
-            (*next, *end) = (row, len as u32);
-            count += 1;
-        }
-        let mut start = 0;
-        for &end in &*ends {
-            let list = &mut entries[start..end as usize];
-            list.sort_unstable();
-            list.iter_mut().for_each(|other| *other = numbers[*other as usize]);
-            start = end as usize;
-        }
-        for ((made, place), &row) in made.iter_mut().zip(places).zip(&*rows) {
-            (*made, *place) = (points[row as usize], points[row as usize]);
         }
         let (changes, words, uses, pause) = (self.changes, self.words.len(), 1, 0);
         // Half of the skin each, less what rounding may come to.
@@ -190,29 +192,107 @@ impl<'a> ListMemory<'a> {
 
     fn read(&mut self) -> Lists<'_> {
         let Listed { points, reach, .. } = *self.listed;
-        let Parts { rows, ends, places, entries, .. } = parts(self.words, points as usize);
-        Lists { reach, rows, ends, places, entries }
+        let Parts { spans, places, entries, .. } = parts(self.words, points as usize);
+        Lists { reach, spans, places, entries }
     }
 
     /// Takes up where all are, and says whether nobody has gone farther than the leash.
     fn follow(&mut self, points: &[Vec3], leash: f32) -> bool {
         let square = leash * leash;
-        let Parts { rows, made, places, .. } = parts(self.words, points.len());
+        let Parts { made, places, .. } = parts(self.words, points.len());
         let mut any = 0;
-        for ((place, made), &row) in places.iter_mut().zip(made).zip(&*rows) {
-            *place = points[row as usize];
-            let d = *place - *made;
+        for (place, made) in places.iter_mut().zip(made) {
+            let at = points[place.row as usize];
+            place.x = at.to_array();
+            let d = at - *made;
             any |= u32::from(!(d.x * d.x + d.y * d.y + d.z * d.z <= square));
         }
         any == 0
     }
 }
 
+/// How lists are made.
+#[derive(Clone, Copy)]
+struct Making<'a> {
+    index: &'a dyn SpatialIndex,
+    radius: f32,
+}
+
+impl Making<'_> {
+    /// Fills in the lists of some points; false if there is no room.
+    fn fill(&self, points: Range<usize>, spans: &mut [[u32; 2]], entries: &mut [u32]) -> bool {
+        #[cfg(feature = "rayon")]
+        if rayon::current_thread_index().is_some()
+            && self.fill_side_by_side(points.clone(), spans, (0, &mut *entries), rayon::current_num_threads())
+        {
+            return true;
+        }
+        self.fill_one_by_one(points, spans, (0, entries))
+    }
+
+    /// The same by so many threads, each with its share of the points and of the room.
+    #[cfg(feature = "rayon")]
+    fn fill_side_by_side(
+        &self,
+        points: Range<usize>,
+        spans: &mut [[u32; 2]],
+        (first, entries): (usize, &mut [u32]),
+        threads: usize,
+    ) -> bool {
+        let parts = threads.min(points.len() / SHARE);
+        if parts < 2 {
+            return self.fill_one_by_one(points, spans, (first, entries));
+        }
+        let of_front = |whole: usize| whole / parts * (parts / 2);
+        let (len, room) = (of_front(points.len()), of_front(entries.len()));
+        let (front, back) = spans.split_at_mut(len);
+        let (front_room, back_room) = entries.split_at_mut(room);
+        let middle = points.start + len;
+        let (front, back) = rayon::join(
+            || self.fill_side_by_side(points.start..middle, front, (first, front_room), parts / 2),
+            || self.fill_side_by_side(middle..points.end, back, (first + room, back_room), parts - parts / 2),
+        );
+        front && back
+    }
+
+    /// The same by one thread. The entries are those from `first` on.
+    fn fill_one_by_one(
+        &self,
+        points: Range<usize>,
+        spans: &mut [[u32; 2]],
+        (first, entries): (usize, &mut [u32]),
+    ) -> bool {
+        let (mut next, start, mut len, mut fits) = (0, points.start, 0, true);
+        let all = self.index.in_order(points, self.radius, &mut |point, others| {
+            let end = len + others.len().next_multiple_of(4);
+            let place = point.wrapping_sub(start);
+            match spans.get_mut(place).zip(entries.get_mut(len..end)) {
+                Some((span, room)) if place >= next => {
+                    next = place + 1;
+                    *span = [first + len, first + end].map(|at| at as u32);
+                    let (list, rest) = room.split_at_mut(others.len());
+                    list.copy_from_slice(others);
+                    rest.fill(NO_POINT);
+                    len = end;
+                }
+                _ => fits = false,
+            }
+        });
+        all && fits
+    }
+}
+
 /// The parts of memory for lists of so many points.
 fn parts(words: &mut [u32], points: usize) -> Parts<'_> {
-    let (rows, rest) = words.split_at_mut(points);
-    let (ends, rest) = rest.split_at_mut(points);
+    let (spans, rest) = words.split_at_mut(2 * points);
     let (made, rest) = rest.split_at_mut(3 * points);
-    let (places, entries) = rest.split_at_mut(3 * points);
-    Parts { rows, ends, made: bytemuck::cast_slice_mut(made), places: bytemuck::cast_slice_mut(places), entries }
+    let (places, entries) = rest.split_at_mut(4 * points);
+    // A span tells of no more.
+    let len = entries.len().min(u32::MAX as usize);
+    Parts {
+        spans: bytemuck::cast_slice_mut(spans),
+        made: bytemuck::cast_slice_mut(made),
+        places: bytemuck::cast_slice_mut(places),
+        entries: &mut entries[..len],
+    }
 }

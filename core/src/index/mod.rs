@@ -44,6 +44,7 @@ mod nearby;
 mod nearest;
 mod neighbours;
 mod octree;
+mod ordered;
 mod partition;
 mod region;
 mod search;
@@ -74,6 +75,7 @@ pub use octree::{Octree, Quadtree};
 pub use structure::{AnyIndex, Structure, UnknownStructure};
 pub use tree::Tree;
 
+use core::ops::Range;
 use glam::Vec3;
 
 /// Points sorted in space, to be asked what is near.
@@ -118,6 +120,17 @@ pub trait SpatialIndex: Sync {
     /// Visits every row with the others within `radius`, in runs; all runs of a row follow each other, and rows come
     /// in the structure's order. Rows without neighbours are not visited.
     fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost;
+
+    /// Visits the points at some places of [`SpatialIndex::order`], each once and in this order, with the places of all others within
+    /// `radius` in ascending order of their rows; true if all have been visited. Lists of neighbours are made of that, where there are threads by
+    /// several at once.
+    ///
+    /// An index need not be able to, nor to the end: the built-in ones are not in a periodic box, nor where a point has more
+    /// than a thousand, nor on chips. Then neighbours are looked up anew whenever they are asked for.
+    fn in_order(&self, places: Range<usize>, radius: f32, visit: &mut dyn FnMut(usize, &[u32])) -> bool {
+        let _ = (places, radius, visit);
+        false
+    }
 
     /// Visits every two rows within `radius` of each other once: a row with a run of others.
     fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost;
@@ -220,6 +233,10 @@ macro_rules! answers {
         }
         fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
             Search(self).neighbours(radius, visit)
+        }
+        fn in_order(&self, places: core::ops::Range<usize>, radius: f32, visit: &mut dyn FnMut(usize, &[u32])) -> bool {
+            // A chip has no room for lists, nor on its stack for what it takes to make them.
+            !cfg!(target_os = "none") && Search(self).in_order(places, radius, visit)
         }
         fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
             Search(self).pairs(radius, visit)

@@ -10,7 +10,7 @@ use glam::Vec3;
 use wide::f32x8;
 
 /// How many points share one way through the structure at most.
-const GROUP: usize = 64;
+pub(super) const GROUP: usize = 64;
 /// How many runs they remember; if there are more, each point goes its own way.
 const RUNS: usize = 128;
 
@@ -76,6 +76,11 @@ impl Near {
         }
         self.len += 1;
         true
+    }
+
+    /// The runs that it remembers.
+    pub(super) fn runs(&self) -> impl Iterator<Item = Range<usize>> {
+        self.slots[..self.len].iter().map(|&[start, end]| start as usize..end as usize)
     }
 
     /// Visits what of it is within a distance of a point, with the square of the distance to its box.

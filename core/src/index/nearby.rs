@@ -1,7 +1,9 @@
 //! Some neighbours of a row, side by side.
 
+use super::sorted::Entry;
 use crate::lanes::LANES;
 use glam::Vec3;
+use wide::f32x4;
 
 /// Neighbours that are handed over at once.
 pub(super) const RUN: usize = 32;
@@ -36,46 +38,92 @@ impl Nearby {
         &self.square
     }
 
-    /// Puts another to a place, and says whether it stays there: it is near.
-    #[inline(always)]
-    fn put(&mut self, k: usize, other: u32, d: Vec3, most: f32) -> bool {
-        let square = d.x * d.x + d.y * d.y + d.z * d.z;
-        self.rows[k] = other;
-        (self.toward[0][k], self.toward[1][k], self.toward[2][k]) = (d.x, d.y, d.z);
-        self.square[k] = square;
-        square <= most
-    }
-
-    /// Hands the first `len` over.
+    /// Takes the first `len` of some others than a row at a place, and hands them over.
     #[inline]
-    fn hand_over(&mut self, len: usize, row: usize, visit: &mut dyn FnMut(usize, &Self)) {
-        if len > 0 {
-            for k in len..len.next_multiple_of(LANES) {
-                self.square[k] = 0.0;
-                self.toward.iter_mut().for_each(|toward| toward[k] = 0.0);
-            }
-            self.len = len;
-            visit(row, self);
+    fn hand_over(
+        &mut self,
+        (found, len): (&[f32x4; FOUND], usize),
+        (row, place): (usize, Vec3),
+        visit: &mut dyn FnMut(usize, &Self),
+    ) {
+        if len == 0 {
+            return;
         }
+        let ([to_x, to_y, to_z], center) = (&mut self.toward, place.to_array().map(f32x4::splat));
+        for (k, four) in found.as_chunks().0.iter().enumerate().take(len.div_ceil(4)) {
+            let ([x, y, z], rows) = ways(*four, center);
+            put(to_x, k, x);
+            put(to_y, k, y);
+            put(to_z, k, z);
+            put(&mut self.square, k, x * x + y * y + z * z);
+            put(bytemuck::cast_mut(&mut self.rows), k, rows);
+        }
+        for k in len..len.next_multiple_of(LANES) {
+            self.square[k] = 0.0;
+            self.toward.iter_mut().for_each(|toward| toward[k] = 0.0);
+        }
+        self.len = len;
+        visit(row, self);
     }
 }
 
-/// Visits a row at a place with those of some others that are within `reach` of it, in their order.
-#[inline]
-pub(super) fn in_runs(
-    (row, place): (usize, Vec3),
-    others: impl Iterator<Item = (u32, Vec3)>,
-    reach: f32,
-    visit: &mut dyn FnMut(usize, &Nearby),
-) {
-    let (mut nearby, mut len, square) = (Nearby::NOBODY, 0, reach * reach);
-    for (other, at) in others {
-        // Written before it is known whether it stays, so that there is no branch to guess.
-        len += usize::from(nearby.put(len % RUN, other, at - place, square));
-        if len == RUN {
-            nearby.hand_over(len, row, visit);
-            len = 0;
-        }
+/// Puts four numbers into a column.
+#[inline(always)]
+fn put(column: &mut [f32; RUN], k: usize, lanes: f32x4) {
+    if let Some(four) = column.as_chunks_mut().0.get_mut(k) {
+        *four = lanes.to_array();
     }
-    nearby.hand_over(len, row, visit);
+}
+
+/// The ways from a place to four others, and what their rows are, side by side.
+#[inline(always)]
+fn ways(four: [f32x4; 4], center: [f32x4; 3]) -> ([f32x4; 3], f32x4) {
+    let [x, y, z, rows] = f32x4::transpose(four);
+    ([x - center[0], y - center[1], z - center[2]], rows)
+}
+
+/// Stands for no other: whatever it is held against, it is not near.
+pub(super) const NOBODY: Entry = Entry { x: [f32::NAN; 3], row: u32::MAX };
+
+/// Room for a run and what follows it in the last four; a power of two, so that no place in it needs a check.
+const FOUND: usize = 2 * RUN;
+
+/// Room to bring neighbours together in.
+pub(super) struct Runs {
+    /// Places and rows of the near.
+    found: [f32x4; FOUND],
+    nearby: Nearby,
+}
+
+impl Runs {
+    pub(super) const EMPTY: Self = Self { found: [f32x4::ZERO; FOUND], nearby: Nearby::NOBODY };
+
+    /// Visits a row at a place with those of some others, four by four, that are within `reach` of it, in their order.
+    #[inline]
+    pub(super) fn visit(
+        &mut self,
+        (row, place): (usize, Vec3),
+        others: impl Iterator<Item = [Entry; 4]>,
+        reach: f32,
+        visit: &mut dyn FnMut(usize, &Nearby),
+    ) {
+        let (center, square) = (place.to_array().map(f32x4::splat), f32x4::splat(reach * reach));
+        let mut len = 0;
+        for four in others {
+            let four = four.map(bytemuck::cast);
+            let ([x, y, z], _) = ways(four, center);
+            let hits = (x * x + y * y + z * z).simd_le(square).to_bitmask() as usize;
+            for (k, other) in four.into_iter().enumerate() {
+                // Written whether it is near or not, and then written over, so that there is no branch to guess.
+                self.found[len % FOUND] = other;
+                len += hits >> k & 1;
+            }
+            if len >= RUN {
+                self.nearby.hand_over((&self.found, RUN), (row, place), visit);
+                self.found.copy_within(RUN..RUN + 4, 0);
+                len -= RUN;
+            }
+        }
+        self.nearby.hand_over((&self.found, len), (row, place), visit);
+    }
 }

@@ -2,7 +2,9 @@
 
 use super::SpatialIndex;
 use super::lists::Lists;
-use super::nearby::{self, Nearby, in_runs};
+use super::nearby::{self, NOBODY, Nearby, Runs};
+use super::sorted::Entry;
+use core::array;
 use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
@@ -89,11 +91,15 @@ impl<'a> Neighbours<'a> {
         visit: &mut dyn FnMut(usize, &Nearby),
     ) {
         let (mut found, mut len, mut of) = ([0; MOST], 0, None);
+        let mut runs = Runs::EMPTY;
         let mut finish = |row: Option<usize>, found: &mut [u32; MOST], len: usize| match row {
             Some(row) if len <= MOST => {
                 found[..len].sort_unstable();
                 // Whom the index has found is near, whatever its scale.
-                in_runs(self.at(row), found[..len].iter().map(|&other| self.other(other)), f32::INFINITY, visit);
+                let others = found[..len]
+                    .chunks(4)
+                    .map(|four| array::from_fn(|k| four.get(k).map_or(NOBODY, |&other| self.entry(other))));
+                runs.visit(self.at(row), others, f32::INFINITY, visit);
             }
             // Of so many there are a good part of all points.
             Some(row) => self.by_all(row, reach, &mut *visit),
@@ -118,16 +124,19 @@ impl<'a> Neighbours<'a> {
 
     /// The neighbours of one row, found by looking at all others.
     fn by_all(&self, row: usize, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
-        let all = (0..self.points.len() as u32).filter(|&other| other as usize != row);
-        in_runs(self.at(row), all.map(|other| self.other(other)), reach, visit);
+        let mut runs = Runs::EMPTY;
+        let is_other = |&other: &u32| other as usize != row && (other as usize) < self.points.len();
+        let entry = |other| Some(other).filter(is_other).map_or(NOBODY, |other| self.entry(other));
+        let all = (0..self.points.len() as u32).step_by(4).map(|first| array::from_fn(|k| entry(first + k as u32)));
+        runs.visit(self.at(row), all, reach, visit);
     }
 
     fn at(&self, row: usize) -> (usize, Vec3) {
         (row, self.points[row])
     }
 
-    fn other(&self, row: u32) -> (u32, Vec3) {
-        (row, self.points[row as usize])
+    fn entry(&self, row: u32) -> Entry {
+        Entry { x: self.points[row as usize].to_array(), row }
     }
 }
 

@@ -13,9 +13,9 @@ use glam::Vec3;
 
 /// A query's radius, in the index.
 #[derive(Clone, Copy)]
-struct Reach {
+pub(super) struct Reach {
     radius: f32,
-    square: f32,
+    pub(super) square: f32,
     /// Whether points could be met in two images: then all of them are looked at, each in its nearest image.
     wraps: bool,
 }
@@ -47,7 +47,7 @@ pub(super) struct Search<'a, P>(pub(super) &'a P);
 
 impl<P: Partition> Search<'_, P> {
     /// None where nothing can be found: the radius is negative or undefined, or there are no points.
-    fn reach(&self, radius: f32) -> Option<Reach> {
+    pub(super) fn reach(&self, radius: f32) -> Option<Reach> {
         let sorted = self.0.sorted();
         (radius >= 0.0 && sorted.len > 0).then(|| Reach::new(sorted.domain.length(radius), &sorted.domain))
     }
@@ -112,7 +112,7 @@ impl<P: Partition> Search<'_, P> {
     }
 
     /// Remembers what of the slots `from` some on is near a group; returns the nodes visited.
-    fn gather(&self, group: &Range<usize>, frame: u32, from: usize, reach: Reach, near: &mut Near) -> u64 {
+    pub(super) fn gather(&self, group: &Range<usize>, frame: u32, from: usize, reach: Reach, near: &mut Near) -> u64 {
         let sorted = self.0.sorted();
         let mut region = Region::new(sorted.bounds(group.clone()));
         if P::TURNS && frame != 0 {

@@ -11,7 +11,7 @@ pub(super) use crate::lanes::LANES;
 /// Rows that can be told apart: they are words, and the last one stands for none.
 const ROWS: usize = u32::MAX as usize;
 
-/// A point while it is being sorted.
+/// A point with its row.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Entry {
@@ -209,8 +209,9 @@ impl<'m> Sorted<'m> {
         }
     }
 
+    /// The same by squares of distances to anything.
     #[inline(always)]
-    fn blocks_with(
+    pub(super) fn blocks_with(
         &self,
         run: &Range<usize>,
         squares: impl Fn([f32x8; 3]) -> f32x8,

@@ -3,6 +3,7 @@
 use super::cells;
 use super::sorted::Sorted;
 use super::{Brute, Bsp, Bvh, Cost, Grid, Hash, Kd, Neighbour, Octree, Quadtree, SpatialIndex, Stats, TooSmall};
+use core::ops::Range;
 use glam::Vec3;
 
 /// Declares the structures that have a name.
@@ -108,6 +109,9 @@ impl SpatialIndex for AnyIndex<'_> {
     }
     fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
         self.get().neighbours(radius, visit)
+    }
+    fn in_order(&self, places: Range<usize>, radius: f32, visit: &mut dyn FnMut(usize, &[u32])) -> bool {
+        self.get().in_order(places, radius, visit)
     }
     fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
         self.get().pairs(radius, visit)

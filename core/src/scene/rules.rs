@@ -88,7 +88,7 @@ impl Scene<'_> {
         self.plan().columns(self.start.len())
     }
 
-    /// Vectors for each particle with which neighbours are kept in lists, where forces ask for them: room for some 60 of each.
+    /// Vectors for each particle with which neighbours are kept in lists, where forces ask for them: room for some 55 of each.
     /// With less memory they are looked up anew in each evaluation, to the same bits.
     #[must_use]
     pub fn columns_with_lists(&self) -> usize {

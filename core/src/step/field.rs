@@ -42,6 +42,9 @@ impl<'a> Attributes<'a> {
     }
 }
 
+/// Rows that look at all others for less than it takes to make an index and to look up all in it.
+const FEW: usize = 64;
+
 /// The scene's forces over the masses, from row `first` on.
 pub(super) struct Field<'a> {
     pub(super) scene: &'a Scene<'a>,
@@ -96,7 +99,9 @@ impl Field<'_> {
 
     fn with_neighbours(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
         let reach = self.needs.reach;
-        if !(reach > 0.0) {
+        // A few newborn look at all others: an index would be made for them alone.
+        let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
+        if !(reach > 0.0) || are_few {
             return then(state);
         }
         let (points, scene, effort) = (state.position, self.scene, &mut self.effort);

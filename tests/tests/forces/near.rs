@@ -12,6 +12,8 @@ use pointmass_tests::{f64s, gap, point, run, started};
 const ATOMS: Radial<LennardJones> = Radial(LennardJones { epsilon: 1.0, sigma: 0.3, cutoff: 0.75 });
 const SOFT: Radial<PowerLaw> =
     Radial(PowerLaw { strength: -2.0, exponent: 3, softening: 0.2, reach: 0.6, weight: Weight::Mass });
+const LONG: Radial<PowerLaw> =
+    Radial(PowerLaw { strength: -0.1, exponent: 1, softening: 0.3, reach: 0.9, weight: Weight::Charge });
 const THICK: Viscosity = Viscosity { coefficient: 3.0, reach: 0.5 };
 
 /// Calls `then` with a state whose points are in an index.
@@ -154,6 +156,37 @@ fn crowds_are_listed_or_not_to_the_same_bits() {
     for (columns, is_listed) in [(0, false), (1, false), (3, false), (22, false), (500, true)] {
         let (hash, effort) = run(&scene, scene.columns() + columns);
         assert_eq!((hash, effort.lists > 0), (expected, is_listed), "{columns}: {effort:?}");
+    }
+}
+
+/// Lists are made, and sums divided, by any number of threads to the same bits: where points are spread evenly, where all the near
+/// are on one thread's share, and where there is nobody.
+#[test]
+fn lists_made_in_threads_are_the_same() {
+    let spread: Vec<_> = cloud(9000).into_iter().map(|at| Particle { position: at.position * 3.0, ..at }).collect();
+    let shift = |i: usize| if i < 4500 { 1.0 } else { 30.0 };
+    let uneven: Vec<_> =
+        spread.iter().enumerate().map(|(i, at)| Particle { position: at.position * shift(i), ..*at }).collect();
+    for (start, force) in [&spread, &uneven].into_iter().flat_map(|start| [(start, &SOFT), (start, &LONG)]) {
+        let scene = Scene { start, forces: force, index: &Structure::Grid, ..Scene::EMPTY };
+        let run = |columns: usize| {
+            let mut system = System::with(Heap::new(Size { columns, ..scene.size() }));
+            system.start(&scene, 0).expect("it fits");
+            (0..5).for_each(|_| {
+                system.step(&scene, Time::from_seconds(1e-4));
+            });
+            (system.hash(), system.totals().effort)
+        };
+        let (expected, effort) = run(scene.columns());
+        assert_eq!(effort.lists, 0);
+        for columns in [scene.columns_with_lists(), scene.columns() + 200] {
+            for threads in [1, 2, 3, 8] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+                let (hash, effort) = pool.install(|| run(columns));
+                assert_eq!(hash, expected, "{threads} threads");
+                assert!(effort.lists > 0 || columns == scene.columns_with_lists(), "{threads} threads: {effort:?}");
+            }
+        }
     }
 }
 

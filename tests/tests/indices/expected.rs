@@ -99,6 +99,24 @@ impl<'a> Expected<'a> {
         found(cost, lists.iter().map(|(_, others)| others.len()).sum(), &format!("{what}: neighbours"));
     }
 
+    /// Asks for the neighbours of some points after the other, in order, and says whether that has been answered to the end.
+    pub(crate) fn compare_in_order(&self, index: &dyn SpatialIndex, what: &dyn Display) -> bool {
+        let (order, what) = (index.order(), format!("{what}, radius {:e}: in order", self.radius));
+        let mut lists = vec![None; order.len()];
+        let cuts = [0, order.len() / 7, order.len() / 3, order.len() / 2, order.len() + 7];
+        let whole = cuts.windows(2).all(|cut| {
+            index.in_order(cut[0]..cut[1], self.radius, &mut |place, others| {
+                assert!((cut[0]..cut[1]).contains(&place) && lists[place].is_none(), "{what}: {place} of {cut:?}");
+                lists[place] = Some(others.iter().map(|&other| order[other as usize]).collect::<Vec<_>>());
+            })
+        });
+        for (list, &row) in lists.iter().zip(order).filter(|(list, _)| whole || list.is_some()) {
+            let expected = rows_of(&self.others[row as usize]);
+            assert_eq!(list.as_deref().unwrap_or_default(), expected, "{what}: row {row}");
+        }
+        whole
+    }
+
     fn compare_pairs(&self, index: &dyn SpatialIndex, what: &str) {
         let mut pairs = vec![];
         let cost = index.pairs(self.radius, &mut |row, others| {
@@ -174,7 +192,11 @@ pub(crate) fn check(points: &[Vec3], reaches: &[f32], radii: &[f32]) {
         let mut index = structure.index(&mut memory);
         for reach in reaches {
             index.build(points, *reach).expect("the memory is made for so many");
-            expected.iter().for_each(|expected| expected.compare(&index, &format!("{structure} of reach {reach:e}")));
+            for expected in &expected {
+                let what = format!("{structure} of reach {reach:e}");
+                expected.compare(&index, &what);
+                assert!(expected.compare_in_order(&index, &what) || points.len() > 100, "{what}");
+            }
             assert!(index.stats().bytes <= 4 * structure.words(points.len()), "{structure}: {:?}", index.stats());
         }
     }
@@ -182,5 +204,9 @@ pub(crate) fn check(points: &[Vec3], reaches: &[f32], radii: &[f32]) {
 
 /// Holds an index that has been built already against brute force.
 pub(crate) fn compare(index: &AnyIndex<'_>, oracle: &Oracle, radii: &[f32], centers: &[Vec3], what: &dyn Display) {
-    radii.iter().for_each(|&radius| Expected::new(oracle, radius, centers).compare(index, what));
+    for &radius in radii {
+        let expected = Expected::new(oracle, radius, centers);
+        expected.compare(index, what);
+        expected.compare_in_order(index, what);
+    }
 }
