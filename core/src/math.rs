@@ -90,6 +90,40 @@ pub(crate) fn power_to_one(length: f32) -> f32 {
     f32::from_bits((254 - (length.to_bits() >> 23).clamp(1, 253)) << 23)
 }
 
+/// The quotient of whole numbers and what is left over. The quotient has to be below 2⁶⁴, and the divisor not zero: else both
+/// are meaningless.
+///
+/// Chips without an operating system divide bit by bit: it is asked for a few times in a step, and the routines of compilers
+/// for numbers so wide take kilobytes.
+#[must_use]
+pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
+    if cfg!(target_os = "none") {
+        long_division(number, by)
+    } else if by == 0 {
+        (0, 0)
+    } else {
+        ((number / by as u128) as u64, (number % by as u128) as u64)
+    }
+}
+
+/// The same by shifts and differences.
+#[inline(never)]
+const fn long_division(number: u128, by: u64) -> (u64, u64) {
+    let (mut rest, mut low) = ((number >> 64) as u64, number as u64);
+    let mut bit = 0;
+    while bit < 64 {
+        let carry = rest >> 63 != 0;
+        rest = rest << 1 | low >> 63;
+        low <<= 1;
+        if carry || rest >= by {
+            rest = rest.wrapping_sub(by);
+            low |= 1;
+        }
+        bit += 1;
+    }
+    (low, rest)
+}
+
 /// Cube root of a number above zero, to 1e-6 of it: an estimate by its bits, then Newton's method.
 #[must_use]
 pub fn cbrt(x: f32) -> f32 {
@@ -209,6 +243,20 @@ mod tests {
             let exact = f64::from(turns) * core::f64::consts::TAU;
             assert!((f64::from(s) - libm::sin(exact)).abs() < 1.2e-7, "sin at {turns} turns");
             assert!((f64::from(c) - libm::cos(exact)).abs() < 1.2e-7, "cos at {turns} turns");
+        }
+    }
+
+    #[test]
+    fn bit_by_bit_division_agrees_with_that_of_the_compiler() {
+        for by in [1, 2, 3, 7, 30, 60, 1000, 1 << 32, (1 << 63) - 25, u64::MAX - 1, u64::MAX] {
+            for low in [0, 1, 12_345_678_901_234, u64::MAX / 3, u64::MAX] {
+                for high in [0, 1, by / 3, by / 2, by - 1].into_iter().filter(|&high| high < by) {
+                    let number = u128::from(high) << 64 | u128::from(low);
+                    let expected = ((number / u128::from(by)) as u64, (number % u128::from(by)) as u64);
+                    assert_eq!(long_division(number, by), expected, "{number} over {by}");
+                    assert_eq!(divide(number, by), expected);
+                }
+            }
         }
     }
 

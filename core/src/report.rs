@@ -121,12 +121,18 @@ pub struct Caps {
     pub unfit: u64,
 }
 
+/// Adds to a counter, which stops at the largest number. Apart, as there are so many of them: it is in a chip's flash once.
+#[inline(never)]
+fn add(sum: &mut u64, more: u64) {
+    *sum = sum.saturating_add(more);
+}
+
 /// Adds up every field of two counters; the sum of plain numbers saturates.
 macro_rules! add_fields {
     ($($counter:ident { $($field:ident)+ })+) => {$(
         impl core::ops::AddAssign for $counter {
             fn add_assign(&mut self, other: Self) {
-                $(self.$field = self.$field.saturating_add(other.$field);)+
+                $(add(&mut self.$field, other.$field);)+
             }
         }
     )+};
@@ -147,7 +153,7 @@ impl core::ops::AddAssign for Report {
             (&mut self.contacts, other.contacts),
             (&mut self.broken, other.broken),
         ] {
-            *sum = sum.saturating_add(more);
+            add(sum, more);
         }
         self.died += other.died;
         self.caps += other.caps;

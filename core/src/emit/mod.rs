@@ -12,7 +12,7 @@ pub use vary::{Spread, Varied};
 use crate::custom::CustomColumnsMut;
 use crate::force::State;
 use crate::index::{SpatialIndex, count_of};
-use crate::math::max;
+use crate::math::{divide, max};
 use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
@@ -203,8 +203,8 @@ impl Iterator for Due {
         }
         let missing = (u128::from(self.next) << 64) - u128::from(self.phase);
         self.next += 1;
-        let ticks = missing.div_ceil(u128::from(self.rate.max(1)));
-        Some(self.from + Time::from_ticks(ticks as u64))
+        let (ticks, rest) = divide(missing, self.rate.max(1));
+        Some(self.from + Time::from_ticks(ticks + u64::from(rest > 0)))
     }
 }
 

@@ -47,12 +47,15 @@ macro_rules! storage {
             $($(#[$w_doc])* pub $w: &'a [$w_ty],)+
         }
 
+        // Asked for in many places: apart, it is in a chip's flash once.
         impl Storage for Slices<'_> {
+            #[inline(never)]
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
                     $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
                 }
             }
+            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
@@ -70,7 +73,13 @@ macro_rules! storage {
         }
 
         impl Slices<'_> {
-            /// Moves row `from` onto row `to`; both exist.
+            /// How many particles fit.
+            #[inline(never)]
+            pub(crate) fn capacity(&self) -> usize {
+                [$(self.$p.len()),+].into_iter().fold(usize::MAX, usize::min)
+            }
+
+            /// Moves row `from` onto row `to`; both exist. What was there is in row `from` then, which nothing reads.
             pub(crate) fn move_row(&mut self, from: usize, to: usize) {
                 // The columns by slot and by number are no rows, but nothing reads them at `to` unless it is theirs.
                 storage!(@move self, from, to, $($p)+);
@@ -211,7 +220,8 @@ macro_rules! storage {
     (@one $self:ident, $from:ident, $to:ident, row_of) => {};
     (@one $self:ident, $from:ident, $to:ident, last_spring) => {};
     (@one $self:ident, $from:ident, $to:ident, $p:ident) => {
-        $self.$p[$to] = $self.$p[$from];
+        // Compilers would make a copy of an assignment, and call a routine for ranges that may overlap.
+        $self.$p.swap($to, $from);
     };
 }
 

@@ -58,7 +58,7 @@ impl View<'_> {
         m.color[row] = particle.color.unwrap_or(WHITE);
         m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
         m.fate[row] = Fate::Lives;
-        let capacity = m.columns().capacity();
+        let capacity = m.capacity();
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;
         status.changes = status.changes.wrapping_add(1);

@@ -81,7 +81,7 @@ impl View<'_> {
     }
 
     pub(crate) fn capacity(&self) -> usize {
-        self.memory.columns().capacity()
+        self.memory.capacity()
     }
 
     #[inline(never)]
