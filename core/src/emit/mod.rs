@@ -148,7 +148,10 @@ impl Births<'_> {
 
     fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
         let id = self.view.spawn(particle, at, stream.name())?;
-        self.view.give_custom(self.scene, self.view.len() - 1);
+        if let Some(code) = self.scene.custom.code() {
+            let row = self.view.len() - 1;
+            (code.give)(&mut self.view, self.scene, row);
+        }
         self.report.born += 1;
         let Particle { position: place, velocity, .. } = *particle;
         self.observer.born(&Passing { id, place, velocity, time: at });

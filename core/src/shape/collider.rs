@@ -50,6 +50,14 @@ pub trait Collider: Sync {
         None
     }
 
+    /// Whether it is known that nothing can ever hit it.
+    fn is_empty(&self) -> bool {
+        false
+    }
+}
+
+/// A collider that maps of space may turn into another: what [`Placed`](super::Placed) puts somewhere.
+pub trait Mapped: Collider {
     /// Visits colliders that together are its image under a map that is no similarity, as far as they may be near
     /// `bounds`, each with the number of its face. Balls ask for them, which such a map would make other than round.
     ///
@@ -57,10 +65,11 @@ pub trait Collider: Sync {
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         let _ = (map, bounds, visit);
     }
+}
 
-    /// Whether it is known that nothing can ever hit it.
-    fn is_empty(&self) -> bool {
-        false
+impl<T: Mapped + ?Sized> Mapped for &T {
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        (**self).image(map, bounds, visit);
     }
 }
 
@@ -199,9 +208,6 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         (**self).ride(seat)
-    }
-    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
-        (**self).image(map, bounds, visit);
     }
     fn is_empty(&self) -> bool {
         (**self).is_empty()

@@ -2,7 +2,7 @@
 
 use super::ball::{Filled, approach, lean};
 use super::plane::crossing;
-use super::{Aabb, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
+use super::{Aabb, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{frame, largest, length, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::PI;
@@ -76,6 +76,8 @@ impl Collider for Disc {
         lean(center, gap, normal, [reach, largest(self.center) + self.radius], visit);
     }
 }
+
+impl Mapped for Disc {}
 
 impl Filled for Disc {
     fn gap(&self, point: Vec3) -> Vec3 {

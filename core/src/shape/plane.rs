@@ -1,7 +1,7 @@
 //! An infinite plane.
 
 use super::ball::lean;
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{clamp, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -56,12 +56,6 @@ impl Collider for Plane {
         lean(center, normal * distance, toward, [reach, largest(self.point)], visit);
     }
 
-    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
-        if let Some(back) = map.inverse() {
-            visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
-        }
-    }
-
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
         let distance = self.normal.dot(middle - self.point).abs();
@@ -71,6 +65,14 @@ impl Collider for Plane {
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         hulls.near_plane(self.point, self.normal, marks);
+    }
+}
+
+impl Mapped for Plane {
+    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        if let Some(back) = map.inverse() {
+            visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
+        }
     }
 }
 
