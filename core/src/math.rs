@@ -1,4 +1,5 @@
-//! The few mathematical functions everybody here uses, each the same bits on every target.
+//! The few mathematical functions everybody here uses, each the same bits on every target: spread over their callers on hosts, and
+//! in the flash of chips without an operating system once.
 //!
 //! `core` has no square root, and a platform's sine differs from machine to machine, so nothing else in the
 //! crate calls a transcendental function on the path of a step.
@@ -15,22 +16,33 @@ pub fn sqrt(x: f32) -> f32 {
     return libm::sqrtf(x);
 }
 
+/// The product of two vectors, in the order x, y, z.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
+    a.dot(b)
+}
+
 /// Length of a vector.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn length(v: Vec3) -> f32 {
-    sqrt(v.dot(v))
+    sqrt(dot(v, v))
 }
 
 /// What of a vector lies along a surface.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub(crate) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
-    v - normal * v.dot(normal)
+    v - normal * dot(v, normal)
 }
 
 /// `v` over its length; zero where it has none that an `f32` can hold.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 #[must_use]
 pub fn unit(v: Vec3) -> Vec3 {
     // Dividing by the largest coordinate first keeps the squares of tiny and huge vectors in range.
@@ -43,42 +55,48 @@ pub fn unit(v: Vec3) -> Vec3 {
 }
 
 /// The larger of two numbers, the second where they are equal: unlike `f32::max` it treats −0 alike everywhere.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers, the second where they are equal.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// `x` held in `[low, high]`.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     min(max(x, low), high)
 }
 
 /// The lesser of each coordinate, as `min`.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn low(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z))
 }
 
 /// The greater of each coordinate, as `max`.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn high(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z))
 }
 
 /// The largest coordinate's magnitude.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 #[must_use]
 pub fn largest(v: Vec3) -> f32 {
     max(max(v.x.abs(), v.y.abs()), v.z.abs())

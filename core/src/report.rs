@@ -123,8 +123,8 @@ pub struct Caps {
 
 /// Adds to a counter, which stops at the largest number. Apart, as there are so many of them: it is in a chip's flash once.
 #[inline(never)]
-fn add(sum: &mut u64, more: u64) {
-    *sum = sum.saturating_add(more);
+fn add(sum: &mut u64, more: &u64) {
+    *sum = sum.saturating_add(*more);
 }
 
 /// Adds up every field of two counters; the sum of plain numbers saturates.
@@ -132,7 +132,7 @@ macro_rules! add_fields {
     ($($counter:ident { $($field:ident)+ })+) => {$(
         impl core::ops::AddAssign for $counter {
             fn add_assign(&mut self, other: Self) {
-                $(add(&mut self.$field, other.$field);)+
+                $(add(&mut self.$field, &other.$field);)+
             }
         }
     )+};
@@ -145,16 +145,12 @@ add_fields! {
 
 impl core::ops::AddAssign for Report {
     fn add_assign(&mut self, other: Self) {
-        for (sum, more) in [
-            (&mut self.initial, other.initial),
-            (&mut self.born, other.born),
-            (&mut self.refused, other.refused),
-            (&mut self.hits, other.hits),
-            (&mut self.contacts, other.contacts),
-            (&mut self.broken, other.broken),
-        ] {
-            add(sum, more);
-        }
+        add(&mut self.initial, &other.initial);
+        add(&mut self.born, &other.born);
+        add(&mut self.refused, &other.refused);
+        add(&mut self.hits, &other.hits);
+        add(&mut self.contacts, &other.contacts);
+        add(&mut self.broken, &other.broken);
         self.died += other.died;
         self.caps += other.caps;
         self.effort += other.effort;
@@ -177,6 +173,7 @@ impl Died {
     }
 
     /// From whatever cause.
+    #[cfg_attr(target_os = "none", inline(never))]
     #[must_use]
     pub const fn total(&self) -> u64 {
         self.lifetime + self.sink + self.density + self.chance + self.other + self.nonfinite

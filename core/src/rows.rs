@@ -6,6 +6,9 @@
 use crate::math::max;
 use glam::Vec3;
 
+/// Whether there may be vectors: chips without an operating system are spared the code, and work number by number.
+const BLOCKS: bool = !cfg!(target_os = "none");
+
 /// `out` = `base` + `h` × `rate`, row by row.
 #[inline]
 pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3]) {
@@ -26,9 +29,13 @@ pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
 /// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
 #[inline(always)]
 pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
-    let ((t, t_rest), (v, v_rest), (k, k_rest)) = (total.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
-    for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
-        block(total, vector, factor, &f);
+    let (mut t_rest, mut v_rest, mut k_rest) = (total, vector, factor);
+    if BLOCKS {
+        let ((t, t_last), (v, v_last), (k, k_last)) = (t_rest.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
+        for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
+            block(total, vector, factor, &f);
+        }
+        (t_rest, v_rest, k_rest) = (t_last, v_last, k_last);
     }
     for ((total, vector), &factor) in t_rest.iter_mut().zip(v_rest).zip(k_rest) {
         one(total, *vector, factor, &f);
@@ -38,9 +45,13 @@ pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: i
 /// The same with one vector for all rows.
 #[inline(always)]
 pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
-    let ((t, t_rest), (k, k_rest)) = (total.as_chunks_mut(), factor.as_chunks());
-    for (total, factor) in t.iter_mut().zip(k) {
-        block(total, &[vector; 4], factor, &f);
+    let (mut t_rest, mut k_rest) = (total, factor);
+    if BLOCKS {
+        let ((t, t_last), (k, k_last)) = (t_rest.as_chunks_mut(), factor.as_chunks());
+        for (total, factor) in t.iter_mut().zip(k) {
+            block(total, &[vector; 4], factor, &f);
+        }
+        (t_rest, k_rest) = (t_last, k_last);
     }
     for (total, &factor) in t_rest.iter_mut().zip(k_rest) {
         one(total, vector, factor, &f);
@@ -63,7 +74,7 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
 /// The largest number of a column, whatever its sign; what is no number does not count.
 #[inline]
 pub(crate) fn farthest(column: &[Vec3]) -> f32 {
-    let (blocks, rest) = flat(column).as_chunks::<8>();
+    let (blocks, rest) = if BLOCKS { flat(column).as_chunks::<8>() } else { (&[][..], flat(column)) };
     let mut most = [0.0; 8];
     for block in blocks {
         for (most, x) in most.iter_mut().zip(block) {

@@ -32,7 +32,8 @@ pub(super) struct Cubic {
 
 impl Cubic {
     /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.
-    #[inline(always)]
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn at(&self, s: f32) -> Vec3 {
         let [c1, c2, c3] = self.coefficients;
         self.start + (c1 + (c2 + c3 * s) * s) * s
@@ -55,16 +56,19 @@ impl Cubic {
 
 impl Path {
     /// How long it takes \[s\].
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn duration(&self) -> f32 {
         let [start, end] = self.during;
         (end - start).seconds()
     }
 
     /// The instant at a fraction of the time.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn instant(&self, s: f32) -> Time {
         between(self.during, s)
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn is_finite(&self) -> bool {
         // What is not finite makes a sum that is not; a sum may be so without.
         (self.x0 + self.v0 + self.x1 + self.v1).is_finite()
@@ -72,6 +76,7 @@ impl Path {
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn hull(&self, radius: f32) -> Aabb {
         let third = self.duration() * (1.0 / 3.0);
         let (a, b) = (self.x0 + self.v0 * third, self.x1 - self.v1 * third);
@@ -80,6 +85,7 @@ impl Path {
     }
 
     /// It as a polynomial.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn cubic(&self) -> Cubic {
         let (duration, excess) = (self.duration(), self.excess());
         let bend = (self.v1 - self.v0) * (0.5 * duration) + excess * 3.0;
@@ -93,6 +99,7 @@ impl Path {
 
     /// The velocity at a fraction of the time \[m/s\]. Where the cubic bends as the ends' velocities do not say, as with the
     /// two Euler methods, it is theirs in between: what a hit takes in before and after adds up to the step's.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
         let (steady, excess) = (self.v0 + (self.v1 - self.v0) * s, self.excess());
         let bend = (self.v1 - self.v0) * (0.5 * self.duration());
@@ -102,6 +109,7 @@ impl Path {
 
     /// How much farther it leads than a parabola with the velocities of its ends. What is within the rounding of the ends is
     /// nothing: as a velocity it would be noise.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn excess(&self) -> Vec3 {
         let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * (0.5 * self.duration());
         let rounding = (self.x0.abs() + self.x1.abs()) * f32::EPSILON;
@@ -123,6 +131,7 @@ impl Path {
     }
 
     /// The way on from a place and a velocity under a steady acceleration, until it ends.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn onward(x0: Vec3, v0: Vec3, acceleration: Vec3, during: [Time; 2]) -> Self {
         let time = (during[1] - during[0]).seconds();
         let (x1, v1) = (x0 + (v0 + acceleration * (0.5 * time)) * time, v0 + acceleration * time);
@@ -148,6 +157,7 @@ impl Path {
     }
 
     /// Its mean acceleration \[m/s²\].
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();
         if duration > 0.0 { (self.v1 - self.v0) / duration } else { Vec3::ZERO }
@@ -159,6 +169,7 @@ impl Path {
     }
 
     /// The straight line between two fractions of its time, for a ball.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn piece(&self, [from, to]: [f32; 2], radius: f32) -> Segment {
         let end = |s: f32| match s {
             0.0 => (self.x0, self.during[0]),
@@ -183,6 +194,7 @@ impl Path {
 }
 
 /// The instant at a fraction of a span.
+#[cfg_attr(target_os = "none", inline(never))]
 pub(super) fn between([start, end]: [Time; 2], s: f32) -> Time {
     // A span is so short that single precision leaves less than a nanosecond; the cast saturates.
     let ticks = ((end - start).ticks() as f32 * s) as u64;

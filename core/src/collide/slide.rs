@@ -1,7 +1,7 @@
 //! A particle that rests on a surface: it slides, stops and stays by Coulomb's law.
 
 use crate::force::Friction;
-use crate::math::{length, unit};
+use crate::math::{dot, length, unit};
 use glam::Vec3;
 
 /// How something moves along a surface that presses back, for a while: all vectors lie in the surface.
@@ -26,7 +26,7 @@ impl Slide {
         }
         let along = self.velocity / speed;
         let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
-        let braking = -acceleration.dot(along);
+        let braking = -dot(acceleration, along);
         if self.friction.sliding > 0.0 && braking * time > speed {
             let until = speed / braking;
             let way = (self.velocity + acceleration * (0.5 * until)) * until;

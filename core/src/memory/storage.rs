@@ -79,7 +79,7 @@ macro_rules! storage {
                 [$(self.$p.len()),+].into_iter().fold(usize::MAX, usize::min)
             }
 
-            /// Moves row `from` onto row `to`; both exist. What was there is in row `from` then, which nothing reads.
+            /// Moves row `from` onto row `to`; both exist.
             pub(crate) fn move_row(&mut self, from: usize, to: usize) {
                 // The columns by slot and by number are no rows, but nothing reads them at `to` unless it is theirs.
                 storage!(@move self, from, to, $($p)+);
@@ -219,9 +219,14 @@ macro_rules! storage {
     };
     (@one $self:ident, $from:ident, $to:ident, row_of) => {};
     (@one $self:ident, $from:ident, $to:ident, last_spring) => {};
+    (@one $self:ident, $from:ident, $to:ident, position) => {
+        copy($self.position, $from, $to);
+    };
+    (@one $self:ident, $from:ident, $to:ident, velocity) => {
+        copy($self.velocity, $from, $to);
+    };
     (@one $self:ident, $from:ident, $to:ident, $p:ident) => {
-        // Compilers would make a copy of an assignment, and call a routine for ranges that may overlap.
-        $self.$p.swap($to, $from);
+        $self.$p[$to] = $self.$p[$from];
     };
 }
 
@@ -281,6 +286,15 @@ storage! {
         /// Columns to work with, one behind the other.
         work: Vec3 = Vec3::ZERO,
     }
+}
+
+/// Copies a vector, number by number: of a whole one compilers make a call that copies ranges which may overlap.
+fn copy(column: &mut [Vec3], from: usize, to: usize) {
+    let Vec3 { x, y, z } = column[from];
+    let place = &mut column[to];
+    place.x = x;
+    place.y = y;
+    place.z = z;
 }
 
 #[cfg(feature = "alloc")]

@@ -2,7 +2,7 @@
 
 use super::ball::lean;
 use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
-use crate::math::{clamp, largest, max, unit};
+use crate::math::{clamp, dot, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -30,7 +30,7 @@ impl Surface for Plane {
 
     fn nearest(&self, point: Vec3) -> Vec3 {
         let normal = unit(self.normal);
-        point - normal * normal.dot(point - self.point)
+        point - normal * dot(normal, point - self.point)
     }
 
     fn bounds(&self) -> Aabb {
@@ -41,7 +41,7 @@ impl Surface for Plane {
 impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         // Which side, and when, does not depend on the normal's length.
-        let side = |point: Vec3| self.normal.dot(point - self.point);
+        let side = |point: Vec3| dot(self.normal, point - self.point);
         let slack = segment.slack(largest(self.point));
         let center = crossing(self.normal, side(segment.from), side(segment.to));
         let center = center.map(|(time, normal)| Hit::new(time, unit(normal), slack));
@@ -51,16 +51,16 @@ impl Collider for Plane {
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let normal = unit(self.normal);
-        let distance = normal.dot(center - self.point);
+        let distance = dot(normal, center - self.point);
         let toward = if distance < 0.0 { -normal } else { normal };
         lean(center, normal * distance, toward, [reach, largest(self.point)], visit);
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
-        let distance = self.normal.dot(middle - self.point).abs();
+        let distance = dot(self.normal, middle - self.point).abs();
         let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
-        distance <= self.normal.abs().dot(half + room)
+        distance <= dot(self.normal.abs(), half + room)
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
@@ -80,9 +80,9 @@ impl Plane {
     /// Where a ball first touches it. One that overlaps it touches at once if it moves nearer, else never.
     fn touched(&self, segment: &Segment, slack: f32) -> Option<Hit> {
         let normal = unit(self.normal);
-        let start = normal.dot(segment.from - self.point);
+        let start = dot(normal, segment.from - self.point);
         let normal = if start < 0.0 { -normal } else { normal };
-        let (room, closing) = (start.abs() - segment.radius, -normal.dot(segment.step()));
+        let (room, closing) = (start.abs() - segment.radius, -dot(normal, segment.step()));
         let time = max(room, 0.0) / closing;
         (closing > 0.0 && time <= 1.0).then(|| Hit::new(time, normal, slack))
     }
