@@ -24,6 +24,14 @@ pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
     a.dot(b)
 }
 
+/// From a place so far along a direction: `place` + `direction` × `far`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn along(place: Vec3, direction: Vec3, far: f32) -> Vec3 {
+    place + direction * far
+}
+
 /// Length of a vector.
 #[cfg_attr(target_os = "none", inline(never))]
 #[cfg_attr(not(target_os = "none"), inline(always))]

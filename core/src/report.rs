@@ -121,7 +121,7 @@ pub struct Caps {
     pub unfit: u64,
 }
 
-/// Adds to a counter, which stops at the largest number. Apart, as there are so many of them: it is in a chip's flash once.
+/// Adds to a counter, which stops at the largest number. Apart, like those of whole structs: there are so many of them.
 #[inline(never)]
 fn add(sum: &mut u64, more: &u64) {
     *sum = sum.saturating_add(*more);
@@ -131,6 +131,7 @@ fn add(sum: &mut u64, more: &u64) {
 macro_rules! add_fields {
     ($($counter:ident { $($field:ident)+ })+) => {$(
         impl core::ops::AddAssign for $counter {
+            #[inline(never)]
             fn add_assign(&mut self, other: Self) {
                 $(add(&mut self.$field, &other.$field);)+
             }

@@ -85,7 +85,8 @@ pub(crate) fn farthest(column: &[Vec3]) -> f32 {
 }
 
 /// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 pub(crate) fn are_finite(column: &[Vec3]) -> bool {
     let carried = |any: u32, x: &f32| any | ((x.to_bits() & 0x7FFF_FFFF) + 0x0080_0000);
     flat(column).iter().fold(0, carried) >> 31 == 0

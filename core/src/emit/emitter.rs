@@ -1,7 +1,7 @@
 //! A surface that gives birth to particles.
 
 use super::{Births, Emit, Spread, Varied};
-use crate::math::{divide, unit};
+use crate::math::{along, divide, unit};
 use crate::particles::{Color, Particle, WHITE};
 use crate::rng::Stream;
 use crate::shape::{Aabb, Spot, Surface};
@@ -264,8 +264,8 @@ impl<S: Surface> Emitter<S> {
         let axis = self.direction.map_or(spot.normal, unit);
         let direction = self.spread.direction(axis, [p, q]);
         Particle {
-            position: spot.point + self.velocity * at.seconds(),
-            velocity: self.velocity * self.inherit + direction * self.speed.pick(|| speed),
+            position: along(spot.point, self.velocity, at.seconds()),
+            velocity: along(self.velocity * self.inherit, direction, self.speed.pick(|| speed)),
             radius: self.radius.pick(|| random.units(7)[1]),
             mass: self.mass.pick(|| random.units(3)[0]),
             fixed: self.fixed,

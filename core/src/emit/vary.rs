@@ -1,6 +1,6 @@
 //! Numbers and directions that vary from birth to birth.
 
-use crate::math::{frame, max, sin_cos, sin_cos_turns, sqrt};
+use crate::math::{along, frame, max, sin_cos, sin_cos_turns, sqrt};
 use glam::Vec3;
 
 /// A number that varies: its mean, and how far it may be from that, evenly on both sides (Reeves, "Particle Systems",
@@ -61,7 +61,7 @@ impl Spread {
         };
         let (a, b) = frame(axis);
         let (along_b, along_a) = sin_cos_turns(v);
-        axis * cos + (a * along_a + b * along_b) * sin
+        along(axis * cos, along(a * along_a, b, along_b), sin)
     }
 }
 

@@ -183,8 +183,8 @@ impl SpringList for alloc::vec::Vec<Spring> {
 pub struct SpringCode {
     /// Their sum, as a force.
     pub(crate) force: for<'s> fn(&'s Springs<'s>) -> &'s dyn Force,
-    /// Sorts them by their ends at the start.
-    pub(crate) sort: fn(&[Spring], &mut [u32], &mut [u32]),
+    /// Sorts them by their ends at the start, and counts those that lack one.
+    pub(crate) sort: fn(&[Spring], &mut [u32], &mut [u32], u32) -> u64,
     /// How many hold the particle in a row.
     pub(crate) held_by: fn(&Springs<'_>, usize) -> u64,
     /// Breaks those that are stretched too far, and says whether any may break.
@@ -404,8 +404,9 @@ pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], i
 }
 
 /// Sorts the springs by the particles at their ends: `incident[last[n − 1]..last[n]]` are those of number n.
-/// Both are all zeros before.
-fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32]) {
+/// Both are all zeros before. Returns how many lack an end, as only
+/// `start` particles have found room.
+fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32], start: u32) -> u64 {
     let ends = || springs.iter().enumerate().flat_map(|(i, s)| s.ends.map(|end| (i as u32, end as usize)));
     for (_, end) in ends() {
         if let Some(count) = last.get_mut(end) {
@@ -425,4 +426,5 @@ fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32]) {
             *place += 1;
         }
     }
+    springs.iter().filter(|spring| spring.ends.iter().any(|&end| end >= start)).count() as u64
 }

@@ -47,7 +47,7 @@ macro_rules! storage {
             $($(#[$w_doc])* pub $w: &'a [$w_ty],)+
         }
 
-        // Asked for in many places: apart, it is in a chip's flash once.
+        // Asked for in many places: apart, it is in a chip's flash once. So are those of the owners.
         impl Storage for Slices<'_> {
             #[inline(never)]
             fn slices(&mut self) -> Slices<'_> {
@@ -130,6 +130,7 @@ macro_rules! storage {
         impl<const P: usize, const E: usize, const S: usize, const C: usize, const K: usize> Storage
             for Inline<P, E, S, C, K>
         {
+            #[inline(never)]
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
                     $($p: &mut self.$p,)+
@@ -139,6 +140,7 @@ macro_rules! storage {
                     $($w: self.$w.as_flattened_mut(),)+
                 }
             }
+            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: &self.$p,)+

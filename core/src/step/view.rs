@@ -1,7 +1,7 @@
 //! A system with its memory at hand: every phase of a step works on it.
 
 use crate::custom::CustomColumnsMut;
-use crate::force::{Spring, State};
+use crate::force::State;
 use crate::index::Listed;
 use crate::memory::{Layout, Slices, Storage, Words};
 use crate::particles::Full;
@@ -106,10 +106,9 @@ impl View<'_> {
         // What lies beyond the lists counts in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);
         if let Some(code) = scene.springs.code() {
-            (code.sort)(scene.springs.list(), self.memory.last_spring, self.memory.incident);
+            let (last, incident) = (&mut *self.memory.last_spring, &mut *self.memory.incident);
+            report.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
         }
-        let lost = |s: &&Spring| s.ends.iter().any(|&end| end >= self.status.start);
-        report.caps.springs = scene.springs.list().iter().filter(lost).count() as u64;
         self.status.totals = report;
     }
 
