@@ -9,7 +9,7 @@ use crate::particles::Id;
 use crate::reap::Fate;
 use crate::report::Report;
 use crate::scene::Scene;
-use crate::shape::{Contact, Hit, Ride, Segment};
+use crate::shape::{Aabb, Collider, Contact, Hit, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -17,11 +17,11 @@ use glam::Vec3;
 const MAX_RETREATS: u32 = 12;
 
 /// How far what rests may be from its surface \[slacks\]: it is set off by two, and from corners by more.
-const LAIN: f32 = 8.0;
+pub(super) const LAIN: f32 = 8.0;
 
 /// How many times the instant of a hit is looked for on the path. Newton's method takes three to six; halving, where it
 /// fails, comes within 10 µs of a step of a second.
-const MAX_LOOKS: u32 = 16;
+pub(super) const MAX_LOOKS: u32 = 16;
 
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
 pub(crate) const RESTING: f32 = 0.25;
@@ -46,9 +46,12 @@ pub(super) struct Meeting {
     pub(super) is_sink: bool,
 }
 
-/// What it takes to follow one particle.
-pub(super) struct Flight<'a> {
+/// What it takes to follow one particle past walls of a kind: any, or one that is known, for which the same is shorter.
+pub(super) struct Flight<'a, C: ?Sized = dyn Collider + 'a> {
     pub(super) scene: &'a Scene<'a>,
+    /// What it may run into, and what removes it, if anything does.
+    pub(super) walls: &'a C,
+    pub(super) sinks: Option<&'a dyn Collider>,
     pub(super) id: Id,
     pub(super) row: usize,
     pub(super) radius: f32,
@@ -58,7 +61,8 @@ pub(super) struct Flight<'a> {
     /// The step \[s\].
     pub(super) dt: f32,
     pub(super) report: &'a mut Report,
-    pub(super) observer: &'a mut dyn Observer,
+    /// Whoever wants to know of hits.
+    pub(super) observer: Option<&'a mut dyn Observer>,
 }
 
 impl Meeting {
@@ -68,13 +72,38 @@ impl Meeting {
     }
 }
 
-impl Flight<'_> {
+impl<'a, C: Collider + ?Sized> Flight<'a, C> {
+    /// The same past other walls.
+    pub(super) fn past<W: Collider>(self, walls: &'a W) -> Flight<'a, W> {
+        let Self { scene, sinks, id, row, radius, mass, elasticity, material, dt, report, observer, .. } = self;
+        Flight { scene, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
+    }
+
+    /// Its way through the step, if it may touch anything.
+    #[inline(always)]
+    pub(super) fn travel(&mut self, path: &Path, is_newborn: bool, may_lie: bool) -> Option<Arrival> {
+        let lying = if may_lie { self.lying(path) } else { None };
+        let path = match lying {
+            Some(path) => path,
+            None if !self.may_touch(&path.hull(self.radius)) => return None,
+            None if is_newborn => self.let_go(*path),
+            None if path.lags() => self.pressed_on(*path),
+            None => *path,
+        };
+        Some(self.follow(path))
+    }
+
+    /// Whether a path inside a box may meet anything.
+    fn may_touch(&self, hull: &Aabb) -> bool {
+        self.walls.may_touch(hull) || self.sinks.is_some_and(|sinks| sinks.may_touch(hull))
+    }
+
     /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
     /// on whichever side rounding put it, and leaves it the way its velocity points.
     pub(super) fn let_go(&self, path: Path) -> Path {
         let [start, _] = path.during;
         let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, path.x0 + path.v0 * self.dt) };
-        let hits = [self.scene.colliders.first_hit(&ahead), self.scene.sinks.first_hit(&ahead)];
+        let hits = [self.walls.first_hit(&ahead), self.sinks.and_then(|sinks| sinks.first_hit(&ahead))];
         let (step, far) = (ahead.step(), length(ahead.step()));
         let near = |hit: &Hit| {
             let off_surface = -step.dot(hit.normal) * hit.time <= 2.0 * hit.slack;
@@ -109,9 +138,11 @@ impl Flight<'_> {
         let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
         let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
         self.report.hits += 1;
-        self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
-        let world = [acceleration, way, slip, end];
-        self.observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
+        if let Some(observer) = &mut self.observer {
+            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+            let world = [acceleration, way, slip, end];
+            observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
+        }
         Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
     }
 
@@ -122,7 +153,7 @@ impl Flight<'_> {
         let fall = |acceleration: f32| 0.5 * acceleration * time * time;
         let (mut faces, mut seat) = (0, None);
         let reach = self.radius + fall(length(acceleration));
-        self.scene.colliders.contacts(path.x0, reach, path.during[0], &mut |contact| {
+        self.walls.contacts(path.x0, reach, path.during[0], &mut |contact| {
             faces += 1;
             seat = Some(*contact);
         });
@@ -145,7 +176,7 @@ impl Flight<'_> {
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;
-        let position = self.scene.colliders.carry(path.x0, self.radius, path.during);
+        let position = self.walls.carry(path.x0, self.radius, path.during);
         Arrival { position, velocity: path.v0, fate: Fate::Lives }
     }
 
@@ -169,7 +200,7 @@ impl Flight<'_> {
 
     /// What a straight piece first meets, and whether that is a sink, which wins over a collider in the same place.
     fn first_hit(&self, piece: &Segment) -> Option<(Hit, bool)> {
-        let (wall, sink) = (self.scene.colliders.first_hit(piece), self.scene.sinks.first_hit(piece));
+        let (wall, sink) = (self.walls.first_hit(piece), self.sinks.and_then(|sinks| sinks.first_hit(piece)));
         let is_sink = match (&wall, &sink) {
             (Some(wall), Some(sink)) => sink.time <= wall.time,
             (_, sink) => sink.is_some(),
@@ -232,7 +263,9 @@ impl Flight<'_> {
         let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
         let (time, closing, after) = (during[0], max(-incoming, 0.0), surface + slip + normal * outgoing);
-        self.observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+        if let Some(observer) = &mut self.observer {
+            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+        }
         if !rests {
             return Path::onward(beside, surface + slip + normal * onward, acceleration, during);
         }
@@ -250,8 +283,10 @@ impl Flight<'_> {
             let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
             Path { x0, v0: after, x1: x0 + surface * rest + way, v1: surface + end, during }
         };
-        let world = [acceleration, onward.x1 - onward.x0, onward.v0, onward.v1];
-        self.observer.slid(&Sliding { mass, raised: onward.x0 - place, world, along: [drive, way, slip, end] });
+        if let Some(observer) = &mut self.observer {
+            let world = [acceleration, onward.x1 - onward.x0, onward.v0, onward.v1];
+            observer.slid(&Sliding { mass, raised: onward.x0 - place, world, along: [drive, way, slip, end] });
+        }
         onward
     }
 
@@ -259,7 +294,7 @@ impl Flight<'_> {
     fn ride(&self, hit: &Hit, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
         let below = beside - hit.normal * (LAIN * hit.slack);
         let seat = Segment { from: beside, to: below, radius: self.radius, during };
-        if hit.velocity == Vec3::ZERO { None } else { self.scene.colliders.ride(&seat) }
+        if hit.velocity == Vec3::ZERO { None } else { self.walls.ride(&seat) }
     }
 
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
@@ -274,7 +309,7 @@ impl Flight<'_> {
         let taken = |point: Vec3, time: f32| {
             if moves { point + hit.velocity * (span * ((s - time) / share)) } else { point }
         };
-        let free = |segment: Segment| self.scene.colliders.first_hit(&segment).is_none();
+        let free = |segment: Segment| self.walls.first_hit(&segment).is_none();
         let closing = max((hit.velocity - path.velocity(*s)).dot(hit.normal), f32::MIN_POSITIVE);
         let beside = place + hit.normal * (2.0 * hit.slack);
         // As a fraction of the path, like all its instants.
@@ -289,7 +324,7 @@ impl Flight<'_> {
             }
             back *= 4.0;
         }
-        self.scene.colliders.carry(chord.from, self.radius, [chord.during[0], now])
+        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
     }
 }
 

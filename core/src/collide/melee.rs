@@ -343,6 +343,8 @@ impl Melee<'_> {
     fn flight(&mut self, row: usize) -> Flight<'_> {
         Flight {
             scene: self.scene,
+            walls: self.scene.colliders,
+            sinks: Some(self.scene.sinks),
             id: self.id(row),
             row,
             radius: self.radius[row],
@@ -351,7 +353,7 @@ impl Melee<'_> {
             material: self.material[row].checked_sub(1),
             dt: self.dt.seconds(),
             report: self.report,
-            observer: self.observer,
+            observer: Some(self.observer),
         }
     }
 

@@ -6,6 +6,7 @@ mod impulse;
 mod meeting;
 mod meetings;
 mod melee;
+mod packet;
 mod passage;
 mod path;
 mod queue;

@@ -1,6 +1,6 @@
 //! What a moving point can run into, one by one or in lists.
 
-use super::{Aabb, Affine, Hulls, Marks};
+use super::{Aabb, Affine, Facing, Hulls, Marks};
 use crate::math::{high, largest, low, max};
 use crate::time::Time;
 use glam::Vec3;
@@ -29,6 +29,12 @@ pub trait Collider: Sync {
                 *mark = u32::MAX;
             }
         }
+    }
+
+    /// What of it a path inside `bounds` can meet: where that is one flat face, it is followed there the short way, to the same
+    /// bits. By default anything, unless the path may not touch it at all.
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        if self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
     }
 
     /// Visits the places of it that are nearest to `center` and within `reach` \[m\] of it at an instant, one for each
@@ -185,6 +191,9 @@ impl Collider for () {
         false
     }
     fn mark_near(&self, _: &Hulls, _: &mut Marks) {}
+    fn facing(&self, _: &Aabb) -> Facing {
+        Facing::Nothing
+    }
     fn is_empty(&self) -> bool {
         true
     }
@@ -199,6 +208,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         (**self).mark_near(hulls, marks);
+    }
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        (**self).facing(bounds)
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
@@ -225,6 +237,12 @@ impl<T: Collider> Collider for [T] {
     }
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         self.iter().for_each(|c| c.mark_near(hulls, marks));
+    }
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        self.iter().fold(Facing::Nothing, |facing, c| match facing {
+            Facing::Several => facing,
+            one => one.and(c.facing(bounds)),
+        })
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let bounds = Aabb { min: center - reach, max: center + reach };
@@ -255,6 +273,9 @@ macro_rules! lists {
             }
             fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
                 self.as_slice().mark_near(hulls, marks);
+            }
+            fn facing(&self, bounds: &Aabb) -> Facing {
+                self.as_slice().facing(bounds)
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.as_slice().contacts(center, reach, at, visit);
@@ -297,6 +318,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 $($name.mark_near(hulls, marks);)+
+            }
+            fn facing(&self, bounds: &Aabb) -> Facing {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                Facing::Nothing$(.and($name.facing(bounds)))+
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 #[allow(non_snake_case)]

@@ -9,6 +9,7 @@ mod cuboid;
 mod cylinder;
 mod disc;
 mod exact;
+mod facing;
 mod heightfield;
 #[cfg(feature = "alloc")]
 mod heights;
@@ -32,6 +33,7 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
+pub use facing::{Face, Facing};
 pub use heightfield::{BadHeights, HeightField};
 #[cfg(feature = "alloc")]
 pub use heights::{HeightFieldBuf, Heights};
@@ -154,6 +156,9 @@ impl<M: Collider> Collider for Shape<M> {
     }
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         each!(self, s => s.mark_near(hulls, marks));
+    }
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        each!(self, s => s.facing(bounds))
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         each!(self, s => s.contacts(center, reach, at, visit));

@@ -1,6 +1,6 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Ride, Segment};
+use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Ride, Segment};
 use crate::math::{clamp, high, largest, length, low, max, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::TAU;
@@ -234,6 +234,14 @@ impl<C: Collider> Collider for Moving<C> {
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         if self.motion.is_none() { self.collider.mark_near(hulls, marks) } else { hulls.near_box(&self.reach, marks) }
+    }
+
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        match self.motion {
+            None => self.collider.facing(bounds),
+            Some(_) if self.may_touch(bounds) => Facing::Several,
+            Some(_) => Facing::Nothing,
+        }
     }
 
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {

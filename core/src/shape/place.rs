@@ -1,6 +1,6 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
-use super::{Aabb, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Surface, earlier};
+use super::{Aabb, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Segment, Surface, earlier};
 use crate::math::{high, largest, length, max, min, unit};
 use crate::time::Time;
 use glam::{Mat3, Vec3};
@@ -192,6 +192,14 @@ impl<C: Mapped> Collider for Placed<C> {
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         if self.maps.is_none() { self.collider.mark_near(hulls, marks) } else { hulls.near_box(&self.bounds, marks) }
+    }
+
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        match self.maps {
+            None => self.collider.facing(bounds).made_of(self.material),
+            Some(_) if self.may_touch(bounds) => Facing::Several,
+            Some(_) => Facing::Nothing,
+        }
     }
 
     fn is_empty(&self) -> bool {

@@ -1,8 +1,7 @@
 //! An infinite plane.
 
-use super::ball::lean;
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
-use crate::math::{clamp, dot, largest, max, unit};
+use super::{Aabb, Affine, Collider, Contact, Face, Facing, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface};
+use crate::math::{clamp, dot, largest, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -40,27 +39,29 @@ impl Surface for Plane {
 
 impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        // Which side, and when, does not depend on the normal's length.
         let side = |point: Vec3| dot(self.normal, point - self.point);
-        let slack = segment.slack(largest(self.point));
-        let center = crossing(self.normal, side(segment.from), side(segment.to));
-        let center = center.map(|(time, normal)| Hit::new(time, unit(normal), slack));
-        // What is smaller than rounding is a point.
-        if segment.radius > slack { earlier(self.touched(segment, slack), center) } else { center }
+        // What is smaller than rounding is a point. The normal is brought to unit length only for who meets it.
+        let is_point = !(segment.radius > segment.slack(largest(self.point)));
+        if is_point && crossing(self.normal, side(segment.from), side(segment.to)).is_none() {
+            return None;
+        }
+        Face::new(*self).first_hit(segment)
     }
 
-    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
-        let normal = unit(self.normal);
-        let distance = dot(normal, center - self.point);
-        let toward = if distance < 0.0 { -normal } else { normal };
-        lean(center, normal * distance, toward, [reach, largest(self.point)], visit);
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        Face::new(*self).contacts(center, reach, at, visit);
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
         let distance = dot(self.normal, middle - self.point).abs();
         let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
-        distance <= dot(self.normal.abs(), half + room)
+        // Of what is endless the distance is no number.
+        !(distance > dot(self.normal.abs(), half + room))
+    }
+
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        if self.may_touch(bounds) { Facing::Face(Face::new(*self)) } else { Facing::Nothing }
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
@@ -73,18 +74,6 @@ impl Mapped for Plane {
         if let Some(back) = map.inverse() {
             visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
         }
-    }
-}
-
-impl Plane {
-    /// Where a ball first touches it. One that overlaps it touches at once if it moves nearer, else never.
-    fn touched(&self, segment: &Segment, slack: f32) -> Option<Hit> {
-        let normal = unit(self.normal);
-        let start = dot(normal, segment.from - self.point);
-        let normal = if start < 0.0 { -normal } else { normal };
-        let (room, closing) = (start.abs() - segment.radius, -dot(normal, segment.step()));
-        let time = max(room, 0.0) / closing;
-        (closing > 0.0 && time <= 1.0).then(|| Hit::new(time, normal, slack))
     }
 }
 

@@ -1,0 +1,444 @@
+//! Eight paths past one flat face, side by side: of those who lie on it, and of those who bounce off it once.
+//!
+//! Every number is made as `Flight` makes it, in the same order, and so has the same bits. Whoever needs more than this is left
+//! to that: two hits in a step, a hit after which it rests, a place that is not free.
+
+use super::flight::{LAIN, MAX_LOOKS, RESTING};
+use super::path::{CHORD_ERROR, MAX_CHORDS};
+use crate::lanes::{Vectors, max, min, negated, not, select, sqrt};
+use crate::shape::Face;
+use crate::time::Time;
+use glam::Vec3;
+use wide::f32x8;
+
+/// Eight cubics, as `Path`.
+#[derive(Clone, Copy)]
+pub(super) struct Paths {
+    pub(super) x0: Vectors,
+    pub(super) v0: Vectors,
+    pub(super) x1: Vectors,
+    pub(super) v1: Vectors,
+    /// How long they take \[s\].
+    pub(super) time: f32x8,
+}
+
+/// The same as polynomials.
+struct Cubics {
+    start: Vectors,
+    coefficients: [Vectors; 3],
+    /// Half the change of velocity as a way, and how much farther the cubic leads.
+    bend: Vectors,
+    excess: Vectors,
+}
+
+/// Straight pieces of them.
+struct Segments {
+    from: Vectors,
+    to: Vectors,
+}
+
+impl Segments {
+    #[inline(always)]
+    fn at(&self, time: f32x8) -> Vectors {
+        self.from + (self.to - self.from) * time
+    }
+
+    /// Where balls that go along them first meet a face.
+    #[inline(always)]
+    fn first_hits(&self, face: &Face, radius: f32x8) -> Hits {
+        let Self { from, to } = *self;
+        let [point, normal, unit] = face.vectors().map(Vectors::splat);
+        let size = all(face.size());
+        let slack = all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + radius + size);
+        let (before, after) = (normal.dot(from - point), normal.dot(to - point));
+        let zero = f32x8::ZERO;
+        let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
+        let rises = before.simd_lt(zero) & after.simd_ge(zero);
+        let time = min(max(before / (before - after), zero), f32x8::ONE);
+        let center = Hits { are: falls | rises, time, normal: Vectors::select(falls, unit, -unit), slack };
+        let wide = radius.simd_gt(slack);
+        if !wide.any() {
+            return center;
+        }
+        let start = unit.dot(from - point);
+        let normal = Vectors::select(start.simd_lt(zero), -unit, unit);
+        let (room, closing) = (start.abs() - radius, negated(normal.dot(to - from)));
+        let time = max(room, zero) / closing;
+        let touched = wide & closing.simd_gt(zero) & time.simd_le(f32x8::ONE);
+        let is_first = touched & not(center.are & center.time.simd_lt(time));
+        let mut hits = center;
+        hits.take(is_first, Hits { are: touched, time, normal, slack });
+        hits
+    }
+}
+
+impl Hits {
+    /// Takes some from others.
+    #[inline(always)]
+    fn take(&mut self, mask: f32x8, others: Self) {
+        self.are |= mask;
+        self.time = select(mask, others.time, self.time);
+        self.normal = Vectors::select(mask, others.normal, self.normal);
+        self.slack = select(mask, others.slack, self.slack);
+    }
+}
+
+impl Meetings {
+    fn none(place: Vectors, unclear: f32x8) -> Self {
+        let zero = f32x8::ZERO;
+        let hits = Hits { are: zero, time: zero, normal: Vectors::splat(Vec3::ZERO), slack: zero };
+        Self { hits, unclear, place, begun: zero, chord_from: place }
+    }
+
+    /// Takes those that chords have found before `end` to their instants on the paths.
+    #[inline(always)]
+    fn put_on_path(&mut self, paths: &Paths, cubics: &Cubics, face: &Face, radius: f32x8, end: f32x8) {
+        let time = cubics.crossings(&self.hits, self.place, [self.begun, end]);
+        let place = cubics.at(time);
+        let is_far = (place - self.place).length().simd_gt(all(16.0) * self.hits.slack) & self.hits.are;
+        self.hits.time = time;
+        self.place = place;
+        if !is_far.any() {
+            return;
+        }
+        // A place far along the surface from that on the chord asks for the surface there.
+        let reach = (end - self.begun) * all(1.0 / 16.0);
+        let [from, to] = [max(time - reach, self.begun), min(time + reach, end)];
+        let begin = Vectors::select(from.simd_eq(f32x8::ZERO), paths.x0, cubics.at(from));
+        let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(f32x8::ONE), paths.x1, cubics.at(to)) };
+        let near = piece.first_hits(face, radius);
+        let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(f32x8::ZERO);
+        let time = cubics.crossings(&near, piece.at(near.time), [from, to]);
+        self.place = Vectors::select(are, cubics.at(time), self.place);
+        self.hits.take(are, Hits { time, ..near });
+    }
+}
+
+/// Where some of them meet the face.
+struct Hits {
+    /// Which do.
+    are: f32x8,
+    time: f32x8,
+    normal: Vectors,
+    slack: f32x8,
+}
+
+/// The same on the paths.
+struct Meetings {
+    hits: Hits,
+    /// Those whose place could not be told here.
+    unclear: f32x8,
+    place: Vectors,
+    begun: f32x8,
+    chord_from: Vectors,
+}
+
+/// What particles are to the face.
+pub(super) struct Riders {
+    pub(super) radius: f32x8,
+    pub(super) elasticity: f32x8,
+    /// Coefficients of friction.
+    pub(super) at_rest: f32x8,
+    pub(super) sliding: f32x8,
+}
+
+/// What has become of them: a bit each.
+pub(super) struct Outcome {
+    /// Who is at the end of the step now, of these who was hit, and who has to be followed alone.
+    pub(super) settled: u32,
+    pub(super) hit: u32,
+    pub(super) left: u32,
+    pub(super) position: Vectors,
+    pub(super) velocity: Vectors,
+}
+
+/// A number in all lanes.
+#[inline(always)]
+fn all(x: f32) -> f32x8 {
+    f32x8::splat(x)
+}
+
+impl Paths {
+    #[inline(always)]
+    fn acceleration(&self) -> Vectors {
+        (self.v1 - self.v0) / self.time
+    }
+
+    /// Those of which all numbers are finite, and their sums.
+    #[inline(always)]
+    fn are_finite(&self) -> f32x8 {
+        let nought = (self.x0 + self.v0 + self.x1 + self.v1) * f32x8::ZERO;
+        let [x, y, z] = nought.0;
+        (x + y + z).simd_eq(f32x8::ZERO)
+    }
+
+    #[inline(always)]
+    fn cubics(&self) -> Cubics {
+        let half = all(0.5) * self.time;
+        let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * half;
+        let excess = Vectors(core::array::from_fn(|axis| {
+            let rounding = (self.x0.0[axis].abs() + self.x1.0[axis].abs()) * all(f32::EPSILON);
+            excess.0[axis] & not(excess.0[axis].abs().simd_le(rounding))
+        }));
+        let bend = (self.v1 - self.v0) * half;
+        let coefficients = [self.v0 * self.time, bend + excess * all(3.0), excess * all(-2.0)];
+        Cubics { start: self.x0, coefficients, bend, excess }
+    }
+
+    /// Their velocities at fractions of their times.
+    #[inline(always)]
+    fn velocity(&self, cubics: &Cubics, s: f32x8) -> Vectors {
+        let Cubics { bend, excess, .. } = *cubics;
+        let steady = self.v0 + (self.v1 - self.v0) * s;
+        let [x, y, z] = excess.0.map(|x| not(x.simd_eq(f32x8::ZERO)));
+        let is_smooth = (x | y | z) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
+        let share = all(6.0) * s * (f32x8::ONE - s) / self.time;
+        Vectors::select(is_smooth, steady + excess * share, steady)
+    }
+
+    /// Where they first meet a face.
+    #[inline(always)]
+    fn first_meetings(&self, cubics: &Cubics, face: &Face, radius: f32x8) -> Meetings {
+        let chords = cubics.chords();
+        let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
+        let mut found = Meetings::none(self.x0, unclear);
+        let mut end = f32x8::ZERO;
+        let (mut from, most) = (self.x0, chords.to_array().into_iter().fold(1.0, crate::math::max));
+        for i in 0..(most as u8).min(MAX_CHORDS as u8) {
+            let (begun, ends) = (all(f32::from(i)), all(f32::from(i + 1)));
+            let share = ends / chords;
+            let to = Vectors::select(ends.simd_eq(chords), self.x1, cubics.at(share));
+            let piece = Segments { from, to };
+            let open = begun.simd_lt(chords) & not(found.hits.are | unclear);
+            let hits = piece.first_hits(face, radius);
+            let are = hits.are & open;
+            if are.any() {
+                found.chord_from = Vectors::select(are, from, found.chord_from);
+                found.begun = select(are, begun / chords, found.begun);
+                found.place = Vectors::select(are, piece.at(hits.time), found.place);
+                end = select(are, share, end);
+                let time = (begun + hits.time) / chords;
+                found.hits.take(are, Hits { time, ..hits });
+            }
+            from = to;
+        }
+        if found.hits.are.any() {
+            found.put_on_path(self, cubics, face, radius, end);
+        }
+        found
+    }
+}
+
+impl Cubics {
+    #[inline(always)]
+    fn at(&self, s: f32x8) -> Vectors {
+        let [c1, c2, c3] = self.coefficients;
+        self.start + (c1 + (c2 + c3 * s) * s) * s
+    }
+
+    /// Those whose ends lag behind their velocities.
+    #[inline(always)]
+    fn lag(&self) -> f32x8 {
+        self.excess.dot(self.bend).simd_lt(all(-0.5) * self.bend.dot(self.bend))
+    }
+
+    /// When they cross the planes that touch the surface at places where they are hit, between two instants, from the side of the
+    /// normal to the other.
+    #[inline(always)]
+    fn crossings(&self, hits: &Hits, place: Vectors, [begun, end]: [f32x8; 2]) -> f32x8 {
+        let [c1, c2, c3] = self.coefficients.map(|c| c.dot(hits.normal));
+        let c0 = (self.start - place).dot(hits.normal);
+        let (mut low, mut high, mut s, mut sought) = (begun, end, end, hits.are);
+        for _ in 0..MAX_LOOKS {
+            let height = c0 + (c1 + (c2 + c3 * s) * s) * s;
+            let slope = c1 + (all(2.0) * c2 + all(3.0) * c3 * s) * s;
+            let above = height.simd_gt(f32x8::ZERO);
+            (low, high) = (select(above, s, low), select(above, high, s));
+            let newton = s - height / slope;
+            let is_between = newton.simd_ge(low) & newton.simd_le(high);
+            let next = select(sought, select(is_between, newton, all(0.5) * (low + high)), s);
+            let moved = (next - s).abs().simd_gt(all(f32::EPSILON) * end);
+            s = next;
+            sought &= moved;
+            if !sought.any() {
+                break;
+            }
+        }
+        s
+    }
+
+    /// How many chords stay near each, without a bound.
+    #[inline(always)]
+    fn chords(&self) -> f32x8 {
+        const STRAIGHT: f32 = (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR);
+        let [_, c2, c3] = self.coefficients;
+        let end = c2 + c3 * all(3.0);
+        let (c2, end) = (c2.dot(c2), end.dot(end));
+        let bent = not(max(c2, end).simd_le(all(STRAIGHT)));
+        if !bent.any() {
+            return f32x8::ONE;
+        }
+        let ratio = all(2.0) * max(sqrt(c2), sqrt(end)) / all(8.0 * CHORD_ERROR);
+        let whole = f32x8::new(sqrt(ratio).to_array().map(|root| root as u16 as f32));
+        select(bent & ratio.simd_gt(f32x8::ONE), whole + f32x8::ONE, f32x8::ONE)
+    }
+}
+
+impl Riders {
+    /// Those who lie on a face: along it, from their own places, for a step.
+    #[inline(always)]
+    pub(super) fn lie(&self, paths: &Paths, face: &Face) -> Outcome {
+        let acceleration = paths.acceleration();
+        let (lying, normal) = self.seated(paths, face, acceleration);
+        let lying = lying & paths.are_finite();
+        if !lying.any() {
+            return Outcome { settled: 0, hit: 0, left: 0, position: paths.x1, velocity: paths.v1 };
+        }
+        let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
+        let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
+        let (way, end) = self.slide(slip, drive, pressing, paths.time);
+        let along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
+        let straight = along.cubics().chords().simd_eq(f32x8::ONE);
+        let passes = Segments { from: along.x0, to: along.x1 }.first_hits(face, self.radius).are;
+        let settled = (lying & straight & not(passes)).to_bitmask();
+        let left = lying.to_bitmask() & !settled;
+        Outcome { settled, hit: settled, left, position: along.x1, velocity: along.v1 }
+    }
+
+    /// Who begins on the face and leaves it only to come back to it within the step; and the normals toward them.
+    #[inline(always)]
+    fn seated(&self, paths: &Paths, face: &Face, acceleration: Vectors) -> (f32x8, Vectors) {
+        let (time, zero) = (paths.time, f32x8::ZERO);
+        let fall = |acceleration: f32x8| all(0.5) * acceleration * time * time;
+        let [point, _, unit] = face.vectors().map(Vectors::splat);
+        let away = unit.dot(paths.x0 - point);
+        let normal = Vectors::select(away.simd_lt(zero), -unit, unit);
+        let distance = (unit * away).dot(normal);
+        let slack = all(4.0 * f32::EPSILON) * (paths.x0.largest() + distance + all(face.size()));
+        let is_near = distance.simd_le(self.radius + fall(acceleration.length()));
+        let gap = distance - self.radius;
+        let (leaving, pressing) = (paths.v0.dot(normal).abs(), negated(acceleration.dot(normal)));
+        let lain = all(LAIN) * slack;
+        let is_there = gap.simd_ge(all(0.5) * slack) & gap.simd_le(lain) & fall(pressing).simd_gt(gap);
+        let rests = (leaving * time).simd_le(lain) & (all(2.0) * leaving).simd_lt(all(RESTING) * time * pressing);
+        (is_near & is_there & rests, normal)
+    }
+
+    /// How far they slide in a time, and how fast they are then, as `Slide` has it.
+    #[inline(always)]
+    fn slide(&self, velocity: Vectors, drive: Vectors, pressing: f32x8, time: f32x8) -> (Vectors, Vectors) {
+        let (speed, zero) = (velocity.length(), f32x8::ZERO);
+        let held = self.sliding * pressing;
+        let braked = |along: Vectors| drive - along * held;
+        let going = |acceleration: Vectors, time: f32x8| (velocity + acceleration * (all(0.5) * time)) * time;
+        let steady = braked((velocity + drive * time).unit());
+        let (mut way, mut end) = (going(steady, time), velocity + steady * time);
+        let along = velocity / speed;
+        let acceleration = braked(along);
+        let braking = negated(acceleration.dot(along));
+        let moves = not(speed.simd_eq(zero));
+        let stops = moves & self.sliding.simd_gt(zero) & (braking * time).simd_gt(speed);
+        if (stops | not(moves)).any() {
+            let until = speed / braking;
+            let (rest, velocity) = self.start(drive, pressing, select(moves, time - until, time));
+            let stopped = going(acceleration, until) + rest;
+            way = Vectors::select(moves, Vectors::select(stops, stopped, way), rest);
+            end = Vectors::select(stops | not(moves), velocity, end);
+        }
+        (way, end)
+    }
+
+    /// The same from rest.
+    #[inline(always)]
+    fn start(&self, drive: Vectors, pressing: f32x8, time: f32x8) -> (Vectors, Vectors) {
+        let (pull, zero) = (drive.length(), f32x8::ZERO);
+        let starts = not(pull.simd_le(self.at_rest * pressing)) & pull.simd_gt(zero);
+        let left = pull - self.sliding * pressing;
+        let acceleration = drive * (max(left, zero) / pull);
+        ((acceleration * (all(0.5) * time * time)).masked(starts), (acceleration * time).masked(starts))
+    }
+
+    /// Those who bounce off a face once and fly on till the end of a step of so long, and those who miss it.
+    #[inline(always)]
+    pub(super) fn bounce(&self, paths: &Paths, face: &Face, step: Time) -> Outcome {
+        let cubics = paths.cubics();
+        let mut clear = paths.are_finite() & not(cubics.lag());
+        let meetings = paths.first_meetings(&cubics, face, self.radius);
+        clear &= not(meetings.unclear);
+        let hit = meetings.hits.are & clear;
+        let misses = (clear & not(hit)).to_bitmask();
+        if !hit.any() {
+            return Outcome { settled: misses, hit: 0, left: !misses, position: paths.x1, velocity: paths.v1 };
+        }
+        let (onward, bounces) = self.rebound(paths, &cubics, &meetings, face, step);
+        let again = onward.first_meetings(&onward.cubics(), face, self.radius);
+        let bounced = (hit & bounces & not(again.hits.are | again.unclear)).to_bitmask();
+        let settled = misses | bounced;
+        let position = Vectors::select(hit, onward.x1, paths.x1);
+        let velocity = Vectors::select(hit, onward.v1, paths.v1);
+        Outcome { settled, hit: bounced, left: !settled, position, velocity }
+    }
+
+    /// The ways on from hits, and whose are free and lead off the face.
+    #[inline(always)]
+    fn rebound(&self, paths: &Paths, cubics: &Cubics, meetings: &Meetings, face: &Face, step: Time) -> (Paths, f32x8) {
+        let zero = f32x8::ZERO;
+        let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
+        let left = |s: f32| Time::from_ticks(step.ticks() - ((step.ticks() as f32 * s) as u64).min(step.ticks()));
+        let rest = f32x8::new(s.to_array().map(|s| left(s).seconds()));
+        let acceleration = paths.acceleration();
+        let before = paths.velocity(cubics, s);
+        let incoming = before.dot(normal);
+        let outgoing = select(incoming.simd_lt(zero), negated(incoming) * self.elasticity, incoming);
+        let (beside, is_free) = self.set_off(paths, cubics, meetings, face, incoming);
+        let work = acceleration.dot(beside - place);
+        let onward = slowed(outgoing, work);
+        let pressing = negated(acceleration.dot(normal));
+        let rests = pressing.simd_gt(zero)
+            & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING) * paths.time * pressing));
+        let came = before - normal * incoming;
+        let slip = came + self.answer(came, outgoing - incoming);
+        let velocity = Vectors::splat(Vec3::ZERO) + slip + normal * onward;
+        let x1 = beside + (velocity + acceleration * (all(0.5) * rest)) * rest;
+        let v1 = velocity + acceleration * rest;
+        (Paths { x0: beside, v0: velocity, x1, v1, time: rest }, is_free & not(rests))
+    }
+
+    /// Places beside hits, and which of them are reached freely from as little before as that takes.
+    #[inline(always)]
+    fn set_off(
+        &self,
+        paths: &Paths,
+        cubics: &Cubics,
+        meetings: &Meetings,
+        face: &Face,
+        incoming: f32x8,
+    ) -> (Vectors, f32x8) {
+        let Meetings { hits: Hits { time, normal, slack, .. }, place, begun, chord_from, .. } = *meetings;
+        let closing = max(negated(incoming), all(f32::MIN_POSITIVE));
+        let beside = place + normal * (all(2.0) * slack);
+        let back = all(2.0) * slack / (closing * paths.time);
+        let before = cubics.at(max(time - back, begun));
+        let is_free = not(Segments { from: chord_from, to: before }.first_hits(face, self.radius).are);
+        let aside = Segments { from: before, to: beside }.first_hits(face, self.radius).are;
+        (Vectors::select(aside, before, beside), is_free)
+    }
+
+    /// What friction does to slips, as `Friction` has it.
+    #[inline(always)]
+    fn answer(&self, slip: Vectors, press: f32x8) -> Vectors {
+        let (speed, zero) = (slip.length(), f32x8::ZERO);
+        let held = self.sliding * press;
+        let all_of_it = speed.simd_le(self.at_rest * press) | speed.simd_le(held);
+        let answer = Vectors::select(all_of_it, -slip, slip * (negated(held) / speed));
+        answer.masked(speed.simd_gt(zero) & press.simd_gt(zero))
+    }
+}
+
+/// Speeds after a way along which they gain `work` \[m²/s²\], a share of the square of it.
+#[inline(always)]
+fn slowed(speed: f32x8, work: f32x8) -> f32x8 {
+    let gain = all(2.0) * work;
+    let square = speed * speed + gain;
+    (speed + gain / (speed + sqrt(square))) & square.simd_gt(f32x8::ZERO)
+}
