@@ -201,11 +201,10 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
     /// What a straight piece first meets, and whether that is a sink, which wins over a collider in the same place.
     fn first_hit(&self, piece: &Segment) -> Option<(Hit, bool)> {
         let (wall, sink) = (self.walls.first_hit(piece), self.sinks.and_then(|sinks| sinks.first_hit(piece)));
-        let is_sink = match (&wall, &sink) {
-            (Some(wall), Some(sink)) => sink.time <= wall.time,
-            (_, sink) => sink.is_some(),
-        };
-        Some((if is_sink { sink } else { wall }?, is_sink))
+        match (wall, sink) {
+            (wall, Some(sink)) if wall.is_none_or(|wall| sink.time <= wall.time) => Some((sink, true)),
+            (wall, _) => wall.map(|hit| (hit, false)),
+        }
     }
 
     /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
