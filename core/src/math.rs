@@ -32,6 +32,22 @@ pub(crate) fn along(place: Vec3, direction: Vec3, far: f32) -> Vec3 {
     place + direction * far
 }
 
+/// From one place or velocity to another: `a` − `b`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn minus(a: Vec3, b: Vec3) -> Vec3 {
+    a - b
+}
+
+/// Whether all coordinates of a vector are zero.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn is_zero(v: Vec3) -> bool {
+    v == Vec3::ZERO
+}
+
 /// Length of a vector.
 #[cfg_attr(target_os = "none", inline(never))]
 #[cfg_attr(not(target_os = "none"), inline(always))]

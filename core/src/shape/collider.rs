@@ -1,7 +1,7 @@
 //! What a moving point can run into, one by one or in lists.
 
 use super::{Aabb, Affine, Facing, Hulls, Marks};
-use crate::math::{high, largest, low, max};
+use crate::math::{along, high, largest, low, max, minus};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -159,14 +159,14 @@ impl Segment {
     #[inline]
     #[must_use]
     pub fn step(&self) -> Vec3 {
-        self.to - self.from
+        minus(self.to, self.from)
     }
 
     /// The point at a fraction of it.
     #[inline]
     #[must_use]
     pub fn at(&self, time: f32) -> Vec3 {
-        self.from + self.step() * time
+        along(self.from, self.step(), time)
     }
 
     /// A box around all that the point or ball touches, with room for rounding.
