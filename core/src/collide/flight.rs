@@ -251,12 +251,15 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
-        let drive = minus(acceleration, ride.map_or(Vec3::ZERO, |ride| ride.acceleration));
+        let drive = ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration));
         let pressing = -dot(drive, normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // What bounces slips along the place that it touches; what rests goes as one with the surface.
-        let whole = ride.filter(|_| rests).map_or(Vec3::ZERO, |ride| aside(minus(ride.velocity[0], surface), normal));
+        let whole = match &ride {
+            Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
+            _ => Vec3::ZERO,
+        };
         let surface = surface + whole;
         let came = along(minus(before, surface), normal, -incoming);
         let slip = came + feel.friction.answer(came, outgoing - incoming);
