@@ -1,6 +1,7 @@
 //! The path of a particle through a step, and the chords along which its collisions are sought.
 
 use crate::math::{along, dot, high, is_zero, length, low, max, minus, sqrt};
+use crate::rows::are_finite;
 use crate::shape::{Aabb, Segment};
 use crate::time::Time;
 use glam::Vec3;
@@ -68,11 +69,8 @@ impl Path {
         between(self.during, s)
     }
 
-    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn is_finite(&self) -> bool {
-        // What is not finite makes a sum that is not; a sum may be so without.
-        (self.x0 + self.v0 + self.x1 + self.v1).is_finite()
-            || [self.x0, self.v0, self.x1, self.v1].iter().all(|v| v.is_finite())
+        are_finite(&[self.x0, self.v0, self.x1, self.v1])
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.

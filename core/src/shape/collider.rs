@@ -177,7 +177,8 @@ impl Segment {
     }
 
     /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
-    #[inline]
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline)]
     pub(crate) fn slack(&self, size: f32) -> f32 {
         4.0 * f32::EPSILON * (max(largest(self.from), largest(self.to)) + self.radius + size)
     }
