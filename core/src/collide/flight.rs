@@ -100,6 +100,7 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
 
     /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
     /// on whichever side rounding put it, and leaves it the way its velocity points.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn let_go(&self, path: Path) -> Path {
         let [start, _] = path.during;
         let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, self.dt)) };
@@ -117,6 +118,7 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
 
     /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
     /// past what it is pressed onto, and meet that only a step later.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn pressed_on(&mut self, path: Path) -> Path {
         let pressed = path.caught_up();
         match self.first_meeting(&pressed) {

@@ -67,6 +67,7 @@ impl View<'_> {
     }
 
     /// Takes the particle in `row` out; the last row fills the gap.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn remove(&mut self, row: usize, springs: &dyn SpringList, report: &mut Report) {
         let len = self.status.len;
         let last = len - 1;
