@@ -62,7 +62,11 @@ pub struct ConstraintCode(pub(crate) fn(&mut Moved<'_>, Moment, Substep));
 
 impl ConstraintCode {
     /// All of it.
-    pub const ALL: Self = Self(|moved, moment, substep| moved.constrain(moment, substep));
+    pub const ALL: Self = Self(constrain);
+}
+
+fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
+    moved.constrain(moment, substep);
 }
 
 impl Constraint for () {

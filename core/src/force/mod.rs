@@ -73,9 +73,9 @@ pub trait Force: Sync {
         false
     }
 
-    /// Changes columns of a user's own if it [needs](Needs::write) to, once in each step of `dt` \[s\], when all have moved and been held against colliders
-    /// and before anybody is taken out: what burns or cools. The state is that at the step's end; its own columns of that kind
-    /// are empty, as `custom` has them. Of several forces each sees what those before it have written.
+    /// Changes columns of a user's own if it [needs](Needs::write) to, once in each step of `dt` \[s\], when all have moved and
+    /// been held against colliders and before anybody is taken out: what burns or cools. The state is that at the step's end; its
+    /// own columns of that kind are empty, as `custom` has them. Of several forces each sees what those before it have written.
     fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
         let _ = (state, custom, dt);
     }
@@ -168,7 +168,11 @@ impl Trees {
 
 impl Writing {
     /// Once in each step, at its end.
-    pub const AT_END: Self = Self(|view, scene, span, report| view.write(scene, span, report));
+    pub const AT_END: Self = Self(write);
+}
+
+fn write(view: &mut View<'_>, scene: &Scene<'_>, span: [Time; 2], report: &mut Report) {
+    view.write(scene, span, report);
 }
 
 /// What forces have to find in the state, beyond the particles.

@@ -125,6 +125,8 @@ fn place_in(list: &[u32], number: usize) -> usize {
 }
 
 /// The springs of a scene: a list of them, or `()`, with which a program does not carry about what only springs call for.
+///
+/// Arrays, vectors and references of springs are lists of them.
 pub trait SpringList: Sync {
     /// All of them.
     fn list(&self) -> &[Spring];
@@ -404,8 +406,7 @@ pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], i
 }
 
 /// Sorts the springs by the particles at their ends: `incident[last[n − 1]..last[n]]` are those of number n.
-/// Both are all zeros before. Returns how many lack an end, as only
-/// `start` particles have found room.
+/// Both are all zeros before. Returns how many lack an end, as only `start` particles have found room.
 fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32], start: u32) -> u64 {
     let ends = || springs.iter().enumerate().flat_map(|(i, s)| s.ends.map(|end| (i as u32, end as usize)));
     for (_, end) in ends() {

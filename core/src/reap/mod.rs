@@ -59,7 +59,11 @@ pub struct ReaperCode(pub(crate) fn(&mut View<'_>, &Scene<'_>));
 
 impl ReaperCode {
     /// All of it.
-    pub const ALL: Self = Self(|view, scene| view.judge_all(scene));
+    pub const ALL: Self = Self(judge_all);
+}
+
+fn judge_all(view: &mut View<'_>, scene: &Scene<'_>) {
+    view.judge_all(scene);
 }
 
 /// What reapers say of the rows they are asked about.
