@@ -38,7 +38,13 @@ impl Varied {
 
     /// Uniform from mean − variance to mean + variance; `u` is asked for only if there is a variance.
     pub(super) fn pick(self, u: impl FnOnce() -> f32) -> f32 {
-        if self.variance == 0.0 { self.mean } else { self.mean + self.variance * (2.0 * u() - 1.0) }
+        if self.variance == 0.0 { self.mean } else { self.at(u()) }
+    }
+
+    /// The number that one uniform in [0, 1) picks.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn at(self, u: f32) -> f32 {
+        self.mean + self.variance * (2.0 * u - 1.0)
     }
 }
 

@@ -41,7 +41,8 @@ impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let side = |point: Vec3| dot(self.normal, point - self.point);
         // What is smaller than rounding is a point. The normal is brought to unit length only for who meets it.
-        let is_point = !(segment.radius > segment.slack(largest(self.point)));
+        // Chips are spared the code for who does not.
+        let is_point = !cfg!(target_os = "none") && !(segment.radius > segment.slack(largest(self.point)));
         if is_point && crossing(self.normal, side(segment.from), side(segment.to)).is_none() {
             return None;
         }
