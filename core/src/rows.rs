@@ -29,13 +29,12 @@ pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
 /// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
 #[inline(always)]
 pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
-    let (mut t_rest, mut v_rest, mut k_rest) = (total, vector, factor);
-    if BLOCKS {
-        let ((t, t_last), (v, v_last), (k, k_last)) = (t_rest.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
-        for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
-            block(total, vector, factor, &f);
-        }
-        (t_rest, v_rest, k_rest) = (t_last, v_last, k_last);
+    if !BLOCKS {
+        return total.iter_mut().zip(vector).zip(factor).for_each(|((total, v), &k)| one(total, *v, k, &f));
+    }
+    let ((t, t_rest), (v, v_rest), (k, k_rest)) = (total.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
+    for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
+        block(total, vector, factor, &f);
     }
     for ((total, vector), &factor) in t_rest.iter_mut().zip(v_rest).zip(k_rest) {
         one(total, *vector, factor, &f);
@@ -45,13 +44,12 @@ pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: i
 /// The same with one vector for all rows.
 #[inline(always)]
 pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
-    let (mut t_rest, mut k_rest) = (total, factor);
-    if BLOCKS {
-        let ((t, t_last), (k, k_last)) = (t_rest.as_chunks_mut(), factor.as_chunks());
-        for (total, factor) in t.iter_mut().zip(k) {
-            block(total, &[vector; 4], factor, &f);
-        }
-        (t_rest, k_rest) = (t_last, k_last);
+    if !BLOCKS {
+        return total.iter_mut().zip(factor).for_each(|(total, &k)| one(total, vector, k, &f));
+    }
+    let ((t, t_rest), (k, k_rest)) = (total.as_chunks_mut(), factor.as_chunks());
+    for (total, factor) in t.iter_mut().zip(k) {
+        block(total, &[vector; 4], factor, &f);
     }
     for (total, &factor) in t_rest.iter_mut().zip(k_rest) {
         one(total, vector, factor, &f);

@@ -70,7 +70,9 @@ impl Path {
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        are_finite(&[self.x0, self.v0, self.x1, self.v1])
+        // What is not finite makes a sum that is not; a sum may be so without. Chips are spared the sum.
+        let sum_is_finite = || (self.x0 + self.v0 + self.x1 + self.v1).is_finite();
+        !cfg!(target_os = "none") && sum_is_finite() || are_finite(&[self.x0, self.v0, self.x1, self.v1])
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.
@@ -84,6 +86,7 @@ impl Path {
 
     /// It as a polynomial.
     #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn cubic(&self) -> Cubic {
         let (duration, excess) = (self.duration(), self.excess());
         let bend = along(minus(self.v1, self.v0) * (0.5 * duration), excess, 3.0);

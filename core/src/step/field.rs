@@ -135,10 +135,7 @@ impl Dynamics for Field<'_> {
                 None => add_up(forces, state, rows.clone(), acceleration),
             }
         });
-        each_row_with(acceleration, Vec3::ZERO, inverse_mass, |force, _, inverse| {
-            // What is fixed stays so under a force that is beyond an f32.
-            if inverse == 0.0 { 0.0 } else { force * inverse }
-        });
+        divide_by_masses(acceleration, inverse_mass);
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
@@ -156,6 +153,15 @@ impl Dynamics for Field<'_> {
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         self.observer.after(Phase::Advance, &state);
     }
+}
+
+/// Makes accelerations of forces. Apart, so that compilers know that the columns are two, and make vectors of them.
+#[inline(never)]
+fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
+    each_row_with(forces, Vec3::ZERO, inverse_mass, |force, _, inverse| {
+        // What is fixed stays so under a force that is beyond an f32.
+        if inverse == 0.0 { 0.0 } else { force * inverse }
+    });
 }
 
 /// Rows that are worth a thread's while.
