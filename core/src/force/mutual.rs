@@ -9,7 +9,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// Every two particles attract each other as by [`AllPairs`], or with an opening angle in about N log N: then far groups
-/// act as one, see [`BarnesHut`]. The energy is always that of all pairs.
+/// act as one, see [`BarnesHut`](crate::index::BarnesHut). The energy is always that of all pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
