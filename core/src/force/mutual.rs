@@ -4,12 +4,14 @@ use super::inverse_square::field;
 #[cfg(feature = "std")]
 use super::inverse_square::potential;
 use super::{AllPairs, Force, Needs, State, Trees};
+#[cfg(doc)]
+use crate::index::BarnesHut;
 use crate::index::Opening;
 use core::ops::Range;
 use glam::Vec3;
 
 /// Every two particles attract each other as by [`AllPairs`], or with an opening angle in about N log N: then far groups
-/// act as one, see [`BarnesHut`](crate::index::BarnesHut). The energy is always that of all pairs.
+/// act as one, see [`BarnesHut`]. The energy is always that of all pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
