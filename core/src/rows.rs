@@ -59,8 +59,9 @@ pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f:
 #[inline(always)]
 fn block(total: &mut [Vec3; 4], vector: &[Vec3; 4], k: &[f32; 4], f: &impl Fn(f32, f32, f32) -> f32) {
     let factor = [k[0], k[0], k[0], k[1], k[1], k[1], k[2], k[2], k[2], k[3], k[3], k[3]];
-    for ((total, &vector), &factor) in flat_mut(total).iter_mut().zip(flat(vector)).zip(&factor) {
-        *total = f(*total, vector, factor);
+    let (total, vector): (&mut [f32; 12], &[f32; 12]) = (bytemuck::cast_mut(total), bytemuck::cast_ref(vector));
+    for i in 0..12 {
+        total[i] = f(total[i], vector[i], factor[i]);
     }
 }
 
