@@ -1,5 +1,8 @@
 //! Columns of a user's own: numbers with names that each particle carries along.
 
+use crate::observe::Observer;
+use crate::scene::Scene;
+use crate::step::View;
 use core::fmt;
 use core::ops::Range;
 
@@ -34,6 +37,28 @@ pub trait CustomList: Sync {
 
     /// One of them.
     fn get(&self, number: usize) -> Option<Custom<'_>>;
+
+    /// What a step calls for them; nothing, where it is known that there never are any.
+    fn code(&self) -> Option<CustomCode> {
+        Some(CustomCode::ALL)
+    }
+}
+
+/// What columns of a user's own call for in a step: functions, so that a program which has none does not carry them about.
+#[derive(Clone, Copy, Debug)]
+pub struct CustomCode {
+    /// Gives rows from one on what they begin with.
+    pub(crate) give: fn(&mut View<'_>, &Scene<'_>, usize),
+    /// Lets whoever looks on write.
+    pub(crate) let_write: fn(&mut View<'_>, &Scene<'_>, &mut dyn Observer),
+}
+
+impl CustomCode {
+    /// All of it.
+    pub const ALL: Self = Self {
+        give: |view, scene, first| view.give_custom(scene, first),
+        let_write: |view, scene, observer| view.let_write(scene, observer),
+    };
 }
 
 impl CustomList for () {
@@ -41,6 +66,9 @@ impl CustomList for () {
         0
     }
     fn get(&self, _: usize) -> Option<Custom<'_>> {
+        None
+    }
+    fn code(&self) -> Option<CustomCode> {
         None
     }
 }
@@ -51,6 +79,9 @@ impl<T: CustomList + ?Sized> CustomList for &T {
     }
     fn get(&self, number: usize) -> Option<Custom<'_>> {
         (**self).get(number)
+    }
+    fn code(&self) -> Option<CustomCode> {
+        (**self).code()
     }
 }
 

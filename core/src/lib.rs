@@ -59,7 +59,7 @@ pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
     AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Gravity, LennardJones, MutualGravity, Penalty, PowerLaw,
-    Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, Viscosity, Wind,
+    Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity, Wind,
 };
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;

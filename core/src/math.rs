@@ -1,4 +1,5 @@
-//! The few mathematical functions everybody here uses, each the same bits on every target.
+//! The few mathematical functions everybody here uses, each the same bits on every target: spread over their callers on hosts, and
+//! in the flash of chips without an operating system once.
 //!
 //! `core` has no square root, and a platform's sine differs from machine to machine, so nothing else in the
 //! crate calls a transcendental function on the path of a step.
@@ -15,22 +16,57 @@ pub fn sqrt(x: f32) -> f32 {
     return libm::sqrtf(x);
 }
 
+/// The product of two vectors, in the order x, y, z.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
+    a.dot(b)
+}
+
+/// From a place so far along a direction: `place` + `direction` × `far`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn along(place: Vec3, direction: Vec3, far: f32) -> Vec3 {
+    place + direction * far
+}
+
+/// From one place or velocity to another: `a` − `b`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn minus(a: Vec3, b: Vec3) -> Vec3 {
+    a - b
+}
+
+/// Whether all coordinates of a vector are zero.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn is_zero(v: Vec3) -> bool {
+    v == Vec3::ZERO
+}
+
 /// Length of a vector.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn length(v: Vec3) -> f32 {
-    sqrt(v.dot(v))
+    sqrt(dot(v, v))
 }
 
 /// What of a vector lies along a surface.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub(crate) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
-    v - normal * v.dot(normal)
+    v - normal * dot(v, normal)
 }
 
 /// `v` over its length; zero where it has none that an `f32` can hold.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 #[must_use]
 pub fn unit(v: Vec3) -> Vec3 {
     // Dividing by the largest coordinate first keeps the squares of tiny and huge vectors in range.
@@ -43,42 +79,48 @@ pub fn unit(v: Vec3) -> Vec3 {
 }
 
 /// The larger of two numbers, the second where they are equal: unlike `f32::max` it treats −0 alike everywhere.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers, the second where they are equal.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// `x` held in `[low, high]`.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     min(max(x, low), high)
 }
 
 /// The lesser of each coordinate, as `min`.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn low(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z))
 }
 
 /// The greater of each coordinate, as `max`.
-#[inline(always)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
 pub fn high(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z))
 }
 
 /// The largest coordinate's magnitude.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 #[must_use]
 pub fn largest(v: Vec3) -> f32 {
     max(max(v.x.abs(), v.y.abs()), v.z.abs())
@@ -88,6 +130,40 @@ pub fn largest(v: Vec3) -> f32 {
 #[must_use]
 pub(crate) fn power_to_one(length: f32) -> f32 {
     f32::from_bits((254 - (length.to_bits() >> 23).clamp(1, 253)) << 23)
+}
+
+/// The quotient of whole numbers and what is left over. The quotient has to be below 2⁶⁴, and the divisor not zero: else both
+/// are meaningless.
+///
+/// Chips without an operating system divide bit by bit: it is asked for a few times in a step, and the routines of compilers
+/// for numbers so wide take kilobytes.
+#[must_use]
+pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
+    if cfg!(target_os = "none") {
+        long_division(number, by)
+    } else if by == 0 {
+        (0, 0)
+    } else {
+        ((number / by as u128) as u64, (number % by as u128) as u64)
+    }
+}
+
+/// The same by shifts and differences.
+#[inline(never)]
+const fn long_division(number: u128, by: u64) -> (u64, u64) {
+    let (mut rest, mut low) = ((number >> 64) as u64, number as u64);
+    let mut bit = 0;
+    while bit < 64 {
+        let carry = rest >> 63 != 0;
+        rest = rest << 1 | low >> 63;
+        low <<= 1;
+        if carry || rest >= by {
+            rest = rest.wrapping_sub(by);
+            low |= 1;
+        }
+        bit += 1;
+    }
+    (low, rest)
 }
 
 /// Cube root of a number above zero, to 1e-6 of it: an estimate by its bits, then Newton's method.
@@ -209,6 +285,20 @@ mod tests {
             let exact = f64::from(turns) * core::f64::consts::TAU;
             assert!((f64::from(s) - libm::sin(exact)).abs() < 1.2e-7, "sin at {turns} turns");
             assert!((f64::from(c) - libm::cos(exact)).abs() < 1.2e-7, "cos at {turns} turns");
+        }
+    }
+
+    #[test]
+    fn bit_by_bit_division_agrees_with_that_of_the_compiler() {
+        for by in [1, 2, 3, 7, 30, 60, 1000, 1 << 32, (1 << 63) - 25, u64::MAX - 1, u64::MAX] {
+            for low in [0, 1, 12_345_678_901_234, u64::MAX / 3, u64::MAX] {
+                for high in [0, 1, by / 3, by / 2, by - 1].into_iter().filter(|&high| high < by) {
+                    let number = u128::from(high) << 64 | u128::from(low);
+                    let expected = ((number / u128::from(by)) as u64, (number % u128::from(by)) as u64);
+                    assert_eq!(long_division(number, by), expected, "{number} over {by}");
+                    assert_eq!(divide(number, by), expected);
+                }
+            }
         }
     }
 

@@ -58,7 +58,7 @@ impl Measures {
         let state = system.state(scene);
         let mut entries = std::vec::Vec::new();
         scene.forces.account(&state, &mut |entry| entries.push(entry));
-        if !scene.springs.is_empty() {
+        if !scene.springs.list().is_empty() {
             state.springs.account(&state, &mut |entry| entries.push(entry));
         }
         entries

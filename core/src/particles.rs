@@ -1,5 +1,6 @@
 //! What a particle is, and what it is called.
 
+use crate::rows::are_finite;
 use glam::Vec3;
 
 /// Red, green, blue and opacity, each 0 to 255, in sRGB.
@@ -60,8 +61,7 @@ impl Particle {
     /// Whether every number of it can be used: finite, the radius not below zero, the mass above zero (or fixed and not below zero).
     #[must_use]
     pub fn is_sound(&self) -> bool {
-        let finite = self.position.is_finite()
-            && self.velocity.is_finite()
+        let finite = are_finite(&[self.position, self.velocity])
             && (0.0..f32::INFINITY).contains(&self.radius)
             && [self.mass, self.drag, self.charge, self.elasticity, self.lifetime].iter().all(|x| x.is_finite());
         // The inverse of a mass below 3e-39 kg overflows.

@@ -121,12 +121,19 @@ pub struct Caps {
     pub unfit: u64,
 }
 
+/// Adds to a counter, which stops at the largest number. Apart, like those of whole structs: there are so many of them.
+#[inline(never)]
+fn add(sum: &mut u64, more: &u64) {
+    *sum = sum.saturating_add(*more);
+}
+
 /// Adds up every field of two counters; the sum of plain numbers saturates.
 macro_rules! add_fields {
     ($($counter:ident { $($field:ident)+ })+) => {$(
         impl core::ops::AddAssign for $counter {
+            #[inline(never)]
             fn add_assign(&mut self, other: Self) {
-                $(self.$field = self.$field.saturating_add(other.$field);)+
+                $(add(&mut self.$field, &other.$field);)+
             }
         }
     )+};
@@ -139,16 +146,12 @@ add_fields! {
 
 impl core::ops::AddAssign for Report {
     fn add_assign(&mut self, other: Self) {
-        for (sum, more) in [
-            (&mut self.initial, other.initial),
-            (&mut self.born, other.born),
-            (&mut self.refused, other.refused),
-            (&mut self.hits, other.hits),
-            (&mut self.contacts, other.contacts),
-            (&mut self.broken, other.broken),
-        ] {
-            *sum = sum.saturating_add(more);
-        }
+        add(&mut self.initial, &other.initial);
+        add(&mut self.born, &other.born);
+        add(&mut self.refused, &other.refused);
+        add(&mut self.hits, &other.hits);
+        add(&mut self.contacts, &other.contacts);
+        add(&mut self.broken, &other.broken);
         self.died += other.died;
         self.caps += other.caps;
         self.effort += other.effort;
@@ -171,6 +174,7 @@ impl Died {
     }
 
     /// From whatever cause.
+    #[cfg_attr(target_os = "none", inline(never))]
     #[must_use]
     pub const fn total(&self) -> u64 {
         self.lifetime + self.sink + self.density + self.chance + self.other + self.nonfinite

@@ -6,6 +6,9 @@
 use crate::math::max;
 use glam::Vec3;
 
+/// Whether there may be vectors: chips without an operating system are spared the code, and work number by number.
+const BLOCKS: bool = !cfg!(target_os = "none");
+
 /// `out` = `base` + `h` × `rate`, row by row.
 #[inline]
 pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3]) {
@@ -26,6 +29,9 @@ pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
 /// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
 #[inline(always)]
 pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
+    if !BLOCKS {
+        return total.iter_mut().zip(vector).zip(factor).for_each(|((total, v), &k)| one(total, *v, k, &f));
+    }
     let ((t, t_rest), (v, v_rest), (k, k_rest)) = (total.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
     for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
         block(total, vector, factor, &f);
@@ -38,6 +44,9 @@ pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: i
 /// The same with one vector for all rows.
 #[inline(always)]
 pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
+    if !BLOCKS {
+        return total.iter_mut().zip(factor).for_each(|(total, &k)| one(total, vector, k, &f));
+    }
     let ((t, t_rest), (k, k_rest)) = (total.as_chunks_mut(), factor.as_chunks());
     for (total, factor) in t.iter_mut().zip(k) {
         block(total, &[vector; 4], factor, &f);
@@ -50,8 +59,9 @@ pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f:
 #[inline(always)]
 fn block(total: &mut [Vec3; 4], vector: &[Vec3; 4], k: &[f32; 4], f: &impl Fn(f32, f32, f32) -> f32) {
     let factor = [k[0], k[0], k[0], k[1], k[1], k[1], k[2], k[2], k[2], k[3], k[3], k[3]];
-    for ((total, &vector), &factor) in flat_mut(total).iter_mut().zip(flat(vector)).zip(&factor) {
-        *total = f(*total, vector, factor);
+    let (total, vector): (&mut [f32; 12], &[f32; 12]) = (bytemuck::cast_mut(total), bytemuck::cast_ref(vector));
+    for i in 0..12 {
+        total[i] = f(total[i], vector[i], factor[i]);
     }
 }
 
@@ -63,7 +73,7 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
 /// The largest number of a column, whatever its sign; what is no number does not count.
 #[inline]
 pub(crate) fn farthest(column: &[Vec3]) -> f32 {
-    let (blocks, rest) = flat(column).as_chunks::<8>();
+    let (blocks, rest) = if BLOCKS { flat(column).as_chunks::<8>() } else { (&[][..], flat(column)) };
     let mut most = [0.0; 8];
     for block in blocks {
         for (most, x) in most.iter_mut().zip(block) {
@@ -74,7 +84,8 @@ pub(crate) fn farthest(column: &[Vec3]) -> f32 {
 }
 
 /// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 pub(crate) fn are_finite(column: &[Vec3]) -> bool {
     let carried = |any: u32, x: &f32| any | ((x.to_bits() & 0x7FFF_FFFF) + 0x0080_0000);
     flat(column).iter().fold(0, carried) >> 31 == 0

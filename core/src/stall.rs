@@ -25,17 +25,20 @@ pub(crate) fn may_be(farthest: f32, h: f32) -> bool {
 pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
     let mut stalled = 0;
     for (x, v) in position.chunks(BLOCK).zip(velocity.chunks(BLOCK)) {
-        // Hardly ever is there one: whole blocks are passed by, in a loop that compilers make vectors of.
-        let mut any = 0;
-        for (&x, &v) in flat(x).iter().zip(flat(v)) {
-            any |= u32::from(may_be_swallowed(x, v, h));
-        }
-        if any > 0 {
+        if may_hold_one(x, v, h) {
             let stalls = |(x, v): &(&Vec3, &Vec3)| (0..3).any(|axis| is_swallowed(x[axis], v[axis], h));
             stalled += x.iter().zip(v).filter(stalls).count() as u64;
         }
     }
     stalled
+}
+
+/// Whether any of a block may stall: hardly ever does one, so whole blocks are passed by, in a loop that compilers make vectors
+/// of. Where there are none the loop is of no use.
+#[inline(always)]
+fn may_hold_one(x: &[Vec3], v: &[Vec3], h: f32) -> bool {
+    let any = |any: u32, (&x, &v): (&f32, &f32)| any | u32::from(may_be_swallowed(x, v, h));
+    cfg!(target_os = "none") || flat(x).iter().zip(flat(v)).fold(0, any) > 0
 }
 
 /// Whether a coordinate moves, at a speed that counts, and is where it was after a step: without shortcuts, so that the loop
@@ -46,6 +49,7 @@ fn may_be_swallowed(x: f32, v: f32, h: f32) -> bool {
 }
 
 /// The same of what is somewhere, in steps that take time.
+#[cfg_attr(target_os = "none", inline(never))]
 fn is_swallowed(x: f32, v: f32, h: f32) -> bool {
     let is_motion = v.abs() > f32::MIN_POSITIVE && v.abs() < f32::INFINITY && x.abs() < f32::INFINITY;
     may_be_swallowed(x, v, h) && h > 0.0 && is_motion

@@ -1,7 +1,7 @@
 //! The state of the world and its one verb, `step`.
 
 use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::force::{self, Springs, State};
+use crate::force::{self, SpringList, Springs, State};
 use crate::hash::Fnv;
 use crate::memory::{Columns, Layout, Storage};
 use crate::observe::Observer;
@@ -211,12 +211,18 @@ impl<B: Storage> System<B> {
 impl<'a> Columns<'a> {
     /// The living as forces and reapers see them.
     pub(crate) fn state(self, scene: &Scene<'a>, status: &Status) -> State<'a> {
-        let (springs, custom) = (scene.springs, self.custom(scene, status.len));
+        let (springs, custom) = (self.springs(scene.springs, status), self.custom(scene, status.len));
         let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, .. } = self;
-        let Columns { serial, row_of, last_spring, incident, .. } = self;
-        let springs = Springs { springs, start: status.start, serial, row_of, last_spring, incident };
         let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, custom, ..State::EMPTY };
         lives.moved(status.time, &position[..status.len], &velocity[..status.len])
+    }
+
+    /// A scene's springs and where their ends are now.
+    pub(crate) fn springs(&self, springs: &'a dyn SpringList, status: &Status) -> Springs<'a> {
+        let Columns { serial, row_of, last_spring, incident, .. } = *self;
+        let serial = &serial[..status.len];
+        let (springs, code, start) = (springs.list(), springs.code(), status.start);
+        Springs { springs, code, start, serial, row_of, last_spring, incident }
     }
 
     /// Columns of a user's own, of the first `len` rows.

@@ -3,6 +3,7 @@
 //! Whole numbers add without rounding, so a birth lies at the same instant however a run is cut into steps, and a
 //! chip without double-precision hardware needs none.
 
+use crate::math::divide;
 use core::ops::{Add, Sub};
 
 /// A point in simulated time, or a span of it, in units of 2⁻³² s (about 0.23 ns); spans 136 years.
@@ -41,9 +42,10 @@ impl Time {
     /// ```
     #[must_use]
     pub const fn frame(n: u64, per_second: u32) -> Self {
-        let rate = if per_second == 0 { 1 } else { per_second as u128 };
-        let ticks = (((n as u128) << 32) + rate / 2) / rate;
-        Self(if ticks > u64::MAX as u128 { u64::MAX } else { ticks as u64 })
+        let rate = if per_second == 0 { 1 } else { per_second as u64 };
+        let number = ((n as u128) << 32) + rate as u128 / 2;
+        // Of a number that is as much as so many times 2⁶⁴ the quotient is beyond the last instant.
+        Self(if number >> 64 >= rate as u128 { u64::MAX } else { divide(number, rate).0 })
     }
 
     /// From seconds, to the nearest tick; negative numbers and NaN give zero, numbers too large `NEVER`.
@@ -60,6 +62,7 @@ impl Time {
     }
 
     /// In seconds, rounded to an `f32`.
+    #[cfg_attr(target_os = "none", inline(never))]
     #[must_use]
     pub const fn seconds(self) -> f32 {
         self.0 as f32 / TICKS_PER_SECOND
@@ -90,7 +93,8 @@ impl Time {
             return Self::ZERO;
         }
         let (part, of) = (part as u64, of as u64);
-        Self((self.0 / of).wrapping_mul(part).wrapping_add((self.0 % of) * part / of))
+        let (whole, rest) = divide(self.0 as u128, of);
+        Self(whole.wrapping_mul(part).wrapping_add(divide((rest * part) as u128, of).0))
     }
 
     /// Half of it, rounded down to a tick.
@@ -102,6 +106,7 @@ impl Time {
 
 impl Add for Time {
     type Output = Self;
+    #[cfg_attr(target_os = "none", inline(never))]
     fn add(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
@@ -109,6 +114,7 @@ impl Add for Time {
 
 impl Sub for Time {
     type Output = Self;
+    #[cfg_attr(target_os = "none", inline(never))]
     fn sub(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
     }

@@ -126,7 +126,7 @@ fn not_passed_on(springs: &[Spring], forces: &dyn Force) {
         let start = [at(x), at(1.0), at(2.0)];
         for &method in Method::ALL {
             let integrator = method.integrator();
-            let scene = Scene { start: &start, springs, forces, integrator, ..Scene::EMPTY };
+            let scene = Scene { start: &start, springs: &springs, forces, integrator, ..Scene::EMPTY };
             let mut system = started(&scene, 3, 0);
             let report = system.step(&scene, Time::from_seconds(0.01));
             assert_eq!((report.died.nonfinite, system.len()), (1, 2), "{method}, beside {x}");

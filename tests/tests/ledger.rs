@@ -166,7 +166,7 @@ fn births_breaks_and_hands_have_theirs() {
     assert!((-20.0..-12.5).contains(&books.breaking) && share < 1e-4, "{books:?}");
 
     let mut system = System::with(Heap::new(Size { particles: 3, ..scene.size() }));
-    let scene = Scene { emitters: &(), springs: &[], ..scene };
+    let scene = Scene { emitters: &(), springs: &(), ..scene };
     system.start(&scene, 1).expect("it fits");
     let mut ledger = Ledger::new(&system, &scene);
     system.spawn(&Particle { velocity: Vec3::Y * 4.0, ..Particle::REST }).expect("there is room");

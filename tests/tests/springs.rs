@@ -262,7 +262,7 @@ fn the_order_of_the_springs_is_a_matter_of_rounding() {
     let springs: Vec<Spring> =
         (0..60).map(|i| Spring::new([i % 30, (i * 11 + 1) % 30], 0.4, 9.0).damped(0.2)).collect();
     let end = |springs: &[Spring]| {
-        let scene = Scene { start: &start, springs, integrator: Method::Verlet.integrator(), ..Scene::EMPTY };
+        let scene = Scene { start: &start, springs: &springs, integrator: Method::Verlet.integrator(), ..Scene::EMPTY };
         let mut system = started(&scene, 30, 0);
         run(&mut system, &scene, 1.0 / 60.0, 60);
         system.particles().position.to_vec()
@@ -395,7 +395,7 @@ fn springs_that_broke_in_an_earlier_scene_leave_no_trace() {
     let start = [at(0.0), at(1.0), at(2.0)];
     let springs = [0, 1].map(|i| Spring { breaks_at: Some(1.5), ..Spring::new([i, i + 1], 0.5, 1.0) });
     let many = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
-    let none = Scene { springs: &[], ..many };
+    let none = Scene { springs: &(), ..many };
     let mut used = started(&many, 3, 0);
     let mut fresh = used.clone();
     assert_eq!(used.step(&many, Time::frame(1, 60)).broken, 2);

@@ -68,7 +68,7 @@ fn settled(problem: &Problem, (gap, dt, outturn): (f64, f64, Outturn)) -> Refere
     let (places, about, error) = match problem.exact {
         Some(exact) => {
             let scene = problem.scene();
-            let places = exact(scene.start, scene.springs, problem.duration);
+            let places = exact(scene.start, scene.springs.list(), problem.duration);
             ((0..).zip(places).collect(), "the closed form".to_string(), 0.0)
         }
         None => (places, format!("RK4 in steps of {dt:.3e} s (steps twice as long end {gap:.1e} m from there)"), gap),

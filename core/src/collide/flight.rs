@@ -3,7 +3,7 @@
 use super::grip::on_surface;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
-use crate::math::{aside, largest, length, max, min, sqrt, unit};
+use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::Fate;
@@ -100,23 +100,25 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
 
     /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
     /// on whichever side rounding put it, and leaves it the way its velocity points.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn let_go(&self, path: Path) -> Path {
         let [start, _] = path.during;
-        let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, path.x0 + path.v0 * self.dt) };
+        let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, self.dt)) };
         let hits = [self.walls.first_hit(&ahead), self.sinks.and_then(|sinks| sinks.first_hit(&ahead))];
         let (step, far) = (ahead.step(), length(ahead.step()));
         let near = |hit: &Hit| {
-            let off_surface = -step.dot(hit.normal) * hit.time <= 2.0 * hit.slack;
+            let off_surface = -dot(step, hit.normal) * hit.time <= 2.0 * hit.slack;
             // A graze farther away is no birth on the surface.
             off_surface && far * hit.time <= 40.0 * hit.slack
         };
-        let beyond = |hit: Hit| ahead.at(hit.time) + unit(step) * (4.0 * hit.slack);
+        let beyond = |hit: Hit| along(ahead.at(hit.time), unit(step), 4.0 * hit.slack);
         let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
         Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..path }
     }
 
     /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
     /// past what it is pressed onto, and meet that only a step later.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn pressed_on(&mut self, path: Path) -> Path {
         let pressed = path.caught_up();
         match self.first_meeting(&pressed) {
@@ -132,8 +134,8 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
         let seat = self.seat(path, acceleration)?;
         let feel = on_surface(self.scene.grips, self.elasticity, self.material, seat.material);
         let (normal, time) = (seat.normal, path.during[0]);
-        let (incoming, pressing) = (path.v0.dot(normal), -acceleration.dot(normal));
-        let (slip, drive) = (path.v0 - normal * incoming, acceleration + normal * pressing);
+        let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
+        let (slip, drive) = (along(path.v0, normal, -incoming), along(acceleration, normal, pressing));
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(path.duration());
         let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
         let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
@@ -157,9 +159,9 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
             faces += 1;
             seat = Some(*contact);
         });
-        let seat = seat.filter(|seat| faces == 1 && seat.velocity == Vec3::ZERO)?;
+        let seat = seat.filter(|seat| faces == 1 && is_zero(seat.velocity))?;
         let (gap, slack) = (seat.distance - self.radius, seat.slack);
-        let (leaving, pressing) = (path.v0.dot(seat.normal).abs(), -acceleration.dot(seat.normal));
+        let (leaving, pressing) = (dot(path.v0, seat.normal).abs(), -dot(acceleration, seat.normal));
         let is_there = gap >= 0.5 * slack && gap <= LAIN * slack && fall(pressing) > gap;
         let rests = leaving * time <= LAIN * slack && 2.0 * leaving < RESTING * self.dt * pressing;
         (is_there && rests).then_some(seat)
@@ -201,30 +203,29 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
     /// What a straight piece first meets, and whether that is a sink, which wins over a collider in the same place.
     fn first_hit(&self, piece: &Segment) -> Option<(Hit, bool)> {
         let (wall, sink) = (self.walls.first_hit(piece), self.sinks.and_then(|sinks| sinks.first_hit(piece)));
-        let is_sink = match (&wall, &sink) {
-            (Some(wall), Some(sink)) => sink.time <= wall.time,
-            (_, sink) => sink.is_some(),
-        };
-        Some((if is_sink { sink } else { wall }?, is_sink))
+        match (wall, sink) {
+            (wall, Some(sink)) if wall.is_none_or(|wall| sink.time <= wall.time) => Some((sink, true)),
+            (wall, _) => wall.map(|hit| (hit, false)),
+        }
     }
 
     /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
     /// touches the surface. A place far along the surface from that on the chord asks for the surface there.
     fn on_path(&self, path: &Path, cubic: &Cubic, meeting: Meeting, end: f32) -> Meeting {
         let Meeting { begun, hit, .. } = meeting;
-        let drift = hit.velocity.dot(hit.normal) * path.duration();
+        let drift = dot(hit.velocity, hit.normal) * path.duration();
         let time = crossing(cubic, drift, &hit, meeting.place, [begun, meeting.time, end]);
         let place = cubic.at(time);
-        if !(length(place - meeting.place) > 16.0 * hit.slack) {
+        if !(length(minus(place, meeting.place)) > 16.0 * hit.slack) {
             return Meeting { time, place, ..meeting };
         }
         let reach = (end - begun) * (1.0 / 16.0);
         let [from, to] = [max(time - reach, begun), min(time + reach, end)];
         let piece = path.piece([from, to], self.radius);
         match self.first_hit(&piece) {
-            Some((near, is_sink)) if is_sink == meeting.is_sink && near.normal.dot(hit.normal) > 0.0 => {
+            Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
                 let found = from + (to - from) * near.time;
-                let drift = near.velocity.dot(near.normal) * path.duration();
+                let drift = dot(near.velocity, near.normal) * path.duration();
                 let time = crossing(cubic, drift, &near, piece.at(near.time), [from, found, to]);
                 Meeting { time, place: cubic.at(time), hit: near, ..meeting }
             }
@@ -245,33 +246,36 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
         let rest = (during[1] - during[0]).seconds();
         let acceleration = path.acceleration();
         let (place, before) = (meeting.place, path.velocity(meeting.time));
-        let incoming = (before - surface).dot(normal);
+        let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * feel.elasticity } else { incoming };
         let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
-        let onward = slowed(outgoing, acceleration.dot(beside - place));
+        let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
-        let drive = acceleration - ride.map_or(Vec3::ZERO, |ride| ride.acceleration);
-        let pressing = -drive.dot(normal);
+        let drive = ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration));
+        let pressing = -dot(drive, normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // What bounces slips along the place that it touches; what rests goes as one with the surface.
-        let whole = ride.filter(|_| rests).map_or(Vec3::ZERO, |ride| aside(ride.velocity[0] - surface, normal));
+        let whole = match &ride {
+            Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
+            _ => Vec3::ZERO,
+        };
         let surface = surface + whole;
-        let came = before - surface - normal * incoming;
+        let came = along(minus(before, surface), normal, -incoming);
         let slip = came + feel.friction.answer(came, outgoing - incoming);
         let Self { id, row, mass, .. } = *self;
-        let (time, closing, after) = (during[0], max(-incoming, 0.0), surface + slip + normal * outgoing);
+        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(surface + slip, normal, outgoing));
         if let Some(observer) = &mut self.observer {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
-            return Path::onward(beside, surface + slip + normal * onward, acceleration, during);
+            return Path::onward(beside, along(surface + slip, normal, onward), acceleration, during);
         }
-        let drive = drive + normal * pressing;
+        let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: feel.friction }.after(rest);
-        let stays = slip == Vec3::ZERO && end == Vec3::ZERO;
+        let stays = is_zero(slip) && is_zero(end);
         let onward = if let Some(ride) = ride {
             // What falls from where it was set off to goes along the surface meanwhile, which friction would have kept it from.
             let fell = -incoming / pressing;
@@ -280,21 +284,21 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
             Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity[1] + end, during }
         } else {
             let stays = stays && has_lain(path, meeting, place);
-            let x0 = if stays { path.x0 + surface * (path.duration() - rest) } else { beside };
-            Path { x0, v0: after, x1: x0 + surface * rest + way, v1: surface + end, during }
+            let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
+            Path { x0, v0: after, x1: along(x0, surface, rest) + way, v1: surface + end, during }
         };
         if let Some(observer) = &mut self.observer {
-            let world = [acceleration, onward.x1 - onward.x0, onward.v0, onward.v1];
-            observer.slid(&Sliding { mass, raised: onward.x0 - place, world, along: [drive, way, slip, end] });
+            let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
+            observer.slid(&Sliding { mass, raised: minus(onward.x0, place), world, along: [drive, way, slip, end] });
         }
         onward
     }
 
     /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.
     fn ride(&self, hit: &Hit, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
-        let below = beside - hit.normal * (LAIN * hit.slack);
+        let below = along(beside, hit.normal, -(LAIN * hit.slack));
         let seat = Segment { from: beside, to: below, radius: self.radius, during };
-        if hit.velocity == Vec3::ZERO { None } else { self.walls.ride(&seat) }
+        if is_zero(hit.velocity) { None } else { self.walls.ride(&seat) }
     }
 
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
@@ -305,13 +309,13 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
         let Meeting { chord, hit, begun, time: s, .. } = meeting;
         let now = path.instant(*s);
         let span = (now - chord.during[0]).seconds();
-        let (moves, share) = (hit.velocity != Vec3::ZERO, max(s - begun, f32::MIN_POSITIVE));
+        let (moves, share) = (!is_zero(hit.velocity), max(s - begun, f32::MIN_POSITIVE));
         let taken = |point: Vec3, time: f32| {
-            if moves { point + hit.velocity * (span * ((s - time) / share)) } else { point }
+            if moves { along(point, hit.velocity, span * ((s - time) / share)) } else { point }
         };
         let free = |segment: Segment| self.walls.first_hit(&segment).is_none();
-        let closing = max((hit.velocity - path.velocity(*s)).dot(hit.normal), f32::MIN_POSITIVE);
-        let beside = place + hit.normal * (2.0 * hit.slack);
+        let closing = max(dot(minus(hit.velocity, path.velocity(*s)), hit.normal), f32::MIN_POSITIVE);
+        let beside = along(place, hit.normal, 2.0 * hit.slack);
         // As a fraction of the path, like all its instants.
         let mut back = 2.0 * hit.slack / (closing * path.duration());
         // At a rim or in a corner another surface may be nearer than the slack of this one.
@@ -353,16 +357,16 @@ pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f
 fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
     let near = LAIN * meeting.hit.slack;
-    let off = path.x0 + surface * elapsed - place;
-    off.dot(off) <= near * near && length(path.v0 - surface) * elapsed <= near
+    let off = minus(along(path.x0, surface, elapsed), place);
+    dot(off, off) <= near * near && length(minus(path.v0, surface)) * elapsed <= near
 }
 
 /// Whether a path begins within rounding of the surface that it hits, and hardly leaves it before.
 fn has_touched(path: &Path, meeting: &Meeting) -> bool {
     let Hit { normal, velocity: surface, slack, .. } = meeting.hit;
     let elapsed = path.duration() * meeting.time;
-    let off = (path.x0 + surface * elapsed - meeting.place).dot(normal);
-    let left = (path.v0 - surface).dot(normal) * elapsed;
+    let off = dot(minus(along(path.x0, surface, elapsed), meeting.place), normal);
+    let left = dot(minus(path.v0, surface), normal) * elapsed;
     max(off.abs(), left.abs()) <= LAIN * slack
 }
 
@@ -377,8 +381,8 @@ fn slowed(speed: f32, work: f32) -> f32 {
 /// from the side of the normal to the other, between two others. It begins at the end: where the path bends toward the
 /// surface, Newton's method comes from there to the crossing and never to where the path has left the surface before.
 fn crossing(cubic: &Cubic, drift: f32, hit: &Hit, place: Vec3, [begun, found, end]: [f32; 3]) -> f32 {
-    let [c1, c2, c3] = cubic.coefficients.map(|c| c.dot(hit.normal));
-    let (c0, c1) = ((cubic.start - place).dot(hit.normal) + drift * found, c1 - drift);
+    let [c1, c2, c3] = cubic.coefficients.map(|c| dot(c, hit.normal));
+    let (c0, c1) = (dot(minus(cubic.start, place), hit.normal) + drift * found, c1 - drift);
     let (mut low, mut high, mut s) = (begun, end, end);
     for _ in 0..MAX_LOOKS {
         let height = c0 + (c1 + (c2 + c3 * s) * s) * s;

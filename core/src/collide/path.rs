@@ -1,6 +1,7 @@
 //! The path of a particle through a step, and the chords along which its collisions are sought.
 
-use crate::math::{high, length, low, max, sqrt};
+use crate::math::{along, dot, high, is_zero, length, low, max, minus, sqrt};
+use crate::rows::are_finite;
 use crate::shape::{Aabb, Segment};
 use crate::time::Time;
 use glam::Vec3;
@@ -32,18 +33,19 @@ pub(super) struct Cubic {
 
 impl Cubic {
     /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.
-    #[inline(always)]
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn at(&self, s: f32) -> Vec3 {
         let [c1, c2, c3] = self.coefficients;
-        self.start + (c1 + (c2 + c3 * s) * s) * s
+        along(self.start, along(c1, along(c2, c3, s), s), s)
     }
 
     /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
     pub(super) fn chords(&self) -> u32 {
         let [_, c2, c3] = self.coefficients;
-        let end = c2 + c3 * 3.0;
+        let end = along(c2, c3, 3.0);
         // Most do not bend so much: no root is needed.
-        if max(c2.dot(c2), end.dot(end)) <= (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR) {
+        if max(dot(c2, c2), dot(end, end)) <= (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR) {
             return 1;
         }
         let bend = 2.0 * max(length(c2), length(end));
@@ -55,34 +57,39 @@ impl Cubic {
 
 impl Path {
     /// How long it takes \[s\].
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn duration(&self) -> f32 {
         let [start, end] = self.during;
         (end - start).seconds()
     }
 
     /// The instant at a fraction of the time.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn instant(&self, s: f32) -> Time {
         between(self.during, s)
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        // What is not finite makes a sum that is not; a sum may be so without.
-        (self.x0 + self.v0 + self.x1 + self.v1).is_finite()
-            || [self.x0, self.v0, self.x1, self.v1].iter().all(|v| v.is_finite())
+        // What is not finite makes a sum that is not; a sum may be so without. Chips are spared the sum.
+        let sum_is_finite = || (self.x0 + self.v0 + self.x1 + self.v1).is_finite();
+        !cfg!(target_os = "none") && sum_is_finite() || are_finite(&[self.x0, self.v0, self.x1, self.v1])
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn hull(&self, radius: f32) -> Aabb {
         let third = self.duration() * (1.0 / 3.0);
-        let (a, b) = (self.x0 + self.v0 * third, self.x1 - self.v1 * third);
+        let (a, b) = (along(self.x0, self.v0, third), along(self.x1, self.v1, -third));
         let (min, max) = (low(low(self.x0, self.x1), low(a, b)), high(high(self.x0, self.x1), high(a, b)));
         Aabb { min: min - radius, max: max + radius }.with_slack()
     }
 
     /// It as a polynomial.
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn cubic(&self) -> Cubic {
         let (duration, excess) = (self.duration(), self.excess());
-        let bend = (self.v1 - self.v0) * (0.5 * duration) + excess * 3.0;
+        let bend = along(minus(self.v1, self.v0) * (0.5 * duration), excess, 3.0);
         Cubic { start: self.x0, coefficients: [self.v0 * duration, bend, excess * -2.0] }
     }
 
@@ -93,17 +100,19 @@ impl Path {
 
     /// The velocity at a fraction of the time \[m/s\]. Where the cubic bends as the ends' velocities do not say, as with the
     /// two Euler methods, it is theirs in between: what a hit takes in before and after adds up to the step's.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
-        let (steady, excess) = (self.v0 + (self.v1 - self.v0) * s, self.excess());
-        let bend = (self.v1 - self.v0) * (0.5 * self.duration());
-        let is_smooth = excess != Vec3::ZERO && excess.dot(excess) < 0.0625 * bend.dot(bend);
-        if is_smooth { steady + excess * (6.0 * s * (1.0 - s) / self.duration()) } else { steady }
+        let (change, excess) = (minus(self.v1, self.v0), self.excess());
+        let (steady, bend) = (along(self.v0, change, s), change * (0.5 * self.duration()));
+        let is_smooth = !is_zero(excess) && dot(excess, excess) < 0.0625 * dot(bend, bend);
+        if is_smooth { along(steady, excess, 6.0 * s * (1.0 - s) / self.duration()) } else { steady }
     }
 
     /// How much farther it leads than a parabola with the velocities of its ends. What is within the rounding of the ends is
     /// nothing: as a velocity it would be noise.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn excess(&self) -> Vec3 {
-        let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * (0.5 * self.duration());
+        let excess = along(minus(self.x1, self.x0), self.v0 + self.v1, -0.5 * self.duration());
         let rounding = (self.x0.abs() + self.x1.abs()) * f32::EPSILON;
         Vec3::select(excess.abs().cmple(rounding), Vec3::ZERO, excess)
     }
@@ -123,34 +132,36 @@ impl Path {
     }
 
     /// The way on from a place and a velocity under a steady acceleration, until it ends.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn onward(x0: Vec3, v0: Vec3, acceleration: Vec3, during: [Time; 2]) -> Self {
         let time = (during[1] - during[0]).seconds();
-        let (x1, v1) = (x0 + (v0 + acceleration * (0.5 * time)) * time, v0 + acceleration * time);
+        let (x1, v1) = (along(x0, along(v0, acceleration, 0.5 * time), time), along(v0, acceleration, time));
         Self { x0, v0, x1, v1, during }
     }
 
     /// Whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
     pub(super) fn lags(&self) -> bool {
-        let bend = (self.v1 - self.v0) * (0.5 * self.duration());
-        self.excess().dot(bend) < -0.5 * bend.dot(bend)
+        let bend = minus(self.v1, self.v0) * (0.5 * self.duration());
+        dot(self.excess(), bend) < -0.5 * dot(bend, bend)
     }
 
     /// The parabola from its beginning with the velocities of its ends.
     pub(super) fn caught_up(&self) -> Self {
-        Self { x1: self.x0 + (self.v0 + self.v1) * (0.5 * self.duration()), ..*self }
+        Self { x1: along(self.x0, self.v0 + self.v1, 0.5 * self.duration()), ..*self }
     }
 
     /// Straight from its beginning to its end.
     pub(super) fn straightened(&self) -> Self {
         let duration = self.duration();
-        let velocity = if duration > 0.0 { (self.x1 - self.x0) / duration } else { Vec3::ZERO };
+        let velocity = if duration > 0.0 { minus(self.x1, self.x0) / duration } else { Vec3::ZERO };
         Self { v0: velocity, v1: velocity, ..*self }
     }
 
     /// Its mean acceleration \[m/s²\].
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();
-        if duration > 0.0 { (self.v1 - self.v0) / duration } else { Vec3::ZERO }
+        if duration > 0.0 { minus(self.v1, self.v0) / duration } else { Vec3::ZERO }
     }
 
     /// How many chords stay within `CHORD_ERROR` of it.
@@ -159,6 +170,7 @@ impl Path {
     }
 
     /// The straight line between two fractions of its time, for a ball.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn piece(&self, [from, to]: [f32; 2], radius: f32) -> Segment {
         let end = |s: f32| match s {
             0.0 => (self.x0, self.during[0]),
@@ -183,6 +195,7 @@ impl Path {
 }
 
 /// The instant at a fraction of a span.
+#[cfg_attr(target_os = "none", inline(never))]
 pub(super) fn between([start, end]: [Time; 2], s: f32) -> Time {
     // A span is so short that single precision leaves less than a nanosecond; the cast saturates.
     let ticks = ((end - start).ticks() as f32 * s) as u64;

@@ -1,7 +1,7 @@
 //! A particle that rests on a surface: it slides, stops and stays by Coulomb's law.
 
 use crate::force::Friction;
-use crate::math::{length, unit};
+use crate::math::{self, dot, length, unit};
 use glam::Vec3;
 
 /// How something moves along a surface that presses back, for a while: all vectors lie in the surface.
@@ -26,19 +26,20 @@ impl Slide {
         }
         let along = self.velocity / speed;
         let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
-        let braking = -acceleration.dot(along);
+        let braking = -dot(acceleration, along);
         if self.friction.sliding > 0.0 && braking * time > speed {
             let until = speed / braking;
-            let way = (self.velocity + acceleration * (0.5 * until)) * until;
+            let way = math::along(self.velocity, acceleration, 0.5 * until) * until;
             // What is left beside the old direction is what the drive has turned it to: friction takes that up anew.
             let (rest, velocity) = self.starting(time - until);
             return (way + rest, velocity);
         }
         // Friction is against the motion all along. Told by the direction at the end it only ever shortens a velocity;
         // by that at the beginning it would throw a slow one from side to side.
-        let along = unit(self.velocity + self.drive * time);
+        let along = unit(math::along(self.velocity, self.drive, time));
         let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
-        ((self.velocity + acceleration * (0.5 * time)) * time, self.velocity + acceleration * time)
+        let way = math::along(self.velocity, acceleration, 0.5 * time) * time;
+        (way, math::along(self.velocity, acceleration, time))
     }
 
     fn starting(&self, time: f32) -> (Vec3, Vec3) {

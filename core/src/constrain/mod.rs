@@ -19,6 +19,7 @@ pub use distance::Distance;
 pub use kind::ConstraintKind;
 
 pub use crate::memory::{Demand, Kept, Words};
+use crate::step::{Moment, Moved};
 
 /// Something that the places and velocities of particles have to satisfy.
 ///
@@ -33,6 +34,11 @@ pub trait Constraint: Sync {
     /// Whether it constrains nothing: a scene of such constraints keeps no memory for them.
     fn is_empty(&self) -> bool {
         false
+    }
+
+    /// What a step calls to have it met; nothing, where it is known that it constrains nothing.
+    fn code(&self) -> Option<ConstraintCode> {
+        Some(ConstraintCode::ALL)
     }
 
     /// Looks on before the method moves everything through a sub-step: to list who may touch whom, for instance.
@@ -50,9 +56,25 @@ pub trait Constraint: Sync {
     }
 }
 
+/// What constraints call for in a step: a function, so that a program which has none does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct ConstraintCode(pub(crate) fn(&mut Moved<'_>, Moment, Substep));
+
+impl ConstraintCode {
+    /// All of it.
+    pub const ALL: Self = Self(constrain);
+}
+
+fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
+    moved.constrain(moment, substep);
+}
+
 impl Constraint for () {
     fn is_empty(&self) -> bool {
         true
+    }
+    fn code(&self) -> Option<ConstraintCode> {
+        None
     }
     fn project(&self, _: &mut Bodies<'_>, _: &mut Share<'_>) {}
 }
@@ -63,6 +85,9 @@ impl<T: Constraint + ?Sized> Constraint for &T {
     }
     fn is_empty(&self) -> bool {
         (**self).is_empty()
+    }
+    fn code(&self) -> Option<ConstraintCode> {
+        (**self).code()
     }
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         (**self).prepare(bodies, share);

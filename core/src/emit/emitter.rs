@@ -1,7 +1,7 @@
 //! A surface that gives birth to particles.
 
 use super::{Births, Emit, Spread, Varied};
-use crate::math::unit;
+use crate::math::{along, divide, unit};
 use crate::particles::{Color, Particle, WHITE};
 use crate::rng::Stream;
 use crate::shape::{Aabb, Spot, Surface};
@@ -202,7 +202,8 @@ impl<S: Surface> Emitter<S> {
             return;
         }
         // The number of the first burst that is not before `from`.
-        let mut index = from.ticks().saturating_sub(first).checked_div(every).unwrap_or(0);
+        let mut index = divide(u128::from(from.ticks().saturating_sub(first)), every.max(1)).0;
+        index = if every == 0 { 0 } else { index };
         if first.saturating_add(index.saturating_mul(every)) < from.ticks() {
             index += 1;
         }
@@ -221,7 +222,7 @@ impl<S: Surface> Emitter<S> {
             }
             // Once nothing fits, what is left of this step's bursts is only counted.
             if births.is_full() && every > 0 {
-                let rest = (to.ticks() - 1 - ticks) / every;
+                let (rest, _) = divide(u128::from(to.ticks() - 1 - ticks), every);
                 births.refuse(number, rest.saturating_mul(u64::from(burst.count)));
                 return;
             }
@@ -263,8 +264,8 @@ impl<S: Surface> Emitter<S> {
         let axis = self.direction.map_or(spot.normal, unit);
         let direction = self.spread.direction(axis, [p, q]);
         Particle {
-            position: spot.point + self.velocity * at.seconds(),
-            velocity: self.velocity * self.inherit + direction * self.speed.pick(|| speed),
+            position: along(spot.point, self.velocity, at.seconds()),
+            velocity: along(self.velocity * self.inherit, direction, self.speed.pick(|| speed)),
             radius: self.radius.pick(|| random.units(7)[1]),
             mass: self.mass.pick(|| random.units(3)[0]),
             fixed: self.fixed,

@@ -12,7 +12,7 @@ pub use vary::{Spread, Varied};
 use crate::custom::CustomColumnsMut;
 use crate::force::State;
 use crate::index::{SpatialIndex, count_of};
-use crate::math::max;
+use crate::math::{divide, max};
 use crate::observe::{Observer, Passing};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
@@ -148,7 +148,10 @@ impl Births<'_> {
 
     fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
         let id = self.view.spawn(particle, at, stream.name())?;
-        self.view.give_custom(self.scene, self.view.len() - 1);
+        if let Some(code) = self.scene.custom.code() {
+            let row = self.view.len() - 1;
+            (code.give)(&mut self.view, self.scene, row);
+        }
         self.report.born += 1;
         let Particle { position: place, velocity, .. } = *particle;
         self.observer.born(&Passing { id, place, velocity, time: at });
@@ -203,8 +206,8 @@ impl Iterator for Due {
         }
         let missing = (u128::from(self.next) << 64) - u128::from(self.phase);
         self.next += 1;
-        let ticks = missing.div_ceil(u128::from(self.rate.max(1)));
-        Some(self.from + Time::from_ticks(ticks as u64))
+        let (ticks, rest) = divide(missing, self.rate.max(1));
+        Some(self.from + Time::from_ticks(ticks + u64::from(rest > 0)))
     }
 }
 

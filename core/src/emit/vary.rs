@@ -1,6 +1,6 @@
 //! Numbers and directions that vary from birth to birth.
 
-use crate::math::{frame, max, sin_cos, sin_cos_turns, sqrt};
+use crate::math::{along, frame, max, sin_cos, sin_cos_turns, sqrt};
 use glam::Vec3;
 
 /// A number that varies: its mean, and how far it may be from that, evenly on both sides (Reeves, "Particle Systems",
@@ -38,7 +38,13 @@ impl Varied {
 
     /// Uniform from mean − variance to mean + variance; `u` is asked for only if there is a variance.
     pub(super) fn pick(self, u: impl FnOnce() -> f32) -> f32 {
-        if self.variance == 0.0 { self.mean } else { self.mean + self.variance * (2.0 * u() - 1.0) }
+        if self.variance == 0.0 { self.mean } else { self.at(u()) }
+    }
+
+    /// The number that one uniform in [0, 1) picks.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn at(self, u: f32) -> f32 {
+        self.mean + self.variance * (2.0 * u - 1.0)
     }
 }
 
@@ -61,7 +67,7 @@ impl Spread {
         };
         let (a, b) = frame(axis);
         let (along_b, along_a) = sin_cos_turns(v);
-        axis * cos + (a * along_a + b * along_b) * sin
+        along(axis * cos, along(a * along_a, b, along_b), sin)
     }
 }
 

@@ -3,8 +3,8 @@
 use super::inverse_square::field;
 #[cfg(feature = "std")]
 use super::inverse_square::potential;
-use super::{Force, Needs, State};
-use crate::index::{BarnesHut, Opening};
+use super::{Force, Needs, State, Trees};
+use crate::index::Opening;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -50,7 +50,7 @@ impl Force for Coulomb {
     }
 
     fn needs(&self) -> Needs {
-        Needs { charge_tree: (self.theta > 0.0).then_some(BarnesHut::grow), ..Needs::default() }
+        Needs { charge_tree: (self.theta > 0.0).then_some(Trees::GROWN), ..Needs::default() }
     }
 
     #[cfg(feature = "std")]

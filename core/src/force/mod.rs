@@ -37,7 +37,7 @@ pub use radial::{LennardJones, Pair, PowerLaw, Radial, RadialLaw, Run, Weight};
 pub use relaxation::Relaxation;
 pub use sink::Sink;
 pub(crate) use spring::is_broken;
-pub use spring::{Drive, Held, Spring, Springs};
+pub use spring::{Drive, Held, Spring, SpringCode, SpringList, Springs};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 
@@ -45,7 +45,10 @@ use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::index::{Arrange, BarnesHut, Listing, Neighbours};
 use crate::math::max;
 use crate::particles::Id;
+use crate::report::Report;
 use crate::rng::later;
+use crate::scene::Scene;
+use crate::step::{Field, View};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -70,14 +73,9 @@ pub trait Force: Sync {
         false
     }
 
-    /// Whether it changes columns of a user's own, by [`Force::write`].
-    fn writes(&self) -> bool {
-        false
-    }
-
-    /// Changes columns of a user's own, once in each step of `dt` \[s\], when all have moved and been held against colliders
-    /// and before anybody is taken out: what burns or cools. The state is that at the step's end; its own columns of that kind
-    /// are empty, as `custom` has them. Of several forces each sees what those before it have written.
+    /// Changes columns of a user's own if it [needs](Needs::write) to, once in each step of `dt` \[s\], when all have moved and
+    /// been held against colliders and before anybody is taken out: what burns or cools. The state is that at the step's end; its
+    /// own columns of that kind are empty, as `custom` has them. Of several forces each sees what those before it have written.
     fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
         let _ = (state, custom, dt);
     }
@@ -150,21 +148,46 @@ pub struct Change<'a> {
     pub velocity: f32,
 }
 
-/// Sorts points with weights into memory; none if there is too little.
-pub type Grow = for<'m> fn(&'m mut [u32], &[Vec3], &[f32]) -> Option<BarnesHut<'m>>;
+/// What makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct Trees(pub(crate) Finding);
+
+/// Calls a function with a state in which what forces have to find is found.
+pub(crate) type Finding = for<'s> fn(&mut Field<'_>, &State<'s>, &mut dyn FnMut(&State<'_>));
+
+/// What lets forces write, likewise.
+#[derive(Clone, Copy, Debug)]
+pub struct Writing(pub(crate) Write);
+
+type Write = fn(&mut View<'_>, &Scene<'_>, [Time; 2], &mut Report);
+
+impl Trees {
+    /// Those of Barnes and Hut, by [`BarnesHut::grow`].
+    pub const GROWN: Self = Self(|field, state, then| field.with_trees(state, then));
+}
+
+impl Writing {
+    /// Once in each step, at its end.
+    pub const AT_END: Self = Self(write);
+}
+
+fn write(view: &mut View<'_>, scene: &Scene<'_>, span: [Time; 2], report: &mut Report) {
+    view.write(scene, span, report);
+}
 
 /// What forces have to find in the state, beyond the particles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
-    /// [`State::mass_tree`], and what makes it: [`BarnesHut::grow`]. A function, so that a program with no force that names
-    /// it does not carry it about.
-    pub mass_tree: Option<Grow>,
+    /// [`State::mass_tree`], and what makes it.
+    pub mass_tree: Option<Trees>,
     /// [`State::charge_tree`], and what makes it.
-    pub charge_tree: Option<Grow>,
+    pub charge_tree: Option<Trees>,
     /// The radius within which [`State::near`] is asked for neighbours \[m\]; zero: it is not.
     pub reach: f32,
-    /// The keeper of lists of them: [`Listing::KEPT`]. A function, likewise; without it they are looked up in each evaluation.
+    /// What finds them: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
     pub lists: Option<Listing>,
+    /// To change columns of a user's own, by [`Force::write`]; without it a force is not asked to.
+    pub write: Option<Writing>,
 }
 
 impl Needs {
@@ -182,6 +205,7 @@ impl Needs {
             charge_tree: self.charge_tree.or(other.charge_tree),
             reach: max(self.reach, other.reach),
             lists: self.lists.or(other.lists),
+            write: self.write.or(other.write),
         }
     }
 
@@ -250,7 +274,15 @@ impl<'a> State<'a> {
         slot: &[],
         key: &[],
         custom: CustomColumns::NONE,
-        springs: Springs { springs: &[], start: 0, serial: &[], row_of: &[], last_spring: &[], incident: &[] },
+        springs: Springs {
+            springs: &[],
+            code: None,
+            start: 0,
+            serial: &[],
+            row_of: &[],
+            last_spring: &[],
+            incident: &[],
+        },
         near: Neighbours::among(&[]),
         mass_tree: None,
         charge_tree: None,
@@ -344,10 +376,6 @@ macro_rules! sum_of {
                 part.add_to(state, rows.clone(), total);
             }
         }
-        fn writes(&self) -> bool {
-            let $this = self;
-            $parts.into_iter().any(|part| part.writes())
-        }
         fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
             let $this = self;
             for part in $parts {
@@ -420,10 +448,6 @@ macro_rules! same_as {
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()
-        }
-        fn writes(&self) -> bool {
-            let $this = self;
-            $force.writes()
         }
         fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
             let $this = self;

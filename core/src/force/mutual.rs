@@ -3,8 +3,10 @@
 use super::inverse_square::field;
 #[cfg(feature = "std")]
 use super::inverse_square::potential;
-use super::{AllPairs, Force, Needs, State};
-use crate::index::{BarnesHut, Opening};
+use super::{AllPairs, Force, Needs, State, Trees};
+#[cfg(doc)]
+use crate::index::BarnesHut;
+use crate::index::Opening;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -48,7 +50,7 @@ impl Force for MutualGravity {
     }
 
     fn needs(&self) -> Needs {
-        Needs { mass_tree: (self.theta > 0.0).then_some(BarnesHut::grow), ..Needs::default() }
+        Needs { mass_tree: (self.theta > 0.0).then_some(Trees::GROWN), ..Needs::default() }
     }
 
     #[cfg(feature = "std")]

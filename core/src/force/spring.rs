@@ -2,6 +2,9 @@
 
 use super::{Change, Force, State};
 use crate::math::{length, max, sin_cos_turns};
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::step::View;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -121,11 +124,93 @@ fn place_in(list: &[u32], number: usize) -> usize {
     list.partition_point(|entry| ((entry & !BROKEN) as usize) < number)
 }
 
+/// The springs of a scene: a list of them, or `()`, with which a program does not carry about what only springs call for.
+///
+/// Arrays, vectors and references of springs are lists of them.
+pub trait SpringList: Sync {
+    /// All of them.
+    fn list(&self) -> &[Spring];
+
+    /// What they call for in a step.
+    fn code(&self) -> Option<SpringCode> {
+        Some(SpringCode::ALL)
+    }
+}
+
+impl SpringList for () {
+    fn list(&self) -> &[Spring] {
+        &[]
+    }
+    fn code(&self) -> Option<SpringCode> {
+        None
+    }
+}
+
+impl<T: SpringList + ?Sized> SpringList for &T {
+    fn list(&self) -> &[Spring] {
+        (**self).list()
+    }
+    fn code(&self) -> Option<SpringCode> {
+        (**self).code()
+    }
+}
+
+impl SpringList for [Spring] {
+    fn list(&self) -> &[Spring] {
+        self
+    }
+}
+
+impl<const N: usize> SpringList for [Spring; N] {
+    fn list(&self) -> &[Spring] {
+        self
+    }
+}
+
+impl<const N: usize> SpringList for heapless::Vec<Spring, N> {
+    fn list(&self) -> &[Spring] {
+        self
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl SpringList for alloc::vec::Vec<Spring> {
+    fn list(&self) -> &[Spring] {
+        self
+    }
+}
+
+/// What springs call for in a step: functions, so that a program which has none does not carry them about.
+#[derive(Clone, Copy, Debug)]
+pub struct SpringCode {
+    /// Their sum, as a force.
+    pub(crate) force: for<'s> fn(&'s Springs<'s>) -> &'s dyn Force,
+    /// Sorts them by their ends at the start, and counts those that lack one.
+    pub(crate) sort: fn(&[Spring], &mut [u32], &mut [u32], u32) -> u64,
+    /// How many hold the particle in a row.
+    pub(crate) held_by: fn(&Springs<'_>, usize) -> u64,
+    /// Breaks those that are stretched too far, and says whether any may break.
+    pub(crate) snap: Snap,
+}
+
+type Snap = fn(&mut View<'_>, &Scene<'_>, &mut Report) -> bool;
+
+impl SpringCode {
+    /// All of it.
+    pub const ALL: Self = Self {
+        force: |springs| springs,
+        sort: sort_by_ends,
+        held_by: |table, row| table.held_by(row),
+        snap: |view, scene, report| view.snap(scene, report),
+    };
+}
+
 /// The scene's springs and where their ends are now.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs<'a> {
     /// The springs of the scene.
     pub springs: &'a [Spring],
+    pub(crate) code: Option<SpringCode>,
     /// How many particles the scene starts with.
     pub(crate) start: u32,
     pub(crate) serial: &'a [u32],
@@ -198,8 +283,13 @@ impl<'a> Springs<'a> {
         self.held().map(|held| held.rows)
     }
 
+    /// Their sum, where there may be any.
+    pub(crate) fn force(&self) -> Option<&dyn Force> {
+        self.code.map(|code| (code.force)(self))
+    }
+
     /// How many springs hold the particle in `row`.
-    pub(crate) fn held_by(&self, row: usize) -> u64 {
+    fn held_by(&self, row: usize) -> u64 {
         let other_row = |(_, other)| self.row(other).filter(|&other| other != row);
         self.at(row).filter_map(other_row).count() as u64
     }
@@ -316,11 +406,9 @@ pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], i
 }
 
 /// Sorts the springs by the particles at their ends: `incident[last[n − 1]..last[n]]` are those of number n.
-pub(crate) fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32]) {
+/// Both are all zeros before. Returns how many lack an end, as only `start` particles have found room.
+fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32], start: u32) -> u64 {
     let ends = || springs.iter().enumerate().flat_map(|(i, s)| s.ends.map(|end| (i as u32, end as usize)));
-    last.fill(0);
-    // What lies beyond the lists counts in the fingerprint: an earlier scene's broken springs must not.
-    incident.fill(0);
     for (_, end) in ends() {
         if let Some(count) = last.get_mut(end) {
             *count += 1;
@@ -339,4 +427,5 @@ pub(crate) fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut 
             *place += 1;
         }
     }
+    springs.iter().filter(|spring| spring.ends.iter().any(|&end| end >= start)).count() as u64
 }

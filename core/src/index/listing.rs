@@ -3,6 +3,7 @@
 use super::lists::ListMemory;
 use super::neighbours::Neighbours;
 use super::{Arrange, SpatialIndex};
+use crate::force::Finding;
 use glam::Vec3;
 
 /// How neighbours have been found.
@@ -18,30 +19,16 @@ pub(crate) enum Found {
     AllPairs,
 }
 
-/// Keeps lists of neighbours: a function, so that a program with no force that names it does not carry it about.
+/// Finds neighbours: a function, so that a program with no force that names it does not carry it about.
 #[derive(Clone, Copy)]
-pub struct Listing(List);
+pub struct Listing(pub(crate) Finding);
 
-type List = fn(&dyn Arrange, &mut [u32], ListMemory<'_>, [&[Vec3]; 2], f32, Then<'_>);
 /// What is done with neighbours.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(Neighbours<'_>, Found);
 
 impl Listing {
     /// Lists that last until somebody has gone half their skin, where there is memory for them.
-    pub const KEPT: Self = Self(list);
-
-    /// Calls `then` with the neighbours of points with velocities.
-    pub(crate) fn find(
-        self,
-        index: &dyn Arrange,
-        memory: &mut [u32],
-        lists: ListMemory<'_>,
-        moving: [&[Vec3]; 2],
-        reach: f32,
-        then: Then<'_>,
-    ) {
-        (self.0)(index, memory, lists, moving, reach, then);
-    }
+    pub const KEPT: Self = Self(|field, state, then| field.with_neighbours(state, then));
 }
 
 impl core::fmt::Debug for Listing {
@@ -52,7 +39,7 @@ impl core::fmt::Debug for Listing {
 
 /// Calls `then` with the neighbours of points, in lists if they last and there is room for them.
 #[inline(never)]
-fn list(
+pub(crate) fn list(
     index: &dyn Arrange,
     memory: &mut [u32],
     mut lists: ListMemory<'_>,

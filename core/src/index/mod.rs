@@ -65,7 +65,7 @@ pub use grid::Grid;
 pub use hash::Hash;
 pub use kd::Kd;
 pub use listing::Listing;
-pub(crate) use listing::{Found, stream};
+pub(crate) use listing::{Found, list, stream};
 pub(crate) use lists::{ListMemory, Listed};
 pub use nearby::Nearby;
 pub use nearest::Neighbour;

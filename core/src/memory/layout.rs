@@ -273,6 +273,7 @@ impl<'m> Scratch<'m> {
 }
 
 /// The first so many words, or all that there are.
+#[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn take<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [u32] {
     let all = core::mem::take(rest);
     let (first, others) = all.split_at_mut(len.min(all.len()));
@@ -281,11 +282,13 @@ pub(crate) fn take<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [u32] {
 }
 
 /// The first so many vectors, or all that there are.
+#[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn take_vectors<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [Vec3] {
     vectors(take(rest, 3 * len))
 }
 
 /// As many whole vectors as there are in so many words.
+#[cfg_attr(target_os = "none", inline(never))]
 fn vectors(words: &mut [u32]) -> &mut [Vec3] {
     let whole = words.len() - words.len() % 3;
     bytemuck::cast_slice_mut(&mut words[..whole])

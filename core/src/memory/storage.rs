@@ -47,12 +47,15 @@ macro_rules! storage {
             $($(#[$w_doc])* pub $w: &'a [$w_ty],)+
         }
 
+        // Asked for in many places: apart, it is in a chip's flash once. So are those of the owners.
         impl Storage for Slices<'_> {
+            #[inline(never)]
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
                     $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
                 }
             }
+            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: self.$p,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
@@ -70,6 +73,12 @@ macro_rules! storage {
         }
 
         impl Slices<'_> {
+            /// How many particles fit.
+            #[inline(never)]
+            pub(crate) fn capacity(&self) -> usize {
+                [$(self.$p.len()),+].into_iter().fold(usize::MAX, usize::min)
+            }
+
             /// Moves row `from` onto row `to`; both exist.
             pub(crate) fn move_row(&mut self, from: usize, to: usize) {
                 // The columns by slot and by number are no rows, but nothing reads them at `to` unless it is theirs.
@@ -121,6 +130,7 @@ macro_rules! storage {
         impl<const P: usize, const E: usize, const S: usize, const C: usize, const K: usize> Storage
             for Inline<P, E, S, C, K>
         {
+            #[inline(never)]
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
                     $($p: &mut self.$p,)+
@@ -130,6 +140,7 @@ macro_rules! storage {
                     $($w: self.$w.as_flattened_mut(),)+
                 }
             }
+            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: &self.$p,)+
@@ -210,6 +221,12 @@ macro_rules! storage {
     };
     (@one $self:ident, $from:ident, $to:ident, row_of) => {};
     (@one $self:ident, $from:ident, $to:ident, last_spring) => {};
+    (@one $self:ident, $from:ident, $to:ident, position) => {
+        copy($self.position, $from, $to);
+    };
+    (@one $self:ident, $from:ident, $to:ident, velocity) => {
+        copy($self.velocity, $from, $to);
+    };
     (@one $self:ident, $from:ident, $to:ident, $p:ident) => {
         $self.$p[$to] = $self.$p[$from];
     };
@@ -271,6 +288,15 @@ storage! {
         /// Columns to work with, one behind the other.
         work: Vec3 = Vec3::ZERO,
     }
+}
+
+/// Copies a vector, number by number: of a whole one compilers make a call that copies ranges which may overlap.
+fn copy(column: &mut [Vec3], from: usize, to: usize) {
+    let Vec3 { x, y, z } = column[from];
+    let place = &mut column[to];
+    place.x = x;
+    place.y = y;
+    place.z = z;
 }
 
 #[cfg(feature = "alloc")]

@@ -17,6 +17,8 @@ pub use kind::ReaperKind;
 
 use crate::force::State;
 use crate::math::max;
+use crate::scene::Scene;
+use crate::step::View;
 use core::ops::Range;
 pub(crate) use lifetime::Lifetime;
 pub(crate) use nonfinite::Nonfinite;
@@ -44,6 +46,24 @@ pub trait Reaper: Sync {
     fn is_empty(&self) -> bool {
         false
     }
+
+    /// What a step calls to have all judged; nothing, where it is known that nobody ever is.
+    fn code(&self) -> Option<ReaperCode> {
+        Some(ReaperCode::ALL)
+    }
+}
+
+/// What reapers call for in a step: a function, so that a program which has none does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct ReaperCode(pub(crate) fn(&mut View<'_>, &Scene<'_>));
+
+impl ReaperCode {
+    /// All of it.
+    pub const ALL: Self = Self(judge_all);
+}
+
+fn judge_all(view: &mut View<'_>, scene: &Scene<'_>) {
+    view.judge_all(scene);
 }
 
 /// What reapers say of the rows they are asked about.
@@ -80,6 +100,9 @@ impl Reaper for () {
     fn judge(&self, _: &State<'_>, _: Range<usize>, _: &mut Verdicts<'_>) {}
     fn is_empty(&self) -> bool {
         true
+    }
+    fn code(&self) -> Option<ReaperCode> {
+        None
     }
 }
 
@@ -121,6 +144,10 @@ macro_rules! same_as {
         fn is_empty(&self) -> bool {
             let $this = self;
             $reaper.is_empty()
+        }
+        fn code(&self) -> Option<ReaperCode> {
+            let $this = self;
+            $reaper.code()
         }
     };
 }

@@ -4,6 +4,7 @@ use super::{CHUNK, Cause, Reaper, Verdicts};
 use crate::force::State;
 use crate::rows::are_finite;
 use core::ops::Range;
+use core::slice::from_ref;
 
 /// Ends those whose place or velocity is not finite.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +15,7 @@ impl Reaper for Nonfinite {
         let moving = state.position[rows.clone()].chunks(CHUNK).zip(state.velocity[rows].chunks(CHUNK));
         for (chunk, (x, v)) in moving.enumerate().filter(|(_, (x, v))| !(are_finite(x) && are_finite(v))) {
             for (nth, (x, v)) in x.iter().zip(v).enumerate() {
-                if !(x.is_finite() && v.is_finite()) {
+                if !(are_finite(from_ref(x)) && are_finite(from_ref(v))) {
                     verdicts.end(CHUNK * chunk + nth, Cause::Nonfinite);
                 }
             }

@@ -7,7 +7,7 @@ use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{AllPairs, Drag, Gravity, Sink, Spring};
 use crate::integrate::Rk4;
 use crate::particles::{Color, Particle};
-use crate::shape::{Aabb, Affine, Collider, Hit, Placed, Segment, Shape, Spot, Surface};
+use crate::shape::{Aabb, Affine, Collider, Hit, Mapped, Placed, Segment, Shape, Spot, Surface};
 use glam::{Mat3, Vec3};
 use heapless::Vec;
 
@@ -59,6 +59,8 @@ impl Collider for NoMesh {
         match *self {}
     }
 }
+
+impl Mapped for NoMesh {}
 
 /// Why a scene cannot be read into inline arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

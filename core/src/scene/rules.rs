@@ -4,7 +4,7 @@ use crate::collide::{Grip, Meetings};
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
-use crate::force::{Force, Spring};
+use crate::force::{Force, SpringList};
 use crate::index::Arrange;
 use crate::integrate::{Integrator, Symplectic};
 use crate::memory::{Plan, Size};
@@ -23,7 +23,7 @@ pub struct Scene<'a> {
     /// The particles it begins with.
     pub start: &'a [Particle],
     /// Springs between them.
-    pub springs: &'a [Spring],
+    pub springs: &'a dyn SpringList,
     /// What brings further particles into the world.
     pub emitters: &'a dyn Emit,
     /// What acts on particles, springs aside.
@@ -66,7 +66,7 @@ impl Scene<'_> {
     /// Nothing at all, moved by symplectic Euler.
     pub const EMPTY: Scene<'static> = Scene {
         start: &[],
-        springs: &[],
+        springs: &(),
         emitters: &(),
         forces: &(),
         colliders: &(),
@@ -133,7 +133,7 @@ impl Scene<'_> {
         Size {
             particles: self.start.len(),
             emitters: self.emitters.count(),
-            springs: self.springs.len(),
+            springs: self.springs.list().len(),
             columns: self.columns(),
             kept: self.kept(),
         }

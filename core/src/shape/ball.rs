@@ -5,7 +5,7 @@
 //! ball fits are the same solid, smaller by the radius, which the path leaves where the ball touches.
 
 use super::{Contact, Hit, Segment};
-use crate::math::{clamp, length, max, sqrt, unit};
+use crate::math::{clamp, dot, length, max, sqrt, unit};
 use glam::Vec3;
 
 /// How many times Newton's method looks again.
@@ -57,7 +57,7 @@ pub(super) fn lean_on(set: &impl Filled, center: Vec3, reach: [f32; 2], visit: &
 /// Visits the place `gap` before `center`, if it is within reach and there is a normal; the surface itself reaches so far
 /// from the origin.
 pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32; 2], visit: &mut dyn FnMut(&Contact)) {
-    let distance = gap.dot(normal);
+    let distance = dot(gap, normal);
     if distance <= reach && normal != Vec3::ZERO {
         let slack = Segment { radius: distance, ..Segment::new(center, center) }.slack(size);
         visit(&Contact { point: center - gap, normal, distance, slack, velocity: Vec3::ZERO, material: None });

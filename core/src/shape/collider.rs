@@ -1,7 +1,7 @@
 //! What a moving point can run into, one by one or in lists.
 
 use super::{Aabb, Affine, Facing, Hulls, Marks};
-use crate::math::{high, largest, low, max};
+use crate::math::{along, high, largest, low, max, minus};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -56,6 +56,14 @@ pub trait Collider: Sync {
         None
     }
 
+    /// Whether it is known that nothing can ever hit it.
+    fn is_empty(&self) -> bool {
+        false
+    }
+}
+
+/// A collider that maps of space may turn into another: what [`Placed`](super::Placed) puts somewhere.
+pub trait Mapped: Collider {
     /// Visits colliders that together are its image under a map that is no similarity, as far as they may be near
     /// `bounds`, each with the number of its face. Balls ask for them, which such a map would make other than round.
     ///
@@ -63,10 +71,11 @@ pub trait Collider: Sync {
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         let _ = (map, bounds, visit);
     }
+}
 
-    /// Whether it is known that nothing can ever hit it.
-    fn is_empty(&self) -> bool {
-        false
+impl<T: Mapped + ?Sized> Mapped for &T {
+    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        (**self).image(map, bounds, visit);
     }
 }
 
@@ -150,14 +159,14 @@ impl Segment {
     #[inline]
     #[must_use]
     pub fn step(&self) -> Vec3 {
-        self.to - self.from
+        minus(self.to, self.from)
     }
 
     /// The point at a fraction of it.
     #[inline]
     #[must_use]
     pub fn at(&self, time: f32) -> Vec3 {
-        self.from + self.step() * time
+        along(self.from, self.step(), time)
     }
 
     /// A box around all that the point or ball touches, with room for rounding.
@@ -168,7 +177,8 @@ impl Segment {
     }
 
     /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
-    #[inline]
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline)]
     pub(crate) fn slack(&self, size: f32) -> f32 {
         4.0 * f32::EPSILON * (max(largest(self.from), largest(self.to)) + self.radius + size)
     }
@@ -211,9 +221,6 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         (**self).ride(seat)
-    }
-    fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
-        (**self).image(map, bounds, visit);
     }
     fn is_empty(&self) -> bool {
         (**self).is_empty()

@@ -144,6 +144,14 @@ macro_rules! convex_collider {
             ) {
                 crate::shape::convex::ball_contacts(self, center, reach, visit);
             }
+            fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
+                crate::shape::Surface::bounds(self).overlaps(bounds)
+            }
+            fn mark_near(&self, hulls: &crate::shape::Hulls, marks: &mut crate::shape::Marks) {
+                hulls.near_box(&crate::shape::Surface::bounds(self), marks);
+            }
+        }
+        impl crate::shape::Mapped for $solid {
             fn image(
                 &self,
                 map: &crate::shape::Affine,
@@ -151,12 +159,6 @@ macro_rules! convex_collider {
                 visit: &mut dyn FnMut(u32, &dyn crate::shape::Collider),
             ) {
                 crate::shape::convex::Hollow::stretched(self, map, visit);
-            }
-            fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
-                crate::shape::Surface::bounds(self).overlaps(bounds)
-            }
-            fn mark_near(&self, hulls: &crate::shape::Hulls, marks: &mut crate::shape::Marks) {
-                hulls.near_box(&crate::shape::Surface::bounds(self), marks);
             }
         }
     )+};

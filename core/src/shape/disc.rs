@@ -2,8 +2,8 @@
 
 use super::ball::{Filled, approach, lean};
 use super::plane::crossing;
-use super::{Aabb, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
-use crate::math::{frame, largest, length, sin_cos_turns, sqrt, unit};
+use super::{Aabb, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
+use crate::math::{along, frame, largest, length, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::PI;
 use glam::Vec3;
@@ -33,7 +33,7 @@ impl Surface for Disc {
         let (a, b) = frame(normal);
         let (sin, cos) = sin_cos_turns(u[1]);
         let r = self.radius * sqrt(u[0]);
-        Spot { point: self.center + a * (r * cos) + b * (r * sin), normal }
+        Spot { point: along(along(self.center, a, r * cos), b, r * sin), normal }
     }
 
     fn nearest(&self, point: Vec3) -> Vec3 {
@@ -76,6 +76,8 @@ impl Collider for Disc {
         lean(center, gap, normal, [reach, largest(self.center) + self.radius], visit);
     }
 }
+
+impl Mapped for Disc {}
 
 impl Filled for Disc {
     fn gap(&self, point: Vec3) -> Vec3 {

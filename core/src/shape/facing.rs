@@ -3,7 +3,7 @@
 use super::ball::lean;
 use super::plane::crossing;
 use super::{Aabb, Collider, Contact, Hit, Plane, Segment, earlier};
-use crate::math::{largest, max, unit};
+use crate::math::{dot, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -75,26 +75,26 @@ impl Face {
     }
 
     /// When a ball first touches it. One that overlaps it touches at once if it moves nearer, else never.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn touched(&self, segment: &Segment, slack: f32) -> Option<Hit> {
-        let start = self.unit.dot(segment.from - self.plane.point);
+        let start = dot(self.unit, segment.from - self.plane.point);
         let normal = if start < 0.0 { -self.unit } else { self.unit };
-        let (room, closing) = (start.abs() - segment.radius, -normal.dot(segment.step()));
+        let (room, closing) = (start.abs() - segment.radius, -dot(normal, segment.step()));
         let time = max(room, 0.0) / closing;
         (closing > 0.0 && time <= 1.0).then(|| Hit::new(time, normal, slack))
     }
 
     /// Where a path's centre meets it, and the normal on the side that it comes from.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn passed(&self, segment: &Segment, slack: f32) -> Option<Hit> {
         // Which side, and when, does not depend on the normal's length.
-        let side = |point: Vec3| self.plane.normal.dot(point - self.plane.point);
+        let side = |point: Vec3| dot(self.plane.normal, point - self.plane.point);
         crossing(self.unit, side(segment.from), side(segment.to)).map(|(time, normal)| Hit::new(time, normal, slack))
     }
 }
 
 impl Collider for Face {
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(self.size);
         let center = self.passed(segment, slack);
@@ -103,9 +103,9 @@ impl Collider for Face {
         hit.map(|hit| Hit { material: self.material, ..hit })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
-        let distance = self.unit.dot(center - self.plane.point);
+        let distance = dot(self.unit, center - self.plane.point);
         let toward = if distance < 0.0 { -self.unit } else { self.unit };
         let made = &mut |contact: &Contact| visit(&Contact { material: self.material, ..*contact });
         lean(center, self.unit * distance, toward, [reach, self.size], made);

@@ -1,6 +1,6 @@
 //! Ground: heights over a grid of x and z, borrowed.
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, Triangle};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, Triangle};
 use crate::math::{clamp, floor, largest, max, min, power_to_one};
 use crate::rays::{Best, Closest, Pieces, Probe, square_to};
 use crate::time::Time;
@@ -381,7 +381,9 @@ impl Collider for HeightField<'_> {
             self.near(&near, |_, triangle| triangle.contacts(center, reach, at, visit));
         }
     }
+}
 
+impl Mapped for HeightField<'_> {
     /// Looks at every cell.
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         for (i, j) in self.cells() {

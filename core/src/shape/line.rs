@@ -1,7 +1,7 @@
 //! A straight line.
 
 use super::ball::{Filled, approach, gap_to_line, lean_on};
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Spot, Surface};
+use super::{Aabb, Affine, Collider, Contact, Hit, Mapped, Segment, Spot, Surface};
 use crate::math::{clamp, frame, length, max, sin_cos_turns, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -71,7 +71,9 @@ impl Collider for Line {
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         lean_on(self, center, [reach, crate::math::largest(self.from)], visit);
     }
+}
 
+impl Mapped for Line {
     fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         visit(0, &Self { from: map.point(self.from), to: map.point(self.to) });
     }

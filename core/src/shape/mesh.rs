@@ -1,6 +1,6 @@
 //! A triangle mesh: borrowed (`Mesh`) or owned (`MeshBuf`).
 
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, Triangle};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, Triangle};
 use crate::math::{high, largest, length, max, power_to_one};
 use crate::rays::{Index, Pieces, Unsound};
 #[cfg(feature = "alloc")]
@@ -258,6 +258,21 @@ impl Collider for Mesh<'_> {
         hulls.near_box(&self.bounds, marks);
     }
 
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach }.with_slack();
+        self.index.near(self, &bounds, &mut |piece| {
+            if let Some(face) = self.face(piece) {
+                face.contacts(center, reach, at, visit);
+            }
+        });
+    }
+
+    fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+}
+
+impl Mapped for Mesh<'_> {
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         let mut show = |number: usize| {
             let image =
@@ -278,19 +293,6 @@ impl Collider for Mesh<'_> {
             }
             None => (0..self.triangles.len()).for_each(show),
         }
-    }
-
-    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        let bounds = Aabb { min: center - reach, max: center + reach }.with_slack();
-        self.index.near(self, &bounds, &mut |piece| {
-            if let Some(face) = self.face(piece) {
-                face.contacts(center, reach, at, visit);
-            }
-        });
-    }
-
-    fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
     }
 }
 
@@ -328,11 +330,13 @@ macro_rules! through_view {
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.view().contacts(center, reach, at, visit);
             }
-            fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
-                self.view().image(map, bounds, visit);
-            }
             fn is_empty(&self) -> bool {
                 self.view().is_empty()
+            }
+        }
+        impl Mapped for $owner {
+            fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+                self.view().image(map, bounds, visit);
             }
         }
     )+};

@@ -30,7 +30,7 @@ mod triangle;
 
 pub use aabb::Aabb;
 pub(crate) use collider::earlier;
-pub use collider::{Collider, Contact, Hit, Ride, Segment};
+pub use collider::{Collider, Contact, Hit, Mapped, Ride, Segment};
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
@@ -167,6 +167,9 @@ impl<M: Collider> Collider for Shape<M> {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         each!(self, s => s.contacts(center, reach, at, visit));
     }
+}
+
+impl<M: Mapped> Mapped for Shape<M> {
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         each!(self, s => s.image(map, bounds, visit));
     }

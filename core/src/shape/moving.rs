@@ -1,6 +1,6 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
-use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Marks, Ride, Segment};
+use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Ride, Segment};
 use crate::math::{clamp, high, largest, length, low, max, sin_cos_turns, sqrt, unit};
 use crate::time::Time;
 use core::f32::consts::TAU;
@@ -283,15 +283,17 @@ impl<C: Collider> Collider for Moving<C> {
         Some(Ride { place, velocity, acceleration })
     }
 
+    fn is_empty(&self) -> bool {
+        self.collider.is_empty()
+    }
+}
+
+impl<C: Mapped> Mapped for Moving<C> {
     /// Of what stands still.
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         if self.motion.is_none() {
             self.collider.image(map, bounds, visit);
         }
-    }
-
-    fn is_empty(&self) -> bool {
-        self.collider.is_empty()
     }
 }
 

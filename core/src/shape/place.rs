@@ -1,6 +1,6 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
-use super::{Aabb, Collider, Contact, Facing, Hit, Hulls, Marks, Segment, Surface, earlier};
+use super::{Aabb, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Segment, Surface, earlier};
 use crate::math::{high, largest, length, max, min, unit};
 use crate::time::Time;
 use glam::{Mat3, Vec3};
@@ -151,7 +151,7 @@ impl<C: Surface> Placed<C> {
     }
 }
 
-impl<C: Collider> Collider for Placed<C> {
+impl<C: Mapped> Collider for Placed<C> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let Some(maps @ (to_world, _)) = &self.maps else {
             return self.collider.first_hit(segment).map(|hit| Hit { material: self.material, ..hit });
@@ -207,7 +207,7 @@ impl<C: Collider> Collider for Placed<C> {
     }
 }
 
-impl<C: Collider> Placed<C> {
+impl<C: Mapped> Placed<C> {
     /// The first hit in the collider's own coordinates, where the ball has this `radius` and is round within `error`.
     fn hit_in(&self, maps: &(Affine, Affine), segment: &Segment, radius: f32, error: f32) -> Option<Hit> {
         let (to_world, to_local) = maps;

@@ -1,7 +1,7 @@
 //! An infinite plane.
 
-use super::{Aabb, Affine, Collider, Contact, Face, Facing, Hit, Hulls, Marks, Segment, Spot, Surface};
-use crate::math::{clamp, largest, unit};
+use super::{Aabb, Affine, Collider, Contact, Face, Facing, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface};
+use crate::math::{clamp, dot, largest, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -29,7 +29,7 @@ impl Surface for Plane {
 
     fn nearest(&self, point: Vec3) -> Vec3 {
         let normal = unit(self.normal);
-        point - normal * normal.dot(point - self.point)
+        point - normal * dot(normal, point - self.point)
     }
 
     fn bounds(&self) -> Aabb {
@@ -39,9 +39,10 @@ impl Surface for Plane {
 
 impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let side = |point: Vec3| self.normal.dot(point - self.point);
+        let side = |point: Vec3| dot(self.normal, point - self.point);
         // What is smaller than rounding is a point. The normal is brought to unit length only for who meets it.
-        let is_point = !(segment.radius > segment.slack(largest(self.point)));
+        // Chips are spared the code for who does not.
+        let is_point = !cfg!(target_os = "none") && !(segment.radius > segment.slack(largest(self.point)));
         if is_point && crossing(self.normal, side(segment.from), side(segment.to)).is_none() {
             return None;
         }
@@ -52,18 +53,12 @@ impl Collider for Plane {
         Face::new(*self).contacts(center, reach, at, visit);
     }
 
-    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
-        if let Some(back) = map.inverse() {
-            visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
-        }
-    }
-
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
-        let distance = self.normal.dot(middle - self.point).abs();
+        let distance = dot(self.normal, middle - self.point).abs();
         let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
         // Of what is endless the distance is no number.
-        !(distance > self.normal.abs().dot(half + room))
+        !(distance > dot(self.normal.abs(), half + room))
     }
 
     fn facing(&self, bounds: &Aabb) -> Facing {
@@ -72,6 +67,14 @@ impl Collider for Plane {
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
         hulls.near_plane(self.point, self.normal, marks);
+    }
+}
+
+impl Mapped for Plane {
+    fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
+        if let Some(back) = map.inverse() {
+            visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::ball::{Filled, approach, gap_to_line, lean};
 use super::exact::{Lattice, cross, volume};
 use super::plane::crossing;
 use super::sliver::Sliver;
-use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Marks, Segment, Spot, Surface, earlier};
+use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{clamp, high, largest, length, max, min, power_to_one, sqrt, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -109,7 +109,9 @@ impl Collider for Triangle {
         let normal = if gap == Vec3::ZERO { unit(across) } else { unit(gap) };
         lean(center, gap, normal, [reach, size(self)], visit);
     }
+}
 
+impl Mapped for Triangle {
     fn image(&self, map: &Affine, _: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         visit(0, &Self { corners: self.corners.map(|corner| map.point(corner)) });
     }

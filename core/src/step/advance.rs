@@ -5,6 +5,7 @@ use super::substeps::{Carried, Moved, custom};
 use super::tile::Tile;
 use crate::index::ListMemory;
 use crate::integrate::Dynamics;
+use crate::math::along;
 use crate::memory::{Layout, Shares};
 use crate::observe::Observer;
 use crate::report::{Effort, Report};
@@ -89,7 +90,7 @@ fn fly(
     field.accelerations(now, position, velocity, a);
     for (row, &a) in newborn.zip(a.iter()) {
         let flight = (end - born[row]).seconds();
-        position[row] += (velocity[row] + a * (0.5 * flight)) * flight;
-        velocity[row] += a * flight;
+        position[row] = along(position[row], along(velocity[row], a, 0.5 * flight), flight);
+        velocity[row] = along(velocity[row], a, flight);
     }
 }

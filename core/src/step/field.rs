@@ -1,8 +1,8 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use crate::custom::CustomColumns;
-use crate::force::{Force, Grow, Needs, State};
-use crate::index::{BarnesHut, Found, ListMemory, Neighbours, stream};
+use crate::force::{Force, Needs, State, Trees};
+use crate::index::{BarnesHut, Found, ListMemory, Neighbours, list, stream};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
@@ -46,7 +46,7 @@ impl<'a> Attributes<'a> {
 const FEW: usize = 64;
 
 /// The scene's forces over the masses, from row `first` on.
-pub(super) struct Field<'a> {
+pub(crate) struct Field<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) attributes: &'a Attributes<'a>,
     /// Columns of a user's own.
@@ -73,37 +73,47 @@ impl Field<'_> {
     ) {
         self.effort.evaluations += u64::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
-        if self.needs.tree_columns() > 0 && position.len() >= BarnesHut::FEWEST {
-            self.with_trees(&state, then);
-        } else {
-            self.with_neighbours(&state, then);
+        match self.needs.mass_tree.or(self.needs.charge_tree) {
+            Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
+            _ => self.with_near(&state, then),
         }
     }
 
     /// Apart, so that whoever needs no trees has no room for them on the stack.
-    #[inline(never)]
-    fn with_trees(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
+    pub(crate) fn with_trees(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
         // No more memory than these particles call for: more would make other nodes, and so other bits.
         let words = 3 * BarnesHut::COLUMNS * state.position.len();
         let memory = core::mem::take(&mut self.tree);
         let first = if self.needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
         let (of_mass, of_charge) = memory.split_at_mut(first);
         let second = words.min(of_charge.len());
-        let grown = |grow: Option<Grow>, memory, weights| grow?(memory, state.position, weights);
+        let grown = |trees: Option<Trees>, memory, weights| {
+            trees.and_then(|_| BarnesHut::grow(memory, state.position, weights))
+        };
         let mass_tree = grown(self.needs.mass_tree, of_mass, state.mass);
         let charge_tree = grown(self.needs.charge_tree, &mut of_charge[..second], state.charge);
         let (mass_tree, charge_tree) = (mass_tree.as_ref(), charge_tree.as_ref());
-        self.with_neighbours(&State { mass_tree, charge_tree, ..*state }, then);
+        self.with_near(&State { mass_tree, charge_tree, ..*state }, then);
         self.tree = memory;
     }
 
-    fn with_neighbours(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
-        let reach = self.needs.reach;
+    /// Calls `then` with neighbours, where anybody asks for them.
+    fn with_near(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
         // A few newborn look at all others: an index would be made for them alone.
         let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
-        if !(reach > 0.0) || are_few {
-            return then(state);
+        let looks = self.needs.reach > 0.0 && !are_few;
+        match self.needs.lists {
+            Some(lists) if looks => (lists.0)(self, state, then),
+            _ => {
+                self.effort.all_pairs += u64::from(looks);
+                then(state);
+            }
         }
+    }
+
+    /// Calls `then` with neighbours that are found in lists or by the scene's index.
+    pub(crate) fn with_neighbours(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
+        let reach = self.needs.reach;
         let (points, scene, effort) = (state.position, self.scene, &mut self.effort);
         let words = (3 * scene.index.columns() * points.len()).min(self.near.len());
         let memory = &mut self.near[..words];
@@ -113,11 +123,9 @@ impl Field<'_> {
             effort.all_pairs += u64::from(found == Found::AllPairs);
             then(&State { near, ..*state });
         };
-        match (self.needs.lists, &mut self.lists) {
-            (Some(lists), Some(listing)) => {
-                lists.find(scene.index, memory, listing.again(), [points, state.velocity], reach, then);
-            }
-            _ => stream(scene.index, memory, points, reach, then),
+        match &mut self.lists {
+            Some(lists) => list(scene.index, memory, lists.again(), [points, state.velocity], reach, then),
+            None => stream(scene.index, memory, points, reach, then),
         }
     }
 }
@@ -128,18 +136,22 @@ impl Dynamics for Field<'_> {
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
         self.with_state(time, position, velocity, &mut |state| {
             acceleration.fill(Vec3::ZERO);
-            add_up(&(forces, state.springs), state, rows.clone(), acceleration);
+            match state.springs.force() {
+                Some(springs) => add_up(&(forces, springs), state, rows.clone(), acceleration),
+                None => add_up(forces, state, rows.clone(), acceleration),
+            }
         });
-        each_row_with(acceleration, Vec3::ZERO, inverse_mass, |force, _, inverse| {
-            // What is fixed stays so under a force that is beyond an f32.
-            if inverse == 0.0 { 0.0 } else { force * inverse }
-        });
+        divide_by_masses(acceleration, inverse_mass);
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[..position.len()]);
         self.with_state(time, position, velocity, &mut |state| {
-            then(&Linear { forces: &(forces, state.springs), state: *state, inverse_mass });
+            let mut linear = |forces: &dyn Force| then(&Linear { forces, state: *state, inverse_mass });
+            match state.springs.force() {
+                Some(springs) => linear(&(forces, springs)),
+                None => linear(forces),
+            }
         });
     }
 
@@ -147,6 +159,15 @@ impl Dynamics for Field<'_> {
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         self.observer.after(Phase::Advance, &state);
     }
+}
+
+/// Makes accelerations of forces. Apart, so that compilers know that the columns are two, and make vectors of them.
+#[inline(never)]
+fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
+    each_row_with(forces, Vec3::ZERO, inverse_mass, |force, _, inverse| {
+        // What is fixed stays so under a force that is beyond an f32.
+        if inverse == 0.0 { 0.0 } else { force * inverse }
+    });
 }
 
 /// Rows that are worth a thread's while.

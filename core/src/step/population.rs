@@ -1,8 +1,8 @@
 //! Rows taken by the newborn and given back by the dead.
 
 use super::View;
-use crate::force::{Spring, Springs};
-use crate::memory::{Slices, Storage};
+use crate::force::SpringList;
+use crate::memory::Storage;
 use crate::particles::{Full, Id, Particle, WHITE};
 use crate::reap::Fate;
 use crate::report::Report;
@@ -58,7 +58,7 @@ impl View<'_> {
         m.color[row] = particle.color.unwrap_or(WHITE);
         m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
         m.fate[row] = Fate::Lives;
-        let capacity = m.columns().capacity();
+        let capacity = m.capacity();
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;
         status.changes = status.changes.wrapping_add(1);
@@ -67,13 +67,14 @@ impl View<'_> {
     }
 
     /// Takes the particle in `row` out; the last row fills the gap.
-    pub(crate) fn remove(&mut self, row: usize, springs: &[Spring], report: &mut Report) {
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn remove(&mut self, row: usize, springs: &dyn SpringList, report: &mut Report) {
         let len = self.status.len;
         let last = len - 1;
-        let Slices { serial, row_of, last_spring, incident, .. } = self.memory.slices();
-        let table =
-            Springs { springs, start: self.status.start, serial: &serial[..len], row_of, last_spring, incident };
-        report.caps.springs += table.held_by(row);
+        if let Some(code) = springs.code() {
+            let table = self.memory.columns().springs(springs, self.status);
+            report.caps.springs += (code.held_by)(&table, row);
+        }
 
         let slot = self.memory.slot[row];
         if row != last {

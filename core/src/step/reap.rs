@@ -16,8 +16,8 @@ impl View<'_> {
     /// Removes those whom the step has ended by now.
     #[inline(never)]
     pub(super) fn reap(&mut self, scene: &Scene<'_>, report: &mut Report, observer: &mut dyn Observer) {
-        if !scene.reapers.is_empty() {
-            self.judge_all(scene);
+        if let Some(code) = scene.reapers.code().filter(|_| !scene.reapers.is_empty()) {
+            (code.0)(self, scene);
         }
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
@@ -32,8 +32,7 @@ impl View<'_> {
     }
 
     /// Lets the scene's reapers choose.
-    #[inline(never)]
-    fn judge_all(&mut self, scene: &Scene<'_>) {
+    pub(crate) fn judge_all(&mut self, scene: &Scene<'_>) {
         let (rows, reapers, capacity) = (0..self.len(), scene.reapers, self.capacity());
         let layout = Layout::of(scene.plan(), capacity);
         // Reapers see everything but the fates and the memory of the index.

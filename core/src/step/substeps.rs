@@ -1,7 +1,7 @@
 //! Sub-steps: the method moves everything, then constraints move it to where they are met.
 
 use super::field::{Attributes, Field};
-use crate::constrain::{Bodies, Near, Share, Substep};
+use crate::constrain::{Bodies, Constraint, Near, Share, Substep};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::Needs;
 use crate::index::{ListMemory, Listed};
@@ -14,7 +14,7 @@ use crate::time::Time;
 use glam::Vec3;
 
 /// The particles that a step moves through its sub-steps, and the memory for it.
-pub(super) struct Moved<'a> {
+pub(crate) struct Moved<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) attributes: &'a Attributes<'a>,
     pub(super) needs: Needs,
@@ -48,10 +48,11 @@ pub(super) struct Carried<'a> {
 
 /// What constraints are asked for.
 #[derive(Clone, Copy)]
-enum Phase {
-    Prepare,
-    Project,
-    Settle,
+pub(crate) enum Moment {
+    /// What they do before the method moves everything.
+    Before,
+    /// What they do then.
+    After,
 }
 
 impl Moved<'_> {
@@ -63,16 +64,13 @@ impl Moved<'_> {
             let to = now + dt.part(number + 1, count);
             let substep = Substep { during: [from, to], number, count, step: dt };
             self.remember();
-            if !self.marks.is_empty() {
-                self.constrain(Phase::Prepare, substep);
+            let constraints = self.scene.constraints.code().filter(|_| !self.marks.is_empty());
+            if let Some(code) = constraints {
+                (code.0)(self, Moment::Before, substep);
             }
             self.integrate(substep, hint);
-            if !self.marks.is_empty() {
-                self.tell(observe::Phase::Advance, to);
-                self.tell(observe::Phase::Project, to);
-                self.constrain(Phase::Project, substep);
-                self.constrain(Phase::Settle, substep);
-                self.tell(observe::Phase::Constrain, to);
+            if let Some(code) = constraints {
+                (code.0)(self, Moment::After, substep);
             }
             from = to;
         }
@@ -127,8 +125,23 @@ impl Moved<'_> {
         self.observer.after(phase, &state);
     }
 
-    /// Asks the constraints for a phase of theirs.
-    fn constrain(&mut self, phase: Phase, substep: Substep) {
+    /// Asks the constraints for what they do before the method has moved everything, or then.
+    pub(crate) fn constrain(&mut self, moment: Moment, substep: Substep) {
+        let [_, to] = substep.during;
+        match moment {
+            Moment::Before => self.ask(substep, |constraints, bodies, share| constraints.prepare(bodies, share)),
+            Moment::After => {
+                self.tell(observe::Phase::Advance, to);
+                self.tell(observe::Phase::Project, to);
+                self.ask(substep, |constraints, bodies, share| constraints.project(bodies, share));
+                self.ask(substep, |constraints, bodies, share| constraints.settle(bodies, share));
+                self.tell(observe::Phase::Constrain, to);
+            }
+        }
+    }
+
+    /// Calls a function with the constraints, what they move and the memory that they work in.
+    fn ask(&mut self, substep: Substep, phase: fn(&dyn Constraint, &mut Bodies<'_>, &mut Share<'_>)) {
         let (scene, constraints) = (self.scene, self.scene.constraints);
         let Attributes { lives, inverse_mass, elasticity, material } = *self.attributes;
         let len = self.position.len();
@@ -157,11 +170,7 @@ impl Moved<'_> {
             observer: self.observer,
         };
         let mut share = Share { kept, step: self.lasting, scratch, capacity: self.capacity };
-        match phase {
-            Phase::Prepare => constraints.prepare(&mut bodies, &mut share),
-            Phase::Project => constraints.project(&mut bodies, &mut share),
-            Phase::Settle => constraints.settle(&mut bodies, &mut share),
-        }
+        phase(constraints, &mut bodies, &mut share);
     }
 }
 

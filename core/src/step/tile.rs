@@ -50,7 +50,7 @@ impl Scene<'_> {
     /// Whether a step takes each row through all its phases without a look at the others, so that rows can go a few at a time.
     pub(super) fn is_local(&self) -> bool {
         let Self { springs, forces, constraints, meetings, integrator, .. } = self;
-        let apart = springs.is_empty() && constraints.is_empty() && meetings.is_through();
+        let apart = springs.list().is_empty() && constraints.is_empty() && meetings.is_through();
         apart && forces.is_local() && integrator.is_local()
     }
 }
@@ -97,7 +97,8 @@ impl View<'_> {
         let whole = self.capacity();
         let m = self.memory.slices();
         let springs = Springs {
-            springs: scene.springs,
+            springs: scene.springs.list(),
+            code: scene.springs.code(),
             start: self.status.start,
             serial: m.serial,
             row_of: m.row_of,

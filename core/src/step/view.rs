@@ -1,7 +1,7 @@
 //! A system with its memory at hand: every phase of a step works on it.
 
 use crate::custom::CustomColumnsMut;
-use crate::force::{Spring, State, spring};
+use crate::force::State;
 use crate::index::Listed;
 use crate::memory::{Layout, Slices, Storage, Words};
 use crate::particles::Full;
@@ -81,7 +81,7 @@ impl View<'_> {
     }
 
     pub(crate) fn capacity(&self) -> usize {
-        self.memory.columns().capacity()
+        self.memory.capacity()
     }
 
     #[inline(never)]
@@ -99,10 +99,16 @@ impl View<'_> {
             }
         }
         self.status.start = self.status.taken;
-        self.give_custom(scene, 0);
-        spring::sort_by_ends(scene.springs, self.memory.last_spring, self.memory.incident);
-        let lost = |s: &&Spring| s.ends.iter().any(|&end| end >= self.status.start);
-        report.caps.springs = scene.springs.iter().filter(lost).count() as u64;
+        if let Some(code) = scene.custom.code() {
+            (code.give)(self, scene, 0);
+        }
+        self.memory.last_spring.fill(0);
+        // What lies beyond the lists counts in the fingerprint: an earlier scene's broken springs must not.
+        self.memory.incident.fill(0);
+        if let Some(code) = scene.springs.code() {
+            let (last, incident) = (&mut *self.memory.last_spring, &mut *self.memory.incident);
+            report.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
+        }
         self.status.totals = report;
     }
 

@@ -3,7 +3,7 @@
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::Births;
-use pointmass::force::State;
+use pointmass::force::{Needs, State, Writing};
 use pointmass::index::{Arrange, Structure};
 use pointmass::reap::Verdicts;
 use pointmass::{
@@ -24,8 +24,8 @@ impl Force for Smoke {
     fn is_local(&self) -> bool {
         true
     }
-    fn writes(&self) -> bool {
-        true
+    fn needs(&self) -> Needs {
+        Needs { write: Some(Writing::AT_END), ..Needs::default() }
     }
     fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
         assert!(state.custom.get("heat").is_none_or(<[f32]>::is_empty));

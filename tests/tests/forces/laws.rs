@@ -186,7 +186,8 @@ fn forces_of_pairs_conserve_momentum() {
     let law = MutualGravity { constant: 0.05, softening: 0.1, ..MutualGravity::NEWTON };
     for &method in Method::ALL {
         for (forces, springs) in [(&law as &dyn Force, &[][..]), (&() as &dyn Force, &springs)] {
-            let scene = Scene { start: &start, springs, forces, integrator: method.integrator(), ..Scene::EMPTY };
+            let scene =
+                Scene { start: &start, springs: &springs, forces, integrator: method.integrator(), ..Scene::EMPTY };
             let mut system = started(&scene, 50, 0);
             let before = Measures::of(&system, &scene);
             run(&mut system, &scene, 1.0 / 120.0, 240);
