@@ -11,7 +11,7 @@ fn forces(c: &mut Criterion) {
     let sink = Sink { shape, group: None, intensity: 1.0, ca: 1.0, la: 0.0, qa: 1.0, softening: 0.0 };
     let mut group = c.benchmark_group("forces");
     let mut measure = |name: &str, particles: &[Particle], springs: &[Spring], elements: u64, force: &dyn Force| {
-        let scene = Scene { start: particles, springs, ..Scene::EMPTY };
+        let scene = Scene { start: particles, springs: &springs, ..Scene::EMPTY };
         let system = started(&scene, particles.len());
         let state = system.state(&scene);
         let mut total = vec![Vec3::ZERO; particles.len()];

@@ -54,7 +54,7 @@ fn cluttered(open: &Scene<'_>, filled: &System<Heap>, steps: usize, rounds: usiz
         let (center, size) = (Vec3::new(8.0 * x - 4.0, 0.0, 8.0 * z - 4.0), 0.1 + 0.2 * size);
         let ball = Shape::Sphere(Sphere { center, radius: size });
         let chest = Shape::Box(Cuboid { min: center - size, max: center + size });
-        if i % 2 == 0 { ball } else { chest }
+        if i.is_multiple_of(2) { ball } else { chest }
     };
     let ground: Shape<Mesh<'_>> = Shape::Plane(Plane { point: Vec3::ZERO, normal: Vec3::Y });
     let things = core::iter::once(ground).chain((0..100).map(thing));
