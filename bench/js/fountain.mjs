@@ -49,16 +49,19 @@ class ByHand {
       drag[i] = 0.2;
       dies[i] = this.time + 3 + 2 * Math.random();
     }
-    for (let i = 0; i < this.length; i++) {
-      if (dies[i] <= this.time) {
-        this.length--;
-        for (const column of this.columns) column[i] = column[this.length];
+    const now = this.time;
+    let length = this.length;
+    for (let i = 0; i < length; i++) {
+      if (dies[i] <= now) {
+        length--;
+        for (const column of this.columns) column[i] = column[length];
         i--;
         continue;
       }
-      u[i] -= drag[i] * u[i] * dt;
-      v[i] += (-9.80665 - drag[i] * v[i]) * dt;
-      w[i] -= drag[i] * w[i] * dt;
+      const kept = 1 - drag[i] * dt;
+      u[i] *= kept;
+      v[i] = v[i] * kept - 9.80665 * dt;
+      w[i] *= kept;
       x[i] += u[i] * dt;
       y[i] += v[i] * dt;
       z[i] += w[i] * dt;
@@ -67,6 +70,7 @@ class ByHand {
         if (v[i] < 0) v[i] *= -0.5;
       }
     }
+    this.length = length;
   }
 }
 
