@@ -5,9 +5,10 @@
 
 use crate::math::max;
 use glam::Vec3;
+use wide::f32x4;
 
 /// Whether there may be vectors: chips without an operating system are spared the code, and work number by number.
-const BLOCKS: bool = !cfg!(target_os = "none");
+pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
 
 /// `out` = `base` + `h` × `rate`, row by row.
 #[inline]
@@ -54,6 +55,54 @@ pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f:
     for (total, &factor) in t_rest.iter_mut().zip(k_rest) {
         one(total, vector, factor, &f);
     }
+}
+
+/// `out` = `force`(`g`, mass, velocity, drag) over the mass, number by number. What is fixed stays so under a force beyond an f32.
+///
+/// Apart, with a reference for each column, so that compilers know that none is another, and make vectors of them.
+#[inline(never)]
+pub(crate) fn fall(
+    out: &mut [Vec3],
+    g: Vec3,
+    mass: &[f32],
+    velocity: &[Vec3],
+    drag: &[f32],
+    inverse_mass: &[f32],
+    force: impl Fn(f32x4, f32x4, f32x4, f32x4) -> f32x4,
+) {
+    let [x, y, z] = g.to_array();
+    let g = [[x, y, z, x], [y, z, x, y], [z, x, y, z]].map(f32x4::new);
+    let step = |out: &mut [Vec3; 4], v: &[Vec3; 4], m: &[f32; 4], k: &[f32; 4], inverse: &[f32; 4]| {
+        let (out, v): (&mut [[f32; 4]; 3], &[[f32; 4]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(v));
+        let (m, k, inverse) = (spread(m), spread(k), spread(inverse));
+        for i in 0..3 {
+            let moves = !inverse[i].simd_eq(f32x4::ZERO);
+            out[i] = ((force(g[i], m[i], f32x4::new(v[i]), k[i]) * inverse[i]) & moves).to_array();
+        }
+    };
+    let ((out, out_rest), (v, v_rest)) = (out.as_chunks_mut(), velocity.as_chunks());
+    let ((m, m_rest), (k, k_rest)) = (mass.as_chunks(), drag.as_chunks());
+    let (inverse, inverse_rest) = inverse_mass.as_chunks();
+    for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
+        step(out, v, m, k, inverse);
+    }
+    if !out_rest.is_empty() {
+        let mut last = [Vec3::ZERO; 4];
+        step(&mut last, &filled(v_rest), &filled(m_rest), &filled(k_rest), &filled(inverse_rest));
+        out_rest.copy_from_slice(&last[..out_rest.len()]);
+    }
+}
+
+/// Four of which the last ones are nothing.
+pub(crate) fn filled<T: Copy + Default>(rest: &[T]) -> [T; 4] {
+    core::array::from_fn(|i| rest.get(i).copied().unwrap_or_default())
+}
+
+/// Four factors, each for the three numbers of a row, in registers.
+#[inline(always)]
+fn spread(k: &[f32; 4]) -> [f32x4; 3] {
+    let k = f32x4::new(*k).to_array();
+    [f32x4::new([k[0], k[0], k[0], k[1]]), f32x4::new([k[1], k[1], k[2], k[2]]), f32x4::new([k[2], k[3], k[3], k[3]])]
 }
 
 #[inline(always)]

@@ -11,6 +11,7 @@ use crate::observe::{Attention, Observer};
 use crate::particles::Id;
 use crate::reap::Fate;
 use crate::report::Report;
+use crate::rows::filled;
 use crate::shape::{Aabb, Face, Facing, Hulls, Marks};
 use crate::step::Tile;
 use crate::time::Time;
@@ -78,11 +79,6 @@ impl Queue {
         self.len = (self.len + 1) % LANES;
         (self.len == 0).then_some(self.rows)
     }
-}
-
-/// Four of which the last ones are nothing.
-fn filled<T: Copy + Default>(rest: &[T]) -> [T; 4] {
-    core::array::from_fn(|i| rest.get(i).copied().unwrap_or_default())
 }
 
 /// Which bits of a packet are set.

@@ -1,6 +1,6 @@
 //! Linear drag.
 
-use super::{Change, Force, State};
+use super::{Change, Force, State, Steady};
 use crate::math::max;
 use crate::rows::each_row;
 use core::ops::Range;
@@ -17,6 +17,10 @@ pub struct Drag {}
 impl Force for Drag {
     fn is_local(&self) -> bool {
         true
+    }
+
+    fn steady(&self) -> Option<Steady> {
+        Some(Steady { acceleration: None, drags: true })
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {

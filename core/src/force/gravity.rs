@@ -1,6 +1,6 @@
 //! Uniform gravity.
 
-use super::{Force, State};
+use super::{Force, State, Steady};
 use crate::rows::each_row_with;
 use core::ops::Range;
 use glam::Vec3;
@@ -23,6 +23,10 @@ impl Gravity {
 impl Force for Gravity {
     fn is_local(&self) -> bool {
         true
+    }
+
+    fn steady(&self) -> Option<Steady> {
+        Some(Steady { acceleration: Some(self.acceleration), drags: false })
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {

@@ -18,6 +18,7 @@ mod radial;
 mod relaxation;
 mod sink;
 pub(crate) mod spring;
+mod steady;
 mod viscosity;
 mod wind;
 
@@ -38,6 +39,7 @@ pub use relaxation::Relaxation;
 pub use sink::Sink;
 pub(crate) use spring::is_broken;
 pub use spring::{Drive, Held, Spring, SpringCode, SpringList, Springs};
+pub use steady::Steady;
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 
@@ -71,6 +73,12 @@ pub trait Force: Sync {
     /// through all its phases, while they are in the cache; the state has no other rows in it.
     fn is_local(&self) -> bool {
         false
+    }
+
+    /// What it comes to, if that is no more than a steady acceleration and each particle's own drag: a step then works it out in one
+    /// pass over the columns, to the bits of `add_to`.
+    fn steady(&self) -> Option<Steady> {
+        None
     }
 
     /// Changes columns of a user's own if it [needs](Needs::write) to, once in each step of `dt` \[s\], when all have moved and
@@ -363,6 +371,9 @@ impl Force for () {
     fn is_local(&self) -> bool {
         true
     }
+    fn steady(&self) -> Option<Steady> {
+        Some(Steady::default())
+    }
     #[cfg(feature = "std")]
     fn account(&self, _: &State<'_>, _: &mut dyn FnMut(Entry)) {}
 }
@@ -406,6 +417,14 @@ macro_rules! sum_of {
             let $this = self;
             $parts.into_iter().all(|part| part.is_local())
         }
+        fn steady(&self) -> Option<Steady> {
+            let $this = self;
+            let mut all = Steady::default();
+            for part in $parts {
+                all = all.and(part.steady()?)?;
+            }
+            Some(all)
+        }
         #[cfg(feature = "std")]
         fn energy(&self, state: &State<'_>) -> f64 {
             let $this = self;
@@ -448,6 +467,10 @@ macro_rules! same_as {
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()
+        }
+        fn steady(&self) -> Option<Steady> {
+            let $this = self;
+            $force.steady()
         }
         fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
             let $this = self;

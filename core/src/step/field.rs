@@ -6,7 +6,7 @@ use crate::index::{BarnesHut, Found, ListMemory, Neighbours, list, stream};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
-use crate::rows::each_row_with;
+use crate::rows::{BLOCKS, each_row_with};
 use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
@@ -134,6 +134,12 @@ impl Dynamics for Field<'_> {
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
         let rows = self.first..position.len();
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
+        let lives = &self.attributes.lives;
+        if let Some(steady) = if BLOCKS && lives.springs.force().is_none() { forces.steady() } else { None } {
+            self.effort.evaluations += u64::from(!position.is_empty());
+            let (mass, drag) = (&lives.mass[rows.clone()], &lives.drag[rows.clone()]);
+            return steady.accelerate(&velocity[rows], mass, drag, inverse_mass, acceleration);
+        }
         self.with_state(time, position, velocity, &mut |state| {
             acceleration.fill(Vec3::ZERO);
             match state.springs.force() {
