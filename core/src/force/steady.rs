@@ -37,7 +37,7 @@ impl Steady {
             (true, false) => fall(acceleration, g, mass, velocity, drag, inverse_mass, |g, m, _, _| zero + g * m),
             (false, true) => fall(acceleration, g, mass, velocity, drag, inverse_mass, |_, _, v, k| zero - v * k),
             (true, true) => {
-                fall(acceleration, g, mass, velocity, drag, inverse_mass, |g, m, v, k| zero + g * m - v * k)
+                fall(acceleration, g, mass, velocity, drag, inverse_mass, |g, m, v, k| zero + g * m - v * k);
             }
         }
     }

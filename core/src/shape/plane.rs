@@ -1,7 +1,10 @@
 //! An infinite plane.
 
-use super::{Aabb, Affine, Collider, Contact, Face, Facing, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface};
-use crate::math::{clamp, dot, largest, unit};
+use super::ball::lean;
+use super::{
+    Aabb, Affine, Collider, Contact, Face, Facing, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier,
+};
+use crate::math::{clamp, dot, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -46,11 +49,11 @@ impl Collider for Plane {
         if is_point && crossing(self.normal, side(segment.from), side(segment.to)).is_none() {
             return None;
         }
-        Face::new(*self).first_hit(segment)
+        self.face().first_hit(segment)
     }
 
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        Face::new(*self).contacts(center, reach, at, visit);
+        self.face().contacts(center, reach, at, visit);
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
@@ -62,7 +65,7 @@ impl Collider for Plane {
     }
 
     fn facing(&self, bounds: &Aabb) -> Facing {
-        if self.may_touch(bounds) { Facing::Face(Face::new(*self)) } else { Facing::Nothing }
+        if self.may_touch(bounds) { Facing::Face(self.face()) } else { Facing::Nothing }
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
@@ -76,6 +79,58 @@ impl Mapped for Plane {
             visit(0, &Self { point: map.point(self.point), normal: unit(back.linear.transpose() * self.normal) });
         }
     }
+}
+
+impl Plane {
+    /// It for many who ask.
+    fn face(&self) -> Face {
+        Face::new(self.point, self.normal)
+    }
+}
+
+impl Collider for Face {
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        let slack = segment.slack(self.size());
+        let center = passed(self, segment, slack);
+        // What is smaller than rounding is a point.
+        let hit = if segment.radius > slack { earlier(touched(self, segment, slack), center) } else { center };
+        hit.map(|hit| Hit { material: self.material(), ..hit })
+    }
+
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        let [point, _, unit] = self.vectors();
+        let distance = dot(unit, center - point);
+        let toward = if distance < 0.0 { -unit } else { unit };
+        let made = &mut |contact: &Contact| visit(&Contact { material: self.material(), ..*contact });
+        lean(center, unit * distance, toward, [reach, self.size()], made);
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        let [point, normal, _] = self.vectors();
+        Plane { point, normal }.may_touch(bounds)
+    }
+}
+
+/// When a ball first touches a face. One that overlaps it touches at once if it moves nearer, else never.
+#[inline(always)]
+fn touched(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
+    let [point, _, unit] = face.vectors();
+    let start = dot(unit, segment.from - point);
+    let normal = if start < 0.0 { -unit } else { unit };
+    let (room, closing) = (start.abs() - segment.radius, -dot(normal, segment.step()));
+    let time = max(room, 0.0) / closing;
+    (closing > 0.0 && time <= 1.0).then(|| Hit::new(time, normal, slack))
+}
+
+/// Where a path's centre meets a face, and the normal on the side that it comes from.
+#[inline(always)]
+fn passed(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
+    let [point, normal, unit] = face.vectors();
+    // Which side, and when, does not depend on the normal's length.
+    let side = |x: Vec3| dot(normal, x - point);
+    crossing(unit, side(segment.from), side(segment.to)).map(|(time, normal)| Hit::new(time, normal, slack))
 }
 
 /// When a path with signed distances `before` and `after` to a plane meets it, and the normal on the side it comes
