@@ -180,8 +180,9 @@ pub(super) fn near(face: &Face, [x0, v0, x1, v1]: [&[Vec3; 4]; 4], radius: &[f32
     // A box around a ball reaches by less than twice the radius farther along a normal.
     let radius = f32x4::new(*radius);
     let room = radius + radius + (largest + radius) * (128.0 * f32::EPSILON);
-    // What is no number is near.
-    !(middle.abs().simd_gt(half + room + room).to_bitmask() as u8) & 15
+    // What is no number is near, and what is so far away that sums may not be any.
+    let is_far = middle.abs().simd_gt(half + room + room) & largest.simd_lt(f32x4::splat(1e37));
+    !(is_far.to_bitmask() as u8) & 15
 }
 
 impl Paths {

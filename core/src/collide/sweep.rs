@@ -58,9 +58,10 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
     let facing = if SHORT_WAY { tile.scene.colliders.facing(&EVERYWHERE) } else { Facing::Several };
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
+    let has_sinks = !tile.scene.sinks.is_empty();
     let mut sweep = Sweep { tile: &mut *tile, past, facing, report, observer };
     match facing {
-        Facing::Face(face) if SHORT_WAY => sweep.go_past(&face),
+        Facing::Face(face) if SHORT_WAY && !has_sinks => sweep.go_past(&face),
         _ => sweep.go(),
     }
     tile.work = work;

@@ -137,7 +137,7 @@ impl<'a> ListMemory<'a> {
         if !is_same || !self.follow(points, leash) {
             return None;
         }
-        self.listed.uses += 1;
+        self.listed.uses = self.listed.uses.saturating_add(1);
         Some(self.read())
     }
 

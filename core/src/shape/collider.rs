@@ -306,8 +306,10 @@ macro_rules! tuples {
             fn first_hit(&self, segment: &Segment) -> Option<Hit> {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
-                let mut best = None;
-                $(best = earlier(best, $name.first_hit(segment));)+
+                let (mut best, bounds) = (None, segment.bounds());
+                $(if $name.may_touch(&bounds) {
+                    best = earlier(best, $name.first_hit(segment));
+                })+
                 best
             }
             fn may_touch(&self, bounds: &Aabb) -> bool {
@@ -328,7 +330,10 @@ macro_rules! tuples {
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
-                $($name.contacts(center, reach, at, visit);)+
+                let bounds = Aabb { min: center - reach, max: center + reach };
+                $(if $name.may_touch(&bounds) {
+                    $name.contacts(center, reach, at, visit);
+                })+
             }
             fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
                 #[allow(non_snake_case)]

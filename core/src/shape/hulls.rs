@@ -39,7 +39,8 @@ impl Hulls {
         let mut add = |k: usize, ends: [&Four; 4]| {
             let (low, high) = spans(ends, third);
             for i in 0..12 {
-                farthest[i] = math::max(farthest[i], math::max(-low[i], high[i]));
+                // Of what is no number the one before is kept.
+                farthest[i] = math::max(math::max(-low[i], high[i]), farthest[i]);
             }
             put(&mut min, k, &low);
             put(&mut max, k, &high);
@@ -54,7 +55,7 @@ impl Hulls {
             let [x0, v0, x1, v1] = [x0_rest, v0_rest, x1_rest, v1_rest].map(padded);
             add(x0_whole, [&x0, &v0, &x1, &v1]);
         }
-        let radius = radius.iter().copied().fold(0.0, math::max);
+        let radius = radius.iter().fold(0.0, |most, &radius| math::max(radius, most));
         let largest = farthest.into_iter().fold(0.0, math::max) + radius;
         Self { min, max, room: radius + 16.0 * f32::EPSILON * largest, largest }
     }
@@ -87,7 +88,7 @@ impl Hulls {
             // Twice the distance of the middle, and twice how far the corners are from it.
             let middle = n.x * (ax[i] + bx[i]) + n.y * (ay[i] + by[i]) + n.z * (az[i] + bz[i]);
             let half = reach.x * (bx[i] - ax[i]) + reach.y * (by[i] - ay[i]) + reach.z * (bz[i] - az[i]);
-            *mark |= u32::from((middle - 2.0 * through).abs() <= half + 2.0 * room).wrapping_neg();
+            *mark |= u32::from(!((middle - 2.0 * through).abs() > half + 2.0 * room)).wrapping_neg();
         }
     }
 }

@@ -83,9 +83,9 @@ impl<C: Collider> Scenery<C> {
     }
 }
 
-/// A box with room for what rounding may do to whoever is held against it.
+/// A box with room for what rounding may do to whoever is held against it, and for what lines touch beside themselves.
 fn with_room(bounds: &Aabb) -> Aabb {
-    let room = 64.0 * f32::EPSILON * max(largest(bounds.min), largest(bounds.max));
+    let room = 128.0 * f32::EPSILON * max(largest(bounds.min), largest(bounds.max)) + 2e-5;
     Aabb { min: bounds.min - room, max: bounds.max + room }
 }
 
@@ -116,11 +116,17 @@ impl<C: Collider> Collider for Scenery<C> {
         self.endless.iter().for_each(|&number| self.things[number].mark_near(hulls, marks));
         let mut near_any = [0; Hulls::MANY];
         hulls.near_box(&self.all, &mut near_any);
-        for (i, mark) in marks.iter_mut().enumerate().filter(|(i, mark)| **mark == 0 && near_any[*i] != 0) {
-            let hull = hulls.get(i);
-            Index::trusted(&self.words).near(&self.boxes, &hull, &mut |number| {
-                if self.things[number].may_touch(&hull) {
-                    *mark = u32::MAX;
+        // Each thing marks as it would in a list, all rows at once; who is near it is only asked to find the things.
+        let mut asked = heapless::Vec::<usize, 16>::new();
+        for i in (0..Hulls::MANY).filter(|&i| near_any[i] != 0) {
+            if marks[i] != 0 {
+                continue;
+            }
+            Index::trusted(&self.words).near(&self.boxes, &hulls.get(i), &mut |number| {
+                if !asked.contains(&number) {
+                    self.things[number].mark_near(hulls, marks);
+                    // Whoever finds no room here is asked again, to no other answer.
+                    let _ = asked.push(number);
                 }
             });
         }
