@@ -86,7 +86,7 @@ fn the_short_way_has_the_bits_of_the_long_one() {
     let friction = |resting, sliding| Grip { friction: Some(Friction { resting, sliding }), elasticity: None };
     let grips = [friction(0.5, 0.4), friction(0.0, 0.0), Grip { elasticity: Some(0.3), friction: None }];
     let (mut hits, mut scenes) = (0, 0);
-    for (number, method) in Method::ALL.iter().cycle().take(54).enumerate() {
+    for (number, method) in Method::ALL.iter().cycle().take(27).enumerate() {
         let scale = [1.0, 1e-3, 40.0][number % 3];
         let far = [0.0, 0.0, 1e3][number / 3 % 3] * scale;
         let normal = [Vec3::Y, Vec3::NEG_Y, Vec3::new(0.0, 3.0, 0.0), random.direction() * 0.7][number / 2 % 4];
@@ -113,7 +113,7 @@ fn the_short_way_has_the_bits_of_the_long_one() {
         let silent = Silent(plane);
         let plain = Scene { colliders: &silent, ..base };
         let mut systems: [System<Heap>; 3] = [&faced, &plain, &faced].map(|scene| started(scene, 400, 5));
-        for step in 0..30 {
+        for step in 0..24 {
             let [short, long, told] = &mut systems;
             let (a, b) = (short.step(&faced, dt), long.step(&plain, dt));
             let mut listener = Listener(0);
@@ -133,7 +133,7 @@ fn the_short_way_has_the_bits_of_the_long_one() {
         }
         scenes += 1;
     }
-    assert!(scenes == 54 && hits > 20_000, "{hits}");
+    assert!(scenes == 27 && hits > 8_000, "{hits}");
 }
 
 /// What a sink takes is taken wherever it is, over a ground as elsewhere.
