@@ -1,6 +1,6 @@
 //! Linear drag.
 
-use super::{Change, Force, State, Steady};
+use super::{Change, Force, State};
 use crate::math::max;
 use crate::rows::each_row;
 use core::ops::Range;
@@ -19,8 +19,9 @@ impl Force for Drag {
         true
     }
 
-    fn steady(&self) -> Option<Steady> {
-        Some(Steady { acceleration: None, drags: true })
+    #[cfg(not(target_os = "none"))]
+    fn steady(&self) -> Option<super::Steady> {
+        Some(super::Steady { acceleration: None, drags: true })
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {

@@ -1,6 +1,6 @@
 //! Uniform gravity.
 
-use super::{Force, State, Steady};
+use super::{Force, State};
 use crate::rows::each_row_with;
 use core::ops::Range;
 use glam::Vec3;
@@ -25,8 +25,9 @@ impl Force for Gravity {
         true
     }
 
-    fn steady(&self) -> Option<Steady> {
-        Some(Steady { acceleration: Some(self.acceleration), drags: false })
+    #[cfg(not(target_os = "none"))]
+    fn steady(&self) -> Option<super::Steady> {
+        Some(super::Steady { acceleration: Some(self.acceleration), drags: false })
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {

@@ -76,7 +76,7 @@ pub trait Force: Sync {
     }
 
     /// What it comes to, if that is no more than a steady acceleration and each particle's own drag: a step then works it out in one
-    /// pass over the columns, to the bits of `add_to`.
+    /// pass over the columns, to the bits of `add_to`. Chips without an operating system do not ask.
     fn steady(&self) -> Option<Steady> {
         None
     }
@@ -371,6 +371,7 @@ impl Force for () {
     fn is_local(&self) -> bool {
         true
     }
+    #[cfg(not(target_os = "none"))]
     fn steady(&self) -> Option<Steady> {
         Some(Steady::default())
     }
@@ -417,6 +418,7 @@ macro_rules! sum_of {
             let $this = self;
             $parts.into_iter().all(|part| part.is_local())
         }
+        #[cfg(not(target_os = "none"))]
         fn steady(&self) -> Option<Steady> {
             let $this = self;
             let mut all = Steady::default();
@@ -468,6 +470,7 @@ macro_rules! same_as {
             let $this = self;
             $force.is_local()
         }
+        #[cfg(not(target_os = "none"))]
         fn steady(&self) -> Option<Steady> {
             let $this = self;
             $force.steady()

@@ -32,7 +32,7 @@ pub trait Collider: Sync {
     }
 
     /// What of it a path inside `bounds` can meet: where that is one flat face, it is followed there the short way, to the same
-    /// bits. By default anything, unless the path may not touch it at all.
+    /// bits. By default anything, unless the path may not touch it at all. Chips without an operating system do not ask.
     fn facing(&self, bounds: &Aabb) -> Facing {
         if self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
     }

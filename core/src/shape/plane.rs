@@ -1,9 +1,7 @@
 //! An infinite plane.
 
 use super::ball::lean;
-use super::{
-    Aabb, Affine, Collider, Contact, Face, Facing, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier,
-};
+use super::{Aabb, Affine, Collider, Contact, Face, Hit, Hulls, Mapped, Marks, Segment, Spot, Surface, earlier};
 use crate::math::{clamp, dot, largest, max, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -64,8 +62,9 @@ impl Collider for Plane {
         !(distance > dot(self.normal.abs(), half + room))
     }
 
-    fn facing(&self, bounds: &Aabb) -> Facing {
-        if self.may_touch(bounds) { Facing::Face(self.face()) } else { Facing::Nothing }
+    #[cfg(not(target_os = "none"))]
+    fn facing(&self, bounds: &Aabb) -> super::Facing {
+        if self.may_touch(bounds) { super::Facing::Face(self.face()) } else { super::Facing::Nothing }
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
@@ -114,7 +113,7 @@ impl Collider for Face {
 }
 
 /// When a ball first touches a face. One that overlaps it touches at once if it moves nearer, else never.
-#[inline(always)]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn touched(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
     let [point, _, unit] = face.vectors();
     let start = dot(unit, segment.from - point);
@@ -125,7 +124,7 @@ fn touched(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
 }
 
 /// Where a path's centre meets a face, and the normal on the side that it comes from.
-#[inline(always)]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn passed(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
     let [point, normal, unit] = face.vectors();
     // Which side, and when, does not depend on the normal's length.
