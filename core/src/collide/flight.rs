@@ -332,7 +332,7 @@ impl<'a, C: Collider + ?Sized> Flight<'a, C> {
     }
 }
 
-/// What a ball faces in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits. Of elasticities up
+/// The surroundings of a ball in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits. Of elasticities up
 /// to one these take no speed from it but by what they set it off.
 pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f32; 2], dt: f32) -> Facing {
     if !(0.0..=1.0).contains(&elasticity) {

@@ -134,7 +134,7 @@ struct Meetings {
     chord_from: Vectors,
 }
 
-/// What particles are to the face.
+/// Properties of eight particles that decide how they meet a face.
 pub(super) struct Riders {
     pub(super) radius: f32x8,
     pub(super) elasticity: f32x8,
@@ -143,9 +143,9 @@ pub(super) struct Riders {
     pub(super) sliding: f32x8,
 }
 
-/// What has become of them: a bit each.
+/// The outcome of a packet: a bit for each particle.
 pub(super) struct Outcome {
-    /// Who is at the end of the step now, of these who was hit, and who has to be followed alone.
+    /// Particles that are at the end of the step now, those of them that were hit, and those to be followed alone.
     pub(super) settled: u32,
     pub(super) hit: u32,
     pub(super) left: u32,
