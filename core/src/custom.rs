@@ -1,8 +1,5 @@
 //! Columns of a user's own: numbers with names that each particle carries along.
 
-use crate::observe::Observer;
-use crate::scene::Scene;
-use crate::step::View;
 use core::fmt;
 use core::ops::Range;
 
@@ -44,21 +41,40 @@ pub trait CustomList: Sync {
     }
 }
 
-/// What columns of a user's own call for in a step: functions, so that a program which has none does not carry them about.
+/// What columns of a user's own call for in a step: a function, so that a program which has none does not carry it about.
 #[derive(Clone, Copy, Debug)]
 pub struct CustomCode {
     /// Gives rows from one on what they begin with.
-    pub(crate) give: fn(&mut View<'_>, &Scene<'_>, usize),
-    /// Lets whoever looks on write.
-    pub(crate) let_write: fn(&mut View<'_>, &Scene<'_>, &mut dyn Observer),
+    pub(crate) give: fn(&dyn CustomList, Newcomers<'_>),
 }
 
 impl CustomCode {
     /// All of it.
-    pub const ALL: Self = Self {
-        give: |view, scene, first| view.give_custom(scene, first),
-        let_write: |view, scene, observer| view.let_write(scene, observer),
-    };
+    pub const ALL: Self = Self { give };
+}
+
+/// Rows that have come in.
+pub(crate) struct Newcomers<'a> {
+    /// The first of them.
+    pub(crate) first: usize,
+    /// The serials of all rows.
+    pub(crate) serial: &'a [u32],
+    /// Serials below are those of the scene's start.
+    pub(crate) start: u32,
+    /// The columns, each as long as the capacity.
+    pub(crate) values: &'a mut [f32],
+    pub(crate) capacity: usize,
+}
+
+fn give(list: &dyn CustomList, rows: Newcomers<'_>) {
+    let Newcomers { first, serial, start, values, capacity } = rows;
+    for (number, column) in values.chunks_mut(capacity.max(1)).enumerate().take(list.count()) {
+        let Some(custom) = list.get(number) else { continue };
+        for (to, &serial) in column.iter_mut().zip(serial).skip(first) {
+            let given = custom.start.get(serial as usize).filter(|_| serial < start);
+            *to = given.copied().unwrap_or(custom.newborn);
+        }
+    }
 }
 
 impl CustomList for () {

@@ -19,7 +19,6 @@ pub use distance::Distance;
 pub use kind::ConstraintKind;
 
 pub use crate::memory::{Demand, Kept, Words};
-use crate::step::{Moment, Moved};
 
 /// Something that the places and velocities of particles have to satisfy.
 ///
@@ -58,15 +57,30 @@ pub trait Constraint: Sync {
 
 /// What constraints call for in a step: a function, so that a program which has none does not carry it about.
 #[derive(Clone, Copy, Debug)]
-pub struct ConstraintCode(pub(crate) fn(&mut Moved<'_>, Moment, Substep));
+pub struct ConstraintCode(pub(crate) fn(&dyn Constraint, Moment, &mut Bodies<'_>, &mut Share<'_>));
 
 impl ConstraintCode {
     /// All of it.
     pub const ALL: Self = Self(constrain);
 }
 
-fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
-    moved.constrain(moment, substep);
+/// What constraints are asked for in a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Moment {
+    /// What they do before the method moves everything.
+    Before,
+    /// What they do then.
+    After,
+}
+
+fn constrain(constraints: &dyn Constraint, moment: Moment, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+    match moment {
+        Moment::Before => constraints.prepare(bodies, share),
+        Moment::After => {
+            constraints.project(bodies, share);
+            constraints.settle(bodies, share);
+        }
+    }
 }
 
 impl Constraint for () {

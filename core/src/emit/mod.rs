@@ -148,10 +148,7 @@ impl Births<'_> {
 
     fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
         let id = self.view.spawn(particle, at, stream.name())?;
-        if let Some(code) = self.scene.custom.code() {
-            let row = self.view.len() - 1;
-            (code.give)(&mut self.view, self.scene, row);
-        }
+        self.view.give_custom(self.scene, self.view.len() - 1);
         self.report.born += 1;
         let Particle { position: place, velocity, .. } = *particle;
         self.observer.born(&Passing { id, place, velocity, time: at });

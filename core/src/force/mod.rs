@@ -11,13 +11,15 @@ mod inverse_square;
 mod kind;
 mod mutual;
 mod near;
+mod needs;
 mod penalty;
 mod pressure;
 mod quadratic;
 mod radial;
 mod relaxation;
 mod sink;
-pub(crate) mod spring;
+mod spring;
+mod state;
 mod steady;
 mod viscosity;
 mod wind;
@@ -31,6 +33,8 @@ pub use friction::Friction;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
+pub(crate) use needs::Then;
+pub use needs::{Listing, Needs, Trees};
 pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
@@ -39,19 +43,12 @@ pub use relaxation::Relaxation;
 pub use sink::Sink;
 pub(crate) use spring::is_broken;
 pub use spring::{Drive, Held, Spring, SpringCode, SpringList, Springs};
+pub use state::State;
 pub use steady::Steady;
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 
-use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::index::{Arrange, BarnesHut, Listing, Neighbours};
-use crate::math::max;
-use crate::particles::Id;
-use crate::report::Report;
-use crate::rng::later;
-use crate::scene::Scene;
-use crate::step::{Field, View};
-use crate::time::Time;
+use crate::custom::CustomColumnsMut;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -154,216 +151,6 @@ pub struct Change<'a> {
     pub position: f32,
     /// How far velocities go along it.
     pub velocity: f32,
-}
-
-/// What makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
-#[derive(Clone, Copy, Debug)]
-pub struct Trees(pub(crate) Finding);
-
-/// Calls a function with a state in which what forces have to find is found.
-pub(crate) type Finding = for<'s> fn(&mut Field<'_>, &State<'s>, &mut dyn FnMut(&State<'_>));
-
-/// What lets forces write, likewise.
-#[derive(Clone, Copy, Debug)]
-pub struct Writing(pub(crate) Write);
-
-type Write = fn(&mut View<'_>, &Scene<'_>, [Time; 2], &mut Report);
-
-impl Trees {
-    /// Those of Barnes and Hut, by [`BarnesHut::grow`].
-    pub const GROWN: Self = Self(|field, state, then| field.with_trees(state, then));
-}
-
-impl Writing {
-    /// Once in each step, at its end.
-    pub const AT_END: Self = Self(write);
-}
-
-fn write(view: &mut View<'_>, scene: &Scene<'_>, span: [Time; 2], report: &mut Report) {
-    view.write(scene, span, report);
-}
-
-/// What forces have to find in the state, beyond the particles.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Needs {
-    /// [`State::mass_tree`], and what makes it.
-    pub mass_tree: Option<Trees>,
-    /// [`State::charge_tree`], and what makes it.
-    pub charge_tree: Option<Trees>,
-    /// The radius within which [`State::near`] is asked for neighbours \[m\]; zero: it is not.
-    pub reach: f32,
-    /// What finds them: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
-    pub lists: Option<Listing>,
-    /// To change columns of a user's own, by [`Force::write`]; without it a force is not asked to.
-    pub write: Option<Writing>,
-}
-
-impl Needs {
-    /// Neighbours within a radius \[m\], in lists where there is memory for them.
-    #[must_use]
-    pub fn within(reach: f32) -> Self {
-        Self { reach: max(reach, 0.0), lists: Some(Listing::KEPT), ..Self::default() }
-    }
-
-    /// What two forces need.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            mass_tree: self.mass_tree.or(other.mass_tree),
-            charge_tree: self.charge_tree.or(other.charge_tree),
-            reach: max(self.reach, other.reach),
-            lists: self.lists.or(other.lists),
-            write: self.write.or(other.write),
-        }
-    }
-
-    /// Vectors for each particle that the trees take.
-    #[must_use]
-    pub const fn tree_columns(self) -> usize {
-        BarnesHut::COLUMNS * (self.mass_tree.is_some() as usize + self.charge_tree.is_some() as usize)
-    }
-
-    /// Vectors for each particle that it takes to work it all out, neighbours by `index`.
-    #[must_use]
-    pub fn columns(self, index: &dyn Arrange) -> usize {
-        self.tree_columns() + if self.reach > 0.0 { index.columns() } else { 0 }
-    }
-}
-
-/// The particles as forces and reapers see them: one entry a row.
-#[derive(Clone, Copy)]
-pub struct State<'a> {
-    /// The instant.
-    pub time: Time,
-    /// Positions \[m\].
-    pub position: &'a [Vec3],
-    /// Velocities \[m/s\].
-    pub velocity: &'a [Vec3],
-    /// Radii \[m\].
-    pub radius: &'a [f32],
-    /// Masses \[kg\].
-    pub mass: &'a [f32],
-    /// Coefficients of linear drag \[kg/s\].
-    pub drag: &'a [f32],
-    /// Charges \[C\].
-    pub charge: &'a [f32],
-    /// When they were born.
-    pub born: &'a [Time],
-    /// When they die of age; [`Time::NEVER`]: never.
-    pub dies: &'a [Time],
-    /// The slots they hold; see [`id`](State::id).
-    pub slot: &'a [u32],
-    /// What their random numbers are drawn by; see [`word`](State::word).
-    pub key: &'a [u32],
-    /// Columns of a user's own.
-    pub custom: CustomColumns<'a>,
-    /// The springs between them.
-    pub springs: Springs<'a>,
-    /// The neighbours of each.
-    pub near: Neighbours<'a>,
-    /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
-    pub mass_tree: Option<&'a BarnesHut<'a>>,
-    /// Their charges in a tree, likewise.
-    pub charge_tree: Option<&'a BarnesHut<'a>>,
-}
-
-impl<'a> State<'a> {
-    /// Nobody.
-    pub(crate) const EMPTY: State<'static> = State {
-        time: Time::ZERO,
-        position: &[],
-        velocity: &[],
-        radius: &[],
-        mass: &[],
-        drag: &[],
-        charge: &[],
-        born: &[],
-        dies: &[],
-        slot: &[],
-        key: &[],
-        custom: CustomColumns::NONE,
-        springs: Springs {
-            springs: &[],
-            code: None,
-            start: 0,
-            serial: &[],
-            row_of: &[],
-            last_spring: &[],
-            incident: &[],
-        },
-        near: Neighbours::among(&[]),
-        mass_tree: None,
-        charge_tree: None,
-    };
-
-    /// The first of these particles, as many as there are places, at other places with other velocities; what was sorted by
-    /// place is left out.
-    pub(crate) fn moved<'s>(&self, time: Time, position: &'s [Vec3], velocity: &'s [Vec3]) -> State<'s>
-    where
-        'a: 's,
-    {
-        let len = position.len();
-        State {
-            time,
-            position,
-            velocity,
-            radius: &self.radius[..len],
-            mass: &self.mass[..len],
-            drag: &self.drag[..len],
-            charge: &self.charge[..len],
-            born: &self.born[..len],
-            dies: &self.dies[..len],
-            slot: &self.slot[..len],
-            key: &self.key[..len],
-            custom: self.custom.rows(0..len),
-            springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
-            near: Neighbours::among(position),
-            mass_tree: None,
-            charge_tree: None,
-        }
-    }
-
-    /// What they are besides places and velocities, some rows of it.
-    pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
-        Self {
-            position: &[],
-            velocity: &[],
-            radius: &self.radius[rows.clone()],
-            mass: &self.mass[rows.clone()],
-            drag: &self.drag[rows.clone()],
-            charge: &self.charge[rows.clone()],
-            born: &self.born[rows.clone()],
-            dies: &self.dies[rows.clone()],
-            slot: &self.slot[rows.clone()],
-            key: &self.key[rows.clone()],
-            custom: self.custom.rows(rows.clone()),
-            springs: Springs { serial: &self.springs.serial[rows], ..self.springs },
-            ..*self
-        }
-    }
-
-    /// How many particles lie within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking at all.
-    #[must_use]
-    pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
-        self.near.count_within(place, radius)
-    }
-
-    /// The particle in a row.
-    #[must_use]
-    pub fn id(&self, row: usize) -> Option<Id> {
-        Some(Id { slot: *self.slot.get(row)?, serial: *self.springs.serial.get(row)? })
-    }
-
-    /// A random word of the particle in a row, the `place`-th that it has beside those of its birth: the same as long as it
-    /// lives, and however time is cut into steps.
-    ///
-    /// It belongs to the emitter's number and the birth's number there, of what is put in without an emitter to the number
-    /// in which it was put in. (Serials and slots will not do for that: in which order the births of several emitters come in
-    /// depends on the steps.)
-    #[must_use]
-    pub fn word(&self, row: usize, place: u32) -> Option<u32> {
-        Some(later(*self.key.get(row)?, place))
-    }
 }
 
 impl Force for () {

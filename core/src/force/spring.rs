@@ -2,9 +2,6 @@
 
 use super::{Change, Force, State};
 use crate::math::{length, max, sin_cos_turns};
-use crate::report::Report;
-use crate::scene::Scene;
-use crate::step::View;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -84,8 +81,8 @@ impl Spring {
     }
 
     /// Whether it holds, as number `number` of the scene's list, but is stretched beyond what it bears.
-    pub(crate) fn is_overstretched(&self, number: usize, state: &State<'_>) -> bool {
-        let (Some(ratio), table) = (self.breaks_at, state.springs) else { return false };
+    fn is_overstretched(&self, number: usize, table: &Springs<'_>, state: &State<'_>) -> bool {
+        let Some(ratio) = self.breaks_at else { return false };
         let rows = table.row(self.ends[0]).zip(table.row(self.ends[1])).filter(|_| !table.is_broken(number));
         rows.is_some_and(|(a, b)| length(state.position[b] - state.position[a]) > ratio * self.rest(state.time))
     }
@@ -189,20 +186,14 @@ pub struct SpringCode {
     pub(crate) sort: fn(&[Spring], &mut [u32], &mut [u32], u32) -> u64,
     /// How many hold the particle in a row.
     pub(crate) held_by: fn(&Springs<'_>, usize) -> u64,
-    /// Breaks those that are stretched too far, and says whether any may break.
-    pub(crate) snap: Snap,
+    /// Breaks those that are stretched too far, and says how many if any can: of the state, and the springs by their ends.
+    pub(crate) snap: fn(&State<'_>, &mut [u32]) -> Option<u64>,
 }
-
-type Snap = fn(&mut View<'_>, &Scene<'_>, &mut Report) -> bool;
 
 impl SpringCode {
     /// All of it.
-    pub const ALL: Self = Self {
-        force: |springs| springs,
-        sort: sort_by_ends,
-        held_by: |table, row| table.held_by(row),
-        snap: |view, scene, report| view.snap(scene, report),
-    };
+    pub const ALL: Self =
+        Self { force: |springs| springs, sort: sort_by_ends, held_by: |table, row| table.held_by(row), snap };
 }
 
 /// The scene's springs and where their ends are now.
@@ -395,8 +386,21 @@ impl Held<'_> {
     }
 }
 
+fn snap(state: &State<'_>, incident: &mut [u32]) -> Option<u64> {
+    let mut broken = None;
+    let Springs { springs, last_spring, .. } = state.springs;
+    for (number, spring) in springs.iter().enumerate().filter(|(_, spring)| spring.breaks_at.is_some()) {
+        let broken = broken.get_or_insert(0);
+        if spring.is_overstretched(number, &Springs { incident, ..state.springs }, state) {
+            mark_broken(number, spring, last_spring, incident);
+            *broken += 1;
+        }
+    }
+    broken
+}
+
 /// Marks a spring as broken in the lists of both ends.
-pub(crate) fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], incident: &mut [u32]) {
+fn mark_broken(number: usize, spring: &Spring, last_spring: &[u32], incident: &mut [u32]) {
     for end in spring.ends {
         let list = incident.get_mut(Springs::list(last_spring, end)).unwrap_or_default();
         let place = place_in(list, number);

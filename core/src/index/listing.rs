@@ -3,7 +3,6 @@
 use super::lists::ListMemory;
 use super::neighbours::Neighbours;
 use super::{Arrange, SpatialIndex};
-use crate::force::Finding;
 use glam::Vec3;
 
 /// How neighbours have been found.
@@ -19,34 +18,25 @@ pub(crate) enum Found {
     AllPairs,
 }
 
-/// Finds neighbours: a function, so that a program with no force that names it does not carry it about.
-#[derive(Clone, Copy)]
-pub struct Listing(pub(crate) Finding);
+/// What neighbours are looked up of, and by what.
+pub(crate) struct Search<'a> {
+    pub(crate) index: &'a dyn Arrange,
+    /// The index's memory, and that of lists, where there is some.
+    pub(crate) memory: &'a mut [u32],
+    pub(crate) lists: Option<ListMemory<'a>>,
+    pub(crate) reach: f32,
+}
 
 /// What is done with neighbours.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(Neighbours<'_>, Found);
 
-impl Listing {
-    /// Lists that last until somebody has gone half their skin, where there is memory for them.
-    pub const KEPT: Self = Self(|field, state, then| field.with_neighbours(state, then));
-}
-
-impl core::fmt::Debug for Listing {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("Listing")
-    }
-}
-
 /// Calls `then` with the neighbours of points, in lists if they last and there is room for them.
 #[inline(never)]
-pub(crate) fn list(
-    index: &dyn Arrange,
-    memory: &mut [u32],
-    mut lists: ListMemory<'_>,
-    [points, velocity]: [&[Vec3]; 2],
-    reach: f32,
-    then: Then<'_>,
-) {
+pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: Then<'_>) {
+    let Search { index, memory, lists, reach } = search;
+    let Some(mut lists) = lists else {
+        return stream(index, memory, points, reach, then);
+    };
     if cfg!(target_os = "none") {
         // A chip's indices do not answer in order.
         return stream(index, memory, points, reach, then);
@@ -67,7 +57,7 @@ pub(crate) fn list(
 }
 
 /// Calls `then` with the neighbours of points by an index that is made for it.
-pub(crate) fn stream(index: &dyn Arrange, memory: &mut [u32], points: &[Vec3], reach: f32, then: Then<'_>) {
+fn stream(index: &dyn Arrange, memory: &mut [u32], points: &[Vec3], reach: f32, then: Then<'_>) {
     index.arrange(memory, points, reach, &mut |index| then(Neighbours::by(index, points), how(index)));
 }
 

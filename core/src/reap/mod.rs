@@ -16,10 +16,10 @@ pub use dense::Dense;
 pub use kind::ReaperKind;
 
 use crate::force::State;
+use crate::index::{Arrange, Neighbours};
 use crate::math::max;
-use crate::scene::Scene;
-use crate::step::View;
 use core::ops::Range;
+use glam::Vec3;
 pub(crate) use lifetime::Lifetime;
 pub(crate) use nonfinite::Nonfinite;
 
@@ -55,15 +55,39 @@ pub trait Reaper: Sync {
 
 /// What reapers call for in a step: a function, so that a program which has none does not carry it about.
 #[derive(Clone, Copy, Debug)]
-pub struct ReaperCode(pub(crate) fn(&mut View<'_>, &Scene<'_>));
+pub struct ReaperCode(pub(crate) fn(&dyn Reaper, Judged<'_>));
 
 impl ReaperCode {
     /// All of it.
     pub const ALL: Self = Self(judge_all);
 }
 
-fn judge_all(view: &mut View<'_>, scene: &Scene<'_>) {
-    view.judge_all(scene);
+/// All rows, as they are to be judged.
+pub(crate) struct Judged<'a> {
+    pub(crate) state: State<'a>,
+    /// What has become of them so far.
+    pub(crate) fates: &'a mut [Fate],
+    /// What finds who is near, and memory for it.
+    pub(crate) index: &'a dyn Arrange,
+    pub(crate) words: &'a mut [u32],
+    /// Room for the places of those who live.
+    pub(crate) places: &'a mut [Vec3],
+}
+
+fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
+    let Judged { state, fates, index, words, places } = judged;
+    let (rows, reach) = (0..fates.len(), reapers.reach());
+    if reach <= 0.0 {
+        return reapers.judge(&state, rows, &mut Verdicts::on(fates));
+    }
+    for ((place, &x), &fate) in places.iter_mut().zip(state.position).zip(&*fates) {
+        *place = if fate == Fate::Lives { x } else { Vec3::NAN };
+    }
+    let (position, mut verdicts) = (&*places, Verdicts::on(fates));
+    index.arrange(words, position, reach, &mut |near| {
+        let near = Neighbours::by(near, position);
+        reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
+    });
 }
 
 /// What reapers say of the rows they are asked about.

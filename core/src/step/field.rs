@@ -1,8 +1,8 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use crate::custom::CustomColumns;
-use crate::force::{Force, Needs, State, Trees};
-use crate::index::{BarnesHut, Found, ListMemory, Neighbours, list, stream};
+use crate::force::{Force, Needs, State, Then, Trees};
+use crate::index::{BarnesHut, Found, ListMemory, Search};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
@@ -64,69 +64,40 @@ pub(crate) struct Field<'a> {
 
 impl Field<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
-    pub(super) fn with_state(
-        &mut self,
-        time: Time,
-        position: &[Vec3],
-        velocity: &[Vec3],
-        then: &mut dyn FnMut(&State<'_>),
-    ) {
+    pub(super) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
         self.effort.evaluations += u64::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         match self.needs.mass_tree.or(self.needs.charge_tree) {
-            Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
+            Some(trees) if position.len() >= BarnesHut::FEWEST => self.with_trees(trees, &state, then),
             _ => self.with_near(&state, then),
         }
     }
 
     /// Apart, so that whoever needs no trees has no room for them on the stack.
-    pub(crate) fn with_trees(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
-        // No more memory than these particles call for: more would make other nodes, and so other bits.
-        let words = 3 * BarnesHut::COLUMNS * state.position.len();
+    #[inline(never)]
+    fn with_trees(&mut self, trees: Trees, state: &State<'_>, then: Then<'_>) {
         let memory = core::mem::take(&mut self.tree);
-        let first = if self.needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
-        let (of_mass, of_charge) = memory.split_at_mut(first);
-        let second = words.min(of_charge.len());
-        let grown = |trees: Option<Trees>, memory, weights| {
-            trees.and_then(|_| BarnesHut::grow(memory, state.position, weights))
-        };
-        let mass_tree = grown(self.needs.mass_tree, of_mass, state.mass);
-        let charge_tree = grown(self.needs.charge_tree, &mut of_charge[..second], state.charge);
-        let (mass_tree, charge_tree) = (mass_tree.as_ref(), charge_tree.as_ref());
-        self.with_near(&State { mass_tree, charge_tree, ..*state }, then);
+        (trees.0)(self.needs, memory, state, &mut |state| self.with_near(state, then));
         self.tree = memory;
     }
 
     /// Calls `then` with neighbours, where anybody asks for them.
-    fn with_near(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
+    fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
         // A few newborn look at all others: an index would be made for them alone.
         let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
-        let looks = self.needs.reach > 0.0 && !are_few;
-        match self.needs.lists {
-            Some(lists) if looks => (lists.0)(self, state, then),
-            _ => {
-                self.effort.all_pairs += u64::from(looks);
-                then(state);
-            }
-        }
-    }
-
-    /// Calls `then` with neighbours that are found in lists or by the scene's index.
-    pub(crate) fn with_neighbours(&mut self, state: &State<'_>, then: &mut dyn FnMut(&State<'_>)) {
         let reach = self.needs.reach;
-        let (points, scene, effort) = (state.position, self.scene, &mut self.effort);
-        let words = (3 * scene.index.columns() * points.len()).min(self.near.len());
-        let memory = &mut self.near[..words];
-        let then = &mut |near: Neighbours<'_>, found| {
-            effort.lists += u64::from(found == Found::Listed);
-            effort.streamed += u64::from(found == Found::Streamed);
-            effort.all_pairs += u64::from(found == Found::AllPairs);
-            then(&State { near, ..*state });
+        let looks = reach > 0.0 && !are_few;
+        let Some(lists) = self.needs.lists.filter(|_| looks) else {
+            self.effort.all_pairs += u64::from(looks);
+            return then(state);
         };
-        match &mut self.lists {
-            Some(lists) => list(scene.index, memory, lists.again(), [points, state.velocity], reach, then),
-            None => stream(scene.index, memory, points, reach, then),
-        }
+        let index = self.scene.index;
+        let words = (3 * index.columns() * state.position.len()).min(self.near.len());
+        let (memory, kept) = (&mut self.near[..words], self.lists.as_mut().map(ListMemory::again));
+        let found = (lists.0)(Search { index, memory, lists: kept, reach }, state, then);
+        self.effort.lists += u64::from(found == Found::Listed);
+        self.effort.streamed += u64::from(found == Found::Streamed);
+        self.effort.all_pairs += u64::from(found == Found::AllPairs);
     }
 }
 

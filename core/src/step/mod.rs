@@ -11,8 +11,6 @@ mod tile;
 mod view;
 mod write;
 
-pub(crate) use field::Field;
-pub(crate) use substeps::{Moment, Moved};
 pub(crate) use tile::Tile;
 pub(crate) use view::{Status, View};
 
@@ -40,8 +38,8 @@ impl View<'_> {
         } else {
             self.phase_by_phase(scene, span, old, report, observer);
         }
-        if let Some(write) = scene.forces.needs().write {
-            (write.0)(self, scene, span, report);
+        if scene.forces.needs().write {
+            self.write(scene, span, report);
         }
         let before = report.died.total();
         self.reap(scene, report, observer);
@@ -49,8 +47,8 @@ impl View<'_> {
             self.status.hint = Time::ZERO;
         }
         self.tell(Phase::Delete, scene, observer);
-        if let Some(code) = scene.custom.code().filter(|_| scene.custom.count() > 0) {
-            (code.let_write)(self, scene, observer);
+        if scene.custom.count() > 0 {
+            self.let_write(scene, observer);
         }
     }
 
@@ -68,7 +66,7 @@ impl View<'_> {
         self.advance(scene, span, old, report, observer);
         self.status.time = now + dt;
         self.tell(Phase::Move, scene, observer);
-        if scene.springs.code().is_some_and(|code| (code.snap)(self, scene, report)) {
+        if scene.springs.code().is_some_and(|code| self.snap(scene, code, report)) {
             self.tell(Phase::Snap, scene, observer);
         }
         if scene.is_swept() {

@@ -1,13 +1,13 @@
 //! Sub-steps: the method moves everything, then constraints move it to where they are met.
 
 use super::field::{Attributes, Field};
-use crate::constrain::{Bodies, Constraint, Near, Share, Substep};
+use crate::constrain::{Bodies, ConstraintCode, Moment, Near, Share, Substep};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::Needs;
 use crate::index::{ListMemory, Listed};
 use crate::integrate::{Motion, Work};
 use crate::memory::{Layout, Scratch};
-use crate::observe::{self, Observer};
+use crate::observe::{Observer, Phase};
 use crate::report::{Effort, Report};
 use crate::scene::Scene;
 use crate::time::Time;
@@ -46,15 +46,6 @@ pub(super) struct Carried<'a> {
     pub(super) changes: u32,
 }
 
-/// What constraints are asked for.
-#[derive(Clone, Copy)]
-pub(crate) enum Moment {
-    /// What they do before the method moves everything.
-    Before,
-    /// What they do then.
-    After,
-}
-
 impl Moved<'_> {
     /// Moves all from `now` on through a step of `dt`.
     pub(super) fn go(&mut self, now: Time, dt: Time, hint: &mut Time) {
@@ -66,11 +57,14 @@ impl Moved<'_> {
             self.remember();
             let constraints = self.scene.constraints.code().filter(|_| !self.marks.is_empty());
             if let Some(code) = constraints {
-                (code.0)(self, Moment::Before, substep);
+                self.ask(code, Moment::Before, substep);
             }
             self.integrate(substep, hint);
             if let Some(code) = constraints {
-                (code.0)(self, Moment::After, substep);
+                self.tell(Phase::Advance, to);
+                self.tell(Phase::Project, to);
+                self.ask(code, Moment::After, substep);
+                self.tell(Phase::Constrain, to);
             }
             from = to;
         }
@@ -119,30 +113,15 @@ impl Moved<'_> {
     }
 
     /// Says that the sub-step has come so far.
-    fn tell(&mut self, phase: observe::Phase, time: Time) {
+    fn tell(&mut self, phase: Phase, time: Time) {
         let custom = custom(self.scene, self.attributes, self.kept, self.capacity);
         let state = self.attributes.state(custom, time, [self.position, self.velocity]);
         self.observer.after(phase, &state);
     }
 
-    /// Asks the constraints for what they do before the method has moved everything, or then.
-    pub(crate) fn constrain(&mut self, moment: Moment, substep: Substep) {
-        let [_, to] = substep.during;
-        match moment {
-            Moment::Before => self.ask(substep, |constraints, bodies, share| constraints.prepare(bodies, share)),
-            Moment::After => {
-                self.tell(observe::Phase::Advance, to);
-                self.tell(observe::Phase::Project, to);
-                self.ask(substep, |constraints, bodies, share| constraints.project(bodies, share));
-                self.ask(substep, |constraints, bodies, share| constraints.settle(bodies, share));
-                self.tell(observe::Phase::Constrain, to);
-            }
-        }
-    }
-
-    /// Calls a function with the constraints, what they move and the memory that they work in.
-    fn ask(&mut self, substep: Substep, phase: fn(&dyn Constraint, &mut Bodies<'_>, &mut Share<'_>)) {
-        let (scene, constraints) = (self.scene, self.scene.constraints);
+    /// Lends the constraints what they move and the memory that they work in.
+    fn ask(&mut self, code: ConstraintCode, moment: Moment, substep: Substep) {
+        let scene = self.scene;
         let Attributes { lives, inverse_mass, elasticity, material } = *self.attributes;
         let len = self.position.len();
         let [memory, scratch] = self.scratch.constraining();
@@ -170,7 +149,7 @@ impl Moved<'_> {
             observer: self.observer,
         };
         let mut share = Share { kept, step: self.lasting, scratch, capacity: self.capacity };
-        phase(constraints, &mut bodies, &mut share);
+        (code.0)(scene.constraints, moment, &mut bodies, &mut share);
     }
 }
 

@@ -1,6 +1,6 @@
 //! A system with its memory at hand: every phase of a step works on it.
 
-use crate::custom::CustomColumnsMut;
+use crate::custom::{CustomColumnsMut, Newcomers};
 use crate::force::State;
 use crate::index::Listed;
 use crate::memory::{Layout, Slices, Storage, Words};
@@ -99,9 +99,7 @@ impl View<'_> {
             }
         }
         self.status.start = self.status.taken;
-        if let Some(code) = scene.custom.code() {
-            (code.give)(self, scene, 0);
-        }
+        self.give_custom(scene, 0);
         self.memory.last_spring.fill(0);
         // What lies beyond the lists counts in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);
@@ -126,14 +124,10 @@ impl View<'_> {
 
     /// Gives rows from `first` on what they begin with in columns of a user's own.
     pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize) {
+        let Some(code) = scene.custom.code() else { return };
         let (capacity, len, start) = (self.capacity(), self.len(), self.status.start);
         let Slices { serial, kept, .. } = self.memory.slices();
-        for (number, column) in kept.chunks_mut(capacity.max(1)).enumerate().take(scene.custom.count()) {
-            let Some(custom) = scene.custom.get(number) else { continue };
-            for (to, &serial) in column.iter_mut().zip(&*serial).take(len).skip(first) {
-                let given = custom.start.get(serial as usize).filter(|_| serial < start);
-                *to = given.copied().unwrap_or(custom.newborn).to_bits();
-            }
-        }
+        let (values, _) = Layout::of(scene.plan(), capacity).kept(kept);
+        (code.give)(scene.custom, Newcomers { first, serial: &serial[..len], start, values, capacity });
     }
 }

@@ -11,7 +11,7 @@ use crate::time::Time;
 
 impl View<'_> {
     /// Lets forces write, at a step's end.
-    pub(crate) fn write(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
+    pub(super) fn write(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
         let (len, capacity) = (self.len(), self.capacity());
         let layout = Layout::of(scene.plan(), capacity);
         let kept = core::mem::take(&mut self.memory.kept);
@@ -41,7 +41,7 @@ impl View<'_> {
     }
 
     /// Lets whoever looks on write.
-    pub(crate) fn let_write(&mut self, scene: &Scene<'_>, observer: &mut dyn Observer) {
+    pub(super) fn let_write(&mut self, scene: &Scene<'_>, observer: &mut dyn Observer) {
         let (len, capacity) = (self.len(), self.capacity());
         let kept = core::mem::take(&mut self.memory.kept);
         let values = Layout::of(scene.plan(), capacity).kept(kept).0;

@@ -1,0 +1,94 @@
+//! What forces have to find in the state.
+
+use super::State;
+use crate::index::{Arrange, BarnesHut, Found, Search, find};
+use crate::math::max;
+
+/// Makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct Trees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
+
+/// Finds neighbours, likewise.
+#[derive(Clone, Copy, Debug)]
+pub struct Listing(pub(crate) fn(Search<'_>, &State<'_>, Then<'_>) -> Found);
+
+/// What is done with a state in which all is found.
+pub(crate) type Then<'a> = &'a mut dyn FnMut(&State<'_>);
+
+impl Trees {
+    /// Those of Barnes and Hut, by [`BarnesHut::grow`].
+    pub const GROWN: Self = Self(grow);
+}
+
+impl Listing {
+    /// Lists that last until somebody has gone half their skin, where there is memory for them.
+    pub const KEPT: Self = Self(look_up);
+}
+
+fn grow(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
+    // No more memory than these particles call for: more would make other nodes, and so other bits.
+    let words = 3 * BarnesHut::COLUMNS * state.position.len();
+    let first = if needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
+    let (of_mass, of_charge) = memory.split_at_mut(first);
+    let second = words.min(of_charge.len());
+    let mass_tree = needs.mass_tree.and_then(|_| BarnesHut::grow(of_mass, state.position, state.mass));
+    let of_charge = &mut of_charge[..second];
+    let charge_tree = needs.charge_tree.and_then(|_| BarnesHut::grow(of_charge, state.position, state.charge));
+    then(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state });
+}
+
+fn look_up(search: Search<'_>, state: &State<'_>, then: Then<'_>) -> Found {
+    let mut found = Found::AllPairs;
+    find(search, [state.position, state.velocity], &mut |near, how| {
+        found = how;
+        then(&State { near, ..*state });
+    });
+    found
+}
+
+/// What forces have to find in the state, beyond the particles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Needs {
+    /// [`State::mass_tree`](super::State::mass_tree), and what makes it.
+    pub mass_tree: Option<Trees>,
+    /// [`State::charge_tree`](super::State::charge_tree), and what makes it.
+    pub charge_tree: Option<Trees>,
+    /// The radius within which [`State::near`](super::State::near) is asked for neighbours \[m\]; zero: it is not.
+    pub reach: f32,
+    /// What finds them: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
+    pub lists: Option<Listing>,
+    /// To change columns of a user's own, by [`Force::write`](super::Force::write); else a force is not asked to.
+    pub write: bool,
+}
+
+impl Needs {
+    /// Neighbours within a radius \[m\], in lists where there is memory for them.
+    #[must_use]
+    pub fn within(reach: f32) -> Self {
+        Self { reach: max(reach, 0.0), lists: Some(Listing::KEPT), ..Self::default() }
+    }
+
+    /// What two forces need.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            mass_tree: self.mass_tree.or(other.mass_tree),
+            charge_tree: self.charge_tree.or(other.charge_tree),
+            reach: max(self.reach, other.reach),
+            lists: self.lists.or(other.lists),
+            write: self.write || other.write,
+        }
+    }
+
+    /// Vectors for each particle that the trees take.
+    #[must_use]
+    pub const fn tree_columns(self) -> usize {
+        BarnesHut::COLUMNS * (self.mass_tree.is_some() as usize + self.charge_tree.is_some() as usize)
+    }
+
+    /// Vectors for each particle that it takes to work it all out, neighbours by `index`.
+    #[must_use]
+    pub fn columns(self, index: &dyn Arrange) -> usize {
+        self.tree_columns() + if self.reach > 0.0 { index.columns() } else { 0 }
+    }
+}

@@ -1,0 +1,146 @@
+//! The particles as whatever acts on them sees them.
+
+use super::Springs;
+use crate::custom::CustomColumns;
+use crate::index::{BarnesHut, Neighbours};
+use crate::particles::Id;
+use crate::rng::later;
+use crate::time::Time;
+use core::ops::Range;
+use glam::Vec3;
+
+/// The particles as forces and reapers see them: one entry a row.
+#[derive(Clone, Copy)]
+pub struct State<'a> {
+    /// The instant.
+    pub time: Time,
+    /// Positions \[m\].
+    pub position: &'a [Vec3],
+    /// Velocities \[m/s\].
+    pub velocity: &'a [Vec3],
+    /// Radii \[m\].
+    pub radius: &'a [f32],
+    /// Masses \[kg\].
+    pub mass: &'a [f32],
+    /// Coefficients of linear drag \[kg/s\].
+    pub drag: &'a [f32],
+    /// Charges \[C\].
+    pub charge: &'a [f32],
+    /// When they were born.
+    pub born: &'a [Time],
+    /// When they die of age; [`Time::NEVER`]: never.
+    pub dies: &'a [Time],
+    /// The slots they hold; see [`id`](State::id).
+    pub slot: &'a [u32],
+    /// What their random numbers are drawn by; see [`word`](State::word).
+    pub key: &'a [u32],
+    /// Columns of a user's own.
+    pub custom: CustomColumns<'a>,
+    /// The springs between them.
+    pub springs: Springs<'a>,
+    /// The neighbours of each.
+    pub near: Neighbours<'a>,
+    /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
+    pub mass_tree: Option<&'a BarnesHut<'a>>,
+    /// Their charges in a tree, likewise.
+    pub charge_tree: Option<&'a BarnesHut<'a>>,
+}
+
+impl<'a> State<'a> {
+    /// Nobody.
+    pub(crate) const EMPTY: State<'static> = State {
+        time: Time::ZERO,
+        position: &[],
+        velocity: &[],
+        radius: &[],
+        mass: &[],
+        drag: &[],
+        charge: &[],
+        born: &[],
+        dies: &[],
+        slot: &[],
+        key: &[],
+        custom: CustomColumns::NONE,
+        springs: Springs {
+            springs: &[],
+            code: None,
+            start: 0,
+            serial: &[],
+            row_of: &[],
+            last_spring: &[],
+            incident: &[],
+        },
+        near: Neighbours::among(&[]),
+        mass_tree: None,
+        charge_tree: None,
+    };
+
+    /// The first of these particles, as many as there are places, at other places with other velocities; what was sorted by
+    /// place is left out.
+    pub(crate) fn moved<'s>(&self, time: Time, position: &'s [Vec3], velocity: &'s [Vec3]) -> State<'s>
+    where
+        'a: 's,
+    {
+        let len = position.len();
+        State {
+            time,
+            position,
+            velocity,
+            radius: &self.radius[..len],
+            mass: &self.mass[..len],
+            drag: &self.drag[..len],
+            charge: &self.charge[..len],
+            born: &self.born[..len],
+            dies: &self.dies[..len],
+            slot: &self.slot[..len],
+            key: &self.key[..len],
+            custom: self.custom.rows(0..len),
+            springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
+            near: Neighbours::among(position),
+            mass_tree: None,
+            charge_tree: None,
+        }
+    }
+
+    /// What they are besides places and velocities, some rows of it.
+    pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
+        Self {
+            position: &[],
+            velocity: &[],
+            radius: &self.radius[rows.clone()],
+            mass: &self.mass[rows.clone()],
+            drag: &self.drag[rows.clone()],
+            charge: &self.charge[rows.clone()],
+            born: &self.born[rows.clone()],
+            dies: &self.dies[rows.clone()],
+            slot: &self.slot[rows.clone()],
+            key: &self.key[rows.clone()],
+            custom: self.custom.rows(rows.clone()),
+            springs: Springs { serial: &self.springs.serial[rows], ..self.springs },
+            ..*self
+        }
+    }
+
+    /// How many particles lie within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking at all.
+    #[must_use]
+    pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
+        self.near.count_within(place, radius)
+    }
+
+    /// The particle in a row.
+    #[must_use]
+    pub fn id(&self, row: usize) -> Option<Id> {
+        Some(Id { slot: *self.slot.get(row)?, serial: *self.springs.serial.get(row)? })
+    }
+
+    /// A random word of the particle in a row, the `place`-th that it has beside those of its birth: the same as long as it
+    /// lives, and however time is cut into steps.
+    ///
+    /// It belongs to the emitter's number and the birth's number there, of what is put in without an emitter to the number
+    /// in which it was put in. (Serials and slots will not do for that: in which order the births of several emitters come in
+    /// depends on the steps.)
+    #[must_use]
+    pub fn word(&self, row: usize, place: u32) -> Option<u32> {
+        Some(later(*self.key.get(row)?, place))
+    }
+}
