@@ -19,7 +19,7 @@ fn births(c: &mut Criterion) {
     let mut group = c.benchmark_group("births");
     group.throughput(Throughput::Elements(1000));
     for (name, shape) in shapes {
-        let varied = Varied { mean: 1.0, variance: 0.1 };
+        let varied = Varied { mean: 1.0, half_width: 0.1 };
         let emitter = Emitter {
             shape,
             rate: 60_000.0,

@@ -4,8 +4,8 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use pointmass::{
-    Drag, Gravity, Heap, Implicit, Integrator, Method, Particle, Scene, Sheet, Symplectic, System, Thread, Threads,
-    Time, Vec3,
+    ClothSprings, Drag, Gravity, Heap, Implicit, Integrator, Method, Particle, Scene, Sheet, SpringParams, Symplectic,
+    System, Time, Vec3,
 };
 use pointmass_bench::{Bare, FRAME, cloud, started};
 
@@ -33,9 +33,9 @@ fn stiff_cloth(c: &mut Criterion) {
         start[corner].fixed = true;
     }
     let springs = |ks: f32, kd: f32| {
-        let thread = Some(Thread { ks, kd });
-        let bend = Some(Thread { ks: 0.01 * ks, kd: 0.01 * kd });
-        sheet.springs(&Threads { structural: thread, shear: thread, bend }, 0).collect::<Vec<_>>()
+        let thread = Some(SpringParams { ks, kd });
+        let bend = Some(SpringParams { ks: 0.01 * ks, kd: 0.01 * kd });
+        sheet.springs(&ClothSprings { structural: thread, shear: thread, bend }, 0).collect::<Vec<_>>()
     };
     let (stiff, soft) = (springs(1e6, 10.0), springs(1e3, 0.01));
     let implicit = Implicit { iterations: 100, ..Implicit::USUAL };

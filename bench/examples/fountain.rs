@@ -93,11 +93,11 @@ fn falling(particles: usize, steps: usize, rounds: usize) {
 fn nozzle(particles: f32) -> Emitter<Shape<Mesh<'static>>> {
     let disc = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
     Emitter {
-        speed: Varied { mean: 10.0, variance: 1.0 },
+        speed: Varied { mean: 10.0, half_width: 1.0 },
         spread: Spread::Uniform(0.3),
         drag: Varied::exactly(0.2),
         elasticity: Varied::exactly(0.5),
-        lifetime: Varied { mean: 4.0, variance: 1.0 },
+        lifetime: Varied { mean: 4.0, half_width: 1.0 },
         ..Emitter::new(disc, particles / 4.0)
     }
 }

@@ -2,7 +2,7 @@
 
 use pointmass::rng::Stream;
 use pointmass::shape::Cuboid;
-use pointmass::{Grip, Particle, Vec3};
+use pointmass::{ContactMaterial, Particle, Vec3};
 
 /// Balls above an open box, and what they are like.
 #[derive(Clone, Debug)]
@@ -74,9 +74,9 @@ impl Drop {
 
     /// The materials.
     #[must_use]
-    pub fn grips(&self) -> [Grip; 1] {
-        let friction = pointmass::force::Friction { resting: self.friction, sliding: self.friction };
-        [Grip { elasticity: None, friction: Some(friction) }]
+    pub fn contact_materials(&self) -> [ContactMaterial; 1] {
+        let friction = pointmass::force::Friction { static_: self.friction, kinetic: self.friction };
+        [ContactMaterial { elasticity: None, friction: Some(friction) }]
     }
 
     /// What one ball loses in falling from its height to the floor, on average \[J\].

@@ -35,7 +35,7 @@ pub fn started(scene: &Scene<'_>, capacity: usize) -> System<Heap> {
 pub fn jet(n: f32) -> Emitter<Shape<Mesh<'static>>> {
     let nozzle = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
     Emitter {
-        speed: Varied { mean: 6.0, variance: 1.0 },
+        speed: Varied { mean: 6.0, half_width: 1.0 },
         spread: Spread::Uniform(0.3),
         drag: Varied::exactly(0.1),
         lifetime: Varied::exactly(2.0),

@@ -29,7 +29,7 @@ pub fn errors(world: &World) -> Vec<GroupError> {
     let particles = world.system.particles();
     let mut memory = vec![0; BarnesHut::words(particles.position.len())];
     let mut measured = |force: &'static str, law: Opening, weights: &[f32]| {
-        let tree = BarnesHut::grow(&mut memory, particles.position, weights).filter(|_| law.theta > 0.0)?;
+        let tree = BarnesHut::over(&mut memory, particles.position, weights).filter(|_| law.theta > 0.0)?;
         let stride = (particles.position.len() / SAMPLED).max(1);
         let error = tree.error(law, stride);
         let particles = particles.position.len().div_ceil(stride);

@@ -1,12 +1,11 @@
 //! The library behind the `pointmass` binary.
 //!
 //! `args` parses, one module a command does the work: `run`, `render`, `convert`, `check`, `compare`, `lab`. They share
-//! `load` (scenes and meshes from disk), `world` (a scene in motion), `clock` (when steps end), `substeps` (how they are
+//! `load` (scenes and meshes from disk), `world` (a scene in motion), `schedule` (when steps end), `substeps` (how they are
 //! divided), `record` (state to files), `draw` (state to pictures), and what reports are made of: `plot`, `page`, `words`.
 
 pub mod args;
 pub mod check;
-pub mod clock;
 pub mod compare;
 pub mod convert;
 pub mod draw;
@@ -23,6 +22,7 @@ mod record;
 pub mod render;
 pub mod report;
 pub mod run;
+pub mod schedule;
 mod stage;
 mod stall;
 pub mod substeps;

@@ -73,7 +73,8 @@ fn read(path: &Path, unknown: Unknown) -> Outcome<Reading> {
         return Ok(read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?);
     }
     let scene = SceneFile::from_json(&name, &text)?;
-    let remarks = scene.remarks().into_iter().map(|remark| format!("{name}:{remark}")).collect();
+    let remarks = SceneFile::former_names(&text).into_iter().chain(scene.remarks());
+    let remarks = remarks.map(|remark| format!("{name}:{remark}")).collect();
     Ok(Reading { scene, warnings: Vec::new(), remarks })
 }
 

@@ -1,7 +1,7 @@
 //! What a run came to, for people and for programs.
 
-use crate::clock::nanoseconds;
 use crate::groups::GroupError;
+use crate::schedule::nanoseconds;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
 use pointmass::force::Entry;
@@ -149,7 +149,7 @@ impl Summary {
             ("no longer finite", self.died.nonfinite),
         ];
         push_counts(&mut rows, "died", &died);
-        let Caps { bounces, chords, springs, contacts, stalled, unfit } = self.caps;
+        let Caps { bounces, chords, springs, contacts, stalled, insufficient_memory } = self.caps;
         push_counts(&mut rows, "refused", &[("found no room; raise --capacity", self.refused)]);
         push_counts(&mut rows, "hits", &[("", self.hits)]);
         push_counts(&mut rows, "contacts", &[("", self.contacts)]);
@@ -160,7 +160,7 @@ impl Summary {
             ("springs without an end", springs),
             ("contacts without room", contacts),
             ("steps of particles lost to rounding", stalled),
-            ("steps that did not fit", unfit),
+            ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);
         rows.push(("effort", method_effort(&self.effort)));

@@ -1,11 +1,11 @@
 //! `pointmass run`: steps a scene, records it, reports.
 
 use crate::args::{self, Report};
-use crate::clock::Clock;
 use crate::groups;
 use crate::progress::Progress;
 use crate::record::{Frame, Recorder};
 use crate::report::{Effort, Summary};
+use crate::schedule::Schedule;
 use crate::world::World;
 use crate::{Outcome, print, stall, warn};
 use pointmass::Ledger;
@@ -17,11 +17,11 @@ use std::time::Instant;
 /// If the scene cannot be used or a file cannot be written.
 pub fn run(args: &args::Run) -> Outcome {
     let mut world = World::load(&args.world)?;
-    let clock = match args.steps {
-        Some(steps) => Clock::steps_of(steps, world.dt),
-        None => Clock::new(world.duration, world.dt),
+    let schedule = match args.steps {
+        Some(steps) => Schedule::steps_of(steps, world.dt),
+        None => Schedule::new(world.duration, world.dt),
     };
-    world.warn_of_steps(world.dt, clock.end(clock.steps()).seconds_f64());
+    world.warn_of_steps(world.dt, schedule.end(schedule.steps()).seconds_f64());
     let mut recorders =
         args.out.iter().map(|(path, format)| Recorder::create(path, *format)).collect::<Outcome<Vec<_>>>()?;
     let mut record = |step: u64, world: &World| {
@@ -36,18 +36,18 @@ pub fn run(args: &args::Run) -> Outcome {
     let model = world.model.clone();
     let mut ledger = args.ledger.then(|| Ledger::new(&world.system, &model.scene()));
     let mut effort = Effort::default();
-    let mut progress = Progress::new(clock.steps());
+    let mut progress = Progress::new(schedule.steps());
     record(0, &world)?;
-    for step in 1..=clock.steps() {
+    for step in 1..=schedule.steps() {
         let begun = Instant::now();
         match &mut ledger {
-            Some(ledger) => world.step_observed(clock.end(step), ledger),
-            None => world.step_to(clock.end(step)),
+            Some(ledger) => world.step_observed(schedule.end(step), ledger),
+            None => world.step_to(schedule.end(step)),
         };
         effort.seconds += begun.elapsed().as_secs_f64();
         effort.steps = step;
         effort.particle_steps += world.system.len() as u64;
-        if step % args.every == 0 || step == clock.steps() {
+        if step % args.every == 0 || step == schedule.steps() {
             record(step, &world)?;
         }
         progress.step(world.system.len());

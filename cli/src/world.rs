@@ -76,7 +76,9 @@ impl World {
             Failure::new(format!("there is no memory for {capacity} particles; lower --capacity (or the scene's)"))
         })?;
         let mut system = System::with(memory);
-        system.start(&model.scene(), seed).map_err(|unfit| Failure::new(unfit.to_string()))?;
+        system
+            .start(&model.scene(), seed)
+            .map_err(|insufficient_memory| Failure::new(insufficient_memory.to_string()))?;
         let method = model.integrator.method;
         let chosen = args.substeps == Substeps::Auto && !method.chooses_steps();
         let limit = if chosen { Bounds::of(&model).largest_step(method) } else { Limit::Unconditional };
@@ -137,7 +139,7 @@ fn threads(asked: Option<u16>, capacity: usize) -> Outcome<Option<ThreadPool>> {
 
 /// The response of a name: the scene's own, if it is that, else one with settings that suit the scene.
 fn respond(file: &SceneFile, name: &str, dt: f64) -> Option<Response> {
-    let born = file.emitters.iter().map(|emitter| emitter.mass.mean - emitter.mass.variance.abs());
+    let born = file.emitters.iter().map(|emitter| emitter.mass.mean - emitter.mass.half_width.abs());
     let masses = file.particles.iter().map(|particle| particle.mass).chain(born).filter(|&mass| mass > 0.0);
     let lightest = masses.fold(f32::INFINITY, f32::min);
     let lightest = if lightest.is_finite() { lightest } else { 1.0 };

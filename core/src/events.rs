@@ -1,6 +1,6 @@
 //! What happened in a step, one record each, for whoever wants to hear, count or draw it.
 
-use crate::observe::{Attention, Impact, Observer, Passing};
+use crate::observe::{Attention, Impact, LifeEvent, Observer};
 use crate::particles::Id;
 use crate::reap::Cause;
 use crate::time::Time;
@@ -61,7 +61,7 @@ pub enum EventKind {
 /// let [hit] = events.as_slice() else { panic!("one hit in the first half second") };
 /// assert_eq!((hit.kind, hit.normal, events.lost()), (EventKind::Hit, Vec3::Y, 0));
 /// assert!((hit.time.seconds() - 0.4516).abs() < 0.01);
-/// # Ok::<(), pointmass::Unfit>(())
+/// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 #[derive(Debug)]
 pub struct Events<'a> {
@@ -109,8 +109,8 @@ impl<'a> Events<'a> {
         }
     }
 
-    fn pass(&mut self, kind: EventKind, passing: &Passing) {
-        let Passing { id, place, velocity, time } = *passing;
+    fn pass(&mut self, kind: EventKind, passing: &LifeEvent) {
+        let LifeEvent { id, place, velocity, time } = *passing;
         self.push(Event { kind, id: Some(id), place, normal: Vec3::ZERO, speed: crate::math::length(velocity), time });
     }
 }
@@ -130,11 +130,11 @@ impl Observer for Events<'_> {
         self.hit(touch);
     }
 
-    fn born(&mut self, birth: &Passing) {
+    fn born(&mut self, birth: &LifeEvent) {
         self.pass(EventKind::Birth, birth);
     }
 
-    fn died(&mut self, death: &Passing, cause: Cause) {
+    fn died(&mut self, death: &LifeEvent, cause: Cause) {
         self.pass(EventKind::Death(cause), death);
     }
 

@@ -29,7 +29,7 @@ use std::vec::Vec;
 /// }
 /// let lost = ledger.books().work("drag");
 /// assert!(lost < -10.0 && ledger.books().remainder.abs() < 1e-4);
-/// # Ok::<(), pointmass::Unfit>(())
+/// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Ledger<'a> {

@@ -46,9 +46,12 @@ mod step;
 mod system;
 mod time;
 
-mod weave;
+mod cloth;
 
-pub use collide::{Grip, Impulse, Meetings};
+#[cfg(feature = "alloc")]
+pub use cloth::mesh_springs;
+pub use cloth::{ClothSprings, Sheet, SpringParams};
+pub use collide::{ContactMaterial, Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
 pub use constrain::{Constraint, Contacts, Distance};
@@ -74,13 +77,10 @@ pub use measure::{Energy, Measures};
 #[cfg(feature = "alloc")]
 pub use memory::Heap;
 pub use memory::{Columns, Inline, Size, Slices, Storage};
-pub use observe::{Attention, Impact, Observer, Passing, Phase, Sliding};
+pub use observe::{Attention, Impact, LifeEvent, Observer, Phase, Sliding};
 pub use particles::{Color, Full, Id, Particle, WHITE};
-pub use reap::{Cause, Chance, Dense, Fate, Reaper, ReaperKind};
+pub use reap::{Cause, Chance, Dense, PendingDeath, Reaper, ReaperKind};
 pub use report::{Caps, Died, Effort, Report};
-pub use scene::{Response, Scene, Unfit};
+pub use scene::{InsufficientMemory, Response, Scene};
 pub use system::System;
 pub use time::Time;
-#[cfg(feature = "alloc")]
-pub use weave::mesh_springs;
-pub use weave::{Sheet, Thread, Threads};

@@ -43,12 +43,12 @@ pub trait Observer {
     }
 
     /// A particle was born.
-    fn born(&mut self, birth: &Passing) {
+    fn born(&mut self, birth: &LifeEvent) {
         let _ = birth;
     }
 
     /// A particle dies.
-    fn died(&mut self, death: &Passing, cause: Cause) {
+    fn died(&mut self, death: &LifeEvent, cause: Cause) {
         let _ = (death, cause);
     }
 
@@ -142,7 +142,7 @@ pub struct Sliding {
 
 /// A particle that has just been born, or is just about to be removed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passing {
+pub struct LifeEvent {
     /// The particle.
     pub id: Id,
     /// Where \[m\].

@@ -118,7 +118,7 @@ pub struct Caps {
     /// distance to the next number there. No part of the system's hash.
     pub stalled: u64,
     /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
-    pub unfit: u64,
+    pub insufficient_memory: u64,
 }
 
 /// Adds to a counter, which stops at the largest number. Apart, like those of whole structs: there are so many of them.
@@ -140,7 +140,7 @@ macro_rules! add_fields {
 }
 add_fields! {
     Died { lifetime sink density chance other nonfinite }
-    Caps { bounces chords springs contacts stalled unfit }
+    Caps { bounces chords springs contacts stalled insufficient_memory }
     Effort { evaluations lists streamed all_pairs accepted rejected solves iterations capped }
 }
 
@@ -192,7 +192,7 @@ impl Report {
         contacts: 0,
         broken: 0,
         effort: Effort::NONE,
-        caps: Caps { bounces: 0, chords: 0, springs: 0, contacts: 0, stalled: 0, unfit: 0 },
+        caps: Caps { bounces: 0, chords: 0, springs: 0, contacts: 0, stalled: 0, insufficient_memory: 0 },
     };
 
     /// Every counter of what happened that the state does not tell, in a fixed order.
@@ -200,10 +200,24 @@ impl Report {
         let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
         // The hash takes in `other` where there are any.
         let Died { lifetime, sink, density, chance, other: _, nonfinite } = died;
-        let Caps { bounces, chords, springs, contacts: near, stalled: _, unfit } = caps;
+        let Caps { bounces, chords, springs, contacts: near, stalled: _, insufficient_memory } = caps;
         [
-            initial, born, lifetime, sink, density, chance, nonfinite, refused, hits, contacts, broken, bounces,
-            chords, springs, near, unfit,
+            initial,
+            born,
+            lifetime,
+            sink,
+            density,
+            chance,
+            nonfinite,
+            refused,
+            hits,
+            contacts,
+            broken,
+            bounces,
+            chords,
+            springs,
+            near,
+            insufficient_memory,
         ]
     }
 }

@@ -7,8 +7,8 @@ use crate::memory::{Columns, Layout, Storage};
 use crate::observe::Observer;
 use crate::particles::{Full, Id, Particle};
 use crate::report::Report;
-use crate::scene::{Scene, Unfit};
-use crate::step::{Status, View};
+use crate::scene::{InsufficientMemory, Scene};
+use crate::step::{Status, Workspace};
 use crate::time::Time;
 
 /// The state that a scene acts on, in memory of its owner's choice. An empty one is all zeros.
@@ -61,13 +61,13 @@ impl<B: Storage> System<B> {
     /// # Errors
     /// If the memory has not enough emitters, springs or columns for the scene; nothing is put in then. Particles
     /// beyond the capacity are refused and counted.
-    pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), Unfit> {
+    pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), InsufficientMemory> {
         self.status = Status { seed, ..Status::NEW };
         let (need, have) = (scene.size(), self.memory.columns().size());
         if !scene.fits(have) {
-            return Err(Unfit { need, have });
+            return Err(InsufficientMemory { need, have });
         }
-        self.view().start(scene);
+        self.workspace().start(scene);
         Ok(())
     }
 
@@ -84,9 +84,9 @@ impl<B: Storage> System<B> {
         self.status.is_reaped |= !scene.reapers.is_empty();
         if scene.fits(self.memory.columns().size()) {
             self.status.kept = scene.plan().kept();
-            self.view().step(scene, dt, &mut report, observer);
+            self.workspace().step(scene, dt, &mut report, observer);
         } else {
-            report.caps.unfit = 1;
+            report.caps.insufficient_memory = 1;
         }
         self.status.totals += report;
         report
@@ -99,7 +99,7 @@ impl<B: Storage> System<B> {
     pub fn spawn(&mut self, particle: &Particle) -> Result<Id, Full> {
         let now = self.status.time;
         self.status.hint = Time::ZERO;
-        let given = self.view().put(particle, now);
+        let given = self.workspace().put(particle, now);
         let totals = &mut self.status.totals;
         match given {
             Ok(_) => totals.born = totals.born.saturating_add(1),
@@ -114,7 +114,7 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         report.died.other = 1;
         self.status.hint = Time::ZERO;
-        self.view().remove(row, scene.springs, &mut report);
+        self.workspace().remove(row, scene.springs, &mut report);
         self.status.totals += report;
         true
     }
@@ -179,9 +179,9 @@ impl<B: Storage> System<B> {
             hash.word(given);
         }
         let columns = self.particles();
-        for tally in columns.tallies.iter().take(emitters) {
-            hash.word(tally.serial);
-            hash.long(tally.phase);
+        for emitter in columns.emitter_states.iter().take(emitters) {
+            hash.word(emitter.serial);
+            hash.long(emitter.phase);
         }
         hash.long(self.status.hint.ticks());
         for &spring in columns.incident.iter().filter(|&&spring| force::is_broken(spring)) {
@@ -203,8 +203,8 @@ impl<B: Storage> System<B> {
         hash.finish()
     }
 
-    fn view(&mut self) -> View<'_> {
-        View { memory: self.memory.slices(), status: &mut self.status }
+    fn workspace(&mut self) -> Workspace<'_> {
+        Workspace { memory: self.memory.slices(), status: &mut self.status }
     }
 }
 
@@ -245,7 +245,7 @@ impl<'a> Columns<'a> {
             dies: &self.dies[..len],
             color: &self.color[..len],
             material: &self.material[..len],
-            fate: &self.fate[..len],
+            pending_death: &self.pending_death[..len],
             serial: &self.serial[..len],
             slot: &self.slot[..len],
             key: &self.key[..len],

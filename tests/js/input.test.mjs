@@ -82,13 +82,13 @@ test("fabrics fit into memory or are refused", () => {
   const fabric = (cells) => ({
     form: { sheet: { corner: [0, 0, 0], sides: [[1, 0, 0], [0, 0, 1]], cells } },
     mass: 1,
-    threads: { structural: { ks: 10 }, shear: { ks: 1 }, bend: { ks: 1 } },
+    springs: { structural: { ks: 10 }, shear: { ks: 1 }, bend: { ks: 1 } },
   });
-  const world = new World({ fabrics: [fabric([20, 20])] });
+  const world = new World({ cloths: [fabric([20, 20])] });
   assert.equal(world.count, 441);
   world.free();
   for (const cells of [[2047, 2046], [4e9, 4e9], [1, 4e6]]) {
-    refuses(() => new World({ fabrics: [fabric(cells)] }), /not enough memory|fewer cells/);
+    refuses(() => new World({ cloths: [fabric(cells)] }), /not enough memory|fewer cells/);
   }
 });
 

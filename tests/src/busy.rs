@@ -12,14 +12,14 @@ type Nozzle = Emitter<Form>;
 
 /// Two emitters with everything varied, the second fuller than any memory here.
 pub fn emitters() -> (Nozzle, Nozzle) {
-    let varied = |mean, variance| Varied { mean, variance };
+    let varied = |mean, half_width| Varied { mean, half_width };
     let disc = Form::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.2 });
     let first = Emitter {
         speed: varied(3.0, 1.0),
         spread: Spread::Uniform(0.5),
         lifetime: varied(0.6, 0.3),
         drag: varied(0.2, 0.1),
-        color_variance: [9; 4],
+        color_half_width: [9; 4],
         material: Some(3),
         ..Emitter::new(disc, 50.0)
     };
@@ -59,7 +59,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         emitters: &emitters,
         forces: &forces,
         colliders: &(ground, box_),
-        grips: &[],
+        contact_materials: &[],
         constraints: &(),
         substeps: 1,
         meetings: Meetings::Through,

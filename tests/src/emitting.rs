@@ -57,14 +57,14 @@ pub fn sphere() -> Form {
 /// Births on a sphere with every property varied, but at rest: they stay where they were born.
 #[must_use]
 pub fn varied(rate: f32) -> Emitter<Form> {
-    let varied = |mean| Varied { mean, variance: 0.25 * mean };
+    let varied = |mean| Varied { mean, half_width: 0.25 * mean };
     Emitter {
         mass: varied(2.0),
         drag: varied(0.5),
         elasticity: varied(0.4),
         spread: Spread::Uniform(0.4),
         color: Some([128; 4]),
-        color_variance: [50, 60, 70, 80],
+        color_half_width: [50, 60, 70, 80],
         ..Emitter::new(sphere(), rate)
     }
 }

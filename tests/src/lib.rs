@@ -9,7 +9,7 @@ pub mod solids;
 pub mod surfaces;
 
 use core::ops::Range;
-use pointmass::force::{Change, State};
+use pointmass::force::{Perturbation, State};
 use pointmass::shape::{Line, Mesh, Shape};
 use pointmass::{Force, Heap, Integrator, Particle, Scene, Size, System, Time, Vec3};
 
@@ -74,7 +74,7 @@ impl<F: Fn(f32, f32, f32) -> f32 + Sync> Force for Law<F> {
     }
 
     /// By central differences.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         const D: f32 = 1.0 / 128.0;
         for (row, total) in total.iter_mut().enumerate() {
             let (t, x, v) = (state.time.seconds(), state.position[row].x, state.velocity[row].x);

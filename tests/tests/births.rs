@@ -60,7 +60,7 @@ fn births_follow_a_moving_emitter_and_take_their_share_of_its_velocity() {
 #[test]
 fn varied_properties_are_uniform_about_their_means() {
     let n = often(100_000);
-    let varied = |mean, variance| Varied { mean, variance };
+    let varied = |mean, half_width| Varied { mean, half_width };
     let emitter = Emitter {
         speed: varied(3.0, 1.0),
         mass: varied(2.0, 0.5),
@@ -68,7 +68,7 @@ fn varied_properties_are_uniform_about_their_means() {
         elasticity: varied(0.6, 0.1),
         lifetime: varied(10.0, 9.0),
         color: Some([100, 128, 150, 128]),
-        color_variance: [100, 64, 30, 127],
+        color_half_width: [100, 64, 30, 127],
         burst: Some(Burst { count: n as u32, at: 0.0, every: 0.0 }),
         ..Emitter::new(point(Vec3::ZERO), 0.0)
     };
@@ -77,7 +77,7 @@ fn varied_properties_are_uniform_about_their_means() {
     system.step(&scene, Time::from_ticks(1));
     let p = system.particles();
     let uniform = |values: Vec<f64>, of: Varied, what: &str| {
-        let (low, width) = (f64::from(of.mean - of.variance), f64::from(2.0 * of.variance));
+        let (low, width) = (f64::from(of.mean - of.half_width), f64::from(2.0 * of.half_width));
         let d = ks(values.iter().copied(), |x| ((x - low) / width).clamp(0.0, 1.0));
         assert!(d < KS, "{what}: {d}");
         assert!(values.iter().all(|x| (low - 1e-5..=low + width + 1e-5).contains(x)), "{what}");
@@ -89,12 +89,12 @@ fn varied_properties_are_uniform_about_their_means() {
     uniform(floats(p.elasticity), emitter.elasticity, "elasticity");
     uniform(p.dies.iter().map(|t| t.seconds_f64()).collect(), emitter.lifetime, "lifetime");
     for channel in 0..4 {
-        let (mean, variance) = ([100u8, 128, 150, 128][channel], emitter.color_variance[channel]);
-        let (low, high) = (mean - variance, mean.saturating_add(variance));
-        // Rounding gives the two ends half a share each, so every inner value has 1 in 2 × variance.
+        let (mean, half_width) = ([100u8, 128, 150, 128][channel], emitter.color_half_width[channel]);
+        let (low, high) = (mean - half_width, mean.saturating_add(half_width));
+        // Rounding gives the two ends half a share each, so every inner value has 1 in 2 × half-width.
         let mut counts = vec![0u32; usize::from(high - low) + 1];
         p.color.iter().for_each(|c| counts[usize::from(c[channel] - low)] += 1);
-        let share = 0.5 / f64::from(variance);
+        let share = 0.5 / f64::from(half_width);
         let mut shares = vec![share; counts.len()];
         (shares[0], shares[counts.len() - 1]) = (0.5 * share, 0.5 * share);
         // χ² of k degrees stays below k + 3.1 √(2k) + 7 but once in a thousand times.
@@ -107,7 +107,7 @@ fn varied_properties_are_uniform_about_their_means() {
 #[test]
 fn properties_are_independent_of_each_other() {
     let n = often(100_000);
-    let varied = Varied { mean: 0.5, variance: 0.5 };
+    let varied = Varied { mean: 0.5, half_width: 0.5 };
     let (mass, lifetime) = (Varied { mean: 1.5, ..varied }, Varied { mean: 1.5, ..varied });
     let burst = Some(Burst { count: n as u32, at: 0.0, every: 0.0 });
     let shape = Form::Line(Line { from: Vec3::ZERO, to: Vec3::X });
@@ -120,7 +120,7 @@ fn properties_are_independent_of_each_other() {
         elasticity: varied,
         lifetime,
         color: Some([128; 4]),
-        color_variance: [127; 4],
+        color_half_width: [127; 4],
         burst,
         ..Emitter::new(shape, 0.0)
     };
@@ -169,8 +169,8 @@ fn properties_are_independent_of_each_other() {
 #[test]
 fn a_property_s_variance_leaves_the_others_alone() {
     let base = Emitter {
-        speed: Varied { mean: 3.0, variance: 1.0 },
-        lifetime: Varied { mean: 50.0, variance: 9.0 },
+        speed: Varied { mean: 3.0, half_width: 1.0 },
+        lifetime: Varied { mean: 50.0, half_width: 9.0 },
         ..varied(100.0)
     };
     let columns = |emitter: &dyn Emit| -> Vec<Vec<u64>> {
@@ -192,7 +192,7 @@ fn a_property_s_variance_leaves_the_others_alone() {
         ]
     };
     let before = columns(&base);
-    let double = |v: Varied| Varied { mean: v.mean, variance: 1.5 * v.variance };
+    let double = |v: Varied| Varied { mean: v.mean, half_width: 1.5 * v.half_width };
     let none = |v: Varied| Varied::exactly(v.mean);
     for change in [double as fn(Varied) -> Varied, none] {
         let changed = [
@@ -201,8 +201,11 @@ fn a_property_s_variance_leaves_the_others_alone() {
             Emitter { drag: change(base.drag), ..base.clone() },
             Emitter { elasticity: change(base.elasticity), ..base.clone() },
             Emitter { lifetime: change(base.lifetime), ..base.clone() },
-            Emitter { color_variance: [0, 0, 0, 9], ..base.clone() },
-            Emitter { spread: Spread::Uniform(change(Varied { mean: 0.0, variance: 0.4 }).variance), ..base.clone() },
+            Emitter { color_half_width: [0, 0, 0, 9], ..base.clone() },
+            Emitter {
+                spread: Spread::Uniform(change(Varied { mean: 0.0, half_width: 0.4 }).half_width),
+                ..base.clone()
+            },
         ];
         for (i, emitter) in changed.iter().enumerate() {
             let after = columns(emitter);

@@ -2,7 +2,7 @@
 
 use pointmass::emit::Burst;
 use pointmass::force::Curl;
-use pointmass::index::{Arrange, InKd, Structure};
+use pointmass::index::{InKd, IndexChoice, Structure};
 use pointmass::shape::{Cone, Cuboid, Cylinder, MeshBuf, Shape, Sphere, Surface};
 use pointmass::{Chance, Dense, Emitter, Heap, Particle, Scene, Size, System, Time, Varied, Vec3, WhereSparse, Wind};
 use pointmass_tests::{CHI_99, Form, chi_squared_100, icosahedron, often, run, started, turn};
@@ -118,7 +118,7 @@ fn who_has_died_does_not_crowd_and_the_newborn_do() {
 const ROOM: Cuboid = Cuboid { min: Vec3::ZERO, max: Vec3::ONE };
 
 /// A box with an inflow and a whirl, kept between two densities, by an index.
-fn kept(index: &dyn Arrange, rate: u32, then: &mut dyn FnMut(&System<Heap>)) {
+fn kept(index: &dyn IndexChoice, rate: u32, then: &mut dyn FnMut(&System<Heap>)) {
     let stir = Wind { field: Curl { speed: 0.4, scale: 0.3, drift: Vec3::ZERO, seed: 1 }, coefficient: None };
     let newborn = Particle { drag: 5.0, ..Particle::REST };
     let where_sparse = Some(WhereSparse { radius: 0.125, fewest: 15 });
@@ -172,7 +172,9 @@ fn numbers_of_neighbours_are_kept_between_two_bounds() {
 #[test]
 fn every_index_gives_the_same_births_and_deaths() {
     let mut hashes = Vec::new();
-    for index in [&() as &dyn Arrange, &Structure::Grid, &Structure::Hash, &Structure::Octree, &Structure::Bvh, &InKd] {
+    for index in
+        [&() as &dyn IndexChoice, &Structure::Grid, &Structure::Hash, &Structure::Octree, &Structure::Bvh, &InKd]
+    {
         let mut all = Vec::new();
         kept(index, 40, &mut |system| all.push(system.hash()));
         hashes.push(all);

@@ -26,7 +26,7 @@ fn births_number_the_floor_of_rate_times_time_after_every_step() {
 fn births_are_the_same_however_time_is_cut() {
     let still = varied(59.94);
     let flying =
-        Emitter { speed: Varied { mean: 3.0, variance: 1.0 }, velocity: Vec3::X, inherit: 0.5, ..varied(40.0) };
+        Emitter { speed: Varied { mean: 3.0, half_width: 1.0 }, velocity: Vec3::X, inherit: 0.5, ..varied(40.0) };
     for emitter in [&still, &flying] {
         let scene = Scene { emitters: emitter, ..Scene::EMPTY };
         let all: Vec<Vec<Birth>> = cuts().iter().map(|ends| living(&play(&scene, 4000, ends))).collect();
@@ -95,7 +95,7 @@ fn a_burst_beside_a_rate_is_the_same_however_time_is_cut() {
 
 #[test]
 fn a_step_longer_than_a_life_leaves_those_who_still_live() {
-    let emitter = Emitter { lifetime: Varied { mean: 0.2, variance: 0.1 }, ..varied(200.0) };
+    let emitter = Emitter { lifetime: Varied { mean: 0.2, half_width: 0.1 }, ..varied(200.0) };
     let scene = Scene { emitters: &emitter, ..Scene::EMPTY };
     let all: Vec<System<Heap>> = cuts().iter().map(|ends| play(&scene, 1000, ends)).collect();
     assert!(all[0].len() > 20);
@@ -179,8 +179,8 @@ fn hostile_numbers_stay_bounded() {
             Emitter { speed: Varied::exactly(x), ..varied(50.0) },
             Emitter { direction: Some(Vec3::splat(x)), ..varied(50.0) },
             Emitter {
-                mass: Varied { mean: x, variance: x },
-                lifetime: Varied { mean: x, variance: x },
+                mass: Varied { mean: x, half_width: x },
+                lifetime: Varied { mean: x, half_width: x },
                 ..varied(50.0)
             },
             Emitter { spread: Spread::Uniform(x), ..varied(50.0) },

@@ -6,16 +6,16 @@ mod custom;
 
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
-use pointmass::emit::{Births, Tally};
+use pointmass::emit::{Births, EmitterState};
 use pointmass::force::State;
-use pointmass::index::{Arrange, Cost, Neighbour, SpatialIndex, Stats, Structure, TooSmall};
+use pointmass::index::{Cost, IndexChoice, Neighbour, SpatialIndex, Stats, Structure, TooSmall};
 use pointmass::integrate::{Dynamics, Motion};
 use pointmass::reap::Verdicts;
 use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
 use pointmass::{
-    Attention, Cause, Chance, Columns, Constraint, Contacts, Custom, Dense, Distance, Drag, Emit, Emitter, Fate, Force,
-    Gravity, Heap, Impact, Integrator, Measures, Meetings, Method, Observer, Particle, Phase, Reaper, Scene, Size,
-    Slices, Storage, System, Time, Vec3, Viscosity, WhereSparse,
+    Attention, Cause, Chance, Columns, Constraint, Contacts, Custom, Dense, Distance, Drag, Emit, Emitter, Force,
+    Gravity, Heap, Impact, Integrator, Measures, Meetings, Method, Observer, Particle, PendingDeath, Phase, Reaper,
+    Scene, Size, Slices, Storage, System, Time, Vec3, Viscosity, WhereSparse,
 };
 use pointmass_tests::{Random, f64s, gap, point, run, started};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -187,7 +187,7 @@ fn a_constraint() {
     assert!(hashes.windows(2).all(|pair| pair[0] == pair[1]));
     // Two that meet stop: whichever index finds them.
     let start = [bead(-1.0), bead(1.0)];
-    for index in [&() as &dyn Arrange, &Structure::Grid, &Structure::Kd] {
+    for index in [&() as &dyn IndexChoice, &Structure::Grid, &Structure::Kd] {
         let wire = Wire { radius: 2.0, reach: 0.5 };
         let scene =
             Scene { start: &start, forces: &Gravity::EARTH, constraints: &wire, substeps: 8, index, ..Scene::EMPTY };
@@ -469,12 +469,12 @@ impl SpatialIndex for AlongX {
 #[derive(Default)]
 struct InOrder(AtomicUsize);
 
-impl Arrange for InOrder {
+impl IndexChoice for InOrder {
     fn columns(&self) -> usize {
         0
     }
 
-    fn arrange(&self, _: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
+    fn with_index(&self, _: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
         self.0.fetch_add(1, Ordering::Relaxed);
         let mut index = AlongX::default();
         assert!(reach > 0.0 && index.build(points, reach).is_ok());
@@ -511,7 +511,7 @@ fn an_index() {
     ];
     for (i, scene) in scenes.iter().enumerate() {
         let own = InOrder::default();
-        let end = |index: &dyn Arrange| {
+        let end = |index: &dyn IndexChoice| {
             let scene = Scene { index, ..*scene };
             let mut system = started(&scene, 400, 1);
             run(&mut system, &scene, 1.0 / 60.0, 30);
@@ -574,8 +574,8 @@ struct Arena {
     words: [Vec<u32>; 7],
     colors: Vec<[u8; 4]>,
     materials: Vec<u16>,
-    fates: Vec<Fate>,
-    tallies: Vec<Tally>,
+    pending_deaths: Vec<PendingDeath>,
+    emitter_states: Vec<EmitterState>,
 }
 
 impl Arena {
@@ -590,8 +590,8 @@ impl Arena {
             words: core::array::from_fn(|i| vec![0; extra(i)]),
             colors: vec![[0; 4]; n + 5],
             materials: vec![0; n],
-            fates: vec![Fate::Lives; n + 7],
-            tallies: vec![Tally::default(); size.emitters],
+            pending_deaths: vec![PendingDeath::Lives; n + 7],
+            emitter_states: vec![EmitterState::default(); size.emitters],
         }
     }
 }
@@ -615,13 +615,13 @@ impl Storage for Arena {
             dies,
             color: &mut self.colors,
             material: &mut self.materials,
-            fate: &mut self.fates,
+            pending_death: &mut self.pending_deaths,
             serial,
             slot,
             key,
             row_of,
             last_spring,
-            tallies: &mut self.tallies,
+            emitter_states: &mut self.emitter_states,
             incident,
             kept,
             work,
@@ -645,13 +645,13 @@ impl Storage for Arena {
             dies,
             color: &self.colors,
             material: &self.materials,
-            fate: &self.fates,
+            pending_death: &self.pending_deaths,
             serial,
             slot,
             key,
             row_of,
             last_spring,
-            tallies: &self.tallies,
+            emitter_states: &self.emitter_states,
             incident,
             kept,
             work,
@@ -675,7 +675,7 @@ fn memory() {
         sinks: &(),
         reapers: &(Doom, Chance { rate: 0.3 }),
         custom: &[Custom::new("heat")],
-        grips: &[],
+        contact_materials: &[],
         constraints: &(),
         substeps: 1,
         meetings: Meetings::Through,

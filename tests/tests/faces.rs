@@ -7,7 +7,7 @@ use pointmass::shape::{
     Aabb, Affine, Collider, Contact, Cuboid, Cylinder, Hit, Hulls, Marks, Mesh, Motion, Moving, Placed, Plane, Ride,
     Scenery, Segment, Shape, Sphere,
 };
-use pointmass::{Drag, Emitter, Gravity, Grip, Heap, Integrator, Method, Particle, Scene, System, Time};
+use pointmass::{ContactMaterial, Drag, Emitter, Gravity, Heap, Integrator, Method, Particle, Scene, System, Time};
 use pointmass::{Observer, Spread, Varied, Vec3};
 use pointmass_tests::{Random, started};
 
@@ -72,9 +72,9 @@ fn crowd(random: &mut Random, plane: &Plane, scale: f32, radius: f32) -> Vec<Par
 fn fountain(plane: &Plane, scale: f32) -> Emitter<Sphere> {
     let form = Sphere { center: plane.point + plane.normal.normalize() * (0.5 * scale), radius: 0.1 * scale };
     Emitter {
-        speed: Varied { mean: 2.0 * scale, variance: 1.0 * scale },
+        speed: Varied { mean: 2.0 * scale, half_width: 1.0 * scale },
         spread: Spread::Uniform(1.0),
-        elasticity: Varied { mean: 0.5, variance: 0.5 },
+        elasticity: Varied { mean: 0.5, half_width: 0.5 },
         lifetime: Varied::exactly(0.5),
         ..Emitter::new(form, 100.0)
     }
@@ -83,8 +83,10 @@ fn fountain(plane: &Plane, scale: f32) -> Emitter<Sphere> {
 #[test]
 fn the_short_way_has_the_bits_of_the_long_one() {
     let mut random = Random::new(2611);
-    let friction = |resting, sliding| Grip { friction: Some(Friction { resting, sliding }), elasticity: None };
-    let grips = [friction(0.5, 0.4), friction(0.0, 0.0), Grip { elasticity: Some(0.3), friction: None }];
+    let friction =
+        |static_, kinetic| ContactMaterial { friction: Some(Friction { static_, kinetic }), elasticity: None };
+    let contact_materials =
+        [friction(0.5, 0.4), friction(0.0, 0.0), ContactMaterial { elasticity: Some(0.3), friction: None }];
     let (mut hits, mut scenes) = (0, 0);
     for (number, method) in Method::ALL.iter().cycle().take(27).enumerate() {
         let scale = [1.0, 1e-3, 40.0][number % 3];
@@ -96,13 +98,13 @@ fn the_short_way_has_the_bits_of_the_long_one() {
         let emitter = fountain(&plane, scale);
         let gravity = Gravity { acceleration: (Vec3::NEG_Y * 9.8 + random.vector(2.0)) * scale };
         let max_bounces = [8, 8, 1, 2, 0][number % 5];
-        let grips = if number % 2 == 0 { &grips[..] } else { &[] };
+        let contact_materials = if number % 2 == 0 { &contact_materials[..] } else { &[] };
         let integrator: &dyn Integrator = method.integrator();
         let base = Scene {
             start: &start,
             emitters: &emitter,
             forces: &(gravity, Drag {}),
-            grips,
+            contact_materials,
             integrator,
             max_bounces,
             substeps: [1, 3][number / 7 % 2],
@@ -214,10 +216,16 @@ fn scenery_has_the_bits_of_the_list() {
         }
         let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
         let start = crowd(&mut random, &floor, 1.0, radius);
-        let grips = [Grip { friction: Some(Friction { resting: 0.5, sliding: 0.4 }), elasticity: Some(0.4) }];
+        let contact_materials =
+            [ContactMaterial { friction: Some(Friction { static_: 0.5, kinetic: 0.4 }), elasticity: Some(0.4) }];
         let scenery = Scenery::new(things.iter().cloned().zip(boxes).collect());
         let response = [Response::Position(Position::default()), Response::Impulse {}][number / 2 % 2];
-        let base = Scene { start: &start, forces: &(Gravity::EARTH, Drag {}), grips: &grips, ..Scene::EMPTY };
+        let base = Scene {
+            start: &start,
+            forces: &(Gravity::EARTH, Drag {}),
+            contact_materials: &contact_materials,
+            ..Scene::EMPTY
+        };
         let method: &dyn Integrator = if number < 3 { &pointmass::Symplectic } else { &pointmass::Euler };
         let base = Scene { integrator: method, ..base };
         let contacts = response.contacts();

@@ -1,7 +1,7 @@
 //! Names of particles, those that are no longer numbers, and the hash of the state.
 
 use core::cell::Cell;
-use pointmass::emit::Tally;
+use pointmass::emit::EmitterState;
 use pointmass::shape::Plane;
 use pointmass::{
     Chance, Columns, Drag, Emitter, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices,
@@ -85,7 +85,7 @@ fn whoever_has_an_attribute_that_cannot_be_used_is_taken_out() {
 
 #[test]
 fn births_whose_range_goes_beyond_what_can_be_used_do_not_live_on() {
-    let wide = |mean: f32, variance: f32| pointmass::Varied { mean, variance };
+    let wide = |mean: f32, half_width: f32| pointmass::Varied { mean, half_width };
     let usual = || Emitter::new(pointmass_tests::point(Vec3::ZERO), 1000.0);
     let emitters = [
         Emitter { mass: wide(3e38, 3e38), ..usual() },
@@ -239,7 +239,7 @@ fn the_hash_sees_every_column() {
         ("color", |m| m.color[9][3] ^= 1),
         ("material", |m| m.material[9] ^= 1),
         ("serial", |m| m.serial[9] += 1000),
-        ("tallies", |m| m.tallies[1] = Tally::default()),
+        ("emitter_states", |m| m.emitter_states[1] = EmitterState::default()),
     ];
     for (column, tamper) in tampers {
         let (hash, done) = hash(Some(tamper));

@@ -1,15 +1,16 @@
 //! Implicit Euler: what is stiff stays finite, comes to rest, and costs what it may.
 
 use pointmass::{
-    Coulomb, Drag, Gravity, Implicit, Measures, Particle, QuadraticDrag, Scene, Sheet, Spring, System, Thread, Threads,
-    Time, Vec3,
+    ClothSprings, Coulomb, Drag, Gravity, Implicit, Measures, Particle, QuadraticDrag, Scene, Sheet, Spring,
+    SpringParams, System, Time, Vec3,
 };
 use pointmass_tests::{Law, follow, run, started};
 
 /// A square metre of cloth, 4 kg, flat, held by two corners, and its springs.
 fn cloth(cells: u32, ks: f32, kd: f32) -> (Vec<Particle>, Vec<Spring>) {
-    let thread = Some(Thread { ks, kd });
-    let threads = Threads { structural: thread, shear: thread, bend: Some(Thread { ks: 0.01 * ks, kd: 0.01 * kd }) };
+    let thread = Some(SpringParams { ks, kd });
+    let threads =
+        ClothSprings { structural: thread, shear: thread, bend: Some(SpringParams { ks: 0.01 * ks, kd: 0.01 * kd }) };
     let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [cells; 2] };
     let mass = 4.0 / ((cells + 1) * (cells + 1)) as f32;
     let mut particles: Vec<_> = sheet.particles(Particle { mass, drag: 0.1 * mass, ..Particle::REST }).collect();

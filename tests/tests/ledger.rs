@@ -3,8 +3,8 @@
 use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
 use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
 use pointmass::{
-    Adaptive, Books, Drag, Emitter, Force, Gravity, Grip, Heap, Ledger, Measures, Meetings, Method, MutualGravity,
-    Particle, Rk4, Scene, Sheet, Size, Spring, System, Thread, Threads, Time, Varied, Vec3, Verlet,
+    Adaptive, Books, ClothSprings, ContactMaterial, Drag, Emitter, Force, Gravity, Heap, Ledger, Measures, Meetings,
+    Method, MutualGravity, Particle, Rk4, Scene, Sheet, Size, Spring, SpringParams, System, Time, Varied, Vec3, Verlet,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, point};
@@ -45,8 +45,8 @@ fn cloud(n: usize) -> Vec<Particle> {
 }
 
 fn net() -> (Vec<Particle>, Vec<Spring>) {
-    let thread = Some(Thread { ks: 50.0, kd: 0.5 });
-    let threads = Threads { structural: thread, shear: thread, bend: None };
+    let thread = Some(SpringParams { ks: 50.0, kd: 0.5 });
+    let threads = ClothSprings { structural: thread, shear: thread, bend: None };
     let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [4, 4] };
     let mut particles: Vec<_> = sheet.particles(Particle { mass: 0.1, drag: 0.05, ..Particle::REST }).collect();
     particles[0].fixed = true;
@@ -190,7 +190,8 @@ fn one_beyond_all_numbers_does_not_spoil_the_books() {
     assert!(books.total().is_finite() && books.deletion < -1e59 && books.closing < 1.0, "{books:?}");
 }
 
-const GRIP: [Grip; 1] = [Grip { elasticity: None, friction: Some(Friction { resting: 0.4, sliding: 0.3 }) }];
+const MATERIAL: [ContactMaterial; 1] =
+    [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.4, kinetic: 0.3 }) }];
 
 #[test]
 fn friction_has_its_line() {
@@ -215,7 +216,7 @@ fn friction_has_its_line() {
                     start: &start,
                     forces: &Gravity::EARTH,
                     colliders: &ground,
-                    grips: &GRIP,
+                    contact_materials: &MATERIAL,
                     integrator: &method,
                     ..Scene::EMPTY
                 };
@@ -242,7 +243,7 @@ fn what_scenery_lifts_and_drags_along_has_its_line() {
             start: &start,
             forces: &Gravity::EARTH,
             colliders: &moving,
-            grips: &GRIP,
+            contact_materials: &MATERIAL,
             integrator: &Verlet,
             ..Scene::EMPTY
         };
@@ -265,7 +266,7 @@ fn what_scenery_lifts_and_drags_along_has_its_line() {
         start: &start,
         forces: &Gravity::EARTH,
         colliders: &disc,
-        grips: &GRIP,
+        contact_materials: &MATERIAL,
         integrator: &Rk4,
         ..Scene::EMPTY
     };
@@ -288,10 +289,15 @@ fn friction_of_hard_balls_has_its_line() {
     let pair = [ball(-2.0, 0.6, 4.0), ball(0.0, 0.0, 0.0)];
     let perched =
         [Particle { fixed: true, ..ball(0.0, 0.0, 0.0) }, Particle { elasticity: 0.0, ..ball(0.6, 0.8, 0.0) }];
-    let hitting =
-        Scene { start: &pair, grips: &GRIP, meetings: Meetings::IMPULSE, integrator: &Verlet, ..Scene::EMPTY };
-    let sliding = Scene { start: &perched, forces: &Gravity::EARTH, ..hitting };
-    for (name, scene, least, bound) in [("hit", hitting, -0.5, 1e-5), ("slide", sliding, -0.05, 1e-3)] {
+    let hitting = Scene {
+        start: &pair,
+        contact_materials: &MATERIAL,
+        meetings: Meetings::IMPULSE,
+        integrator: &Verlet,
+        ..Scene::EMPTY
+    };
+    let kinetic = Scene { start: &perched, forces: &Gravity::EARTH, ..hitting };
+    for (name, scene, least, bound) in [("hit", hitting, -0.5, 1e-5), ("slide", kinetic, -0.05, 1e-3)] {
         let (books, share) = books(&scene, 2, 1.0 / 240.0);
         assert!(books.friction < least && books.scenery.abs() < 1e-4 && share < bound, "{name} {share}: {books:?}");
     }

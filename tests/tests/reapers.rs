@@ -5,8 +5,8 @@ use pointmass::reap::Verdicts;
 use pointmass::scene::{Model, SceneFile, schema, write_scn};
 use pointmass::shape::Line;
 use pointmass::{
-    Cause, Chance, Emitter, Fate, Heap, Id, Observer, Particle, Passing, Reaper, ReaperKind, Scene, System, Time,
-    Varied, Vec3,
+    Cause, Chance, Emitter, Heap, Id, LifeEvent, Observer, Particle, PendingDeath, Reaper, ReaperKind, Scene, System,
+    Time, Varied, Vec3,
 };
 use pointmass_tests::emitting::{cuts, living, play, varied};
 use pointmass_tests::{CHI_99, Form, chi_squared, chi_squared_100, often, point, run, started};
@@ -16,7 +16,7 @@ use pointmass_tests::{CHI_99, Form, chi_squared, chi_squared_100, often, point, 
 struct Deaths(Vec<(Id, Time, Cause)>);
 
 impl Observer for Deaths {
-    fn died(&mut self, death: &Passing, cause: Cause) {
+    fn died(&mut self, death: &LifeEvent, cause: Cause) {
         self.0.push((death.id, death.time, cause));
     }
 }
@@ -81,7 +81,7 @@ fn survivors_follow_the_law_at_every_frame_rate() {
 fn the_same_die_however_time_is_cut() {
     // Births of several emitters come in another order in other steps, so their serials tell nothing.
     let burst = Emitter { burst: Some(Burst { count: 40, at: 0.3, every: 0.4 }), ..varied(70.0) };
-    let mortal = Emitter { lifetime: Varied { mean: 1.0, variance: 0.6 }, ..varied(300.0) };
+    let mortal = Emitter { lifetime: Varied { mean: 1.0, half_width: 0.6 }, ..varied(300.0) };
     let emitters = (varied(333.3), burst, mortal);
     let start: Vec<_> = (0..200).map(|i| Particle { position: Vec3::X * i as f32, ..Particle::REST }).collect();
     let reapers = (Chance { rate: 0.9 }, Chance { rate: 0.2 });
@@ -177,7 +177,7 @@ fn the_time_of_death_has_nothing_to_do_with_the_birth() {
     let n = often(40_000);
     let form = Form::Line(Line { from: Vec3::ZERO, to: Vec3::X });
     let burst = Some(Burst { count: n as u32, at: 0.0, every: 0.0 });
-    let emitter = Emitter { burst, mass: Varied { mean: 1.5, variance: 0.5 }, ..Emitter::new(form, 0.0) };
+    let emitter = Emitter { burst, mass: Varied { mean: 1.5, half_width: 0.5 }, ..Emitter::new(form, 0.0) };
     let scene = Scene { emitters: &emitter, ..Scene::EMPTY };
     let mut system = started(&scene, n, 11);
     system.step(&scene, Time::ZERO);
@@ -284,11 +284,13 @@ fn rows_can_be_divided() {
     system.step(&scene, Time::from_seconds(0.8));
     let state = system.state(&scene);
     let reapers = [Chance { rate: 0.7 }, Chance { rate: 0.0 }, Chance { rate: 0.4 }];
-    let mut whole = [Fate::Lives; 1000];
+    let mut whole = [PendingDeath::Lives; 1000];
     reapers.judge(&state, 0..1000, &mut Verdicts::on(&mut whole));
-    assert!((500..700).contains(&whole.iter().filter(|fate| fate.cause() == Some(Cause::Chance)).count()));
+    assert!(
+        (500..700).contains(&whole.iter().filter(|pending_death| pending_death.cause() == Some(Cause::Chance)).count())
+    );
     for size in [1, 7, 64, 999] {
-        let mut parts = [Fate::Lives; 1000];
+        let mut parts = [PendingDeath::Lives; 1000];
         for (i, part) in parts.chunks_mut(size).enumerate() {
             reapers.judge(&state, i * size..i * size + part.len(), &mut Verdicts::on(part));
         }
@@ -301,12 +303,12 @@ fn the_gravest_cause_counts() {
     let all = [Cause::Lifetime, Cause::Other, Cause::Density, Cause::Chance, Cause::Sink, Cause::Nonfinite];
     for (i, &a) in all.iter().enumerate() {
         for (j, &b) in all.iter().enumerate() {
-            let mut fates = [Fate::Lives; 2];
-            let mut verdicts = Verdicts::on(&mut fates);
+            let mut pending_deaths = [PendingDeath::Lives; 2];
+            let mut verdicts = Verdicts::on(&mut pending_deaths);
             verdicts.end(1, a);
             verdicts.end(1, b);
             verdicts.end(2, b);
-            assert_eq!(fates.map(Fate::cause), [None, Some(all[i.max(j)])]);
+            assert_eq!(pending_deaths.map(PendingDeath::cause), [None, Some(all[i.max(j)])]);
         }
     }
 }

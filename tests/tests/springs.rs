@@ -3,8 +3,8 @@
 use core::f64::consts::PI;
 use pointmass::force::Drive;
 use pointmass::{
-    Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Sheet, Spring, System, Thread, Threads,
-    Time, Vec3, mesh_springs,
+    ClothSprings, Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Sheet, Spring, SpringParams,
+    System, Time, Vec3, mesh_springs,
 };
 use pointmass_tests::{Random, f64s, gap, icosahedron, point, run, started};
 
@@ -338,8 +338,8 @@ fn a_spring_breaks_once_and_for_ever() {
 
 #[test]
 fn a_sheet_has_the_springs_it_should() {
-    let thread = Some(Thread { ks: 10.0, kd: 0.1 });
-    let threads = Threads { structural: thread, shear: thread, bend: thread };
+    let thread = Some(SpringParams { ks: 10.0, kd: 0.1 });
+    let threads = ClothSprings { structural: thread, shear: thread, bend: thread };
     let sheet = Sheet { corner: Vec3::ONE, sides: [Vec3::X * 2.0, Vec3::Z * 3.0], cells: [4, 6] };
     let places: Vec<Vec3> = sheet.positions().collect();
     let springs: Vec<Spring> = sheet.springs(&threads, 100).collect();
@@ -360,9 +360,9 @@ fn a_sheet_has_the_springs_it_should() {
 #[test]
 fn a_mesh_has_a_spring_for_every_edge_and_one_over_it() {
     let (vertices, triangles) = icosahedron();
-    let threads = Threads { structural: Some(Thread { ks: 5.0, kd: 0.0 }), ..Threads::default() };
+    let threads = ClothSprings { structural: Some(SpringParams { ks: 5.0, kd: 0.0 }), ..ClothSprings::default() };
     assert_eq!(mesh_springs(&vertices, &triangles, &threads, 0).len(), 30);
-    let threads = Threads { bend: threads.structural, ..threads };
+    let threads = ClothSprings { bend: threads.structural, ..threads };
     let springs = mesh_springs(&vertices, &triangles, &threads, 7);
     assert_eq!(springs.len(), 60);
     for spring in springs {
@@ -409,9 +409,9 @@ fn springs_that_broke_in_an_earlier_scene_leave_no_trace() {
 fn a_sheet_beyond_all_numbers_is_refused() {
     let most = u32::MAX;
     let sheet = format!(r#"{{"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [{most}, {most}]}}"#);
-    let fabric = format!(r#"{{"form": {{"sheet": {sheet}}}, "mass": 1, "threads": {{"structural": {{"ks": 1}}}}}}"#);
-    let text = format!(r#"{{"fabrics": [{fabric}, {fabric}]}}"#);
+    let cloth = format!(r#"{{"form": {{"sheet": {sheet}}}, "mass": 1, "springs": {{"structural": {{"ks": 1}}}}}}"#);
+    let text = format!(r#"{{"cloths": [{cloth}, {cloth}]}}"#);
     let file = pointmass::scene::SceneFile::from_json("a.json", &text).expect("it is well-formed");
     let error = file.check().expect_err("it is too large").to_string();
-    assert!(error.contains("fabrics[0].form"), "{error}");
+    assert!(error.contains("cloths[0].form"), "{error}");
 }

@@ -41,7 +41,7 @@ fn it_does_not_matter_who_owns_the_memory() {
         // Memory that was in use before is as good as fresh.
         assert_eq!(hashes(&mut System::with(heap.slices()), scene), expected, "slices");
         let mut larger = Heap::new(Size { particles: 30, emitters: 9, springs: 20, columns: 7, kept: 2 });
-        // More tallies are hashed, so only the particles can be compared.
+        // More emitters are hashed, so only the particles can be compared.
         let mut system = System::with(&mut larger);
         let _ = hashes(&mut system, scene);
         let mut other = System::with(&mut heap);
@@ -124,10 +124,10 @@ fn a_step_that_does_not_fit_is_counted_and_changes_nothing() {
             let before = (system.particles().position.to_vec(), system.time(), system.len());
             let report = system.step(scene, Time::SECOND);
             let mut expected = Report::NOTHING;
-            expected.caps.unfit = 1;
+            expected.caps.insufficient_memory = 1;
             assert_eq!(report, expected);
             assert_eq!((system.particles().position.to_vec(), system.time(), system.len()), before);
-            assert_eq!(system.totals().caps.unfit, 1);
+            assert_eq!(system.totals().caps.insufficient_memory, 1);
             // It goes on with what fits.
             system.step(&small, Time::SECOND);
             assert_eq!(system.particles().position, [Vec3::X * 2.0]);
@@ -137,12 +137,12 @@ fn a_step_that_does_not_fit_is_counted_and_changes_nothing() {
 
 #[test]
 fn an_empty_system_is_all_zeros() {
-    // Written out, an empty system must show no digit but 0, no minus, and of its fates only the first.
+    // Written out, an empty system must show no digit but 0, no minus, and of its pending deaths only the first.
     let text = format!("{:?}", System::with(Inline::<2, 2, 2, 2>::new())).replace("Vec3", "");
     assert!(text.contains("position") && text.contains("row_of"));
     assert!(!text.contains(|c: char| ('1'..='9').contains(&c) || c == '-'), "{text}");
     assert!(!text.contains("true") && !text.contains("Some") && !text.contains("Sink"), "{text}");
-    assert_eq!(pointmass::Fate::Lives as u8, 0);
+    assert_eq!(pointmass::PendingDeath::Lives as u8, 0);
 }
 
 #[test]
@@ -178,7 +178,7 @@ proptest! {
     ) {
         let (first, second) = emitters();
         let burst = Some(Burst { count: burst, at: 0.05, every });
-        let lifetime = Varied { mean: lifetime, variance: 0.2 };
+        let lifetime = Varied { mean: lifetime, half_width: 0.2 };
         let emitters = (Emitter { rate: rates[0], burst, lifetime, ..first }, Emitter { rate: rates[1], ..second });
         let (gravity, mutual) =
             (Gravity { acceleration: gravity.into() }, MutualGravity { constant, softening: 0.01, ..MutualGravity::NEWTON });

@@ -7,7 +7,7 @@ use wasm_bindgen::JsError;
 /// Bytes that an object of a scene takes at most, from its text to the running world, while lists of it grow.
 const OBJECT: usize = 1536;
 
-/// Bytes that a particle of a fabric takes at most, with its springs.
+/// Bytes that a particle of a cloth takes at most, with its springs.
 const WOVEN: usize = 2048;
 
 /// Makes sure that so many bytes are to be had, for `what`.
@@ -31,17 +31,17 @@ pub(crate) fn room_to_read(text: &str) -> Result<(), JsError> {
     room(objects.saturating_mul(OBJECT).saturating_add(text.len().saturating_mul(12)), "the scene")
 }
 
-/// Makes sure of the memory that the fabrics of a scene take.
+/// Makes sure of the memory that the cloths of a scene take.
 ///
 /// # Errors
 /// If there is not so much.
 pub(crate) fn room_to_weave(file: &SceneFile, files: &Files) -> Result<(), JsError> {
-    let particles = file.fabrics.iter().map(|fabric| match &fabric.form {
+    let particles = file.cloths.iter().map(|cloth| match &cloth.form {
         Form::Sheet(sheet) => {
             sheet.cells.iter().fold(1_usize, |product, &n| product.saturating_mul((n as usize).saturating_add(1)))
         }
         Form::Mesh(name) => files.corners(name),
     });
     let particles = particles.fold(0_usize, usize::saturating_add);
-    room(particles.saturating_mul(WOVEN), "the fabrics of the scene")
+    room(particles.saturating_mul(WOVEN), "the cloths of the scene")
 }

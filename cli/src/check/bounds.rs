@@ -124,11 +124,11 @@ pub(crate) fn in_air(model: &Model) -> (Vec<Particle>, bool) {
     (model.particles.iter().map(braked).collect(), own != 0.0 || all != 0.0)
 }
 
-/// Where particle (0) or spring (1) number `number` stands in the file: in a list, or in a fabric.
+/// Where particle (0) or spring (1) number `number` stands in the file: in a list, or in a cloth.
 pub(crate) fn place(model: &Model, kind: usize, number: usize) -> String {
-    match model.fabrics.partition_point(|begin| begin[kind] <= number) {
+    match model.cloths.partition_point(|begin| begin[kind] <= number) {
         0 => format!("{}[{number}]", ["particles", "springs"][kind]),
-        after => format!("fabrics[{}]", after - 1),
+        after => format!("cloths[{}]", after - 1),
     }
 }
 
@@ -158,8 +158,8 @@ fn dragged(model: &Model) -> Option<Part> {
     let start = start.map(|(i, p)| ([0, i], own * f64::from(p.drag) + all, f64::from(p.mass)));
     let births = model.emitters.iter().enumerate().filter(|(_, emitter)| !emitter.fixed);
     let births = births.map(|(i, e)| {
-        let most = own * (f64::from(e.drag.mean) + f64::from(e.drag.variance.abs())) + all;
-        ([1, i], most, f64::from(e.mass.mean) - f64::from(e.mass.variance.abs()))
+        let most = own * (f64::from(e.drag.mean) + f64::from(e.drag.half_width.abs())) + all;
+        ([1, i], most, f64::from(e.mass.mean) - f64::from(e.mass.half_width.abs()))
     });
     let rate = |part: &([usize; 2], f64, f64)| part.1 / part.2;
     let braked = start.chain(births).filter(|part| rate(part) > 0.0);

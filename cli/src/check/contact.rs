@@ -50,7 +50,7 @@ impl Contact {
         let most = |mode: Mode| Mode { omega2: crowd * mode.omega2, damping: crowd * mode.damping };
         let crowded = pairs.clone().map(most).filter(|_| crowd > 1.0);
         let swings = pairs.chain(crowded).collect();
-        let slips = penalty.friction.sliding > 0.0;
+        let slips = penalty.friction.kinetic > 0.0;
         // Slowly, friction brakes as what would just not let the contact swing.
         let slip = slips.then(|| Mode { omega2: 0.0, damping: 2.0 * mode.omega2.sqrt() });
         let Penalty { stiffness, damping, .. } = *penalty;
@@ -103,14 +103,14 @@ fn balls(model: &Model) -> Vec<Ball> {
     let start = start.map(|(i, p)| Ball { from: (false, i), mass: f64::from(p.mass), fixed: p.fixed });
     let births = model.emitters.iter().enumerate().filter(|(_, emitter)| widest(emitter) > 0.0);
     let births = births.flat_map(|(i, emitter)| {
-        let mass = f64::from(emitter.mass.mean) - f64::from(emitter.mass.variance.abs());
+        let mass = f64::from(emitter.mass.mean) - f64::from(emitter.mass.half_width.abs());
         [Ball { from: (true, i), mass, fixed: emitter.fixed }; 2]
     });
     start.chain(births).collect()
 }
 
 fn widest<M>(emitter: &Emitter<M>) -> f32 {
-    emitter.radius.mean + emitter.radius.variance.abs()
+    emitter.radius.mean + emitter.radius.half_width.abs()
 }
 
 /// How two swing against each other while they touch.

@@ -89,7 +89,7 @@ pub(crate) fn facts(check: &Check) -> Vec<(&'static str, String)> {
     }));
     facts.extend(check.sinks.iter().map(|sink| {
         let (gradient, mass, within) = (plain(sink.gradient), plain(sink.mass), time(1.0 / sink.rate));
-        ("sink", format!("{}: its pull changes by {gradient} N/m; {mass} kg feel that within {within}", sink.place))
+        ("sink", format!("{}: its pull changes by {gradient} N/m; {mass} kg mixed that within {within}", sink.place))
     }));
     facts
 }

@@ -98,7 +98,7 @@ pub(crate) fn fastest_pair(model: &Model) -> Option<Pair> {
 pub(crate) fn pulls(model: &Model) -> Vec<Pull> {
     let start = model.particles.iter().filter(|particle| !particle.fixed).map(|particle| f64::from(particle.mass));
     let births = model.emitters.iter().filter(|emitter| !emitter.fixed);
-    let births = births.map(|emitter| f64::from(emitter.mass.mean) - f64::from(emitter.mass.variance.abs()));
+    let births = births.map(|emitter| f64::from(emitter.mass.mean) - f64::from(emitter.mass.half_width.abs()));
     let mass = start.chain(births).fold(f64::INFINITY, f64::min);
     let pull = |(i, sink): (usize, &Sink<_>)| {
         let gradient = steepest(sink);

@@ -4,9 +4,9 @@ use super::distribution::Distribution;
 use super::points;
 use super::sample::sample;
 use crate::args;
-use crate::clock::Clock;
 use crate::meshes::error::excerpt;
 use crate::progress::Progress;
+use crate::schedule::Schedule;
 use crate::words::thousands;
 use crate::world::World;
 use crate::{Failure, Outcome};
@@ -107,15 +107,16 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
         threads: Some(1),
     };
     let mut world = World::load(&settings)?;
-    let clock = Clock::new(world.duration, world.dt);
-    let mut progress = Progress::new(clock.steps());
-    for step in 1..=clock.steps() {
-        world.step_to(clock.end(step));
+    let schedule = Schedule::new(world.duration, world.dt);
+    let mut progress = Progress::new(schedule.steps());
+    for step in 1..=schedule.steps() {
+        world.step_to(schedule.end(step));
         progress.step(world.system.len());
     }
     progress.finish();
     let points = world.system.particles().position.to_vec();
-    let (len, at, path) = (points.len(), crate::clock::nanoseconds(world.system.time().seconds_f64()), scene.display());
+    let (len, at, path) =
+        (points.len(), crate::schedule::nanoseconds(world.system.time().seconds_f64()), scene.display());
     if len < 2 {
         return Err(Failure::new(format!(
             "{path}: {len} particles live at {at} s: expected two or more; try another --at"

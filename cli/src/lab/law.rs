@@ -1,7 +1,7 @@
 //! Textbook laws along x, as forces.
 
 use core::ops::Range;
-use pointmass::force::{Change, Force, State};
+use pointmass::force::{Force, Perturbation, State};
 use pointmass::{Particle, Vec3};
 
 /// What pulls every particle along x, told by the acceleration \[m/s²\]. Computed in double precision, so that all
@@ -48,7 +48,7 @@ impl Force for Law {
         }
     }
 
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         for (row, total) in total.iter_mut().enumerate() {
             total.x -= self.stiffness(state, row) * change.position * change.along[row].x;
         }

@@ -247,7 +247,7 @@ impl Problem {
         let memory = memory
             .map_err(|_| Failure::new(format!("{}: there is no memory for {} particles", self.name, self.capacity)))?;
         let mut system = System::with(memory);
-        system.start(scene, self.seed).map_err(|unfit| Failure::new(unfit.to_string()))?;
+        system.start(scene, self.seed).map_err(|insufficient_memory| Failure::new(insufficient_memory.to_string()))?;
         Ok(system)
     }
 

@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use crate::Outcome;
-use crate::clock::Clock;
+use crate::schedule::Schedule;
 use pointmass::integrate::Tuned;
 use pointmass::{Effort, Heap, Ledger, Particle, Scene, System};
 use serde::Serialize;
@@ -83,8 +83,8 @@ impl Trial<'_> {
         let mut system = self.problem.system(&scene)?;
         let mut ledger = Ledger::new(&system, &scene);
         let mut track = Track { opening: ledger.books().opening, ..Track::default() };
-        let clock = Clock::new(self.duration, self.dt);
-        let mut outturn = self.follow(&mut system, clock, |system, dt| {
+        let schedule = Schedule::new(self.duration, self.dt);
+        let mut outturn = self.follow(&mut system, schedule, |system, dt| {
             system.step_observed(&scene, dt, &mut ledger);
             track.add(system, ledger.books().remainder, self.duration);
         });
@@ -103,8 +103,8 @@ impl Trial<'_> {
         let start: Vec<_> = problem.start.iter().map(move_up).collect();
         let scene = Scene { start: &start, integrator: &self.method, ..problem };
         let mut system = self.problem.system(&scene)?;
-        let clock = Clock::new(self.duration, self.dt);
-        Ok(self.follow(&mut system, clock, |system, dt| {
+        let schedule = Schedule::new(self.duration, self.dt);
+        Ok(self.follow(&mut system, schedule, |system, dt| {
             system.step(&scene, dt);
         }))
     }
@@ -112,12 +112,12 @@ impl Trial<'_> {
     fn follow(
         &self,
         system: &mut System<Heap>,
-        clock: Clock,
+        schedule: Schedule,
         mut step: impl FnMut(&mut System<Heap>, pointmass::Time),
     ) -> Outturn {
         let mut outturn = Outturn::default();
-        for n in 1..=clock.steps() {
-            step(system, clock.end(n) - system.time());
+        for n in 1..=schedule.steps() {
+            step(system, schedule.end(n) - system.time());
             let largest = |x: &pointmass::Vec3| f64::from(x.abs().max_element());
             outturn.extent = system.particles().position.iter().map(largest).fold(outturn.extent, f64::max);
             if outturn.extent > self.limit || system.totals().died.nonfinite > 0 {

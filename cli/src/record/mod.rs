@@ -4,8 +4,8 @@ mod ply;
 mod table;
 mod xyz;
 
-use crate::clock::nanoseconds;
 use crate::formats::RecordFormat;
+use crate::schedule::nanoseconds;
 use crate::whole::{WholeFile, Written, publish};
 use crate::{Failure, Outcome};
 use pointmass::{Columns, Heap, Scene, System};

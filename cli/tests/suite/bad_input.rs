@@ -124,9 +124,9 @@ fn json_that_is_wrong() {
         ("\"rate\": \"fast\"", "a.json:1:"),
         ("\"wind\": 1", "a.json:1:"),
         ("\"speed\": null", "a.json:1:"),
-        ("\"speed\": {\"mean\": 1, \"variance\": 1e39}", "a.json:"),
+        ("\"speed\": {\"mean\": 1, \"half_width\": 1e39}", "a.json:"),
         ("\"mass\": 0", "a.json:emitters[0].mass: "),
-        ("\"mass\": {\"mean\": 1, \"variance\": 1}", "a.json:emitters[0].mass: "),
+        ("\"mass\": {\"mean\": 1, \"half_width\": 1}", "a.json:emitters[0].mass: "),
         ("\"material\": 0", "a.json:emitters[0].material: "),
         ("\"material\": -1", "a.json:1:"),
         ("\"direction\": [0, 0, 0]", "a.json:emitters[0].direction: "),
@@ -211,8 +211,8 @@ fn springs_fabrics_and_forces_that_are_wrong() {
     let spring = |rest: &str| {
         format!(r#"{{"particles": [{{}}, {{}}], "springs": [{{"ends": [0, 1], "rest_length": 1, {rest}}}]}}"#)
     };
-    let fabric = |form: &str, threads: &str, rest: &str| {
-        format!(r#"{{"fabrics": [{{"form": {form}, "threads": {{{threads}}}, "mass": {rest}}}]}}"#)
+    let cloth = |form: &str, threads: &str, rest: &str| {
+        format!(r#"{{"cloths": [{{"form": {form}, "springs": {{{threads}}}, "mass": {rest}}}]}}"#)
     };
     let sheet = |cells: &str| {
         format!(r#"{{"sheet": {{"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": {cells}}}}}"#)
@@ -228,20 +228,17 @@ fn springs_fabrics_and_forces_that_are_wrong() {
         (spring(r#""ks": null"#), "a.json:1:81: invalid type: null, expected a number"),
         (spring(r#""ks": 1e39"#), "a.json:1:81: number out of range: the largest is 3.4e38"),
         (spring(r#""ks": 1, "breaks_at": 0.5"#), "a.json:springs[0].breaks_at: has to be above one, a length over"),
-        (fabric(&two, "", "1"), "a.json:fabrics[0].threads: has to name structural, shear or bend springs"),
-        (
-            fabric(&two, r#""bend": {"ks": -2}"#, "1"),
-            "a.json:fabrics[0].threads.bend.ks: has to be zero or more, not -2",
-        ),
-        (fabric(&two, soft, "-1"), "a.json:fabrics[0].mass: has to be above zero, not -1"),
-        (fabric(&two, soft, "1e-38"), "a.json:fabrics[0].mass: leaves 1.1"),
-        (fabric(&two, soft, r#"1, "gas": {"amount": 1}"#), "a.json:fabrics[0].gas: a sheet has no inside"),
-        (fabric(&two, soft, r#"1, "fixed": [9]"#), "a.json:fabrics[0].fixed: particle 9 is out of range; there are 9,"),
-        (fabric(&two, soft, r#"1, "breaks_at": 1"#), "a.json:fabrics[0].breaks_at: has to be above one, a length over"),
-        (fabric(&far, soft, "1"), "a.json:fabrics[0].form: reaches beyond the range of a 32-bit float"),
-        (fabric(&sheet("[1000000, 1000000]"), soft, "1"), "a.json:fabrics[0].form: makes 1000002000001 particles; "),
-        (fabric(&sheet("[8000, 8000]"), soft, "1"), "a.json:fabrics[0].form: makes 64016001 particles; "),
-        (fabric(&sheet("[4294967295, 4294967295]"), soft, "1"), "a.json:fabrics[0].form: makes 18446744073709551615 "),
+        (cloth(&two, "", "1"), "a.json:cloths[0].springs: has to name structural, shear or bend springs"),
+        (cloth(&two, r#""bend": {"ks": -2}"#, "1"), "a.json:cloths[0].springs.bend.ks: has to be zero or more, not -2"),
+        (cloth(&two, soft, "-1"), "a.json:cloths[0].mass: has to be above zero, not -1"),
+        (cloth(&two, soft, "1e-38"), "a.json:cloths[0].mass: leaves 1.1"),
+        (cloth(&two, soft, r#"1, "gas": {"amount": 1}"#), "a.json:cloths[0].gas: a sheet has no inside"),
+        (cloth(&two, soft, r#"1, "fixed": [9]"#), "a.json:cloths[0].fixed: particle 9 is out of range; there are 9,"),
+        (cloth(&two, soft, r#"1, "breaks_at": 1"#), "a.json:cloths[0].breaks_at: has to be above one, a length over"),
+        (cloth(&far, soft, "1"), "a.json:cloths[0].form: reaches beyond the range of a 32-bit float"),
+        (cloth(&sheet("[1000000, 1000000]"), soft, "1"), "a.json:cloths[0].form: makes 1000002000001 particles; "),
+        (cloth(&sheet("[8000, 8000]"), soft, "1"), "a.json:cloths[0].form: makes 64016001 particles; "),
+        (cloth(&sheet("[4294967295, 4294967295]"), soft, "1"), "a.json:cloths[0].form: makes 18446744073709551615 "),
         (force(r#""mutual_gravity": {"softening": -1}"#), "a.json:forces[0].softening: has to be zero or more, not -1"),
         (
             force(r#""mutual_gravity": {"softening": 1e30}"#),
@@ -258,7 +255,7 @@ fn springs_fabrics_and_forces_that_are_wrong() {
 #[test]
 fn balls_contacts_and_motion_that_are_wrong() {
     let ball = |rest: &str| format!(r#"{{"particles": [{{"radius": 0.1}}], {rest}}}"#);
-    let grip = |grip: &str| ball(&format!(r#""materials": [{{"grip": {{{grip}}}}}]"#));
+    let contact = |contact: &str| ball(&format!(r#""materials": [{{"contact": {{{contact}}}}}]"#));
     let sphere = r#""shape": {"sphere": {"center": [9, 0, 0], "radius": 1}}"#;
     let cases = [
         (
@@ -266,19 +263,19 @@ fn balls_contacts_and_motion_that_are_wrong() {
             "a.json:particles[0]: its numbers have to be finite, its radius",
         ),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "radius": {{"mean": 1, "variance": 2}}}}]}}"#),
-            "a.json:emitters[0].radius: must not be below zero, the variance counted in",
+            format!(r#"{{"emitters": [{{{sphere}, "radius": {{"mean": 1, "half_width": 2}}}}]}}"#),
+            "a.json:emitters[0].radius: must not be below zero, the half_width counted in",
         ),
         (
             format!(r#"{{"emitters": [{{{sphere}, "fixed": true, "mass": -5}}]}}"#),
-            "a.json:emitters[0].mass: must not be below zero, the variance counted in",
+            "a.json:emitters[0].mass: must not be below zero, the half_width counted in",
         ),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "mass": {{"mean": 3e38, "variance": 2e38}}}}]}}"#),
+            format!(r#"{{"emitters": [{{{sphere}, "mass": {{"mean": 3e38, "half_width": 2e38}}}}]}}"#),
             "a.json:emitters[0].mass: 3e38 ± 2e38 goes beyond the range",
         ),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "lifetime": {{"mean": -3e38, "variance": -2e38}}}}]}}"#),
+            format!(r#"{{"emitters": [{{{sphere}, "lifetime": {{"mean": -3e38, "half_width": -2e38}}}}]}}"#),
             "a.json:emitters[0].lifetime: -3e38 ± -2e38 goes beyond",
         ),
         (ball(r#""contacts": "impulse""#), "a.json:1:55: a name alone, where its settings should follow"),
@@ -292,11 +289,11 @@ fn balls_contacts_and_motion_that_are_wrong() {
             ball(r#""contacts": {"position": {"substeps": 0}}"#),
             "a.json:contacts.position.substeps: has to be from 1 to",
         ),
-        (grip(r#""elasticity": 1.5"#), "a.json:materials[0].grip.elasticity: has to be from 0 to 1, not 1.5"),
-        (grip(r#""friction": 0.5"#), "a.json:1:72: invalid type: floating point `0.5`, expected {\"resting\": "),
+        (contact(r#""elasticity": 1.5"#), "a.json:materials[0].contact.elasticity: has to be from 0 to 1, not 1.5"),
+        (contact(r#""friction": 0.5"#), "a.json:1:72: invalid type: floating point `0.5`, expected {\"static\": "),
         (
-            grip(r#""friction": {"resting": 1, "sliding": -1}"#),
-            "a.json:materials[0].grip.friction.sliding: has to be zero or more, not -1",
+            contact(r#""friction": {"static": 1, "kinetic": -1}"#),
+            "a.json:materials[0].contact.friction.kinetic: has to be zero or more, not -1",
         ),
         (
             ball(&format!(r#""scenery": [{{{sphere}, "motion": {{"axis": [0, 0, 0], "spin": 1}}}}]"#)),
@@ -377,7 +374,7 @@ fn an_error_is_one_short_line_whatever_a_name_holds() {
 #[test]
 fn unknown_fields_are_errors_at_every_depth() {
     let sphere = r#""shape": {"sphere": {"center": [0, 0, 0], "radius": 1, "x": 0}}"#;
-    let speed = r#""shape": {"mesh": "m.off"}, "speed": {"mean": 1, "variance": 0, "x": 0}"#;
+    let speed = r#""shape": {"mesh": "m.off"}, "speed": {"mean": 1, "half_width": 0, "x": 0}"#;
     let cases = [
         r#"{"run": {"x": 0}}"#.to_string(),
         r#"{"particles": [{"x": 0}]}"#.into(),

@@ -269,23 +269,23 @@ fn wind_brakes_as_drag_does_and_what_is_not_looked_at_is_named() {
 #[test]
 fn springs_of_fabrics_are_found_in_the_file() {
     let sheet = r#"{"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [2, 2]}}"#;
-    let fabric = |ks: u32| {
+    let cloth = |ks: u32| {
         format!(
-            r#"{{"form": {sheet}, "mass": 9, "drag": {ks}, "threads": {{"structural": {{"ks": {ks}, "kd": {ks}}}}}}}"#
+            r#"{{"form": {sheet}, "mass": 9, "drag": {ks}, "springs": {{"structural": {{"ks": {ks}, "kd": {ks}}}}}}}"#
         )
     };
     let folder = Folder::with(
         "a.json",
         format!(
             r#"{{"particles": [{{}}, {{}}], "springs": [{{"ends": [0, 1], "rest_length": 1, "ks": 3}}],
-            "forces": [{{"drag": {{}}}}], "fabrics": [{}, {}]}}"#,
-            fabric(2),
-            fabric(50)
+            "forces": [{{"drag": {{}}}}], "cloths": [{}, {}]}}"#,
+            cloth(2),
+            cloth(50)
         ),
     );
     let report = check(&folder, "a.json");
-    assert_eq!([&report["stiffest"]["place"], &report["dragged"]["place"]], ["fabrics[1]", "fabrics[1]"]);
-    assert!(report["advice"].to_string().contains("fabrics[1] is damped 5 times"), "{report}");
+    assert_eq!([&report["stiffest"]["place"], &report["dragged"]["place"]], ["cloths[1]", "cloths[1]"]);
+    assert!(report["advice"].to_string().contains("cloths[1] is damped 5 times"), "{report}");
 }
 
 #[test]

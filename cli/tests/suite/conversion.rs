@@ -110,10 +110,10 @@ fn what_scn_cannot_say_is_warned_of() {
         (emitter(r#""velocity": [0, 1, 0]"#), "emitters[0]"),
         (emitter(r#""spread": {"uniform": 1}"#), "emitters[0]"),
         (emitter(r#""color": [1, 2, 3, 4]"#), "emitters[0]"),
-        (emitter(r#""color_variance": [1, 2, 3, 4]"#), "emitters[0]"),
-        (emitter(r#""speed": {"mean": 1, "variance": 1}"#), "emitters[0]"),
-        (emitter(r#""mass": {"mean": 2, "variance": 1}"#), "emitters[0]"),
-        (emitter(r#""lifetime": {"mean": 2, "variance": 1}"#), "emitters[0]"),
+        (emitter(r#""color_half_width": [1, 2, 3, 4]"#), "emitters[0]"),
+        (emitter(r#""speed": {"mean": 1, "half_width": 1}"#), "emitters[0]"),
+        (emitter(r#""mass": {"mean": 2, "half_width": 1}"#), "emitters[0]"),
+        (emitter(r#""lifetime": {"mean": 2, "half_width": 1}"#), "emitters[0]"),
         (format!(r#""emitters": [{{{triangle}}}]"#), "emitters[0]"),
         (format!(r#""sinks": [{{{triangle}, {sink}}}]"#), "sinks[0]"),
         (format!(r#""sinks": [{{{plane}, {sink}}}]"#), "sinks[0]"),
@@ -156,7 +156,7 @@ fn what_scn_cannot_say_is_warned_of() {
 fn every_thing_left_out_has_a_warning_of_its_own() {
     let emitter = |rest: &str| format!(r#"{{"shape": {{"sphere": {{"center": [0, 0, 0], "radius": 1}}}}, {rest}}}"#);
     let emitters = [
-        r#""burst": {"count": 1}, "speed": {"mean": 1, "variance": 1}"#,
+        r#""burst": {"count": 1}, "speed": {"mean": 1, "half_width": 1}"#,
         r#""direction": [0, 1, 0], "color": [1, 2, 3, 4]"#,
         r#""spread": {"uniform": 1}"#,
     ]

@@ -291,7 +291,7 @@ pub(crate) fn scene() -> impl Strategy<Value = SceneFile> {
 }
 
 fn varied(mean: impl Strategy<Value = f32>) -> impl Strategy<Value = Varied> {
-    (mean, prop_oneof![Just(0.0f32), 0.0f32..0.5]).prop_map(|(mean, variance)| Varied { mean, variance })
+    (mean, prop_oneof![Just(0.0f32), 0.0f32..0.5]).prop_map(|(mean, half_width)| Varied { mean, half_width })
 }
 
 fn force() -> impl Strategy<Value = ForceKind> {
@@ -317,7 +317,7 @@ fn any_emitter() -> impl Strategy<Value = Emitter<Shape<String>>> {
     let look = (option::of(any::<[u8; 4]>()), any::<[u8; 4]>());
     (shape, positive(), when, motion, rest, look).prop_map(|(shape, rate, when, motion, rest, look)| {
         let ((burst, start, stop), (speed, direction, spread, velocity, inherit)) = (when, motion);
-        let ((mass, fixed, drag, elasticity, lifetime), (color, color_variance)) = (rest, look);
+        let ((mass, fixed, drag, elasticity, lifetime), (color, color_half_width)) = (rest, look);
         Emitter {
             burst,
             start,
@@ -333,7 +333,7 @@ fn any_emitter() -> impl Strategy<Value = Emitter<Shape<String>>> {
             elasticity,
             lifetime,
             color,
-            color_variance,
+            color_half_width,
             ..Emitter::new(shape, rate)
         }
     })

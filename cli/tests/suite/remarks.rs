@@ -29,8 +29,8 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
     for (text, words) in [
         (r#"{"particles": [{}, {"elasticity": 1.01}]}"#.into(), "a.json:particles[1].elasticity: 1.01 is above 1"),
         (r#"{"particles": [{"elasticity": -0.1}]}"#.into(), "a.json:particles[0].elasticity: -0.1 is below 0"),
-        (emitter(r#""elasticity": {"mean": 0.75, "variance": 0.5}"#), "a.json:emitters[0].elasticity: 1.25 is above"),
-        (emitter(r#""elasticity": {"mean": 0.25, "variance": 0.5}"#), "a.json:emitters[0].elasticity: -0.25 is below"),
+        (emitter(r#""elasticity": {"mean": 0.75, "half_width": 0.5}"#), "a.json:emitters[0].elasticity: 1.25 is above"),
+        (emitter(r#""elasticity": {"mean": 0.25, "half_width": 0.5}"#), "a.json:emitters[0].elasticity: -0.25 is below"),
         (emitter(r#""spread": {"uniform": 3.2}"#), "a.json:emitters[0].spread: 3.2 rad is not from 0 to π"),
         (emitter(r#""spread": {"uniform": -1}"#), "a.json:emitters[0].spread: -1 rad is not from 0 to π"),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
@@ -39,24 +39,24 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:springs[0].ends: the spring joins particle 1 to itself",
         ),
         (
-            format!(r#"{{"fabrics": [{{"form": {sheet}, "mass": 1, "elasticity": 2, "threads": {{"bend": {{"ks": 1}}}}}}]}}"#),
-            "a.json:fabrics[0].elasticity: 2 is above 1",
+            format!(r#"{{"cloths": [{{"form": {sheet}, "mass": 1, "elasticity": 2, "springs": {{"bend": {{"ks": 1}}}}}}]}}"#),
+            "a.json:cloths[0].elasticity: 2 is above 1",
         ),
         (
-            r#"{"materials": [{"grip": {"friction": {"resting": 0.1, "sliding": 0.2}}}]}"#.into(),
-            "a.json:materials[0].grip.friction.resting: 0.1 is below sliding, 0.2",
+            r#"{"materials": [{"contact": {"friction": {"static": 0.1, "kinetic": 0.2}}}]}"#.into(),
+            "a.json:materials[0].contact.friction.static: 0.1 is below kinetic, 0.2",
         ),
         (
-            r#"{"particles": [{"radius": 1}], "contacts": {"force": {"stiffness": 1, "friction": {"resting": 0, "sliding": 1}}}}"#
+            r#"{"particles": [{"radius": 1}], "contacts": {"force": {"stiffness": 1, "friction": {"static": 0, "kinetic": 1}}}}"#
                 .into(),
-            "a.json:contacts.force.friction.resting: 0 is below sliding, 1",
+            "a.json:contacts.force.friction.static: 0 is below kinetic, 1",
         ),
     ] {
         folder.write("a.json", &text);
         warned(&folder, "a.json", &[words]);
     }
     let fine =
-        r#""elasticity": {"mean": 0.5, "variance": 0.5}, "spread": {"uniform": 3.14159274}, "start": 1, "stop": 2"#;
+        r#""elasticity": {"mean": 0.5, "half_width": 0.5}, "spread": {"uniform": 3.14159274}, "start": 1, "stop": 2"#;
     folder.write("a.json", emitter(fine));
     folder.run("run a.json --steps 2").fine();
 }

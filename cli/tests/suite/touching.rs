@@ -102,7 +102,7 @@ fn the_lightest_pair_counts_also_of_the_newborn_and_the_fixed() {
     let folder = Folder::new();
     let ball = |mass: f64, fixed: bool| json!({"radius": 0.1, "mass": mass, "fixed": fixed, "position": [mass, 0, 0]});
     let born = json!({"shape": {"sphere": {"center": [0, 9, 0], "radius": 1}}, "rate": 5, "radius": 0.1,
-        "mass": {"mean": 0.3, "variance": 0.1}});
+        "mass": {"mean": 0.3, "half_width": 0.1}});
     let limit = |particles: Vec<Value>, emitters: Vec<Value>| {
         let scene = json!({"contacts": {"force": {"stiffness": 1000}}, "particles": particles, "emitters": emitters});
         folder.write("a.json", scene.to_string());

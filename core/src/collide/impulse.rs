@@ -1,22 +1,22 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
-use super::melee::Melee;
+use super::event_driven::EventDriven;
 use super::passage::Passage;
 use super::queue::Queue;
 use crate::memory::{Layout, Shares, Slices, Storage};
 
-/// Vectors a particle for its clock and for where it was at the step's beginning.
+/// Vectors a particle for its next event and for where it was at the step's beginning.
 pub(super) const COLUMNS: usize = 4;
 
 /// Follows all through the step.
 #[inline(never)]
 pub(super) fn follow(passage: Passage<'_, '_>) {
     // Points meet nobody.
-    if !passage.view.memory.radius[..passage.view.len()].iter().any(|&radius| radius > 0.0) {
+    if !passage.workspace.memory.radius[..passage.workspace.len()].iter().any(|&radius| radius > 0.0) {
         return passage.each_by_itself();
     }
-    let Passage { view, scene, old, now, dt, report, observer } = passage;
-    let (len, capacity) = (view.len(), view.capacity());
+    let Passage { workspace, scene, old, now, dt, report, observer } = passage;
+    let (len, capacity) = (workspace.len(), workspace.capacity());
     let Slices {
         position,
         velocity,
@@ -26,25 +26,25 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
         elasticity,
         material,
         born,
-        fate,
+        pending_death,
         slot,
         serial,
         work,
         ..
-    } = view.memory.slices();
+    } = workspace.memory.slices();
     let Shares { start: [start_x, start_v], scratch, .. } = Layout::of(scene.plan(), capacity).shares(work);
-    let (clocks, home, index_memory) = scratch.meeting(len);
+    let (events, home, index_memory) = scratch.meeting(len);
     let unit = (dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
-    let mut melee = Melee {
+    let mut all = EventDriven {
         scene,
         dt,
         end: now + dt,
         unit,
-        clocks: Queue::new(bytemuck::cast_slice_mut(clocks)),
+        events: Queue::new(bytemuck::cast_slice_mut(events)),
         ends: [&mut position[..len], &mut velocity[..len]],
         starts: [&mut start_x[..len], &mut start_v[..len]],
         home: &[],
-        fate: &mut fate[..len],
+        pending_death: &mut pending_death[..len],
         radius: &radius[..len],
         mass,
         inverse_mass,
@@ -53,14 +53,14 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
         slot,
         serial,
         widest: 0.0,
-        leash: 0.0,
+        max_travel: 0.0,
         report,
         observer,
     };
-    melee.prepare(&born[..len], old);
-    home.copy_from_slice(melee.starts[0]);
+    all.prepare(&born[..len], old);
+    home.copy_from_slice(all.starts[0]);
     let home = &*home;
-    melee.home = home;
-    let reach = 2.0 * melee.widest + melee.leash;
-    scene.index.arrange(index_memory, home, reach, &mut |index| melee.run(index));
+    all.home = home;
+    let reach = 2.0 * all.widest + all.max_travel;
+    scene.index.with_index(index_memory, home, reach, &mut |index| all.run(index));
 }

@@ -1,9 +1,9 @@
 //! When two balls touch, and what that does to them.
 
-use super::flight::RESTING;
-use super::grip::Feel;
+use super::material::Mixed;
 use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
+use super::sweep::RESTING;
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use crate::observe::Sliding;
 use glam::Vec3;
@@ -93,7 +93,7 @@ pub(super) struct Touch {
     pub(super) acceleration: [Vec3; 2],
     /// Zero for what is fixed; not both.
     pub(super) inverse_mass: [f32; 2],
-    pub(super) feel: Feel,
+    pub(super) mixed: Mixed,
     /// What rounding may do to their distance \[m\].
     pub(super) slack: f32,
 }
@@ -116,10 +116,10 @@ impl Touch {
         let incoming = relative.dot(n);
         let acceleration = self.acceleration[0] - self.acceleration[1];
         let pressing = -acceleration.dot(n);
-        let outgoing = if incoming < 0.0 { -incoming * self.feel.elasticity } else { incoming };
+        let outgoing = if incoming < 0.0 { -incoming * self.mixed.elasticity } else { incoming };
         let rests = pressing > 0.0 && 2.0 * outgoing < RESTING * dt * pressing;
         let outgoing = if rests { 0.0 } else { outgoing };
-        let friction = self.feel.friction;
+        let friction = self.mixed.friction;
         let came = relative - n * incoming;
         let braked = friction.answer(came, outgoing - incoming);
         let change = n * (outgoing - incoming) + braked;
@@ -174,9 +174,9 @@ mod tests {
     use crate::time::Time;
 
     fn head_on(elasticity: f32, inverse_mass: [f32; 2]) -> Touch {
-        let feel = Feel { elasticity, friction: Friction::NONE };
+        let mixed = Mixed { elasticity, friction: Friction::NONE };
         let velocity = [Vec3::new(-3.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)];
-        Touch { normal: Vec3::X, velocity, acceleration: [Vec3::ZERO; 2], inverse_mass, feel, slack: 1e-6 }
+        Touch { normal: Vec3::X, velocity, acceleration: [Vec3::ZERO; 2], inverse_mass, mixed, slack: 1e-6 }
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Eight paths past one flat face, side by side: of those who lie on it, and of those who bounce off it once.
 //!
-//! Every number is made as `Flight` makes it, in the same order, and so has the same bits. Whoever needs more than this is left
+//! Every number is made as `Sweep` makes it, in the same order, and so has the same bits. Whoever needs more than this is left
 //! to that: two hits in a step, a hit after which it rests, a place that is not free.
 
-use super::flight::{LAIN, MAX_LOOKS, RESTING};
 use super::path::{CHORD_ERROR, MAX_CHORDS};
+use super::sweep::{LAIN, MAX_LOOKS, RESTING};
 use crate::lanes::{Vectors, max, min, negated, not, select, sqrt, turned};
 use crate::shape::Face;
 use crate::time::Time;
@@ -140,7 +140,7 @@ pub(super) struct Riders {
     pub(super) elasticity: f32x8,
     /// Coefficients of friction.
     pub(super) at_rest: f32x8,
-    pub(super) sliding: f32x8,
+    pub(super) kinetic: f32x8,
 }
 
 /// The outcome of a packet: a bit for each particle.
@@ -359,13 +359,13 @@ impl Riders {
     #[inline(always)]
     fn slide(&self, velocity: Vectors, drive: Vectors, pressing: f32x8, time: f32x8) -> (Vectors, Vectors) {
         let (speed, zero) = (velocity.length(), f32x8::ZERO);
-        let held = self.sliding * pressing;
+        let held = self.kinetic * pressing;
         let braked = |along: Vectors| drive - along * held;
         let going = |acceleration: Vectors, time: f32x8| (velocity + acceleration * (all(0.5) * time)) * time;
         let steady = braked((velocity + drive * time).unit());
         let (mut way, mut end) = (going(steady, time), velocity + steady * time);
         let stays = speed.simd_eq(zero);
-        let brakes = self.sliding.simd_gt(zero) & not(stays);
+        let brakes = self.kinetic.simd_gt(zero) & not(stays);
         if (stays | brakes).any() {
             let along = velocity / speed;
             let acceleration = braked(along);
@@ -385,7 +385,7 @@ impl Riders {
     fn start(&self, drive: Vectors, pressing: f32x8, time: f32x8) -> (Vectors, Vectors) {
         let (pull, zero) = (drive.length(), f32x8::ZERO);
         let starts = not(pull.simd_le(self.at_rest * pressing)) & pull.simd_gt(zero);
-        let left = pull - self.sliding * pressing;
+        let left = pull - self.kinetic * pressing;
         let acceleration = drive * (max(left, zero) / pull);
         ((acceleration * (all(0.5) * time * time)).masked(starts), (acceleration * time).masked(starts))
     }
@@ -460,7 +460,7 @@ impl Riders {
     #[inline(always)]
     fn answer(&self, slip: Vectors, press: f32x8) -> Vectors {
         let (speed, zero) = (slip.length(), f32x8::ZERO);
-        let held = self.sliding * press;
+        let held = self.kinetic * press;
         let all_of_it = speed.simd_le(self.at_rest * press) | speed.simd_le(held);
         let answer = Vectors::select(all_of_it, -slip, slip * (negated(held) / speed));
         answer.masked(speed.simd_gt(zero) & press.simd_gt(zero))

@@ -1,15 +1,15 @@
 //! A step's sweep, as it is handed to whatever answers the meetings.
 
-use super::sweep::each_by_itself;
+use super::tile_sweep::each_by_itself;
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
-use crate::step::View;
+use crate::step::Workspace;
 use crate::time::Time;
 
 /// A step whose particles have been moved and are now to be held against colliders, sinks and each other.
 pub(crate) struct Passage<'p, 'v> {
-    pub(crate) view: &'p mut View<'v>,
+    pub(crate) workspace: &'p mut Workspace<'v>,
     pub(crate) scene: &'p Scene<'p>,
     /// Those from this row on are newborn.
     pub(crate) old: usize,
@@ -24,8 +24,8 @@ impl Passage<'_, '_> {
     /// Sends all past each other.
     #[inline(never)]
     pub(super) fn each_by_itself(self) {
-        let Self { view, scene, old, now, dt, report, observer } = self;
-        let (rows, capacity) = (0..view.len(), view.capacity());
-        each_by_itself(&mut view.tile(scene, [now, dt], old, rows, capacity), report, observer);
+        let Self { workspace, scene, old, now, dt, report, observer } = self;
+        let (rows, capacity) = (0..workspace.len(), workspace.capacity());
+        each_by_itself(&mut workspace.tile(scene, [now, dt], old, rows, capacity), report, observer);
     }
 }

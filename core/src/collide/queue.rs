@@ -4,7 +4,7 @@
 /// beginning in units that the step's length decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct Clock {
+pub(super) struct NextEvent {
     /// When its present path began.
     pub(super) since: u32,
     /// When something happens to it next; [`NEVER`].
@@ -34,53 +34,53 @@ pub(super) const NOBODY: u32 = u32::MAX - 1;
 /// Of a partner: it is no longer, or never was, to be reckoned with.
 pub(super) const GONE: u32 = u32::MAX - 2;
 
-/// A binary heap of rows in the particles' own clocks: every row has a place, and moves when its instant changes. Of
+/// A binary heap of rows in the particles' own events: every row has a place, and moves when its instant changes. Of
 /// equal instants the lower row comes first.
 #[derive(Debug)]
 pub(super) struct Queue<'a> {
-    clocks: &'a mut [Clock],
+    events: &'a mut [NextEvent],
 }
 
 impl<'a> Queue<'a> {
     /// All rows with the instants that they have.
-    pub(super) fn new(clocks: &'a mut [Clock]) -> Self {
-        for (clock, row) in clocks.iter_mut().zip(0..) {
-            (clock.place, clock.row) = (row, row);
+    pub(super) fn new(events: &'a mut [NextEvent]) -> Self {
+        for (event, row) in events.iter_mut().zip(0..) {
+            (event.place, event.row) = (row, row);
         }
-        let mut queue = Self { clocks };
-        for place in (0..queue.clocks.len() / 2).rev() {
+        let mut queue = Self { events };
+        for place in (0..queue.events.len() / 2).rev() {
             queue.sink(place);
         }
         queue
     }
 
-    pub(super) fn clock(&self, row: usize) -> &Clock {
-        &self.clocks[row]
+    pub(super) fn event(&self, row: usize) -> &NextEvent {
+        &self.events[row]
     }
 
     /// The row to which something happens first.
     pub(super) fn first(&self) -> Option<usize> {
-        let row = self.clocks.first()?.row as usize;
-        (self.clocks[row].until != NEVER).then_some(row)
+        let row = self.events.first()?.row as usize;
+        (self.events[row].until != NEVER).then_some(row)
     }
 
-    /// Gives a row another clock; its place is found anew.
-    pub(super) fn set(&mut self, row: usize, clock: Clock) {
-        let Clock { place, row: stands, .. } = self.clocks[row];
-        self.clocks[row] = Clock { place, row: stands, ..clock };
+    /// Gives a row another event; its place is found anew.
+    pub(super) fn set(&mut self, row: usize, event: NextEvent) {
+        let NextEvent { place, row: stands, .. } = self.events[row];
+        self.events[row] = NextEvent { place, row: stands, ..event };
         let place = self.rise(place as usize);
         self.sink(place);
     }
 
     fn key(&self, place: usize) -> (u32, u32) {
-        let row = self.clocks[place].row;
-        (self.clocks[row as usize].until, row)
+        let row = self.events[place].row;
+        (self.events[row as usize].until, row)
     }
 
     fn swap(&mut self, a: usize, b: usize) {
-        let (first, second) = (self.clocks[a].row, self.clocks[b].row);
-        (self.clocks[a].row, self.clocks[b].row) = (second, first);
-        (self.clocks[first as usize].place, self.clocks[second as usize].place) = (b as u32, a as u32);
+        let (first, second) = (self.events[a].row, self.events[b].row);
+        (self.events[a].row, self.events[b].row) = (second, first);
+        (self.events[first as usize].place, self.events[second as usize].place) = (b as u32, a as u32);
     }
 
     fn rise(&mut self, mut place: usize) -> usize {
@@ -93,7 +93,7 @@ impl<'a> Queue<'a> {
 
     fn sink(&mut self, mut place: usize) {
         loop {
-            let children = (2 * place + 1)..(2 * place + 3).min(self.clocks.len());
+            let children = (2 * place + 1)..(2 * place + 3).min(self.events.len());
             let Some(least) = children.min_by_key(|&child| self.key(child)) else { return };
             if self.key(place) <= self.key(least) {
                 return;
@@ -112,18 +112,18 @@ mod tests {
     #[test]
     fn the_least_is_always_first() {
         let random = |i: u64| (Stream::new(5, 1, i as u32).units(0)[0] * 100.0) as u32;
-        let mut clocks = [Clock::default(); 37];
-        clocks.iter_mut().zip(0..).for_each(|(clock, i)| clock.until = random(i));
-        let mut known = clocks.map(|clock| clock.until);
-        let mut queue = Queue::new(&mut clocks);
+        let mut events = [NextEvent::default(); 37];
+        events.iter_mut().zip(0..).for_each(|(event, i)| event.until = random(i));
+        let mut known = events.map(|event| event.until);
+        let mut queue = Queue::new(&mut events);
         for i in 0..2000 {
             let least = (0..37).min_by_key(|&row| (known[row], row)).expect("there are some");
             assert_eq!(queue.first(), Some(least));
             let row = if i % 2 == 0 { least } else { i as usize % 37 };
             known[row] = random(1000 + i);
-            queue.set(row, Clock { until: known[row], ..*queue.clock(row) });
+            queue.set(row, NextEvent { until: known[row], ..*queue.event(row) });
         }
-        (0..37).for_each(|row| queue.set(row, Clock { until: NEVER, ..*queue.clock(row) }));
+        (0..37).for_each(|row| queue.set(row, NextEvent { until: NEVER, ..*queue.event(row) }));
         assert_eq!(queue.first(), None);
     }
 }

@@ -25,9 +25,9 @@ impl Slide {
             return self.starting(time);
         }
         let along = self.velocity / speed;
-        let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
+        let acceleration = self.drive - along * (self.friction.kinetic * self.pressing);
         let braking = -dot(acceleration, along);
-        if self.friction.sliding > 0.0 && braking * time > speed {
+        if self.friction.kinetic > 0.0 && braking * time > speed {
             let until = speed / braking;
             let way = math::along(self.velocity, acceleration, 0.5 * until) * until;
             // What is left beside the old direction is what the drive has turned it to: friction takes that up anew.
@@ -37,17 +37,17 @@ impl Slide {
         // Friction is against the motion all along. Told by the direction at the end it only ever shortens a velocity;
         // by that at the beginning it would throw a slow one from side to side.
         let along = unit(math::along(self.velocity, self.drive, time));
-        let acceleration = self.drive - along * (self.friction.sliding * self.pressing);
+        let acceleration = self.drive - along * (self.friction.kinetic * self.pressing);
         let way = math::along(self.velocity, acceleration, 0.5 * time) * time;
         (way, math::along(self.velocity, acceleration, time))
     }
 
     fn starting(&self, time: f32) -> (Vec3, Vec3) {
         let pull = length(self.drive);
-        if pull <= self.friction.resting * self.pressing || !(pull > 0.0) {
+        if pull <= self.friction.static_ * self.pressing || !(pull > 0.0) {
             return (Vec3::ZERO, Vec3::ZERO);
         }
-        let left = pull - self.friction.sliding * self.pressing;
+        let left = pull - self.friction.kinetic * self.pressing;
         // Where the sliding coefficient is the larger one, it only creeps loose.
         let acceleration = self.drive * (if left > 0.0 { left } else { 0.0 } / pull);
         (acceleration * (0.5 * time * time), acceleration * time)
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     fn slide(velocity: f32, drive: f32, pressing: f32) -> Slide {
-        let friction = Friction { resting: 0.5, sliding: 0.4 };
+        let friction = Friction { static_: 0.5, kinetic: 0.4 };
         Slide { velocity: Vec3::X * velocity, drive: Vec3::X * drive, pressing, friction }
     }
 

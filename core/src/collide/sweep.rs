@@ -1,345 +1,404 @@
-//! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
+//! One particle's way through a step: hit by hit.
 
-use super::flight::{Flight, facing};
-use super::grip::on_surface;
-use super::packet::{Outcome, Paths, Riders, near};
-use super::path::Path;
-use crate::constrain::{SHIFTED, TOUCHING};
-use crate::lanes::{LANES, Vectors};
-use crate::memory::{Layout, Past};
-use crate::observe::{Attention, Observer};
+use super::material::on_surface;
+use super::path::{Cubic, MAX_CHORDS, Path};
+use super::slide::Slide;
+use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, sqrt, unit};
+use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
-use crate::reap::Fate;
+use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::rows::filled;
-use crate::shape::{Aabb, Face, Facing, Hulls, Marks};
-use crate::step::Tile;
+use crate::scene::Scene;
+use crate::shape::{Aabb, Collider, Contact, Facing, Hit, Ride, Segment};
 use crate::time::Time;
-use core::ops::Range;
 use glam::Vec3;
-use wide::f32x8;
 
-/// Whether what faces one flat wall alone is followed by code of its own: chips are spared that.
-const SHORT_WAY: bool = !cfg!(target_os = "none");
+/// How many times a point beside a hit is sought farther back.
+const MAX_RETREATS: u32 = 12;
 
-/// Rows that are held against a face at once.
-const BLOCK: usize = 256;
+/// How far what rests may be from its surface \[slacks\]: it is set off by two, and from corners by more.
+pub(super) const LAIN: f32 = 8.0;
 
-/// Everything.
-const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+/// How many times the instant of a hit is looked for on the path. Newton's method takes three to six; halving, where it
+/// fails, comes within 10 µs of a step of a second.
+pub(super) const MAX_LOOKS: u32 = 16;
 
-/// Rows of a tile that are followed past walls.
-struct Sweep<'s, 'a> {
-    tile: &'s mut Tile<'a>,
-    past: Past<'s>,
-    facing: Facing,
-    report: &'s mut Report,
-    observer: Option<&'s mut dyn Observer>,
+/// A rebound that would be over within this part of a step is none: the particle rests on the surface.
+pub(crate) const RESTING: f32 = 0.25;
+
+/// How a path ends.
+pub(super) struct Arrival {
+    pub(super) position: Vec3,
+    pub(super) velocity: Vec3,
+    pub(super) pending_death: PendingDeath,
 }
 
-/// Rows that wait until there are eight.
-#[derive(Clone, Copy, Default)]
-struct Queue {
-    rows: [usize; LANES],
-    len: usize,
+/// Where a path meets something.
+pub(super) struct Meeting {
+    /// The fraction of the whole path before it, and the place on the path \[m\].
+    pub(super) time: f32,
+    place: Vec3,
+    /// The chord along which it was found, and the fraction of the path before that.
+    chord: Segment,
+    begun: f32,
+    hit: Hit,
+    /// What it meets removes it.
+    pub(super) is_sink: bool,
 }
 
-/// Rows that wait to go past a face: as if they lay on it, and as if they bounced off it.
-struct Waiting {
-    face: Face,
-    lying: Queue,
-    bouncing: Queue,
+/// What it takes to follow one particle past walls of a kind: any, or one that is known, for which the same is shorter.
+pub(super) struct Sweep<'a, C: ?Sized = dyn Collider + 'a> {
+    pub(super) scene: &'a Scene<'a>,
+    /// What it may run into, and what removes it, if anything does.
+    pub(super) walls: &'a C,
+    pub(super) sinks: Option<&'a dyn Collider>,
+    pub(super) id: Id,
+    pub(super) row: usize,
+    pub(super) radius: f32,
+    pub(super) mass: f32,
+    pub(super) elasticity: f32,
+    pub(super) material: Option<u16>,
+    /// The step \[s\].
+    pub(super) dt: f32,
+    pub(super) report: &'a mut Report,
+    /// Whoever wants to know of hits.
+    pub(super) observer: Option<&'a mut dyn Observer>,
 }
 
-/// Sends every free particle of a tile along its path through the step, past all others.
-pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
-    let work = core::mem::take(&mut tile.work);
-    let past = Layout::of(tile.scene.plan(), tile.capacity).past(work);
-    let facing = if SHORT_WAY { tile.scene.colliders.facing(&EVERYWHERE) } else { Facing::Several };
-    let observer: Option<&mut dyn Observer> =
-        if observer.attention() > Attention::Nothing { Some(observer) } else { None };
-    let has_sinks = !tile.scene.sinks.is_empty();
-    let mut sweep = Sweep { tile: &mut *tile, past, facing, report, observer };
-    match facing {
-        Facing::Face(face) if SHORT_WAY && !has_sinks => sweep.go_past(&face),
-        _ => sweep.go(),
-    }
-    tile.work = work;
-}
-
-impl Waiting {
-    fn before(face: Face) -> Self {
-        Self { face, lying: Queue::default(), bouncing: Queue::default() }
-    }
-}
-
-impl Queue {
-    /// Puts a row in; all eight, once there are so many.
-    fn push(&mut self, row: usize) -> Option<[usize; LANES]> {
-        self.rows[self.len] = row;
-        self.len = (self.len + 1) % LANES;
-        (self.len == 0).then_some(self.rows)
+impl Meeting {
+    /// The end in a sink.
+    pub(super) fn arrival(&self, path: &Path) -> Arrival {
+        Arrival { position: self.place, velocity: path.velocity(self.time), pending_death: PendingDeath::Sink }
     }
 }
 
-/// Which bits of a packet are set.
-fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
-    core::iter::from_fn(move || {
-        let i = bits.trailing_zeros() as usize % u32::BITS as usize;
-        let any = bits != 0;
-        bits &= bits.wrapping_sub(1);
-        any.then_some(i)
-    })
-}
-
-impl Sweep<'_, '_> {
-    /// Follows one row after the other; those who are near the same face alone go past it in packets.
-    fn go(&mut self) {
-        let in_packets = SHORT_WAY && self.goes_in_packets();
-        let mut waiting = None;
-        for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
-            for (i, mark) in marked(self.tile, &self.past, first).into_iter().enumerate() {
-                let row = first + i;
-                if mark == 0 {
-                    continue;
-                }
-                match if in_packets { self.face_of(row) } else { None } {
-                    None => self.follow(row),
-                    Some(face) => {
-                        let waiting = waiting.get_or_insert_with(|| Waiting::before(face));
-                        if waiting.face == face { self.queue(row, waiting) } else { self.follow(row) }
-                    }
-                }
-            }
-        }
-        if let Some(waiting) = waiting {
-            self.go_on(waiting);
-        }
+impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
+    /// The same past other walls.
+    pub(super) fn past<W: Collider>(self, walls: &'a W) -> Sweep<'a, W> {
+        let Self { scene, sinks, id, row, radius, mass, elasticity, material, dt, report, observer, .. } = self;
+        Sweep { scene, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
     }
 
-    /// Follows all past a face, those who were there before the step in packets.
-    fn go_past(&mut self, face: &Face) {
-        let (old, in_packets) = (self.tile.old, self.goes_in_packets());
-        let mut waiting = Waiting::before(*face);
-        for first in (0..old).step_by(BLOCK) {
-            let marks = self.near(first..old.min(first + BLOCK), face);
-            for (i, marks) in marks.into_iter().enumerate() {
-                for j in ones(marks.into()) {
-                    let row = first + 4 * i + j;
-                    let is_fixed = self.tile.attributes.inverse_mass[row] == 0.0;
-                    if in_packets && !is_fixed { self.queue(row, &mut waiting) } else { self.follow(row) }
-                }
-            }
-        }
-        self.go_on(waiting);
-        (old..self.tile.position.len()).for_each(|row| self.follow(row));
-    }
-
-    /// The face that an old row is near, if that is all.
-    fn face_of(&self, row: usize) -> Option<Face> {
-        let Tile { scene, old, dt, attributes: ref m, .. } = *self.tile;
-        let path = self.path(row);
-        if row >= old || m.inverse_mass[row] == 0.0 || !path.is_finite() {
-            return None;
-        }
-        match facing(scene.colliders, &path, [m.lives.radius[row], m.elasticity[row]], dt.seconds()) {
-            Facing::Face(face) => Some(face),
-            _ => None,
-        }
-    }
-
-    /// Lets a row wait for others.
+    /// Its way through the step, if it may touch anything.
     #[inline(always)]
-    fn queue(&mut self, row: usize, waiting: &mut Waiting) {
-        if let Some(rows) = waiting.lying.push(row) {
-            self.lie(&rows, waiting);
+    pub(super) fn travel(&mut self, path: &Path, is_newborn: bool, may_lie: bool) -> Option<Arrival> {
+        let lying = if may_lie { self.lying(path) } else { None };
+        let path = match lying {
+            Some(path) => path,
+            None if !self.may_touch(&path.hull(self.radius)) => return None,
+            None if is_newborn => self.let_go(*path),
+            None if path.lags() => self.pressed_on(*path),
+            None => *path,
+        };
+        Some(self.follow(path))
+    }
+
+    /// Whether a path inside a box may meet anything.
+    fn may_touch(&self, hull: &Aabb) -> bool {
+        self.walls.may_touch(hull) || self.sinks.is_some_and(|sinks| sinks.may_touch(hull))
+    }
+
+    /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
+    /// on whichever side rounding put it, and leaves it the way its velocity points.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(super) fn let_go(&self, path: Path) -> Path {
+        let [start, _] = path.during;
+        let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, self.dt)) };
+        let hits = [self.walls.first_hit(&ahead), self.sinks.and_then(|sinks| sinks.first_hit(&ahead))];
+        let (step, far) = (ahead.step(), length(ahead.step()));
+        let near = |hit: &Hit| {
+            let off_surface = -dot(step, hit.normal) * hit.time <= 2.0 * hit.slack;
+            // A graze farther away is no birth on the surface.
+            off_surface && far * hit.time <= 40.0 * hit.slack
+        };
+        let beyond = |hit: Hit| along(ahead.at(hit.time), unit(step), 4.0 * hit.slack);
+        let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
+        Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..path }
+    }
+
+    /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
+    /// past what it is pressed onto, and meet that only a step later.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(super) fn pressed_on(&mut self, path: Path) -> Path {
+        let pressed = path.caught_up();
+        match self.first_meeting(&pressed) {
+            Some(meeting) if !meeting.is_sink && has_touched(&pressed, &meeting) => pressed,
+            _ => path,
         }
     }
 
-    /// Lets those go who still wait.
-    fn go_on(&mut self, mut waiting: Waiting) {
-        let lying = waiting.lying;
-        if lying.len > 0 {
-            self.lie(&lying.rows[..lying.len], &mut waiting);
-        }
-        let Waiting { face, bouncing, .. } = waiting;
-        if bouncing.len > 0 {
-            self.bounce(&bouncing.rows[..bouncing.len], &face);
-        }
-    }
-
-    /// Whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
-    fn goes_in_packets(&self) -> bool {
-        let Tile { scene, dt, .. } = *self.tile;
-        let alone = self.observer.is_none() && scene.sinks.is_empty() && self.past.marks.is_empty();
-        alone && scene.max_bounces > 1 && dt > Time::ZERO
-    }
-
-    /// Who of some rows may touch the face: a bit for each of four.
+    /// The way of what lies on one surface that stands still, and is pressed on to it: along that, from its own place.
     #[inline(never)]
-    fn near(&self, rows: Range<usize>, face: &Face) -> [u8; BLOCK / 4] {
-        let (mut marks, tile, time) = ([0; BLOCK / 4], &*self.tile, self.tile.dt.seconds());
-        let [start_x, start_v] = self.past.start;
-        let (x0, x0_rest) = start_x[rows.clone()].as_chunks();
-        let (v0, v0_rest) = start_v[rows.clone()].as_chunks();
-        let (x1, x1_rest) = tile.position[rows.clone()].as_chunks();
-        let (v1, v1_rest) = tile.velocity[rows.clone()].as_chunks();
-        let (radius, radius_rest) = tile.attributes.lives.radius[rows.clone()].as_chunks();
-        let columns = x0.iter().zip(v0).zip(x1.iter().zip(v1)).zip(radius);
-        for (mark, (((x0, v0), (x1, v1)), radius)) in marks.iter_mut().zip(columns) {
-            *mark = near(face, [x0, v0, x1, v1], radius, time);
+    pub(super) fn lying(&mut self, path: &Path) -> Option<Path> {
+        let acceleration = path.acceleration();
+        let seat = self.seat(path, acceleration)?;
+        let mixed = on_surface(self.scene.contact_materials, self.elasticity, self.material, seat.material);
+        let (normal, time) = (seat.normal, path.during[0]);
+        let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
+        let (slip, drive) = (along(path.v0, normal, -incoming), along(acceleration, normal, pressing));
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(path.duration());
+        let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
+        let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
+        self.report.hits += 1;
+        if let Some(observer) = &mut self.observer {
+            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+            let world = [acceleration, way, slip, end];
+            observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
         }
-        if !x0_rest.is_empty() {
-            let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
-            let last = near(face, [&x0, &v0, &x1, &v1], &filled(radius_rest), time);
-            marks[rows.len() / 4] = last & ((1 << x0_rest.len()) - 1);
-        }
-        marks
+        Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
     }
 
-    /// Lets those who lie on the face do so; the others bounce.
-    #[inline(never)]
-    fn lie(&mut self, rows: &[usize], Waiting { face, bouncing, .. }: &mut Waiting) {
-        let (riders, paths) = self.packet(rows, face);
-        for i in ones(self.settle(rows, &riders.lie(&paths, face))) {
-            if let Some(rows) = bouncing.push(rows[i]) {
-                self.bounce(&rows, face);
+    /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
+    /// of it, but not within that of being behind it.
+    fn seat(&self, path: &Path, acceleration: Vec3) -> Option<Contact> {
+        let time = path.duration();
+        let fall = |acceleration: f32| 0.5 * acceleration * time * time;
+        let (mut faces, mut seat) = (0, None);
+        let reach = self.radius + fall(length(acceleration));
+        self.walls.contacts(path.x0, reach, path.during[0], &mut |contact| {
+            faces += 1;
+            seat = Some(*contact);
+        });
+        let seat = seat.filter(|seat| faces == 1 && is_zero(seat.velocity))?;
+        let (gap, slack) = (seat.distance - self.radius, seat.slack);
+        let (leaving, pressing) = (dot(path.v0, seat.normal).abs(), -dot(acceleration, seat.normal));
+        let is_there = gap >= 0.5 * slack && gap <= LAIN * slack && fall(pressing) > gap;
+        let rests = leaving * time <= LAIN * slack && 2.0 * leaving < RESTING * self.dt * pressing;
+        (is_there && rests).then_some(seat)
+    }
+
+    pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
+        for _ in 0..self.scene.max_bounces {
+            let Some(meeting) = self.first_meeting(&path) else {
+                return Arrival { position: path.x1, velocity: path.v1, pending_death: PendingDeath::Lives };
+            };
+            if meeting.is_sink {
+                return meeting.arrival(&path);
             }
+            path = self.rebound(&path, &meeting);
+        }
+        self.report.caps.bounces += 1;
+        let position = self.walls.carry(path.x0, self.radius, path.during);
+        Arrival { position, velocity: path.v0, pending_death: PendingDeath::Lives }
+    }
+
+    /// The first hit along the path's chords, at its instant on the path itself.
+    pub(super) fn first_meeting(&mut self, path: &Path) -> Option<Meeting> {
+        let cubic = path.cubic();
+        let chords = cubic.chords();
+        if chords > MAX_CHORDS {
+            self.report.caps.chords += 1;
+        }
+        let chords = chords.min(MAX_CHORDS);
+        let whole = chords as f32;
+        path.pieces(chords, self.radius).zip(0_u8..).find_map(|(chord, i)| {
+            let (hit, is_sink) = self.first_hit(&chord)?;
+            let begun = f32::from(i) / whole;
+            let (time, place) = ((f32::from(i) + hit.time) / whole, chord.at(hit.time));
+            let meeting = Meeting { time, place, chord, begun, hit, is_sink };
+            Some(self.on_path(path, &cubic, meeting, f32::from(i + 1) / whole))
+        })
+    }
+
+    /// What a straight piece first meets, and whether that is a sink, which wins over a collider in the same place.
+    fn first_hit(&self, piece: &Segment) -> Option<(Hit, bool)> {
+        let (wall, sink) = (self.walls.first_hit(piece), self.sinks.and_then(|sinks| sinks.first_hit(piece)));
+        match (wall, sink) {
+            (wall, Some(sink)) if wall.is_none_or(|wall| sink.time <= wall.time) => Some((sink, true)),
+            (wall, _) => wall.map(|hit| (hit, false)),
         }
     }
 
-    /// Lets those bounce off the face who do so once.
-    #[inline(never)]
-    fn bounce(&mut self, rows: &[usize], face: &Face) {
-        let (riders, paths) = self.packet(rows, face);
-        self.settle(rows, &riders.bounce(&paths, face, self.tile.dt));
-    }
-
-    /// Puts rows where they have come to, follows those who have to be, and says which are left: a bit each.
-    #[inline(always)]
-    fn settle(&mut self, rows: &[usize], outcome: &Outcome) -> u32 {
-        let of_all = (1 << rows.len()) - 1;
-        self.report.hits += u64::from((outcome.hit & of_all).count_ones());
-        let ([x, y, z], [u, v, w]) = (outcome.position.columns(), outcome.velocity.columns());
-        for i in ones(outcome.settled & of_all) {
-            self.tile.position[rows[i]] = Vec3::new(x[i], y[i], z[i]);
-            self.tile.velocity[rows[i]] = Vec3::new(u[i], v[i], w[i]);
+    /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
+    /// touches the surface. A place far along the surface from that on the chord asks for the surface there.
+    fn on_path(&self, path: &Path, cubic: &Cubic, meeting: Meeting, end: f32) -> Meeting {
+        let Meeting { begun, hit, .. } = meeting;
+        let drift = dot(hit.velocity, hit.normal) * path.duration();
+        let time = crossing(cubic, drift, &hit, meeting.place, [begun, meeting.time, end]);
+        let place = cubic.at(time);
+        if !(length(minus(place, meeting.place)) > 16.0 * hit.slack) {
+            return Meeting { time, place, ..meeting };
         }
-        for i in ones(outcome.left & of_all) {
-            self.follow(rows[i]);
-        }
-        of_all & !(outcome.settled | outcome.left)
-    }
-
-    /// Rows side by side, the first of them where there are fewer than eight.
-    #[inline(always)]
-    fn packet(&self, rows: &[usize], face: &Face) -> (Riders, Paths) {
-        let Tile { scene, attributes: ref m, .. } = *self.tile;
-        let (mut all, mut radius, mut elasticity) = ([rows[0]; LANES], [0.0; LANES], [0.0; LANES]);
-        let (mut at_rest, mut sliding) = ([0.0; LANES], [0.0; LANES]);
-        all[..rows.len()].copy_from_slice(rows);
-        for (i, &row) in all.iter().enumerate() {
-            (radius[i], elasticity[i]) = (m.lives.radius[row], m.elasticity[row]);
-        }
-        if !scene.grips.is_empty() {
-            for (i, &row) in all.iter().enumerate() {
-                let own = m.material[row].checked_sub(1);
-                let feel = on_surface(scene.grips, elasticity[i], own, face.material());
-                (elasticity[i], at_rest[i], sliding[i]) =
-                    (feel.elasticity, feel.friction.resting, feel.friction.sliding);
+        let reach = (end - begun) * (1.0 / 16.0);
+        let [from, to] = [max(time - reach, begun), min(time + reach, end)];
+        let piece = path.piece([from, to], self.radius);
+        match self.first_hit(&piece) {
+            Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
+                let found = from + (to - from) * near.time;
+                let drift = dot(near.velocity, near.normal) * path.duration();
+                let time = crossing(cubic, drift, &near, piece.at(near.time), [from, found, to]);
+                Meeting { time, place: cubic.at(time), hit: near, ..meeting }
             }
+            _ => Meeting { time, place, ..meeting },
         }
-        let (radius, elasticity) = (f32x8::new(radius), f32x8::new(elasticity));
-        let (at_rest, sliding) = (f32x8::new(at_rest), f32x8::new(sliding));
-        let [start_x, start_v] = self.past.start;
-        let (x0, v0) = (Vectors::gather(start_x, &all), Vectors::gather(start_v, &all));
-        let (x1, v1) = (Vectors::gather(self.tile.position, &all), Vectors::gather(self.tile.velocity, &all));
-        let time = f32x8::splat(self.tile.dt.seconds());
-        (Riders { radius, elasticity, at_rest, sliding }, Paths { x0, v0, x1, v1, time })
     }
 
-    /// A row's path through the step.
-    fn path(&self, row: usize) -> Path {
-        let (Tile { dt, attributes, .. }, end) = (&*self.tile, self.tile.end());
-        // A newborn has come only part of the way.
-        let start = end - (end - attributes.lives.born[row]).min(*dt);
-        let [x0, v0] = self.past.start;
-        let (x1, v1) = (self.tile.position[row], self.tile.velocity[row]);
-        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
-    }
-
-    /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
+    /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
+    /// braked by friction, the mean acceleration of the path so far for the time that is left.
+    ///
+    /// Apart, so that what it works out is off the stack when the next hit is sought.
     #[inline(never)]
-    fn follow(&mut self, row: usize) {
-        let path = self.path(row);
-        let Self { tile, past, facing: known, report, observer } = self;
-        let observer: Option<&mut dyn Observer> = match observer {
-            Some(observer) => Some(&mut **observer),
-            None => None,
+    pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+        self.report.hits += 1;
+        let Hit { normal, velocity: surface, material, .. } = meeting.hit;
+        let mixed = on_surface(self.scene.contact_materials, self.elasticity, self.material, material);
+        let during = [path.instant(meeting.time), path.during[1]];
+        let rest = (during[1] - during[0]).seconds();
+        let acceleration = path.acceleration();
+        let (place, before) = (meeting.place, path.velocity(meeting.time));
+        let incoming = dot(minus(before, surface), normal);
+        // Should the velocity already point out, the path left and came back between two chords: it rests.
+        let outgoing = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
+        let beside = self.set_off(path, meeting, place);
+        // Whoever is set off from the surface has come there with the speed that is left so high.
+        let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
+        let ride = self.ride(&meeting.hit, beside, during);
+        let drive = ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration));
+        let pressing = -dot(drive, normal);
+        let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
+        let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
+        // What bounces slips along the place that it touches; what rests goes as one with the surface.
+        let whole = match &ride {
+            Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
+            _ => Vec3::ZERO,
         };
-        let Tile { scene, old, dt, attributes: ref m, .. } = **tile;
-        if m.inverse_mass[row] == 0.0 {
-            return;
+        let surface = surface + whole;
+        let came = along(minus(before, surface), normal, -incoming);
+        let slip = came + mixed.friction.answer(came, outgoing - incoming);
+        let Self { id, row, mass, .. } = *self;
+        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(surface + slip, normal, outgoing));
+        if let Some(observer) = &mut self.observer {
+            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
-        let lives = &m.lives;
-        // Constraints know nothing of the newborn.
-        let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) } else { 0 };
-        // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
-        // may not touch anything.
-        let path = if mark & SHIFTED != 0 { path.straightened() } else { path };
-        let is_kept = mark & TOUCHING != 0;
-        let radius = if is_kept { 0.5 * lives.radius[row] } else { lives.radius[row] };
-        if !path.is_finite() {
-            return;
+        if !rests {
+            return Path::onward(beside, along(surface + slip, normal, onward), acceleration, during);
         }
-        let sinks = (!scene.sinks.is_empty()).then_some(scene.sinks);
-        let before = report.hits;
-        let flight = Flight {
-            scene,
-            walls: scene.colliders,
-            sinks,
-            id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },
-            row: tile.first + row,
-            radius,
-            mass: lives.mass[row],
-            elasticity: m.elasticity[row],
-            material: m.material[row].checked_sub(1),
-            dt: dt.seconds(),
-            report,
-            observer,
+        let drive = along(drive, normal, pressing);
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
+        let stays = is_zero(slip) && is_zero(end);
+        let onward = if let Some(ride) = ride {
+            // What falls from where it was set off to goes along the surface meanwhile, which friction would have kept it from.
+            let fell = -incoming / pressing;
+            let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
+            let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
+            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity[1] + end, during }
+        } else {
+            let stays = stays && has_lain(path, meeting, place);
+            let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
+            Path { x0, v0: after, x1: along(x0, surface, rest) + way, v1: surface + end, during }
         };
-        let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
-        let is_newborn = row >= old;
-        // Whoever is near one face alone goes the short way, among however many things.
-        let facing = match *known {
-            Facing::Several if SHORT_WAY => facing(scene.colliders, &path, [radius, flight.elasticity], flight.dt),
-            known => known,
-        };
-        let arrival = match facing {
-            Facing::Face(face) if SHORT_WAY => flight.past(&face).travel(&path, is_newborn, may_lie),
-            _ => { flight }.travel(&path, is_newborn, may_lie),
-        };
-        let Some(end) = arrival else { return };
-        if is_kept && end.fate == Fate::Lives && report.hits == before {
-            return;
+        if let Some(observer) = &mut self.observer {
+            let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
+            observer.slid(&Sliding { mass, raised: minus(onward.x0, place), world, along: [drive, way, slip, end] });
         }
-        (tile.position[row], tile.velocity[row], tile.fate[row]) = (end.position, end.velocity, end.fate);
+        onward
+    }
+
+    /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.
+    fn ride(&self, hit: &Hit, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
+        let below = along(beside, hit.normal, -(LAIN * hit.slack));
+        let seat = Segment { from: beside, to: below, radius: self.radius, during };
+        if is_zero(hit.velocity) { None } else { self.walls.ride(&seat) }
+    }
+
+    /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
+    /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
+    /// to. A surface that moves takes what is back on the path along to the instant of the hit.
+    #[inline(never)]
+    fn set_off(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Vec3 {
+        let Meeting { chord, hit, begun, time: s, .. } = meeting;
+        let now = path.instant(*s);
+        let span = (now - chord.during[0]).seconds();
+        let (moves, share) = (!is_zero(hit.velocity), max(s - begun, f32::MIN_POSITIVE));
+        let taken = |point: Vec3, time: f32| {
+            if moves { along(point, hit.velocity, span * ((s - time) / share)) } else { point }
+        };
+        let free = |segment: Segment| self.walls.first_hit(&segment).is_none();
+        let closing = max(dot(minus(hit.velocity, path.velocity(*s)), hit.normal), f32::MIN_POSITIVE);
+        let beside = along(place, hit.normal, 2.0 * hit.slack);
+        // As a fraction of the path, like all its instants.
+        let mut back = 2.0 * hit.slack / (closing * path.duration());
+        // At a rim or in a corner another surface may be nearer than the slack of this one.
+        for _ in 0..MAX_RETREATS {
+            let time = max(s - back, *begun);
+            let before = taken(path.at(time), time);
+            if free(Segment { to: before, during: [chord.during[0], now], ..*chord }) {
+                let aside = Segment { from: before, to: beside, during: [now; 2], ..*chord };
+                return if free(aside) { beside } else { before };
+            }
+            back *= 4.0;
+        }
+        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
     }
 }
 
-/// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.
-#[inline(never)]
-fn marked(tile: &Tile<'_>, past: &Past<'_>, first: usize) -> Marks {
-    let Tile { scene, old, dt, .. } = *tile;
-    let rows = first..tile.position.len().min(first + Hulls::MANY);
-    let [start_x, start_v] = past.start;
-    let ends = [start_x, start_v, tile.position, tile.velocity].map(|column| &column[rows.clone()]);
-    let hulls = Hulls::of_paths(ends, &tile.attributes.lives.radius[rows.clone()], dt.seconds());
-    let mut marks = [0; Hulls::MANY];
-    scene.colliders.mark_near(&hulls, &mut marks);
-    scene.sinks.mark_near(&hulls, &mut marks);
-    // Newborns have come only part of the way: their cubics are others.
-    marks[old.clamp(rows.start, rows.end) - first..].fill(u32::MAX);
-    marks[rows.len()..].fill(0);
-    marks
+/// The surroundings of a ball in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits. Of elasticities up
+/// to one these take no speed from it but by what they set it off.
+pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f32; 2], dt: f32) -> Facing {
+    if !(0.0..=1.0).contains(&elasticity) {
+        return Facing::Several;
+    }
+    let hull = path.hull(radius);
+    let (size, speed) = (max(largest(hull.min), largest(hull.max)), max(length(path.v0), length(path.v1)));
+    // Newborns look ahead as far as they would go in a whole step.
+    let reach = dt * (speed + 4.0 * length(path.v1 - path.v0));
+    let within = |size: f32| {
+        let room = reach + 128.0 * f32::EPSILON * size;
+        walls.facing(&Aabb { min: hull.min - room, max: hull.max + room })
+    };
+    match within(size) {
+        Facing::Face(face) if face.size() > size => within(face.size()),
+        other => other,
+    }
+}
+
+/// Whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface. Falling
+/// onto it anew each step, it has not moved at all; else it would creep.
+fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
+    let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
+    let near = LAIN * meeting.hit.slack;
+    let off = minus(along(path.x0, surface, elapsed), place);
+    dot(off, off) <= near * near && length(minus(path.v0, surface)) * elapsed <= near
+}
+
+/// Whether a path begins within rounding of the surface that it hits, and hardly leaves it before.
+fn has_touched(path: &Path, meeting: &Meeting) -> bool {
+    let Hit { normal, velocity: surface, slack, .. } = meeting.hit;
+    let elapsed = path.duration() * meeting.time;
+    let off = dot(minus(along(path.x0, surface, elapsed), meeting.place), normal);
+    let left = dot(minus(path.v0, surface), normal) * elapsed;
+    max(off.abs(), left.abs()) <= LAIN * slack
+}
+
+/// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.
+fn slowed(speed: f32, work: f32) -> f32 {
+    let square = speed * speed + 2.0 * work;
+    // The change by itself, whose rounding is much less than that of the whole.
+    if square > 0.0 { speed + 2.0 * work / (speed + sqrt(square)) } else { 0.0 }
+}
+
+/// When a path crosses the plane that touches the surface at a place where it would be hit after a fraction of the path,
+/// from the side of the normal to the other, between two others. It begins at the end: where the path bends toward the
+/// surface, Newton's method comes from there to the crossing and never to where the path has left the surface before.
+fn crossing(cubic: &Cubic, drift: f32, hit: &Hit, place: Vec3, [begun, found, end]: [f32; 3]) -> f32 {
+    let [c1, c2, c3] = cubic.coefficients.map(|c| dot(c, hit.normal));
+    let (c0, c1) = (dot(minus(cubic.start, place), hit.normal) + drift * found, c1 - drift);
+    let (mut low, mut high, mut s) = (begun, end, end);
+    for _ in 0..MAX_LOOKS {
+        let height = c0 + (c1 + (c2 + c3 * s) * s) * s;
+        let slope = c1 + (2.0 * c2 + 3.0 * c3 * s) * s;
+        if height > 0.0 {
+            low = s;
+        } else {
+            high = s;
+        }
+        let newton = s - height / slope;
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let moved = (next - s).abs();
+        s = next;
+        if !(moved > f32::EPSILON * end) {
+            break;
+        }
+    }
+    s
 }

@@ -1,8 +1,8 @@
 //! The particles as a constraint sees and moves them.
 
-use crate::collide::Grip;
+use crate::collide::ContactMaterial;
 use crate::custom::CustomColumnsMut;
-use crate::index::Arrange;
+use crate::index::IndexChoice;
 use crate::memory::{Demand, Kept, take};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
@@ -70,7 +70,7 @@ pub struct Bodies<'a> {
     /// The scene's colliders.
     pub colliders: &'a dyn Collider,
     /// How materials feel, by their numbers.
-    pub grips: &'a [Grip],
+    pub contact_materials: &'a [ContactMaterial],
     /// Who is near whom.
     pub near: Near<'a>,
     /// What happened in the step.
@@ -134,7 +134,7 @@ impl Bodies<'_> {
 
 /// Finds who is near whom, by the scene's index.
 pub struct Near<'a> {
-    pub(crate) index: &'a dyn Arrange,
+    pub(crate) index: &'a dyn IndexChoice,
     pub(crate) memory: &'a mut [u32],
 }
 
@@ -149,7 +149,7 @@ impl Near<'_> {
     pub fn pairs(&mut self, points: &[Vec3], reach: f32, visit: &mut dyn FnMut(u32, u32)) {
         // No more memory than these points call for: more would make another structure.
         let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
-        self.index.arrange(&mut self.memory[..words], points, reach, &mut |index| match index {
+        self.index.with_index(&mut self.memory[..words], points, reach, &mut |index| match index {
             Some(index) => {
                 index.pairs(reach, &mut |row, others| others.iter().for_each(|&other| visit(row, other)));
             }

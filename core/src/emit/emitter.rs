@@ -115,8 +115,8 @@ pub struct Emitter<S> {
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<Color>,
     /// How far each of red, green, blue and opacity may be from the colour, evenly on both sides.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub color_variance: Color,
+    #[cfg_attr(feature = "serde", serde(default, alias = "color_variance"))]
+    pub color_half_width: Color,
 }
 
 /// One emitter, or two if it has bursts: those of the rate and those of the bursts are numbered separately, so that
@@ -176,7 +176,7 @@ impl<S> Emitter<S> {
             lifetime: Varied::exactly(0.0),
             material: None,
             color: None,
-            color_variance: [0; 4],
+            color_half_width: [0; 4],
         }
     }
 
@@ -280,14 +280,14 @@ impl<S: Surface> Emitter<S> {
 
     fn tint(&self, random: Stream) -> Color {
         let mean = self.color.unwrap_or(WHITE);
-        if self.color_variance == [0; 4] {
+        if self.color_half_width == [0; 4] {
             return mean;
         }
         let ([a, b], [c, d]) = (random.units(5), random.units(6));
         let mut tint = mean;
-        for ((channel, variance), u) in tint.iter_mut().zip(self.color_variance).zip([a, b, c, d]) {
+        for ((channel, half_width), u) in tint.iter_mut().zip(self.color_half_width).zip([a, b, c, d]) {
             // The cast saturates at 0 and 255.
-            *channel = (f32::from(*channel) + f32::from(variance) * (2.0 * u - 1.0) + 0.5) as u8;
+            *channel = (f32::from(*channel) + f32::from(half_width) * (2.0 * u - 1.0) + 0.5) as u8;
         }
         tint
     }

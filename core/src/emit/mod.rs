@@ -13,19 +13,19 @@ use crate::custom::CustomColumnsMut;
 use crate::force::State;
 use crate::index::{SpatialIndex, count_of};
 use crate::math::{divide, max};
-use crate::observe::{Observer, Passing};
+use crate::observe::{LifeEvent, Observer};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::rng::Stream;
 use crate::scene::Scene;
-use crate::step::View;
+use crate::step::Workspace;
 use crate::time::{Time, fixed_32};
 use glam::Vec3;
 
 /// Something that brings particles into the world.
 ///
 /// A tuple, slice or reference of emitters is an emitter. Each has a number, its place in the flattened list, and
-/// keeps a `Tally` under it.
+/// keeps a `EmitterState` under it.
 pub trait Emit: Sync {
     /// How many emitters it is.
     fn count(&self) -> usize;
@@ -43,7 +43,7 @@ pub trait Emit: Sync {
 
 /// What an emitter has done so far; numbers and instants of births go on from here, even when its rate changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct EmitterState {
     /// Births so far, those that found no room included.
     pub(crate) serial: u32,
     /// How much of the next birth is done, in units of 2⁻⁶⁴.
@@ -53,7 +53,7 @@ pub struct Tally {
 /// What emitters give birth into.
 #[allow(missing_debug_implementations)]
 pub struct Births<'a> {
-    pub(crate) view: View<'a>,
+    pub(crate) workspace: Workspace<'a>,
     pub(crate) scene: &'a Scene<'a>,
     pub(crate) report: &'a mut Report,
     pub(crate) observer: &'a mut dyn Observer,
@@ -65,7 +65,7 @@ pub struct Births<'a> {
     pub(crate) number: usize,
 }
 
-impl Tally {
+impl EmitterState {
     pub(crate) const NEW: Self = Self { serial: 0, phase: 0 };
 }
 
@@ -78,19 +78,19 @@ impl Births<'_> {
 
     /// The births that emitter `number` owes at `rate` per second after `from` until `to`, and goes on from them.
     pub fn due(&mut self, number: usize, rate: f32, from: Time, to: Time) -> Due {
-        let Some(tally) = self.view.memory.tallies.get_mut(number) else { return Due::NONE };
+        let Some(state) = self.workspace.memory.emitter_states.get_mut(number) else { return Due::NONE };
         // Rates are whole numbers of 2⁻³² births per second, which is 2⁻⁶⁴ births per tick.
         let rate = fixed_32(rate);
-        let phase = tally.phase;
+        let phase = state.phase;
         let reached = u128::from(phase) + u128::from(rate) * u128::from((to - from).ticks());
-        tally.phase = reached as u64;
+        state.phase = reached as u64;
         Due { phase, rate, from, next: 1, last: (reached >> 64) as u64 }
     }
 
     /// Whether no further birth finds room.
     #[must_use]
     pub fn is_full(&self) -> bool {
-        self.view.is_full()
+        self.workspace.is_full()
     }
 
     /// How many particles lie within `radius` \[m\] of a place: those of before this step where they were then, those born in it
@@ -98,7 +98,7 @@ impl Births<'_> {
     /// at each newborn.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
-        let all = &self.view.memory.position[..self.view.len()];
+        let all = &self.workspace.memory.position[..self.workspace.len()];
         match self.near {
             Some(index) => index.count(place, radius).found + count_of(&all[self.old..], place, radius),
             None => count_of(all, place, radius),
@@ -108,12 +108,12 @@ impl Births<'_> {
     /// The particles there are, those born in this step among them.
     #[must_use]
     pub fn state(&self) -> State<'_> {
-        self.view.state(self.scene)
+        self.workspace.state(self.scene)
     }
 
     /// Columns of a user's own, for writing: the last row is that of the particle just born.
     pub fn custom_mut(&mut self) -> CustomColumnsMut<'_> {
-        self.view.custom_mut(self.scene)
+        self.workspace.custom_mut(self.scene)
     }
 
     /// A birth of emitter `number` at the instant `at`, made from the random numbers that belong to it.
@@ -122,7 +122,7 @@ impl Births<'_> {
     /// If there is no room, which is counted. It has used up its random numbers all the same.
     pub fn give(&mut self, number: usize, at: Time, make: impl FnOnce(Stream) -> Particle) -> Result<(), Full> {
         let Some(stream) = self.next(number) else { return Err(Full) };
-        if self.view.is_full() {
+        if self.workspace.is_full() {
             self.miss(at);
             return Err(Full);
         }
@@ -140,18 +140,18 @@ impl Births<'_> {
 
     /// The random numbers of an emitter's next birth.
     fn next(&mut self, number: usize) -> Option<Stream> {
-        let tally = self.view.memory.tallies.get_mut(number)?;
-        let serial = tally.serial;
-        tally.serial = serial.wrapping_add(1);
-        Some(Stream::new(self.view.seed(), number as u32, serial))
+        let state = self.workspace.memory.emitter_states.get_mut(number)?;
+        let serial = state.serial;
+        state.serial = serial.wrapping_add(1);
+        Some(Stream::new(self.workspace.seed(), number as u32, serial))
     }
 
     fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
-        let id = self.view.spawn(particle, at, stream.name())?;
-        self.view.give_custom(self.scene, self.view.len() - 1);
+        let id = self.workspace.spawn(particle, at, stream.name())?;
+        self.workspace.give_custom(self.scene, self.workspace.len() - 1);
         self.report.born += 1;
         let Particle { position: place, velocity, .. } = *particle;
-        self.observer.born(&Passing { id, place, velocity, time: at });
+        self.observer.born(&LifeEvent { id, place, velocity, time: at });
         Ok(())
     }
 
@@ -163,8 +163,8 @@ impl Births<'_> {
 
     /// `count` births of emitter `number` that find no room, at once.
     pub fn refuse(&mut self, number: usize, count: u64) {
-        if let Some(tally) = self.view.memory.tallies.get_mut(number) {
-            tally.serial = tally.serial.wrapping_add(count as u32);
+        if let Some(state) = self.workspace.memory.emitter_states.get_mut(number) {
+            state.serial = state.serial.wrapping_add(count as u32);
             self.report.refused = self.report.refused.saturating_add(count);
             if count > 0 {
                 self.observer.refused(count, self.end);

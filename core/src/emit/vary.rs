@@ -6,7 +6,7 @@ use glam::Vec3;
 /// A number that varies: its mean, and how far it may be from that, evenly on both sides (Reeves, "Particle Systems",
 /// SIGGRAPH 1983).
 ///
-/// In a file a plain number, or `{"mean": 2, "variance": 0.5}` for 1.5 to 2.5.
+/// In a file a plain number, or `{"mean": 2, "half_width": 0.5}` for 1.5 to 2.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "Number"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "Number"))]
@@ -14,7 +14,7 @@ pub struct Varied {
     /// The middle.
     pub mean: f32,
     /// The largest difference from it.
-    pub variance: f32,
+    pub half_width: f32,
 }
 
 /// The directions in which births may leave, about the surface's normal.
@@ -33,18 +33,18 @@ impl Varied {
     /// Always `mean`.
     #[must_use]
     pub const fn exactly(mean: f32) -> Self {
-        Self { mean, variance: 0.0 }
+        Self { mean, half_width: 0.0 }
     }
 
-    /// Uniform from mean − variance to mean + variance; `u` is asked for only if there is a variance.
+    /// Uniform from mean − half_width to mean + half_width; `u` is asked for only if there is a half-width.
     pub(super) fn pick(self, u: impl FnOnce() -> f32) -> f32 {
-        if self.variance == 0.0 { self.mean } else { self.at(u()) }
+        if self.half_width == 0.0 { self.mean } else { self.at(u()) }
     }
 
     /// The number that one uniform in [0, 1) picks.
     #[cfg_attr(target_os = "none", inline(never))]
     fn at(self, u: f32) -> f32 {
-        self.mean + self.variance * (2.0 * u - 1.0)
+        self.mean + self.half_width * (2.0 * u - 1.0)
     }
 }
 
@@ -87,13 +87,14 @@ enum Number {
 #[serde(deny_unknown_fields)]
 struct Range {
     mean: f32,
-    variance: f32,
+    #[serde(alias = "variance")]
+    half_width: f32,
 }
 
 #[cfg(feature = "serde")]
 impl From<Varied> for Number {
-    fn from(Varied { mean, variance }: Varied) -> Self {
-        if variance == 0.0 { Self::Plain(mean) } else { Self::Varied(Range { mean, variance }) }
+    fn from(Varied { mean, half_width }: Varied) -> Self {
+        if half_width == 0.0 { Self::Plain(mean) } else { Self::Varied(Range { mean, half_width }) }
     }
 }
 
@@ -113,7 +114,7 @@ impl<'de> serde::de::Visitor<'de> for NumberOrRange {
     type Value = Varied;
 
     fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("a number, or {\"mean\": ..., \"variance\": ...}")
+        f.write_str("a number, or {\"mean\": ..., \"half_width\": ...}")
     }
 
     fn visit_f64<E>(self, mean: f64) -> Result<Varied, E> {
@@ -130,7 +131,7 @@ impl<'de> serde::de::Visitor<'de> for NumberOrRange {
 
     fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Varied, A::Error> {
         let range = serde::de::value::MapAccessDeserializer::new(map);
-        let Range { mean, variance } = serde::Deserialize::deserialize(range)?;
-        Ok(Varied { mean, variance })
+        let Range { mean, half_width } = serde::Deserialize::deserialize(range)?;
+        Ok(Varied { mean, half_width })
     }
 }

@@ -3,7 +3,7 @@
 use super::inverse_square::field;
 #[cfg(feature = "std")]
 use super::inverse_square::potential;
-use super::{Force, Needs, State, Trees};
+use super::{BuildTrees, Force, Needs, State};
 use crate::index::Opening;
 use core::ops::Range;
 use glam::Vec3;
@@ -50,7 +50,7 @@ impl Force for Coulomb {
     }
 
     fn needs(&self) -> Needs {
-        Needs { charge_tree: (self.theta > 0.0).then_some(Trees::GROWN), ..Needs::default() }
+        Needs { charge_tree: (self.theta > 0.0).then_some(BuildTrees::BARNES_HUT), ..Needs::default() }
     }
 
     #[cfg(feature = "std")]

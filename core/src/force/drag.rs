@@ -1,6 +1,6 @@
 //! Linear drag.
 
-use super::{Change, Force, State};
+use super::{Force, Perturbation, State};
 use crate::math::max;
 use crate::rows::each_row;
 use core::ops::Range;
@@ -28,7 +28,7 @@ impl Force for Drag {
         each_row(total, &state.velocity[rows.clone()], &state.drag[rows], |total, v, k| total - v * k);
     }
 
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         each_row(total, change.along, state.drag, |total, along, k| total - along * (max(k, 0.0) * change.velocity));
     }
 

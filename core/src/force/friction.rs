@@ -11,14 +11,16 @@ use glam::Vec3;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Friction {
     /// What is at rest stays so up to this share of the pressing force: the static coefficient.
-    pub resting: f32,
+    #[cfg_attr(feature = "serde", serde(rename = "static", alias = "resting"))]
+    pub static_: f32,
     /// What slides is held by this share of it: the dynamic coefficient, usually the smaller one.
-    pub sliding: f32,
+    #[cfg_attr(feature = "serde", serde(alias = "sliding"))]
+    pub kinetic: f32,
 }
 
 impl Friction {
     /// No friction.
-    pub const NONE: Self = Self { resting: 0.0, sliding: 0.0 };
+    pub const NONE: Self = Self { static_: 0.0, kinetic: 0.0 };
 
     /// The change of velocity \[m/s\] by which friction answers a `slip` along the surface \[m/s\] while the surface gives a
     /// change of velocity of `press` along its normal \[m/s\]: it takes all of the slip if it can, never more, and never
@@ -29,8 +31,8 @@ impl Friction {
         if !(speed > 0.0 && press > 0.0) {
             return Vec3::ZERO;
         }
-        let held = self.sliding * press;
-        if speed <= self.resting * press || speed <= held { -slip } else { slip * (-held / speed) }
+        let held = self.kinetic * press;
+        if speed <= self.static_ * press || speed <= held { -slip } else { slip * (-held / speed) }
     }
 }
 
@@ -40,7 +42,7 @@ mod tests {
 
     #[test]
     fn friction_holds_slows_and_never_drives() {
-        let ice = Friction { resting: 0.5, sliding: 0.3 };
+        let ice = Friction { static_: 0.5, kinetic: 0.3 };
         let slip = Vec3::new(3.0, 0.0, 4.0);
         assert_eq!(ice.answer(slip, 10.1), -slip);
         assert_eq!(ice.answer(slip, 10.0), -slip);
@@ -48,7 +50,7 @@ mod tests {
         for press in [0.0, -1.0, f32::NAN] {
             assert_eq!(ice.answer(slip, press), Vec3::ZERO);
         }
-        for friction in [Friction::NONE, ice, Friction { resting: 0.1, sliding: 9.0 }] {
+        for friction in [Friction::NONE, ice, Friction { static_: 0.1, kinetic: 9.0 }] {
             for i in 0..100 {
                 let after = slip + friction.answer(slip, i as f32 * 0.2);
                 assert!(after.dot(slip) >= 0.0 && after.length() <= slip.length());

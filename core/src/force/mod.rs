@@ -34,7 +34,7 @@ pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
 pub(crate) use needs::Then;
-pub use needs::{Listing, Needs, Trees};
+pub use needs::{BuildTrees, Listing, Needs};
 pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
@@ -90,7 +90,7 @@ pub trait Force: Sync {
     ///
     /// It has to be symmetric and must not push what is displaced any farther (negative semidefinite), so parts that do
     /// are left out. A force that leaves it out altogether is taken as constant over the step, as an explicit method would.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let _ = (state, change, total);
     }
 
@@ -144,7 +144,7 @@ pub struct Entry {
 
 /// A small change of the particles: δx = `position` × `along`, δv = `velocity` × `along`.
 #[derive(Clone, Copy, Debug)]
-pub struct Change<'a> {
+pub struct Perturbation<'a> {
     /// A vector a row.
     pub along: &'a [Vec3],
     /// How far positions go along it.
@@ -181,7 +181,7 @@ macro_rules! sum_of {
                 part.write(state, custom, dt);
             }
         }
-        fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+        fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
             let $this = self;
             for part in $parts {
                 part.add_jacobian(state, change, total);
@@ -266,7 +266,7 @@ macro_rules! same_as {
             let $this = self;
             $force.write(state, custom, dt);
         }
-        fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+        fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
             let $this = self;
             $force.add_jacobian(state, change, total);
         }

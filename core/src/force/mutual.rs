@@ -3,7 +3,7 @@
 use super::inverse_square::field;
 #[cfg(feature = "std")]
 use super::inverse_square::potential;
-use super::{AllPairs, Force, Needs, State, Trees};
+use super::{AllPairs, BuildTrees, Force, Needs, State};
 #[cfg(doc)]
 use crate::index::BarnesHut;
 use crate::index::Opening;
@@ -50,7 +50,7 @@ impl Force for MutualGravity {
     }
 
     fn needs(&self) -> Needs {
-        Needs { mass_tree: (self.theta > 0.0).then_some(Trees::GROWN), ..Needs::default() }
+        Needs { mass_tree: (self.theta > 0.0).then_some(BuildTrees::BARNES_HUT), ..Needs::default() }
     }
 
     #[cfg(feature = "std")]

@@ -1,12 +1,12 @@
 //! What forces have to find in the state.
 
 use super::State;
-use crate::index::{Arrange, BarnesHut, Found, Search, find};
+use crate::index::{BarnesHut, Found, IndexChoice, Search, find};
 use crate::math::max;
 
 /// Makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
 #[derive(Clone, Copy, Debug)]
-pub struct Trees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
+pub struct BuildTrees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
 
 /// Finds neighbours, likewise.
 #[derive(Clone, Copy, Debug)]
@@ -15,9 +15,9 @@ pub struct Listing(pub(crate) fn(Search<'_>, &State<'_>, Then<'_>) -> Found);
 /// What is done with a state in which all is found.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(&State<'_>);
 
-impl Trees {
-    /// Those of Barnes and Hut, by [`BarnesHut::grow`].
-    pub const GROWN: Self = Self(grow);
+impl BuildTrees {
+    /// Those of Barnes and Hut, by [`BarnesHut::over`].
+    pub const BARNES_HUT: Self = Self(build);
 }
 
 impl Listing {
@@ -25,15 +25,15 @@ impl Listing {
     pub const KEPT: Self = Self(look_up);
 }
 
-fn grow(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
+fn build(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
     // No more memory than these particles call for: more would make other nodes, and so other bits.
     let words = 3 * BarnesHut::COLUMNS * state.position.len();
     let first = if needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
     let (of_mass, of_charge) = memory.split_at_mut(first);
     let second = words.min(of_charge.len());
-    let mass_tree = needs.mass_tree.and_then(|_| BarnesHut::grow(of_mass, state.position, state.mass));
+    let mass_tree = needs.mass_tree.and_then(|_| BarnesHut::over(of_mass, state.position, state.mass));
     let of_charge = &mut of_charge[..second];
-    let charge_tree = needs.charge_tree.and_then(|_| BarnesHut::grow(of_charge, state.position, state.charge));
+    let charge_tree = needs.charge_tree.and_then(|_| BarnesHut::over(of_charge, state.position, state.charge));
     then(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state });
 }
 
@@ -50,9 +50,9 @@ fn look_up(search: Search<'_>, state: &State<'_>, then: Then<'_>) -> Found {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
     /// [`State::mass_tree`](super::State::mass_tree), and what makes it.
-    pub mass_tree: Option<Trees>,
+    pub mass_tree: Option<BuildTrees>,
     /// [`State::charge_tree`](super::State::charge_tree), and what makes it.
-    pub charge_tree: Option<Trees>,
+    pub charge_tree: Option<BuildTrees>,
     /// The radius within which [`State::near`](super::State::near) is asked for neighbours \[m\]; zero: it is not.
     pub reach: f32,
     /// What finds them: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
@@ -88,7 +88,7 @@ impl Needs {
 
     /// Vectors for each particle that it takes to work it all out, neighbours by `index`.
     #[must_use]
-    pub fn columns(self, index: &dyn Arrange) -> usize {
+    pub fn columns(self, index: &dyn IndexChoice) -> usize {
         self.tree_columns() + if self.reach > 0.0 { index.columns() } else { 0 }
     }
 }

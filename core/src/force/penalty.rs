@@ -3,7 +3,7 @@
 use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::{Change, Force, Friction, Needs, State};
+use super::{Force, Friction, Needs, Perturbation, State};
 use crate::math::{length, max, min, sqrt};
 use core::ops::Range;
 use glam::Vec3;
@@ -79,11 +79,11 @@ impl Penalty {
         let push = max(self.stiffness * touch.overlap - self.damping * touch.critical * parting, 0.0);
         let slip = touch.relative - touch.normal * parting;
         let speed = length(slip);
-        if !(speed > 0.0 && self.friction.sliding > 0.0) {
+        if !(speed > 0.0 && self.friction.kinetic > 0.0) {
             return (push, Vec3::ZERO);
         }
         // What slips slowly meets a dashpot across instead, so that friction never drives.
-        (push, slip * (-min(self.friction.sliding * push / speed, touch.critical)))
+        (push, slip * (-min(self.friction.kinetic * push / speed, touch.critical)))
     }
 }
 
@@ -103,7 +103,7 @@ impl Force for Penalty {
     }
 
     /// Along the line of centres; how the line turns, and friction, are left out.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let all = 0..total.len();
         add_up(state, self.reach, all, total, |row, other| {
             let Some(touch) = self.touch(state, [row, other]) else { return Vec3::ZERO };

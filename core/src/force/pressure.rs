@@ -1,6 +1,6 @@
 //! Gas in a closed mesh.
 
-use super::{Change, Force, State};
+use super::{Force, Perturbation, State};
 use crate::math::{length, max, sqrt};
 use core::ops::Range;
 use glam::Vec3;
@@ -96,7 +96,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Force for Pressure<T> {
 
     /// What the gas resists being pressed with: −n R T / V² times how much the volume changes. That triangles turn is left
     /// out, since it may drive apart what is displaced.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let Some(inside) = self.inside(state) else { return };
         let mut grown = 0.0;
         for (corners, places) in self.living(state) {

@@ -1,6 +1,6 @@
 //! Quadratic drag.
 
-use super::{Change, Force, State};
+use super::{Force, Perturbation, State};
 use crate::math::{length, max};
 use core::ops::Range;
 use glam::Vec3;
@@ -30,7 +30,7 @@ impl Force for QuadraticDrag {
     }
 
     /// −k (|v| + v vᵀ / |v|) δv: twice as steep along the velocity as across it.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let k = max(self.coefficient, 0.0) * change.velocity;
         for ((total, &v), &along) in total.iter_mut().zip(state.velocity).zip(change.along) {
             let speed = length(v);

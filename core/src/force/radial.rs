@@ -3,7 +3,7 @@
 use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::{Change, Force, Needs, State};
+use super::{Force, Needs, Perturbation, State};
 use crate::index::{Nearby, Neighbours};
 use crate::lanes::{self, LANES};
 use crate::math::{max, sqrt};
@@ -121,7 +121,7 @@ impl Pair {
 pub struct Radial<L>(pub L);
 
 /// The way to a neighbour \[m\], its square, and how stiff the two are along and across it \[N/m\].
-struct Bend {
+struct PairStiffness {
     toward: Vec3,
     square: f32,
     along: f32,
@@ -154,14 +154,14 @@ impl<L: RadialLaw> Radial<L> {
 
     /// About a pair of neighbours; none if they coincide.
     #[inline(always)]
-    fn bend(&self, state: &State<'_>, rows: [usize; 2]) -> Option<Bend> {
+    fn pair_stiffness(&self, state: &State<'_>, rows: [usize; 2]) -> Option<PairStiffness> {
         let toward = state.position[rows[1]] - state.position[rows[0]];
         let square = toward.dot(toward);
         if !(square > 0.0) {
             return None;
         }
         let [along, across] = self.stiffness(square, &Pair::of(state, rows));
-        Some(Bend { toward, square, along, across })
+        Some(PairStiffness { toward, square, along, across })
     }
 
     /// Stiffness along the line and across it \[N/m\]. Parts that would drive apart what is displaced are left out, as of
@@ -187,10 +187,10 @@ impl<L: RadialLaw> Force for Radial<L> {
         Needs::within(self.0.reach())
     }
 
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let all = 0..total.len();
         add_up(state, self.0.reach(), all, total, |row, other| {
-            let Some(Bend { toward, square, along, across }) = self.bend(state, [row, other]) else {
+            let Some(PairStiffness { toward, square, along, across }) = self.pair_stiffness(state, [row, other]) else {
                 return Vec3::ZERO;
             };
             let apart = change.along[other] - change.along[row];
@@ -202,7 +202,7 @@ impl<L: RadialLaw> Force for Radial<L> {
     fn add_stiffness(&self, state: &State<'_>, [position, _]: [f32; 2], total: &mut [Vec3]) {
         let all = 0..total.len();
         add_up(state, self.0.reach(), all, total, |row, other| {
-            let Some(Bend { toward, square, along, across }) = self.bend(state, [row, other]) else {
+            let Some(PairStiffness { toward, square, along, across }) = self.pair_stiffness(state, [row, other]) else {
                 return Vec3::ZERO;
             };
             (toward * toward * ((along - across) / square) + Vec3::splat(across)) * position

@@ -1,6 +1,6 @@
 //! Damped springs between particles of the scene's start.
 
-use super::{Change, Force, State};
+use super::{Force, Perturbation, State};
 use crate::math::{length, max, sin_cos_turns};
 use crate::time::Time;
 use core::ops::Range;
@@ -89,7 +89,13 @@ impl Spring {
 
     /// How its force changes with its ends, positions and velocities weighed. A spring that is pressed would push sideways;
     /// that is left out, so that no mode is unstable (Choi and Ko, "Stable but Responsive Cloth", SIGGRAPH 2002).
-    fn bend(&self, a: usize, b: usize, state: &State<'_>, [position, velocity]: [f32; 2]) -> Option<Bend> {
+    fn pair_stiffness(
+        &self,
+        a: usize,
+        b: usize,
+        state: &State<'_>,
+        [position, velocity]: [f32; 2],
+    ) -> Option<PairStiffness> {
         let toward = state.position[b] - state.position[a];
         let d = length(toward);
         if !(d > 0.0 && d < f32::INFINITY) {
@@ -97,12 +103,12 @@ impl Spring {
         }
         let across = max(self.ks * (1.0 - self.rest(state.time) / d), 0.0);
         let axial = (max(self.ks, 0.0) - across) * position + max(self.kd, 0.0) * velocity;
-        Some(Bend { along: toward / d, axial, across: across * position })
+        Some(PairStiffness { along: toward / d, axial, across: across * position })
     }
 }
 
 /// A spring's stiffness and damping about a pose: more `axial` than `across`, which acts in all directions.
-struct Bend {
+struct PairStiffness {
     along: Vec3,
     axial: f32,
     across: f32,
@@ -308,9 +314,9 @@ impl Force for Springs<'_> {
         }
     }
 
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         for Held { spring, rows: [a, b], .. } in self.held() {
-            let Some(bend) = spring.bend(a, b, state, [change.position, change.velocity]) else { continue };
+            let Some(bend) = spring.pair_stiffness(a, b, state, [change.position, change.velocity]) else { continue };
             let apart = change.along[b] - change.along[a];
             let pull = bend.along * (bend.axial * apart.dot(bend.along)) + apart * bend.across;
             total[a] += pull;
@@ -320,7 +326,7 @@ impl Force for Springs<'_> {
 
     fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
         for Held { spring, rows: [a, b], .. } in self.held() {
-            let Some(bend) = spring.bend(a, b, state, weights) else { continue };
+            let Some(bend) = spring.pair_stiffness(a, b, state, weights) else { continue };
             let diagonal = bend.along * bend.along * bend.axial + Vec3::splat(bend.across);
             total[a] += diagonal;
             total[b] += diagonal;

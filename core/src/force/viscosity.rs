@@ -3,7 +3,7 @@
 use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::{Change, Force, Needs, State};
+use super::{Force, Needs, Perturbation, State};
 use crate::math::{length, max};
 use core::ops::Range;
 use glam::Vec3;
@@ -45,7 +45,7 @@ impl Force for Viscosity {
     }
 
     /// Exact in the velocities; how the weights change with the places is left out, and all of a coefficient below zero.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let all = 0..if change.velocity == 0.0 { 0 } else { total.len() };
         add_up(state, self.reach, all, total, |row, other| {
             (change.along[other] - change.along[row]) * (max(self.weight(state, [row, other]), 0.0) * change.velocity)

@@ -1,6 +1,6 @@
 //! Air that moves.
 
-use super::{Change, Flow, Force, State};
+use super::{Flow, Force, Perturbation, State};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
@@ -56,7 +56,7 @@ impl<F: Flow> Force for Wind<F> {
     }
 
     /// −k δv. How the air's velocity changes from place to place is left out: it may drive apart what is displaced.
-    fn add_jacobian(&self, state: &State<'_>, change: &Change<'_>, total: &mut [Vec3]) {
+    fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         for ((total, &along), &own) in total.iter_mut().zip(change.along).zip(state.drag) {
             *total -= along * (max(self.coefficient.unwrap_or(own), 0.0) * change.velocity);
         }

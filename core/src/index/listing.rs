@@ -2,7 +2,7 @@
 
 use super::lists::ListMemory;
 use super::neighbours::Neighbours;
-use super::{Arrange, SpatialIndex};
+use super::{IndexChoice, SpatialIndex};
 use glam::Vec3;
 
 /// How neighbours have been found.
@@ -20,7 +20,7 @@ pub(crate) enum Found {
 
 /// What neighbours are looked up of, and by what.
 pub(crate) struct Search<'a> {
-    pub(crate) index: &'a dyn Arrange,
+    pub(crate) index: &'a dyn IndexChoice,
     /// The index's memory, and that of lists, where there is some.
     pub(crate) memory: &'a mut [u32],
     pub(crate) lists: Option<ListMemory<'a>>,
@@ -47,7 +47,7 @@ pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: T
     let Some(skin) = lists.skin(points, velocity, reach) else {
         return stream(index, memory, points, reach, then);
     };
-    index.arrange(memory, points, reach + skin, &mut |index| {
+    index.with_index(memory, points, reach + skin, &mut |index| {
         let made = index.and_then(|index| lists.make(index, points, [reach, skin]));
         match made {
             Some(lists) => then(Neighbours::listed(lists, points), Found::Listed),
@@ -57,8 +57,8 @@ pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: T
 }
 
 /// Calls `then` with the neighbours of points by an index that is made for it.
-fn stream(index: &dyn Arrange, memory: &mut [u32], points: &[Vec3], reach: f32, then: Then<'_>) {
-    index.arrange(memory, points, reach, &mut |index| then(Neighbours::by(index, points), how(index)));
+fn stream(index: &dyn IndexChoice, memory: &mut [u32], points: &[Vec3], reach: f32, then: Then<'_>) {
+    index.with_index(memory, points, reach, &mut |index| then(Neighbours::by(index, points), how(index)));
 }
 
 fn how(index: Option<&dyn SpatialIndex>) -> Found {

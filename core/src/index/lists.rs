@@ -31,7 +31,7 @@ pub(crate) struct Listed {
     points: u32,
     /// The radius that they are good for, and how far anybody may go meanwhile \[m\].
     reach: f32,
-    leash: f32,
+    max_travel: f32,
     /// How many had come and gone before them.
     changes: u32,
     /// Words that were lent for them: others are not theirs.
@@ -73,7 +73,8 @@ struct Parts<'a> {
 
 impl Listed {
     /// None.
-    pub(crate) const NONE: Self = Self { points: 0, reach: 0.0, leash: 0.0, changes: 0, words: 0, uses: 0, pause: 0 };
+    pub(crate) const NONE: Self =
+        Self { points: 0, reach: 0.0, max_travel: 0.0, changes: 0, words: 0, uses: 0, pause: 0 };
 }
 
 impl Lists<'_> {
@@ -132,9 +133,9 @@ impl<'a> ListMemory<'a> {
 
     /// The lists, if they are still good for these points.
     pub(crate) fn kept(&mut self, points: &[Vec3], reach: f32) -> Option<Lists<'_>> {
-        let Listed { points: len, reach: listed, leash, changes, .. } = *self.listed;
-        let is_same = len as usize == points.len() && listed == reach && changes == self.changes && leash > 0.0;
-        if !is_same || !self.follow(points, leash) {
+        let Listed { points: len, reach: listed, max_travel, changes, .. } = *self.listed;
+        let is_same = len as usize == points.len() && listed == reach && changes == self.changes && max_travel > 0.0;
+        if !is_same || !self.follow(points, max_travel) {
             return None;
         }
         self.listed.uses = self.listed.uses.saturating_add(1);
@@ -185,8 +186,8 @@ impl<'a> ListMemory<'a> {
         }
         let (changes, words, uses, pause) = (self.changes, self.words.len(), 1, 0);
         // Half of the skin each, less what rounding may come to.
-        let leash = 0.499 * skin - 4.0 * f32::EPSILON * farthest(points);
-        *self.listed = Listed { points: points.len() as u32, reach, leash, changes, words, uses, pause };
+        let max_travel = 0.499 * skin - 4.0 * f32::EPSILON * farthest(points);
+        *self.listed = Listed { points: points.len() as u32, reach, max_travel, changes, words, uses, pause };
         Some(self.read())
     }
 
@@ -196,9 +197,9 @@ impl<'a> ListMemory<'a> {
         Lists { reach, spans, places, entries }
     }
 
-    /// Takes up where all are, and says whether nobody has gone farther than the leash.
-    fn follow(&mut self, points: &[Vec3], leash: f32) -> bool {
-        let square = leash * leash;
+    /// Takes up where all are, and says whether nobody has gone farther than they may.
+    fn follow(&mut self, points: &[Vec3], max_travel: f32) -> bool {
+        let square = max_travel * max_travel;
         let Parts { made, places, .. } = parts(self.words, points.len());
         let mut any = 0;
         for (place, made) in places.iter_mut().zip(made) {

@@ -26,12 +26,12 @@
 //! Whatever works through all points (`counts`, `neighbours`, `pairs`, `all_nearest`) is several times faster than as many
 //! single queries, since near points share their way through the structure.
 
-mod arrange;
 mod barnes_hut;
 mod brute;
 mod bsp;
 mod bvh;
 mod cells;
+mod choice;
 mod domain;
 mod frames;
 mod grid;
@@ -53,7 +53,6 @@ mod split;
 mod structure;
 mod tree;
 
-pub use arrange::{Arrange, InGrid, InKd};
 #[cfg(feature = "std")]
 pub use barnes_hut::FieldError;
 pub use barnes_hut::{BarnesHut, Opening};
@@ -61,6 +60,7 @@ pub use brute::Brute;
 pub use bsp::Bsp;
 pub(crate) use bsp::principal_axes;
 pub use bvh::Bvh;
+pub use choice::{InGrid, InKd, IndexChoice};
 pub use grid::Grid;
 pub use hash::Hash;
 pub use kd::Kd;

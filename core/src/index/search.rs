@@ -5,7 +5,7 @@ use super::near::{Near, chunks};
 use super::nearest::Nearest;
 use super::partition::Partition;
 use super::region::{Region, Run};
-use super::sorted::{Found, Probe, Sorted, Tally};
+use super::sorted::{Counter, Found, Probe, Sorted};
 use super::{Cost, Neighbour};
 use crate::math::{self, max, min, sqrt};
 use core::ops::Range;
@@ -127,9 +127,9 @@ impl<P: Partition> Search<'_, P> {
 
     pub(super) fn count(&self, center: Vec3, radius: f32) -> Cost {
         let Some((center, reach)) = self.place(center).zip(self.reach(radius)) else { return Cost::default() };
-        let mut tally = Tally::default();
-        let cost = self.scan(center, reach, |run, probe| self.0.sorted().count(run, probe, &mut tally));
-        Cost { found: tally.total().into(), ..cost }
+        let mut counter = Counter::default();
+        let cost = self.scan(center, reach, |run, probe| self.0.sorted().count(run, probe, &mut counter));
+        Cost { found: counter.total().into(), ..cost }
     }
 
     pub(super) fn within(&self, center: Vec3, radius: f32, visit: &mut dyn FnMut(&[u32])) -> Cost {
@@ -145,7 +145,7 @@ impl<P: Partition> Search<'_, P> {
     pub(super) fn counts(&self, radius: f32, counts: &mut [u32]) -> Cost {
         counts.fill(0);
         let Some(reach) = self.reach(radius) else { return Cost::default() };
-        let mut sweep = Counts { sorted: self.0.sorted(), counts, tally: Tally::default(), total: 0 };
+        let mut sweep = Counts { sorted: self.0.sorted(), counts, counter: Counter::default(), total: 0 };
         let cost = self.sweep(reach, &mut sweep);
         Cost { found: sweep.total, ..cost }
     }
@@ -275,24 +275,24 @@ impl<P: Partition> Search<'_, P> {
 struct Counts<'a> {
     sorted: &'a Sorted<'a>,
     counts: &'a mut [u32],
-    tally: Tally,
+    counter: Counter,
     total: u64,
 }
 
 impl Sweep for Counts<'_> {
     #[inline(always)]
     fn begin(&mut self, _: usize) {
-        self.tally = Tally::default();
+        self.counter = Counter::default();
     }
     #[inline(always)]
     fn scan(&mut self, _: usize, run: Range<usize>, probe: &Probe) -> u64 {
-        self.sorted.count(&run, probe, &mut self.tally);
+        self.sorted.count(&run, probe, &mut self.counter);
         run.len() as u64
     }
     #[inline(always)]
     fn end(&mut self, slot: usize) {
         // It has found itself as well.
-        let others = self.tally.total().saturating_sub(1);
+        let others = self.counter.total().saturating_sub(1);
         self.total += u64::from(others);
         if let Some(count) = self.counts.get_mut(self.sorted.order()[slot] as usize) {
             *count = others;

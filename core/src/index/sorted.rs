@@ -231,13 +231,13 @@ impl<'m> Sorted<'m> {
         }
     }
 
-    /// Tallies the points of a run that are within the probe's radius.
+    /// Counts the points of a run that are within the probe's radius.
     #[inline(always)]
-    pub(super) fn count(&self, run: &Range<usize>, probe: &Probe, tally: &mut Tally) {
+    pub(super) fn count(&self, run: &Range<usize>, probe: &Probe, counter: &mut Counter) {
         self.blocks(run, probe, |_, left, square| {
             let hits = square.simd_le(probe.square);
             let hits = if left < LANES { hits & FIRST[left] } else { hits };
-            tally.0 -= bytemuck::cast::<f32x8, i32x8>(hits);
+            counter.0 -= bytemuck::cast::<f32x8, i32x8>(hits);
         });
     }
 
@@ -320,9 +320,9 @@ const FIRST: [f32x8; LANES + 1] = {
 
 /// How many points were found, lane by lane.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Tally(i32x8);
+pub(super) struct Counter(i32x8);
 
-impl Tally {
+impl Counter {
     #[inline(always)]
     pub(super) fn total(self) -> u32 {
         self.0.to_array().iter().map(|&lane| lane as u32).sum()

@@ -1,7 +1,7 @@
 //! Implicit Euler.
 
 use super::{Dynamics, Integrator, Linear, Motion, advance_by};
-use crate::force::Change;
+use crate::force::Perturbation;
 use crate::lanes::dot;
 use crate::report::Effort;
 use crate::rows::add_scaled;
@@ -84,7 +84,7 @@ impl Solver<'_> {
         let (h, v) = (self.h, system.state.velocity);
         system.force(self.r);
         if at_start {
-            system.jacobian(&Change { along: v, position: h, velocity: 0.0 }, self.q);
+            system.jacobian(&Perturbation { along: v, position: h, velocity: 0.0 }, self.q);
             add_scaled(self.r, 1.0, self.q);
         }
         system.stiffness([h * h, h], self.inverse_diagonal);
@@ -160,7 +160,7 @@ impl Solver<'_> {
     /// q = (M − h ∂f/∂v − h² ∂f/∂x) p, zero where nothing moves.
     fn apply(&mut self, system: &Linear<'_>) {
         let h = self.h;
-        system.jacobian(&Change { along: self.p, position: h * h, velocity: h }, self.q);
+        system.jacobian(&Perturbation { along: self.p, position: h * h, velocity: h }, self.q);
         for (((q, p), &w), inverse) in
             self.q.iter_mut().zip(&*self.p).zip(system.inverse_mass).zip(&*self.inverse_diagonal)
         {

@@ -18,7 +18,7 @@ pub use named::{Method, Tuned, Tuning, UnknownMethod};
 pub use rk4::Rk4;
 pub use verlet::Verlet;
 
-use crate::force::{Change, Force, State};
+use crate::force::{Force, Perturbation, State};
 use crate::math::{largest, max};
 use crate::report::Effort;
 pub(crate) use crate::rows::{add_scaled, advance_by};
@@ -59,7 +59,7 @@ impl Linear<'_> {
     }
 
     /// How it changes with the state \[N\]: [`Force::add_jacobian`].
-    pub fn jacobian(&self, change: &Change<'_>, total: &mut [Vec3]) {
+    pub fn jacobian(&self, change: &Perturbation<'_>, total: &mut [Vec3]) {
         total.fill(Vec3::ZERO);
         self.forces.add_jacobian(&self.state, change, total);
     }

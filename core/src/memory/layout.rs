@@ -262,13 +262,13 @@ impl Scratch<'_> {
 }
 
 impl<'m> Scratch<'m> {
-    /// For meetings of so many, when all have been moved: for their clocks, for where they were at the step's beginning, and for an
+    /// For meetings of so many, when all have been moved: for their events, for where they were at the step's beginning, and for an
     /// index of that.
     pub(crate) fn meeting(self, len: usize) -> (&'m mut [u32], &'m mut [Vec3], &'m mut [u32]) {
         let (plan, mut rest) = (self.layout.plan, self.words);
-        let clocks = take(&mut rest, 9 * len);
+        let events = take(&mut rest, 9 * len);
         let home = take_vectors(&mut rest, len);
-        (clocks, home, take(&mut rest, 3 * plan.index * len))
+        (events, home, take(&mut rest, 3 * plan.index * len))
     }
 }
 

@@ -2,9 +2,9 @@
 //!
 //! Capacity belongs to the owner of the memory and to nothing else: every algorithm works on `Slices`.
 
-use crate::emit::Tally;
+use crate::emit::EmitterState;
 use crate::particles::Color;
-use crate::reap::Fate;
+use crate::reap::PendingDeath;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -259,7 +259,7 @@ storage! {
         /// Number of its material plus one, by row; zero: none.
         material: u16 = 0,
         /// Why it will be removed at the end of this step, by row.
-        fate: Fate = Fate::Lives,
+        pending_death: PendingDeath = PendingDeath::Lives,
         /// How many particles came into the system before it, by row.
         serial: u32 = 0,
         /// What its random numbers are drawn by as long as it lives, by row.
@@ -273,7 +273,7 @@ storage! {
     }
     emitter {
         /// What each emitter has done so far.
-        tallies: Tally = Tally::NEW,
+        emitter_states: EmitterState = EmitterState::NEW,
     }
     spring {
         /// The springs at each particle of the start, one list behind the other.
@@ -347,7 +347,7 @@ impl Columns<'_> {
         let particles = self.capacity();
         Size {
             particles,
-            emitters: self.tallies.len(),
+            emitters: self.emitter_states.len(),
             springs: self.incident.len() / 2,
             columns: self.work.len().checked_div(particles).unwrap_or(usize::MAX),
             kept: self.kept.len().checked_div(particles).unwrap_or(usize::MAX),

@@ -31,10 +31,10 @@
 //! ```
 
 mod bsp;
+mod build;
 mod bvh;
 mod entries;
 mod grid;
-mod grow;
 mod header;
 mod index;
 mod kd;

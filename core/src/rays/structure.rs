@@ -1,7 +1,7 @@
 //! The structures by name.
 
 use super::header::{Boxes, HEADER, Header};
-use super::{Index, Pieces, TooSmall, bsp, bvh, grid, grow, kd, octree};
+use super::{Index, Pieces, TooSmall, bsp, build, bvh, grid, kd, octree};
 
 /// How pieces are organised, by its name, as files and the command line say it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +46,8 @@ impl Structure {
         match self {
             Self::Brute => HEADER,
             Self::Grid => grid::words(pieces),
-            Self::Octree | Self::Kd => grow::words(pieces, 48),
-            Self::Bsp | Self::Bvh => grow::words(pieces, 22),
+            Self::Octree | Self::Kd => build::words(pieces, 48),
+            Self::Bsp | Self::Bvh => build::words(pieces, 22),
         }
     }
 
@@ -59,10 +59,10 @@ impl Structure {
         let words = match self {
             Self::Brute => brute(pieces, memory)?,
             Self::Grid => grid::build(pieces, memory)?,
-            Self::Octree => grow::grow(self, &octree::Eighths, pieces, memory)?,
-            Self::Kd => grow::grow(self, &kd::Cheapest, pieces, memory)?,
-            Self::Bsp => grow::grow(self, &bsp::Planes, pieces, memory)?,
-            Self::Bvh => grow::grow(self, &bvh::Areas, pieces, memory)?,
+            Self::Octree => build::build(self, &octree::Eighths, pieces, memory)?,
+            Self::Kd => build::build(self, &kd::Cheapest, pieces, memory)?,
+            Self::Bsp => build::build(self, &bsp::Planes, pieces, memory)?,
+            Self::Bvh => build::build(self, &bvh::Areas, pieces, memory)?,
         };
         Ok(Index::trusted(words))
     }

@@ -20,7 +20,7 @@ pub enum Cause {
 
 /// What becomes of a particle at the end of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Fate {
+pub enum PendingDeath {
     /// It lives on.
     #[default]
     Lives,
@@ -38,7 +38,7 @@ pub enum Fate {
     Nonfinite,
 }
 
-impl Fate {
+impl PendingDeath {
     /// Why it has to go, if it has.
     #[must_use]
     pub const fn cause(self) -> Option<Cause> {
@@ -54,7 +54,7 @@ impl Fate {
     }
 }
 
-impl From<Cause> for Fate {
+impl From<Cause> for PendingDeath {
     fn from(cause: Cause) -> Self {
         match cause {
             Cause::Lifetime => Self::Lifetime,

@@ -10,13 +10,13 @@ mod kind;
 mod lifetime;
 mod nonfinite;
 
-pub use cause::{Cause, Fate};
+pub use cause::{Cause, PendingDeath};
 pub use chance::Chance;
 pub use dense::Dense;
 pub use kind::ReaperKind;
 
 use crate::force::State;
-use crate::index::{Arrange, Neighbours};
+use crate::index::{IndexChoice, Neighbours};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
@@ -66,25 +66,25 @@ impl ReaperCode {
 pub(crate) struct Judged<'a> {
     pub(crate) state: State<'a>,
     /// What has become of them so far.
-    pub(crate) fates: &'a mut [Fate],
+    pub(crate) pending_deaths: &'a mut [PendingDeath],
     /// What finds who is near, and memory for it.
-    pub(crate) index: &'a dyn Arrange,
+    pub(crate) index: &'a dyn IndexChoice,
     pub(crate) words: &'a mut [u32],
     /// Room for the places of those who live.
     pub(crate) places: &'a mut [Vec3],
 }
 
 fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
-    let Judged { state, fates, index, words, places } = judged;
-    let (rows, reach) = (0..fates.len(), reapers.reach());
+    let Judged { state, pending_deaths, index, words, places } = judged;
+    let (rows, reach) = (0..pending_deaths.len(), reapers.reach());
     if reach <= 0.0 {
-        return reapers.judge(&state, rows, &mut Verdicts::on(fates));
+        return reapers.judge(&state, rows, &mut Verdicts::on(pending_deaths));
     }
-    for ((place, &x), &fate) in places.iter_mut().zip(state.position).zip(&*fates) {
-        *place = if fate == Fate::Lives { x } else { Vec3::NAN };
+    for ((place, &x), &pending_death) in places.iter_mut().zip(state.position).zip(&*pending_deaths) {
+        *place = if pending_death == PendingDeath::Lives { x } else { Vec3::NAN };
     }
-    let (position, mut verdicts) = (&*places, Verdicts::on(fates));
-    index.arrange(words, position, reach, &mut |near| {
+    let (position, mut verdicts) = (&*places, Verdicts::on(pending_deaths));
+    index.with_index(words, position, reach, &mut |near| {
         let near = Neighbours::by(near, position);
         reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
     });
@@ -93,14 +93,14 @@ fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
 /// What reapers say of the rows they are asked about.
 #[derive(Debug)]
 pub struct Verdicts<'a> {
-    fates: &'a mut [Fate],
+    pending_deaths: &'a mut [PendingDeath],
     claimed: u32,
 }
 
 impl<'a> Verdicts<'a> {
-    /// On rows whose fates so far these are.
-    pub fn on(fates: &'a mut [Fate]) -> Self {
-        Self { fates, claimed: 0 }
+    /// On rows whose pending deaths so far these are.
+    pub fn on(pending_deaths: &'a mut [PendingDeath]) -> Self {
+        Self { pending_deaths, claimed: 0 }
     }
 
     /// A number that no other reaper of the list has, and this one in every step: the place of the word that it draws of each
@@ -114,8 +114,8 @@ impl<'a> Verdicts<'a> {
     /// The particle in the `nth` of the rows has to go.
     #[inline]
     pub fn end(&mut self, nth: usize, cause: Cause) {
-        if let Some(fate) = self.fates.get_mut(nth) {
-            *fate = (*fate).max(cause.into());
+        if let Some(pending_death) = self.pending_deaths.get_mut(nth) {
+            *pending_death = (*pending_death).max(cause.into());
         }
     }
 }

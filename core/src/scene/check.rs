@@ -90,8 +90,8 @@ impl SceneFile {
                 ReaperKind::Dense(dense) => zero_or_more(&format!("reapers[{i}].radius"), dense.radius)?,
             }
         }
-        // How many particles fabrics bring is known when their meshes have been read.
-        if self.fabrics.is_empty() {
+        // How many particles cloths bring is known when their meshes have been read.
+        if self.cloths.is_empty() {
             self.check_corners(self.particles.len())?;
         }
         self.check_scenery()?;
@@ -194,22 +194,22 @@ impl SceneFile {
             ("elasticity", elasticity),
             ("lifetime", lifetime),
         ];
-        for (name, Varied { mean, variance }) in varied {
-            finite(&format!("{at}.{name}"), &[*mean, *variance])?;
-            if !(mean - variance).is_finite() || !(mean + variance).is_finite() {
-                let message = format!("{mean:?} ± {variance:?} goes beyond the range of a 32-bit float");
+        for (name, Varied { mean, half_width }) in varied {
+            finite(&format!("{at}.{name}"), &[*mean, *half_width])?;
+            if !(mean - half_width).is_finite() || !(mean + half_width).is_finite() {
+                let message = format!("{mean:?} ± {half_width:?} goes beyond the range of a 32-bit float");
                 return Err(SceneError::value(format!("{at}.{name}"), message));
             }
         }
-        let lightest = mass.mean - mass.variance.abs();
+        let lightest = mass.mean - mass.half_width.abs();
         if !emitter.fixed && !(lightest > 3e-39) {
-            return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the variance counted in"));
+            return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the half_width counted in"));
         }
         if !(lightest >= 0.0) {
-            return Err(SceneError::value(format!("{at}.mass"), "must not be below zero, the variance counted in"));
+            return Err(SceneError::value(format!("{at}.mass"), "must not be below zero, the half_width counted in"));
         }
-        if !(radius.mean - radius.variance.abs() >= 0.0) {
-            return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the variance counted in"));
+        if !(radius.mean - radius.half_width.abs() >= 0.0) {
+            return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the half_width counted in"));
         }
         let (Spread::Uniform(cutoff) | Spread::Lecture(cutoff)) = emitter.spread;
         finite(&format!("{at}.spread"), &[cutoff])?;
@@ -288,9 +288,9 @@ impl SceneFile {
             let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
             finite(&format!("materials[{i}]"), colors.as_flattened())?;
             finite(&format!("materials[{i}]"), &[m.shininess, m.refraction, m.size, m.glow])?;
-            if let Some((name, number, meant)) = m.grip.fault() {
+            if let Some((name, number, meant)) = m.contact.fault() {
                 let message = format!("{meant}, not {number}");
-                return Err(SceneError::value(format!("materials[{i}].grip.{name}"), message));
+                return Err(SceneError::value(format!("materials[{i}].contact.{name}"), message));
             }
         }
         for (i, light) in self.lights.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::Fabric;
+use super::Cloth;
 use super::Response;
-use crate::collide::Grip;
+use crate::collide::ContactMaterial;
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -36,8 +36,8 @@ pub struct SceneFile {
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub springs: Vec<Spring>,
     /// Sheets and meshes of springs, whose particles and springs follow those above.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
-    pub fabrics: Vec<Fabric>,
+    #[cfg_attr(feature = "serde", serde(alias = "fabrics", skip_serializing_if = "Vec::is_empty"))]
+    pub cloths: Vec<Cloth>,
     /// What brings further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub emitters: Vec<Emitter<Shape<String>>>,
@@ -169,8 +169,8 @@ pub struct Material {
     /// How particles are drawn, from 0, a lit ball, to 1, a glow.
     pub glow: f32,
     /// How it feels to what touches it.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Grip::is_plain"))]
-    pub grip: Grip,
+    #[cfg_attr(feature = "serde", serde(alias = "grip", skip_serializing_if = "ContactMaterial::is_plain"))]
+    pub contact: ContactMaterial,
 }
 
 /// A light. Colours are red, green, blue; attenuation is ca, la, qa of 1 / (ca + la d + qa d²).
@@ -254,7 +254,7 @@ impl SceneFile {
             run: Run::default(),
             particles: Vec::new(),
             springs: Vec::new(),
-            fabrics: Vec::new(),
+            cloths: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),
             contacts: None,
@@ -309,7 +309,7 @@ impl Default for Material {
             texture: None,
             size: 0.0,
             glow: 0.0,
-            grip: Grip::default(),
+            contact: ContactMaterial::default(),
         }
     }
 }

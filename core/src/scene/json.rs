@@ -3,6 +3,7 @@
 use super::{SceneError, SceneFile};
 use alloc::format;
 use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 
 impl SceneFile {
     /// Reads JSON; `name` is the file's name for messages.
@@ -22,6 +23,22 @@ impl SceneFile {
         })
     }
 
+    /// Names in JSON that have been others for some time, each where it first stands: files may go on with them.
+    #[must_use]
+    pub fn former_names(text: &str) -> Vec<String> {
+        let mut remarks = Vec::new();
+        for (former, name) in FORMER {
+            let key = format!("\"{former}\"");
+            let is_key = |&(at, _): &(usize, &str)| text[at + key.len()..].trim_start().starts_with(':');
+            let Some((at, _)) = text.match_indices(&key).find(is_key) else { continue };
+            let before = &text[..at];
+            let (line, column) =
+                (before.matches('\n').count() + 1, before.len() - before.rfind('\n').map_or(0, |end| end + 1) + 1);
+            remarks.push(format!("{line}:{column}: `{former}` is called `{name}` now"));
+        }
+        remarks
+    }
+
     /// Writes JSON, indented, with a line end at the end.
     #[must_use]
     pub fn to_json(&self) -> String {
@@ -30,6 +47,17 @@ impl SceneFile {
         compact_numbers(&text)
     }
 }
+
+/// What was called otherwise once, and what it is called now.
+const FORMER: [(&str, &str); 7] = [
+    ("variance", "half_width"),
+    ("color_variance", "color_half_width"),
+    ("fabrics", "cloths"),
+    ("threads", "springs"),
+    ("grip", "contact"),
+    ("resting", "static"),
+    ("sliding", "kinetic"),
+];
 
 /// The parser's message without the names of Rust's types.
 fn plain(message: &str) -> String {
@@ -46,7 +74,7 @@ fn plain(message: &str) -> String {
         ("u16", "a whole number from 0 to 65535"),
         ("u32", "a whole number from 0 to 4294967295"),
         ("u64", "a whole number, zero or more"),
-        ("struct Friction", r#"{"resting": ..., "sliding": ...}"#),
+        ("struct Friction", r#"{"static": ..., "kinetic": ...}"#),
     ] {
         if let Some(rest) = message.strip_suffix(name).filter(|rest| rest.ends_with(", expected ")) {
             return format!("{rest}{meaning}");
@@ -92,6 +120,25 @@ mod tests {
         assert!(error.to_string().starts_with("a.json:1:14: "), "{error}");
         let error = SceneFile::from_json("a.json", "{\"ambient\": [0, 0").expect_err("cut off");
         assert!(error.to_string().contains("EOF"), "{error}");
+    }
+
+    #[test]
+    fn former_names_are_read_and_remarked_on() {
+        let form = r#"{"sheet": {"origin": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [1, 1]}}"#;
+        let shape = r#"{"sphere": {"center": [0, 0, 0], "radius": 1}}"#;
+        let old = format!(
+            r#"{{"fabrics": [{{"form": {form}, "mass": 1, "threads": {{"bend": {{"ks": 1, "kd": 0}}}}}}],
+            "materials": [{{"grip": {{"friction": {{"resting": 0.5, "sliding": 0.25}}}}}}],
+            "emitters": [{{"shape": {shape}, "speed": {{"mean": 2, "variance": 1}}, "color_variance": [1, 2, 3, 4]}}]}}"#
+        );
+        let mut new = old.clone();
+        FORMER.iter().for_each(|(former, name)| new = new.replace(&format!("\"{former}\""), &format!("\"{name}\"")));
+        assert!(SceneFile::from_json("", &new).is_ok_and(|scene| SceneFile::from_json("", &old) == Ok(scene)));
+        assert_eq!(SceneFile::former_names(&new), [""; 0]);
+        let remarks = SceneFile::former_names(&old);
+        assert_eq!(remarks.len(), FORMER.len());
+        assert!(remarks.contains(&"2:41: `resting` is called `static` now".to_string()), "{remarks:?}");
+        assert_eq!(SceneFile::former_names(r#"{"about": "variance"}"#), [""; 0]);
     }
 
     #[test]

@@ -9,9 +9,9 @@ mod check;
 #[cfg(feature = "alloc")]
 mod check_force;
 #[cfg(feature = "alloc")]
-mod error;
+mod cloth;
 #[cfg(feature = "alloc")]
-mod fabric;
+mod error;
 #[cfg(feature = "alloc")]
 mod file;
 mod inline;
@@ -34,9 +34,9 @@ pub mod scn;
 mod write;
 
 #[cfg(feature = "alloc")]
-pub use error::SceneError;
+pub use cloth::{Cloth, Form, Gas};
 #[cfg(feature = "alloc")]
-pub use fabric::{Fabric, Form, Gas};
+pub use error::SceneError;
 #[cfg(feature = "alloc")]
 pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
@@ -45,7 +45,7 @@ pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use response::{Position, Response};
-pub use rules::{Scene, Unfit};
+pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 #[cfg(feature = "alloc")]

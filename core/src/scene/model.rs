@@ -3,7 +3,7 @@
 use super::Response;
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
-use crate::collide::{Grip, Meetings};
+use crate::collide::{ContactMaterial, Meetings};
 use crate::constrain::{ConstraintKind, Contacts};
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -46,7 +46,7 @@ pub struct Model {
     /// What each particle has beside the engine's own attributes.
     pub custom: Vec<CustomBuf>,
     /// How materials feel, by their numbers.
-    pub grips: Vec<Grip>,
+    pub contact_materials: Vec<ContactMaterial>,
     /// What is drawn.
     pub scenery: Vec<Solid>,
     /// How often a particle may bounce in one step.
@@ -55,8 +55,8 @@ pub struct Model {
     pub integrator: Tuned,
     /// How forces find neighbours.
     pub index: Structure,
-    /// Where the particles and springs of each fabric begin among all.
-    pub fabrics: Vec<[usize; 2]>,
+    /// Where the particles and springs of each cloth begin among all.
+    pub cloths: Vec<[usize; 2]>,
 }
 
 /// A piece of scenery where it stands.
@@ -138,12 +138,12 @@ impl Model {
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
             custom: file.custom.clone(),
-            grips: file.materials.iter().map(|material| material.grip).collect(),
+            contact_materials: file.materials.iter().map(|material| material.contact).collect(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
             index: file.run.index,
             max_bounces: file.run.max_bounces,
-            fabrics: start.fabrics,
+            cloths: start.cloths,
         })
     }
 
@@ -165,7 +165,7 @@ impl Model {
             sinks: &self.forces.1,
             reapers: &self.reapers,
             custom: &self.custom,
-            grips: &self.grips,
+            contact_materials: &self.contact_materials,
             constraints: &self.constraints,
             substeps: self.substeps,
             meetings: self.contacts.map_or(Meetings::Through, |response| response.meetings()),
@@ -217,14 +217,14 @@ impl Meshes<'_> {
     }
 }
 
-/// What a scene's own particles and its fabrics come to.
+/// What a scene's own particles and its cloths come to.
 struct Start {
     particles: Vec<Particle>,
     springs: Vec<Spring>,
-    /// That of gas in fabrics.
+    /// That of gas in cloths.
     forces: Vec<ForceKind>,
     /// Where they begin.
-    fabrics: Vec<[usize; 2]>,
+    cloths: Vec<[usize; 2]>,
 }
 
 impl Start {
@@ -233,17 +233,17 @@ impl Start {
             particles: file.particles.clone(),
             springs: file.springs.clone(),
             forces: Vec::new(),
-            fabrics: Vec::new(),
+            cloths: Vec::new(),
         };
-        for (i, fabric) in file.fabrics.iter().enumerate() {
-            let mesh = match &fabric.form {
-                Form::Mesh(name) => Some(meshes.load(&format!("fabrics[{i}].form"), name)?),
+        for (i, cloth) in file.cloths.iter().enumerate() {
+            let mesh = match &cloth.form {
+                Form::Mesh(name) => Some(meshes.load(&format!("cloths[{i}].form"), name)?),
                 Form::Sheet(_) => None,
             };
             let first = start.particles.len() as u32;
-            let (particles, springs) = fabric.weave(mesh.as_deref(), first);
+            let (particles, springs) = cloth.make(mesh.as_deref(), first);
             let refuse = |field: &str, message: String| {
-                Err(SceneError::value(format!("fabrics[{i}].{field}"), message).in_file(meshes.path))
+                Err(SceneError::value(format!("cloths[{i}].{field}"), message).in_file(meshes.path))
             };
             if particles.iter().any(|particle| !particle.position.is_finite()) {
                 return refuse("form", "reaches beyond the range of a 32-bit float".into());
@@ -251,16 +251,16 @@ impl Start {
             if let Some(particle) = particles.iter().find(|particle| !particle.is_sound()) {
                 return refuse("mass", format!("leaves {:e} kg to each particle, too little", particle.mass));
             }
-            if let Some(number) = fabric.fixed.iter().find(|&&number| number as usize >= particles.len()) {
+            if let Some(number) = cloth.fixed.iter().find(|&&number| number as usize >= particles.len()) {
                 return refuse(
                     "fixed",
                     format!("particle {number} is out of range; there are {}, from 0", particles.len()),
                 );
             }
-            start.fabrics.push([start.particles.len(), start.springs.len()]);
+            start.cloths.push([start.particles.len(), start.springs.len()]);
             start.particles.extend(particles);
             start.springs.extend(springs);
-            start.forces.extend(fabric.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
+            start.forces.extend(cloth.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
         }
         for particle in &mut start.particles {
             particle.color = color(file, particle.color, particle.material);
@@ -271,7 +271,7 @@ impl Start {
 
 /// The largest radius that a particle of the scene may have \[m\].
 fn widest<M>(particles: &[Particle], emitters: &[Emitter<M>]) -> f32 {
-    let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.variance.abs());
+    let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
     particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
 }
 
@@ -296,7 +296,7 @@ fn with_shape(
     let Emitter { inside, where_sparse, rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } =
         *emitter;
     let Emitter {
-        radius, mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_variance, ..
+        radius, mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_half_width, ..
     } = *emitter;
     let material = material.or_else(|| file.material_of(emitter.group));
     let color = color(file, own, material);
@@ -324,6 +324,6 @@ fn with_shape(
         lifetime,
         material,
         color,
-        color_variance,
+        color_half_width,
     }
 }

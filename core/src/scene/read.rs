@@ -51,7 +51,7 @@ pub struct Reading {
     pub remarks: Vec<String>,
 }
 
-/// The fate of a command that `.scn` does not have.
+/// The answer to a command that `.scn` does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unknown {
     /// It is an error.

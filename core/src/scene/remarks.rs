@@ -31,8 +31,8 @@ impl SceneFile {
         for (i, spring) in self.springs.iter().enumerate() {
             add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
         }
-        for (i, fabric) in self.fabrics.iter().enumerate() {
-            add(format_args!("fabrics[{i}].elasticity"), odd_elasticity(Varied::exactly(fabric.elasticity)));
+        for (i, cloth) in self.cloths.iter().enumerate() {
+            add(format_args!("cloths[{i}].elasticity"), odd_elasticity(Varied::exactly(cloth.elasticity)));
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
             add(
@@ -45,21 +45,21 @@ impl SceneFile {
             add(format_args!("emitters[{i}].stop"), ended.map(nothing));
         }
         if let Some(Response::Force(penalty)) = self.contacts {
-            add(format_args!("contacts.force.friction.resting"), odd_friction(penalty.friction));
+            add(format_args!("contacts.force.friction.static"), odd_friction(penalty.friction));
         }
         for (i, material) in self.materials.iter().enumerate() {
-            let friction = material.grip.friction.unwrap_or(Friction::NONE);
-            add(format_args!("materials[{i}].grip.friction.resting"), odd_friction(friction));
+            let friction = material.contact.friction.unwrap_or(Friction::NONE);
+            add(format_args!("materials[{i}].contact.friction.static"), odd_friction(friction));
         }
         remarks
     }
 }
 
 /// What is odd about a share of the speed that hits leave.
-pub(super) fn odd_elasticity(Varied { mean, variance }: Varied) -> Option<String> {
+pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<String> {
     /// What sums of decimals may be off by.
     const ROUNDING: f32 = 1e-6;
-    let (least, most) = (mean - variance.abs(), mean + variance.abs());
+    let (least, most) = (mean - half_width.abs(), mean + half_width.abs());
     if most > 1.0 + ROUNDING {
         return Some(format!("{most} is above 1, so hits add energy"));
     }
@@ -77,7 +77,7 @@ pub(super) fn odd_ends([a, b]: [i64; 2]) -> Option<String> {
     (a == b).then(|| format!("the spring joins particle {a} to itself, so it does nothing"))
 }
 
-fn odd_friction(Friction { resting, sliding }: Friction) -> Option<String> {
-    let odd = resting < sliding;
-    odd.then(|| format!("{resting} is below sliding, {sliding}, though what rests is held more than what slides"))
+fn odd_friction(Friction { static_, kinetic }: Friction) -> Option<String> {
+    let odd = static_ < kinetic;
+    odd.then(|| format!("{static_} is below kinetic, {kinetic}, though what rests is held more than what slides"))
 }

@@ -80,7 +80,7 @@ impl Response {
                 Some(("force.reach", "must not be below zero, in m"))
             }
             Self::Force(Penalty { friction, .. }) => {
-                let sound = not_negative(friction.resting) && not_negative(friction.sliding);
+                let sound = not_negative(friction.static_) && not_negative(friction.kinetic);
                 (!sound).then_some(("force.friction", "takes coefficients from 0 on"))
             }
             Self::Position(Position { substeps, .. }) if !(1..=1000).contains(substeps) => {

@@ -1,11 +1,11 @@
 //! The scene as a system steps through it.
 
-use crate::collide::{Grip, Meetings};
+use crate::collide::{ContactMaterial, Meetings};
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
 use crate::force::{Force, SpringList};
-use crate::index::Arrange;
+use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
 use crate::memory::{Plan, Size};
 use crate::particles::Particle;
@@ -37,7 +37,7 @@ pub struct Scene<'a> {
     /// What each particle has beside the engine's own attributes: numbers with names.
     pub custom: &'a dyn CustomList,
     /// How materials feel, by their numbers; those beyond have no friction.
-    pub grips: &'a [Grip],
+    pub contact_materials: &'a [ContactMaterial],
     /// What binds them together and keeps them apart.
     pub constraints: &'a dyn Constraint,
     /// Parts that a step is cut into for the method and the constraints, 1 to 1000: the finer, the stiffer are constraints.
@@ -50,7 +50,7 @@ pub struct Scene<'a> {
     /// How they are moved.
     pub integrator: &'a dyn Integrator,
     /// How forces find the neighbours of a particle: `()` by looking at all others.
-    pub index: &'a dyn Arrange,
+    pub index: &'a dyn IndexChoice,
 }
 
 impl core::fmt::Debug for Scene<'_> {
@@ -73,7 +73,7 @@ impl Scene<'_> {
         sinks: &(),
         reapers: &(),
         custom: &(),
-        grips: &[],
+        contact_materials: &[],
         constraints: &(),
         substeps: 1,
         meetings: Meetings::Through,
@@ -158,14 +158,14 @@ impl Scene<'_> {
 
 /// A scene needs more memory than the system has, particles aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unfit {
+pub struct InsufficientMemory {
     /// What the scene needs.
     pub need: Size,
     /// What there is.
     pub have: Size,
 }
 
-impl core::fmt::Display for Unfit {
+impl core::fmt::Display for InsufficientMemory {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { need, have } = self;
         write!(
@@ -176,4 +176,4 @@ impl core::fmt::Display for Unfit {
     }
 }
 
-impl core::error::Error for Unfit {}
+impl core::error::Error for InsufficientMemory {}

@@ -101,15 +101,15 @@ impl Writer {
     /// The particles and springs that it begins with, sheets taken apart.
     fn start(&mut self, scene: &SceneFile) -> (Vec<Particle>, Vec<Spring>) {
         let (mut particles, mut springs) = (scene.particles.clone(), scene.springs.clone());
-        for (i, fabric) in scene.fabrics.iter().enumerate() {
-            if let Form::Mesh(name) = &fabric.form {
+        for (i, cloth) in scene.cloths.iter().enumerate() {
+            if let Form::Mesh(name) = &cloth.form {
                 self.warn(format!(
-                    "fabrics[{i}]: .scn has no fabrics, and '{name}' cannot be taken apart; it is left out"
+                    "cloths[{i}]: .scn has no cloths, and '{name}' cannot be taken apart; it is left out"
                 ));
                 continue;
             }
-            self.warn(format!("fabrics[{i}]: .scn has no fabrics; it is written as particles and springs"));
-            let (woven, threads) = fabric.weave(None, particles.len() as u32);
+            self.warn(format!("cloths[{i}]: .scn has no cloths; it is written as particles and springs"));
+            let (woven, threads) = cloth.make(None, particles.len() as u32);
             particles.extend(woven);
             springs.extend(threads);
         }
@@ -129,7 +129,7 @@ impl Writer {
         if material.size != 0.0 || material.glow != 0.0 {
             self.warn("materials: .scn has neither size nor glow of particles; they are left out");
         }
-        if !material.grip.is_plain() {
+        if !material.contact.is_plain() {
             self.warn("materials: .scn knows no friction and no elasticity of surfaces; they are left out");
         }
         let numbers = Numbers(colors.as_flattened());
@@ -275,7 +275,7 @@ impl Writer {
             }
         };
         let varied = [emitter.speed, emitter.mass, emitter.drag, emitter.elasticity, emitter.lifetime];
-        if varied.iter().any(|v| v.variance != 0.0) {
+        if varied.iter().any(|v| v.half_width != 0.0) {
             self.warn(format!("{at}: .scn has no variances; the means are kept"));
         }
         if emitter.burst.is_some() || emitter.start != 0.0 || emitter.stop.is_some() {
@@ -295,7 +295,7 @@ impl Writer {
         if emitter.charge != Varied::default() {
             self.warn(format!("{at}: .scn has no charges; they are left out"));
         }
-        if emitter.color.is_some() || emitter.color_variance != [0; 4] {
+        if emitter.color.is_some() || emitter.color_half_width != [0; 4] {
             self.warn(format!("{at}: .scn has no colours of sources; they are left out"));
         }
         let [speed, mass, drag, elasticity, lifetime] = varied.map(|v| v.mean);

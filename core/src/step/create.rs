@@ -1,6 +1,6 @@
 //! Create: emitters emit into the step.
 
-use super::View;
+use super::Workspace;
 use crate::emit::Births;
 use crate::index::SpatialIndex;
 use crate::memory::{Layout, Slices, Storage};
@@ -9,7 +9,7 @@ use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
 
-impl View<'_> {
+impl Workspace<'_> {
     /// Lets the emitters emit, and returns how many particles there were before.
     #[inline(never)]
     pub(super) fn create(
@@ -23,14 +23,18 @@ impl View<'_> {
         let (layout, reach) = (Layout::of(scene.plan(), self.capacity()), scene.emitters.reach());
         let (mut memory, status) = (self.memory.slices(), &mut *self.status);
         let mut emit = |memory: &mut Slices<'_>, near: Option<&dyn SpatialIndex>| {
-            let view = View { memory: memory.slices(), status: &mut *status };
+            let workspace = Workspace { memory: memory.slices(), status: &mut *status };
             let (report, observer) = (&mut *report, &mut *observer);
-            scene.emitters.emit(now, end, &mut Births { view, scene, report, observer, near, old, end, number: 0 });
+            scene.emitters.emit(
+                now,
+                end,
+                &mut Births { workspace, scene, report, observer, near, old, end, number: 0 },
+            );
         };
         if reach > 0.0 {
             let (places, words) = layout.crowd(core::mem::take(&mut memory.work), old);
             places.copy_from_slice(&memory.position[..old]);
-            scene.index.arrange(words, places, reach, &mut |near| emit(&mut memory, near));
+            scene.index.with_index(words, places, reach, &mut |near| emit(&mut memory, near));
         } else {
             emit(&mut memory, None);
         }

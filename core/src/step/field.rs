@@ -1,7 +1,7 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use crate::custom::CustomColumns;
-use crate::force::{Force, Needs, State, Then, Trees};
+use crate::force::{BuildTrees, Force, Needs, State, Then};
 use crate::index::{BarnesHut, Found, ListMemory, Search};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
@@ -75,7 +75,7 @@ impl Field<'_> {
 
     /// Apart, so that whoever needs no trees has no room for them on the stack.
     #[inline(never)]
-    fn with_trees(&mut self, trees: Trees, state: &State<'_>, then: Then<'_>) {
+    fn with_trees(&mut self, trees: BuildTrees, state: &State<'_>, then: Then<'_>) {
         let memory = core::mem::take(&mut self.tree);
         (trees.0)(self.needs, memory, state, &mut |state| self.with_near(state, then));
         self.tree = memory;

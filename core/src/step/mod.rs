@@ -8,11 +8,11 @@ mod reap;
 mod snap;
 mod substeps;
 mod tile;
-mod view;
+mod workspace;
 mod write;
 
 pub(crate) use tile::Tile;
-pub(crate) use view::{Status, View};
+pub(crate) use workspace::{Status, Workspace};
 
 use crate::collide::Passage;
 use crate::index::Listed;
@@ -25,7 +25,7 @@ use tile::TILE;
 /// Whether there may be a cache that a few rows fit into: chips without an operating system are spared the code.
 const TILED: bool = !cfg!(target_os = "none");
 
-impl View<'_> {
+impl Workspace<'_> {
     /// The whole of a step: create, update, collide, delete.
     #[inline(never)]
     pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
@@ -71,7 +71,7 @@ impl View<'_> {
         }
         if scene.is_swept() {
             let (report, observer) = (&mut *report, &mut *observer);
-            scene.meetings.follow(Passage { view: &mut *self, scene, old, now, dt, report, observer });
+            scene.meetings.follow(Passage { workspace: &mut *self, scene, old, now, dt, report, observer });
         }
         self.tell(Phase::Collide, scene, observer);
         // The steps that were made of this one: sub-steps, and those that a method chose.

@@ -1,10 +1,10 @@
 //! Rows taken by the newborn and given back by the dead.
 
-use super::View;
+use super::Workspace;
 use crate::force::SpringList;
 use crate::memory::Storage;
 use crate::particles::{Full, Id, Particle, WHITE};
-use crate::reap::Fate;
+use crate::reap::PendingDeath;
 use crate::report::Report;
 use crate::rng::Stream;
 use crate::time::Time;
@@ -13,7 +13,7 @@ use glam::Vec3;
 /// The number, instead of an emitter's, of those that are put in without one.
 const NO_EMITTER: u32 = u32::MAX;
 
-impl View<'_> {
+impl Workspace<'_> {
     /// Puts a particle in that no emitter brings. Its random numbers are those of the number in which it was put in.
     pub(crate) fn put(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
         let number = self.status.given;
@@ -57,7 +57,7 @@ impl View<'_> {
         m.dies[row] = death(born, particle.lifetime);
         m.color[row] = particle.color.unwrap_or(WHITE);
         m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
-        m.fate[row] = Fate::Lives;
+        m.pending_death[row] = PendingDeath::Lives;
         let capacity = m.capacity();
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;

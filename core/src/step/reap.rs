@@ -1,15 +1,15 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
-use super::View;
+use super::Workspace;
 use crate::memory::Layout;
-use crate::observe::{Observer, Passing};
+use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
-use crate::reap::{CHUNK, Cause, Fate, Judged, ReaperCode};
+use crate::reap::{CHUNK, Cause, Judged, PendingDeath, ReaperCode};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
 
-impl View<'_> {
+impl Workspace<'_> {
     /// Removes those whom the step has ended by now.
     #[inline(never)]
     pub(super) fn reap(&mut self, scene: &Scene<'_>, report: &mut Report, observer: &mut dyn Observer) {
@@ -18,11 +18,11 @@ impl View<'_> {
         }
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
-        while let Some((row, cause)) = last_doomed(&self.memory.fate[..end]) {
+        while let Some((row, cause)) = last_doomed(&self.memory.pending_death[..end]) {
             report.died.count(cause);
             let m = &self.memory;
             let id = Id { slot: m.slot[row], serial: m.serial[row] };
-            observer.died(&Passing { id, place: m.position[row], velocity: m.velocity[row], time }, cause);
+            observer.died(&LifeEvent { id, place: m.position[row], velocity: m.velocity[row], time }, cause);
             self.remove(row, scene.springs, report);
             end = row;
         }
@@ -35,14 +35,20 @@ impl View<'_> {
         let tile = self.tile(scene, [time, Time::ZERO], len, 0..len, capacity);
         let state = tile.attributes.lives.moved(time, tile.position, tile.velocity);
         let (places, words) = layout.crowd(tile.work, len);
-        (code.0)(scene.reapers, Judged { state, fates: tile.fate, index: scene.index, words, places });
+        (code.0)(
+            scene.reapers,
+            Judged { state, pending_deaths: tile.pending_death, index: scene.index, words, places },
+        );
     }
 }
 
 /// The last row that has to go. Hardly any has, so whole chunks are passed over.
-fn last_doomed(fates: &[Fate]) -> Option<(usize, Cause)> {
-    let has_doomed = |chunk: &[Fate]| chunk.iter().fold(0, |any, &fate| any | fate as u8) != 0;
-    let behind = fates.rchunks(CHUNK).position(has_doomed)?;
-    let row = fates[..fates.len() - CHUNK * behind].iter().rposition(|&fate| fate != Fate::Lives)?;
-    Some((row, fates[row].cause()?))
+fn last_doomed(pending_deaths: &[PendingDeath]) -> Option<(usize, Cause)> {
+    let has_doomed =
+        |chunk: &[PendingDeath]| chunk.iter().fold(0, |any, &pending_death| any | pending_death as u8) != 0;
+    let behind = pending_deaths.rchunks(CHUNK).position(has_doomed)?;
+    let row = pending_deaths[..pending_deaths.len() - CHUNK * behind]
+        .iter()
+        .rposition(|&pending_death| pending_death != PendingDeath::Lives)?;
+    Some((row, pending_deaths[row].cause()?))
 }

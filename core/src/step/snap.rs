@@ -1,11 +1,11 @@
 //! Springs that are stretched too far break.
 
-use super::View;
+use super::Workspace;
 use crate::force::SpringCode;
 use crate::report::Report;
 use crate::scene::Scene;
 
-impl View<'_> {
+impl Workspace<'_> {
     /// Breaks the springs that are stretched too far, and says whether there is any that can break.
     pub(super) fn snap(&mut self, scene: &Scene<'_>, code: SpringCode, report: &mut Report) -> bool {
         let incident = core::mem::take(&mut self.memory.incident);

@@ -138,7 +138,7 @@ impl Moved<'_> {
             custom: CustomColumnsMut::new(scene.custom, custom, self.capacity, len),
             substep,
             colliders: scene.colliders,
-            grips: scene.grips,
+            contact_materials: scene.contact_materials,
             near: Near { index: scene.index, memory },
             report: self.report,
             slot: &lives.slot[..len],

@@ -2,7 +2,7 @@
 
 use super::field::Attributes;
 use super::substeps::Carried;
-use super::{Status, View};
+use super::{Status, Workspace};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
 use crate::force::{Springs, State};
@@ -11,7 +11,7 @@ use crate::index::Listed;
 use crate::memory::Layout;
 use crate::memory::Storage;
 use crate::observe::Observer;
-use crate::reap::{Fate, Lifetime, Nonfinite, Reaper, Verdicts};
+use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
 use crate::report::Report;
 use crate::rows::farthest;
 use crate::scene::Scene;
@@ -39,7 +39,7 @@ pub(crate) struct Tile<'a> {
     pub(crate) old: usize,
     pub(crate) position: &'a mut [Vec3],
     pub(crate) velocity: &'a mut [Vec3],
-    pub(crate) fate: &'a mut [Fate],
+    pub(crate) pending_death: &'a mut [PendingDeath],
     pub(crate) attributes: Attributes<'a>,
     /// Memory to work with, and for how many rows it is laid out.
     pub(crate) work: &'a mut [Vec3],
@@ -55,7 +55,7 @@ impl Scene<'_> {
     }
 }
 
-impl View<'_> {
+impl Workspace<'_> {
     /// Moves all rows at once.
     ///
     /// Apart, as all that takes room on the stack, for which chips have little: paths are followed beyond it.
@@ -119,7 +119,7 @@ impl View<'_> {
             old: old.clamp(rows.start, rows.end) - rows.start,
             position: &mut m.position[rows.clone()],
             velocity: &mut m.velocity[rows.clone()],
-            fate: &mut m.fate[rows.clone()],
+            pending_death: &mut m.pending_death[rows.clone()],
             attributes: attributes.rows(rows),
             work: m.work,
             capacity,
@@ -133,8 +133,8 @@ impl<'a> Tile<'a> {
         let Self { scene, now, dt, first, old, attributes, capacity, .. } = self;
         let len = self.position.len();
         let (position, velocity) = (self.position.split_at_mut(rows), self.velocity.split_at_mut(rows));
-        let (fate, [front, back]) = (self.fate.split_at_mut(rows), work);
-        let part = |position, velocity, fate, work, rows: Range<usize>| Self {
+        let (pending_death, [front, back]) = (self.pending_death.split_at_mut(rows), work);
+        let part = |position, velocity, pending_death, work, rows: Range<usize>| Self {
             scene,
             now,
             dt,
@@ -142,12 +142,15 @@ impl<'a> Tile<'a> {
             old: old.clamp(rows.start, rows.end) - rows.start,
             position,
             velocity,
-            fate,
+            pending_death,
             attributes: attributes.rows(rows),
             work,
             capacity,
         };
-        [part(position.0, velocity.0, fate.0, front, 0..rows), part(position.1, velocity.1, fate.1, back, rows..len)]
+        [
+            part(position.0, velocity.0, pending_death.0, front, 0..rows),
+            part(position.1, velocity.1, pending_death.1, back, rows..len),
+        ]
     }
 
     /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
@@ -207,7 +210,7 @@ impl Tile<'_> {
     pub(super) fn judge(&mut self, h: f32) -> u64 {
         let rows = 0..self.position.len();
         let state = self.attributes.lives.moved(self.end(), self.position, self.velocity);
-        let mut verdicts = Verdicts::on(self.fate);
+        let mut verdicts = Verdicts::on(self.pending_death);
         Lifetime.judge(&state, rows.clone(), &mut verdicts);
         Nonfinite.judge(&state, rows, &mut verdicts);
         if stall::may_be(farthest(self.position), h) { stall::count(self.position, self.velocity, h) } else { 0 }

@@ -1,6 +1,6 @@
 //! Columns of a user's own, changed once in each step: by forces, then by whoever looks on.
 
-use super::View;
+use super::Workspace;
 use super::field::Field;
 use crate::custom::CustomColumnsMut;
 use crate::memory::Layout;
@@ -9,7 +9,7 @@ use crate::report::{Effort, Report};
 use crate::scene::Scene;
 use crate::time::Time;
 
-impl View<'_> {
+impl Workspace<'_> {
     /// Lets forces write, at a step's end.
     pub(super) fn write(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
         let (len, capacity) = (self.len(), self.capacity());

@@ -4,10 +4,10 @@
 //! with an index and without.
 
 use pointmass::force::Friction;
-use pointmass::index::{Arrange, Structure};
+use pointmass::index::{IndexChoice, Structure};
 use pointmass::scene::Position;
 use pointmass::shape::Cuboid;
-use pointmass::{Force, Gravity, Grip, Inline, Particle, Penalty, Response, Scene, System, Time, Vec3};
+use pointmass::{ContactMaterial, Force, Gravity, Inline, Particle, Penalty, Response, Scene, System, Time, Vec3};
 
 /// The hashes in the form of `all` in `expected.rs`.
 pub(crate) const EXPECTED: &str = include_str!("../../contacts.txt");
@@ -32,7 +32,7 @@ impl Memory {
 }
 
 const PENALTY: Penalty =
-    Penalty { stiffness: 500.0, damping: 0.1, friction: Friction { resting: 0.3, sliding: 0.3 }, reach: 0.4 };
+    Penalty { stiffness: 500.0, damping: 0.1, friction: Friction { static_: 0.3, kinetic: 0.3 }, reach: 0.4 };
 
 /// The responses by the names of their hashes, without an index and with one.
 const RESPONSES: [([&str; 2], Response); 3] = [
@@ -46,17 +46,18 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, system } = memory;
     heap(start);
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(1.72, 3.0, 1.72) };
-    let grips = [Grip { elasticity: Some(0.8), friction: Some(Friction { resting: 0.5, sliding: 0.4 }) }];
+    let contact_materials =
+        [ContactMaterial { elasticity: Some(0.8), friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
     for (names, response) in &RESPONSES {
         let push = if let Response::Force(penalty) = response { *penalty } else { Penalty::NONE };
         let forces: &dyn Force = &(Gravity::EARTH, push);
-        let indices: [&dyn Arrange; 2] = [&(), &Structure::Grid];
+        let indices: [&dyn IndexChoice; 2] = [&(), &Structure::Grid];
         for (name, index) in names.iter().zip(indices) {
             let scene = Scene {
                 start,
                 forces,
                 colliders: &room,
-                grips: &grips,
+                contact_materials: &contact_materials,
                 constraints: &response.contacts(),
                 substeps: response.substeps(),
                 meetings: response.meetings(),

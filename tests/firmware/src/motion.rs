@@ -8,7 +8,8 @@ use pointmass::force::{
 };
 use pointmass::index::InGrid;
 use pointmass::{
-    Drag, Force, Gravity, Inline, Method, Particle, Scene, Sheet, Spring, System, Thread, Threads, Time, Vec3,
+    ClothSprings, Drag, Force, Gravity, Inline, Method, Particle, Scene, Sheet, Spring, SpringParams, System, Time,
+    Vec3,
 };
 
 /// The hashes in the form of `all` in `expected.rs`.
@@ -52,7 +53,7 @@ impl Memory {
 /// Calls `out` with the name of each method and the hash after a second and a half.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, springs, system } = memory;
-    weave(start, springs);
+    tie(start, springs);
     blow(&mut start[WOVEN.0..], &mut springs[WOVEN.1..]);
     for method in Method::ALL {
         let scene = Scene { start, springs, forces: &forces(), integrator: method, index: &InGrid, ..Scene::EMPTY };
@@ -78,9 +79,9 @@ fn forces() -> impl Force {
     (Gravity::EARTH, air, near, charge, Pressure { triangles: FACES, amount: 0.02, outside: 0.5 })
 }
 
-fn weave(start: &mut [Particle], springs: &mut [Spring]) {
-    let thread = |ks| Some(Thread { ks, kd: 0.05 });
-    let threads = Threads { structural: thread(40.0), shear: thread(20.0), bend: thread(2.0) };
+fn tie(start: &mut [Particle], springs: &mut [Spring]) {
+    let thread = |ks| Some(SpringParams { ks, kd: 0.05 });
+    let threads = ClothSprings { structural: thread(40.0), shear: thread(20.0), bend: thread(2.0) };
     let like = Particle { mass: 0.02, drag: 0.01, ..Particle::REST };
     for ((row, place), particle) in (0..).zip(start.iter_mut()).zip(SHEET.particles(like)) {
         let charge = if row % 2 == 0 { 1e-7 } else { -1e-7 };

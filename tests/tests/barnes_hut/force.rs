@@ -97,11 +97,11 @@ fn a_system_without_those_columns_is_unfit() {
             assert_eq!((error.need, error.have.columns), (scene.size(), columns));
             system.start(&plain, 0).expect("it fits");
             let report = system.step(&scene, Time::SECOND);
-            assert_eq!((report.caps.unfit, system.time()), (1, Time::ZERO));
+            assert_eq!((report.caps.insufficient_memory, system.time()), (1, Time::ZERO));
         }
         let mut system = System::with(Heap::new(scene.size()));
         system.start(&scene, 0).expect("it fits");
-        assert_eq!(system.step(&scene, Time::from_seconds(0.01)).caps.unfit, 0);
+        assert_eq!(system.step(&scene, Time::from_seconds(0.01)).caps.insufficient_memory, 0);
     }
 }
 

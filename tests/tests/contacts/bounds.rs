@@ -1,6 +1,6 @@
 //! What bounds the work of meetings, and says so.
 
-use pointmass::index::{Arrange, Structure};
+use pointmass::index::{IndexChoice, Structure};
 use pointmass::shape::{Cuboid, Plane};
 use pointmass::{Gravity, Meetings, Particle, Scene, Time, Vec3};
 use pointmass_tests::{Random, often, started};
@@ -30,7 +30,7 @@ fn fast_billiards_go_on_if_they_may() {
 }
 
 /// Balls that all overlap each other and fly about: the hash and what was counted.
-fn crowd(count: usize, index: &dyn Arrange) -> (u64, pointmass::Report) {
+fn crowd(count: usize, index: &dyn IndexChoice) -> (u64, pointmass::Report) {
     let mut random = Random::new(71);
     let start: Vec<Particle> = (0..count)
         .map(|_| Particle {

@@ -2,7 +2,7 @@
 
 use pointmass::shape::Cuboid;
 use pointmass::{
-    Cause, Emitter, Event, EventKind, Events, Gravity, Id, Impact, Meetings, Observer, Particle, Passing, Report,
+    Cause, Emitter, Event, EventKind, Events, Gravity, Id, Impact, LifeEvent, Meetings, Observer, Particle, Report,
     Scene, System, Time, Varied, Vec3,
 };
 use pointmass_tests::{Random, point, started};
@@ -17,13 +17,13 @@ impl Observer for All {
         let Impact { id, place, normal, closing, time, .. } = *hit;
         self.0.push(Event { kind, id: Some(id), place, normal, speed: closing, time });
     }
-    fn born(&mut self, birth: &Passing) {
-        let Passing { id, place, velocity, time } = *birth;
+    fn born(&mut self, birth: &LifeEvent) {
+        let LifeEvent { id, place, velocity, time } = *birth;
         let speed = velocity.length();
         self.0.push(Event { kind: EventKind::Birth, id: Some(id), place, normal: Vec3::ZERO, speed, time });
     }
-    fn died(&mut self, death: &Passing, cause: Cause) {
-        let Passing { id, place, velocity, time } = *death;
+    fn died(&mut self, death: &LifeEvent, cause: Cause) {
+        let LifeEvent { id, place, velocity, time } = *death;
         let speed = velocity.length();
         self.0.push(Event { kind: EventKind::Death(cause), id: Some(id), place, normal: Vec3::ZERO, speed, time });
     }

@@ -1,6 +1,6 @@
 //! Balls that push each other apart.
 
-use pointmass::force::{Change, Friction, State};
+use pointmass::force::{Friction, Perturbation, State};
 use pointmass::index::Structure;
 use pointmass::scene::{Model, SceneFile};
 use pointmass::{Force, Ledger, Particle, Penalty, Rk4, Scene, Time, Vec3};
@@ -8,7 +8,7 @@ use pointmass_cli::load::Disk;
 use pointmass_tests::{Random, f64s, often, started};
 
 const PENALTY: Penalty =
-    Penalty { stiffness: 800.0, damping: 0.3, friction: Friction { resting: 0.6, sliding: 0.4 }, reach: 1.0 };
+    Penalty { stiffness: 800.0, damping: 0.3, friction: Friction { static_: 0.6, kinetic: 0.4 }, reach: 1.0 };
 
 fn with_state<T>(start: &[Particle], then: impl FnOnce(&State<'_>) -> T) -> T {
     let scene = Scene { start, ..Scene::EMPTY };
@@ -49,7 +49,7 @@ fn it_never_pulls_and_both_feel_the_same() {
         let size = a.length().max(1e-3);
         assert!(push >= -1e-5 * size, "{start:?} {a}");
         let (across, slip) = (a - normal * push, relative - normal * relative.dot(normal));
-        assert!(across.length() <= PENALTY.friction.sliding * push + 1e-5 * size, "outside of the cone");
+        assert!(across.length() <= PENALTY.friction.kinetic * push + 1e-5 * size, "outside of the cone");
         assert!(across.dot(slip) <= 1e-5 * size * slip.length(), "friction drives");
         let overlap = start[0].radius + start[1].radius - apart.length();
         assert!(overlap > 0.0 || a == Vec3::ZERO);
@@ -67,7 +67,7 @@ fn its_jacobian_is_symmetric_and_its_slope_along_the_line_of_centres() {
         let action = |along: &[Vec3], [position, velocity]: [f32; 2]| {
             with_state(&start, |state| {
                 let mut total = vec![Vec3::ZERO; start.len()];
-                PENALTY.add_jacobian(state, &Change { along, position, velocity }, &mut total);
+                PENALTY.add_jacobian(state, &Perturbation { along, position, velocity }, &mut total);
                 total
             })
         };
@@ -99,7 +99,7 @@ fn its_jacobian_is_symmetric_and_its_slope_along_the_line_of_centres() {
     for weights in [[1.0, 0.0], [0.0, 1.0], [0.7, 0.3]] {
         let along = [Vec3::X * 0.4, Vec3::X * -0.9];
         let mut told = [Vec3::ZERO; 2];
-        let change = Change { along: &along, position: weights[0], velocity: weights[1] };
+        let change = Perturbation { along: &along, position: weights[0], velocity: weights[1] };
         with_state(&start, |state| PENALTY.add_jacobian(state, &change, &mut told));
         let moved = |h: f32| {
             let mut start = start;
@@ -150,7 +150,7 @@ fn a_tenth_of_critical_damping_gives_back_0_744_of_the_speed() {
 #[test]
 fn every_index_finds_the_same_neighbours() {
     let start = cloud(&mut Random::new(53), 60);
-    let after = |index: &dyn pointmass::index::Arrange| {
+    let after = |index: &dyn pointmass::index::IndexChoice| {
         let scene = Scene { start: &start, forces: &PENALTY, index, ..Scene::EMPTY };
         let mut system = started(&scene, 60, 1);
         system.step(&scene, Time::from_seconds(1e-4));

@@ -2,7 +2,7 @@
 
 use pointmass::force::Friction;
 use pointmass::shape::Plane;
-use pointmass::{Contacts, Gravity, Grip, Method, Particle, Scene, Vec3};
+use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, f64s, gap, run, started};
 
 /// Steps a second, sub-steps of each.
@@ -19,7 +19,8 @@ struct Stage {
 impl Stage {
     /// Where all are in the end and how fast, by every method, step and number of sub-steps.
     fn each(&self, start: &[Particle], mut see: impl FnMut(&[Vec3], &[Vec3], &str)) {
-        let grips = [Grip { elasticity: None, friction: Some(Friction { resting: self.mu, sliding: self.mu }) }];
+        let contact_materials =
+            [ContactMaterial { elasticity: None, friction: Some(Friction { static_: self.mu, kinetic: self.mu }) }];
         let planes: Vec<Plane> = self.plane.map(|normal| Plane { point: Vec3::ZERO, normal }).into_iter().collect();
         let forces = &Gravity { acceleration: self.gravity };
         for &integrator in Method::ALL {
@@ -27,7 +28,7 @@ impl Stage {
                 let colliders = &planes;
                 let scene = Scene {
                     start,
-                    grips: &grips,
+                    contact_materials: &contact_materials,
                     forces,
                     colliders,
                     substeps,

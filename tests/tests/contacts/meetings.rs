@@ -2,9 +2,11 @@
 
 use pointmass::emit::Burst;
 use pointmass::force::Friction;
-use pointmass::index::{Arrange, InGrid, InKd, Structure};
+use pointmass::index::{InGrid, InKd, IndexChoice, Structure};
 use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
-use pointmass::{Emitter, Gravity, Grip, Impact, Meetings, Observer, Particle, Scene, Spread, Time, Varied, Vec3};
+use pointmass::{
+    ContactMaterial, Emitter, Gravity, Impact, Meetings, Observer, Particle, Scene, Spread, Time, Varied, Vec3,
+};
 use pointmass_tests::{Random, f64s, often, point, run, started};
 
 /// Balls of all sizes on a lattice of so many along each side, a metre apart, in motion.
@@ -25,11 +27,11 @@ fn crowd(random: &mut Random, n: usize, speed: f32) -> Vec<Particle> {
         .collect()
 }
 
-const fn grip(resting: f32, sliding: f32) -> Grip {
-    Grip { elasticity: None, friction: Some(Friction { resting, sliding }) }
+const fn rubbing(static_: f32, kinetic: f32) -> ContactMaterial {
+    ContactMaterial { elasticity: None, friction: Some(Friction { static_, kinetic }) }
 }
 
-const GRIPS: [Grip; 3] = [grip(0.5, 0.3), grip(0.1, 0.2), grip(0.0, 0.0)];
+const MATERIALS: [ContactMaterial; 3] = [rubbing(0.5, 0.3), rubbing(0.1, 0.2), rubbing(0.0, 0.0)];
 
 fn momentum<'p>(mass: &'p [f32], velocity: &'p [Vec3]) -> [f64; 3] {
     core::array::from_fn(|axis| mass.iter().zip(velocity).map(|(&m, &v)| f64::from(m) * f64s(v)[axis]).sum())
@@ -45,7 +47,7 @@ fn momentum_is_conserved_to_rounding() {
             // All fly inward, so that they meet often before they have flown apart.
             ball.velocity += (Vec3::splat(2.5) - ball.position) * 3.0;
         }
-        let scene = Scene { start: &start, grips: &GRIPS, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
+        let scene = Scene { start: &start, contact_materials: &MATERIALS, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 1);
         let before = momentum(system.particles().mass, system.particles().velocity);
         run(&mut system, &scene, 0.02, 50);
@@ -78,9 +80,9 @@ fn friction_keeps_within_coulomb_s_cone_and_never_turns_slip_round() {
     let mut random = Random::new(32);
     let (mut stuck, mut slid) = (0, 0);
     for _ in 0..often(20_000) {
-        let friction = Friction { resting: random.between(0.0, 1.0), sliding: random.between(0.0, 1.0) };
-        let largest = f64::from(friction.resting.max(friction.sliding));
-        let grips = [Grip { elasticity: None, friction: Some(friction) }];
+        let friction = Friction { static_: random.between(0.0, 1.0), kinetic: random.between(0.0, 1.0) };
+        let largest = f64::from(friction.static_.max(friction.kinetic));
+        let contact_materials = [ContactMaterial { elasticity: None, friction: Some(friction) }];
         let apart = random.direction();
         let mut ball = |place: Vec3| Particle {
             position: place,
@@ -92,7 +94,8 @@ fn friction_keeps_within_coulomb_s_cone_and_never_turns_slip_round() {
             ..Particle::REST
         };
         let start = [ball(apart * 0.5), ball(apart * -0.5)];
-        let scene = Scene { start: &start, grips: &grips, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
+        let scene =
+            Scene { start: &start, contact_materials: &contact_materials, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, 2, 1);
         let mut records = Records::default();
         system.step_observed(&scene, Time::from_seconds(1.0), &mut records);
@@ -172,7 +175,7 @@ fn points_do_not_meet_points() {
 }
 
 /// A room whose floor swings, into which balls are shot between others, some of them pinned.
-fn hash_with(index: &dyn Arrange, fast: bool) -> (u64, pointmass::Report) {
+fn hash_with(index: &dyn IndexChoice, fast: bool) -> (u64, pointmass::Report) {
     let mut start = crowd(&mut Random::new(34), 4, if fast { 0.05 } else { 3.0 });
     start[7].fixed = true;
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::splat(4.0) };
@@ -191,7 +194,7 @@ fn hash_with(index: &dyn Arrange, fast: bool) -> (u64, pointmass::Report) {
     let scene = Scene {
         start: &start,
         forces: &Gravity::EARTH,
-        grips: &GRIPS,
+        contact_materials: &MATERIALS,
         colliders: &colliders,
         emitters: &emitter,
         meetings: Meetings::IMPULSE,
@@ -211,7 +214,7 @@ fn every_index_gives_the_same_bits() {
         for structure in Structure::ALL {
             assert_eq!(hash_with(structure, fast).0, want, "{structure}");
         }
-        assert_eq!([&InGrid as &dyn Arrange, &InKd].map(|index| hash_with(index, fast).0), [want; 2]);
+        assert_eq!([&InGrid as &dyn IndexChoice, &InKd].map(|index| hash_with(index, fast).0), [want; 2]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbers that are none, spans of no length and of hours, and colliders that cannot make up their mind.
 
 use core::sync::atomic::{AtomicU32, Ordering};
-use pointmass::index::{Arrange, Structure};
+use pointmass::index::{IndexChoice, Structure};
 use pointmass::scene::Position;
 use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
 use pointmass::{Force, Gravity, Particle, Penalty, Response, Scene, Time, Vec3};
@@ -30,7 +30,7 @@ fn healthy() -> Vec<Particle> {
 fn with_scene<T>(
     response: &Response,
     start: &[Particle],
-    index: &dyn Arrange,
+    index: &dyn IndexChoice,
     then: impl FnOnce(&Scene<'_>) -> T,
 ) -> T {
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::splat(1.4) };
@@ -74,7 +74,7 @@ fn one_that_is_no_number_harms_nobody() {
     ];
     let healthy = healthy();
     for response in &responses() {
-        for index in [&() as &dyn Arrange, &Structure::Grid, &Structure::Bvh] {
+        for index in [&() as &dyn IndexChoice, &Structure::Grid, &Structure::Bvh] {
             let after = |start: &[Particle]| {
                 with_scene(response, start, index, |scene| {
                     let mut system = started(scene, start.len(), 1);
@@ -110,7 +110,7 @@ fn one_that_is_no_number_harms_nobody() {
 fn any_span_can_be_a_step() {
     let start = healthy();
     for response in &responses() {
-        for index in [&() as &dyn Arrange, &Structure::Hash] {
+        for index in [&() as &dyn IndexChoice, &Structure::Hash] {
             with_scene(response, &start, index, |scene| {
                 let mut system = started(scene, 27, 1);
                 let spans = [0, 1, 7, 1 << 31, (1 << 31) + 1, 3600 << 32, 5, 100_000 << 32, u64::MAX / 2, u64::MAX];

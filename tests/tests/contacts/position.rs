@@ -3,7 +3,7 @@
 use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::shape::{Cuboid, Plane};
-use pointmass::{Contacts, Gravity, Grip, Particle, Scene, Time, Vec3};
+use pointmass::{ContactMaterial, Contacts, Gravity, Particle, Scene, Time, Vec3};
 use pointmass_tests::{G, Random, f64s, run, started};
 
 /// Hard balls in as many sub-steps as a heap asks for.
@@ -74,16 +74,17 @@ fn two_balls_bounce_off_each_other_with_their_share_of_the_speed() {
 
 #[test]
 fn what_slides_stops_after_its_way() {
-    for sliding in [0.2, 0.4, 0.8] {
-        let grips = [Grip { elasticity: None, friction: Some(Friction { resting: sliding, sliding }) }];
+    for kinetic in [0.2, 0.4, 0.8] {
+        let contact_materials =
+            [ContactMaterial { elasticity: None, friction: Some(Friction { static_: kinetic, kinetic }) }];
         let start = [Particle { velocity: Vec3::X * 3.0, material: Some(0), ..ball(0.1) }];
         let forces = &Gravity::EARTH;
-        let scene = Scene { start: &start, grips: &grips, forces, colliders: &GROUND, ..HEAP };
+        let scene = Scene { start: &start, contact_materials: &contact_materials, forces, colliders: &GROUND, ..HEAP };
         let mut system = started(&scene, 1, 1);
         run(&mut system, &scene, 1.0 / 60.0, 120);
-        let want = 9.0 / (2.0 * f64::from(sliding) * G);
+        let want = 9.0 / (2.0 * f64::from(kinetic) * G);
         let way = f64s(system.particles().position[0])[0];
-        assert!((way / want - 1.0).abs() < 0.03, "{sliding}: {way}, {want}");
+        assert!((way / want - 1.0).abs() < 0.03, "{kinetic}: {way}, {want}");
         let v = system.particles().velocity[0];
         assert!(v.length() < 1e-3, "{v}");
     }
@@ -92,7 +93,8 @@ fn what_slides_stops_after_its_way() {
 #[test]
 fn momentum_of_free_balls_is_conserved() {
     let mut random = Random::new(61);
-    let grips = [Grip { elasticity: None, friction: Some(Friction { resting: 0.5, sliding: 0.4 }) }];
+    let contact_materials =
+        [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
     let start: Vec<Particle> = (0..125)
         .map(|i| {
             let place = Vec3::new((i % 5) as f32, (i / 5 % 5) as f32, (i / 25) as f32) - 2.0;
@@ -107,7 +109,13 @@ fn momentum_of_free_balls_is_conserved() {
             }
         })
         .collect();
-    let scene = Scene { start: &start, grips: &grips, substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
+    let scene = Scene {
+        start: &start,
+        contact_materials: &contact_materials,
+        substeps: 12,
+        constraints: &Contacts::HARD,
+        ..Scene::EMPTY
+    };
     let mut system = started(&scene, start.len(), 1);
     let momentum = |mass: &[f32], velocity: &[Vec3]| -> [f64; 3] {
         core::array::from_fn(|axis| mass.iter().zip(velocity).map(|(&m, &v)| f64::from(m) * f64s(v)[axis]).sum())
@@ -155,11 +163,12 @@ fn a_heap_settles_and_keeps_its_room() {
             ..Particle::REST
         })
         .collect();
-    let grips = [Grip { elasticity: None, friction: Some(Friction { resting: 0.4, sliding: 0.3 }) }];
+    let contact_materials =
+        [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.4, kinetic: 0.3 }) }];
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(14.8, 200.0, 14.8) * RADIUS };
     let scene = Scene {
         start: &start,
-        grips: &grips,
+        contact_materials: &contact_materials,
         forces: &Gravity::EARTH,
         colliders: &room,
         substeps: 12,

@@ -4,7 +4,7 @@ use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::Births;
 use pointmass::force::{Needs, State};
-use pointmass::index::{Arrange, Structure};
+use pointmass::index::{IndexChoice, Structure};
 use pointmass::reap::Verdicts;
 use pointmass::{
     Attention, Cause, Chance, Constraint, Custom, CustomColumnsMut, Drag, Emit, Emitter, Force, Gravity, Inline,
@@ -141,8 +141,8 @@ fn columns_fit_into_a_static_and_are_asked_for() {
     let cooling = [Relaxation { column: "fuel", toward: 1.0, rate: 3.0 }];
     let scene = Scene { start: &[Particle::REST], forces: &cooling, custom: &custom, ..Scene::EMPTY };
     let mut small = System::with(Inline::<3, 0, 0, 1>::new());
-    let unfit = small.start(&scene, 0).expect_err("it keeps nothing");
-    assert!(unfit.to_string().contains("1 kept words"), "{unfit}");
+    let insufficient_memory = small.start(&scene, 0).expect_err("it keeps nothing");
+    assert!(insufficient_memory.to_string().contains("1 kept words"), "{insufficient_memory}");
     let mut system = System::with(Inline::<3, 0, 0, 1, 1>::new());
     system.start(&scene, 0).expect("it fits");
     for (n, h) in [(1, 0.5), (50, 0.01), (3, 1.0 / 6.0)] {
@@ -184,7 +184,7 @@ impl Constraint for Wear {
 /// Kept memory is zero at a birth, goes with its particle, differs for two of a kind, and is hashed.
 #[test]
 fn what_constraints_keep() {
-    let jet = Emitter { lifetime: Varied { mean: 0.5, variance: 0.3 }, ..Emitter::new(point(Vec3::ZERO), 60.0) };
+    let jet = Emitter { lifetime: Varied { mean: 0.5, half_width: 0.3 }, ..Emitter::new(point(Vec3::ZERO), 60.0) };
     let custom = [Custom::new("worn")];
     let both = Scene {
         emitters: &jet,
@@ -195,7 +195,7 @@ fn what_constraints_keep() {
         ..Scene::EMPTY
     };
     let mut hashes = Vec::new();
-    for index in [&() as &dyn Arrange, &Structure::Kd] {
+    for index in [&() as &dyn IndexChoice, &Structure::Kd] {
         let scene = Scene { index, ..both };
         let mut system = started(&scene, 70, 2);
         run(&mut system, &scene, 1.0 / 60.0, 120);

@@ -110,8 +110,8 @@ fn far_groups_conserve_momentum_and_are_near_the_direct_sum() {
         let mut system = started(&scene, n, 0);
         let (mut of_mass, mut of_charge) = (used(BarnesHut::words(n + 8)), used(BarnesHut::words(n + 8)));
         let state = system.state(&scene);
-        let mass_tree = BarnesHut::grow(&mut of_mass, state.position, state.mass);
-        let charge_tree = BarnesHut::grow(&mut of_charge, state.position, state.charge);
+        let mass_tree = BarnesHut::over(&mut of_mass, state.position, state.mass);
+        let charge_tree = BarnesHut::over(&mut of_charge, state.position, state.charge);
         let state = State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..state };
         let mut sums = [vec![Vec3::ZERO; n], vec![Vec3::ZERO; n]];
         far.add_to(&state, 0..n, &mut sums[0]);

@@ -2,7 +2,7 @@
 
 use super::{cloud, forces};
 use pointmass::force::{Pair, Radial, RadialLaw, State, Weight};
-use pointmass::index::{Arrange, Neighbours, SpatialIndex, Structure};
+use pointmass::index::{IndexChoice, Neighbours, SpatialIndex, Structure};
 use pointmass::{
     Coulomb, Custom, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw,
     Pressure, Scene, Size, System, Time, Varied, Vec3, Viscosity,
@@ -118,19 +118,22 @@ fn lists_are_not_kept_over_other_scenes() {
     let local = Scene { start: &start, forces: &Gravity::EARTH, ..Scene::EMPTY };
     let wide = Scene { start: &start, forces: &THICK, integrator: Method::Implicit.integrator(), ..Scene::EMPTY };
     let custom = [Custom::new("heat")];
-    let unfit = Scene { custom: &custom, ..local };
+    let insufficient_memory = Scene { custom: &custom, ..local };
     let run = |columns: usize| {
         let mut system = System::with(Heap::new(Size { particles: 500, columns, ..listed.size() }));
         system.start(&listed, 0).expect("it fits");
-        for (i, scene) in
-            [&listed, &local, &listed, &listed, &wide, &listed, &unfit, &listed].iter().cycle().take(40).enumerate()
+        for (i, scene) in [&listed, &local, &listed, &listed, &wide, &listed, &insufficient_memory, &listed]
+            .iter()
+            .cycle()
+            .take(40)
+            .enumerate()
         {
             system.step(scene, Time::from_seconds(1e-4));
             if i % 7 == 6 {
                 system.spawn(&Particle { position: Vec3::Y, ..Particle::REST }).expect("there is room");
             }
         }
-        assert_eq!(system.totals().caps.unfit, 5);
+        assert_eq!(system.totals().caps.insufficient_memory, 5);
         (system.hash(), system.totals().effort)
     };
     let [(few, _), (many, effort)] = [wide.columns().max(listed.columns()), 90].map(run);
@@ -375,7 +378,7 @@ fn what_is_not_a_number_harms_no_neighbour() {
         for bad in bad {
             let start = [bad, at(0.3), at(0.6), Particle { position: Vec3::Z, ..at(0.0) }];
             for &method in Method::ALL {
-                for index in [&() as &dyn Arrange, &Structure::Grid] {
+                for index in [&() as &dyn IndexChoice, &Structure::Grid] {
                     let integrator = method.integrator();
                     let scene = Scene { start: &start, forces: force, index, integrator, ..Scene::EMPTY };
                     let mut system = started(&scene, 4, 0);

@@ -1,7 +1,7 @@
 //! Forces, their energies, powers and Jacobians against each other.
 
 use super::{cloud, sink};
-use pointmass::force::{Change, Curl, Gusts, Radial, State, Uniform, Weight};
+use pointmass::force::{Curl, Gusts, Perturbation, Radial, State, Uniform, Weight};
 use pointmass::{
     Coulomb, Drag, Force, Gravity, LennardJones, Measures, MutualGravity, Particle, PowerLaw, Pressure, QuadraticDrag,
     Scene, Sink, Spring, Vec3, Viscosity, Wind,
@@ -99,7 +99,7 @@ fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
 fn action(start: &[Particle], force: &dyn Force, along: &[Vec3], [position, velocity]: [f32; 2]) -> Vec<Vec3> {
     with_state(start, |state| {
         let mut total = vec![Vec3::ZERO; start.len()];
-        force.add_jacobian(state, &Change { along, position, velocity }, &mut total);
+        force.add_jacobian(state, &Perturbation { along, position, velocity }, &mut total);
         total
     })
 }

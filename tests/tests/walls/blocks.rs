@@ -2,23 +2,24 @@
 
 use pointmass::force::Friction;
 use pointmass::shape::{Collider, Cuboid, MeshBuf, Placed, Plane};
-use pointmass::{Gravity, Grip, Method, Particle, Scene, Vec3};
+use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, run, started};
 
 /// What lies on the floor is of material 0.
-fn grips(mu: f32) -> [Grip; 1] {
-    [Grip { elasticity: Some(0.0), friction: Some(Friction { resting: mu, sliding: mu }) }]
+fn contact_materials(mu: f32) -> [ContactMaterial; 1] {
+    [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }]
 }
 
 /// How far it is after some seconds, and how fast.
 fn slide(collider: &dyn Collider, mu: f32, particle: Particle, seconds: u32) -> (Vec3, Vec3) {
-    let (start, grips) = ([Particle { material: Some(0), elasticity: 0.0, ..particle }], grips(mu));
+    let (start, contact_materials) =
+        ([Particle { material: Some(0), elasticity: 0.0, ..particle }], contact_materials(mu));
     let integrator = Method::Verlet.integrator();
     let scene = Scene {
         start: &start,
         forces: &Gravity::EARTH,
         colliders: collider,
-        grips: &grips,
+        contact_materials: &contact_materials,
         integrator,
         ..Scene::EMPTY
     };

@@ -14,7 +14,7 @@ fn points_and_balls_bounce_as_zeno_says_and_rest() {
         let integrator = Method::Verlet.integrator();
         let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &FLOOR, integrator, ..Scene::EMPTY };
         let mut system = started(&scene, 1, 0);
-        let (mut bounces, mut impact, mut apex, mut resting) = (0, (2.0 / G).sqrt(), 1.0, None);
+        let (mut bounces, mut impact, mut apex, mut static_) = (0, (2.0 / G).sqrt(), 1.0, None);
         for i in 1..=64 * 60 {
             let report = system.step(&scene, Time::frame(i, 60) - system.time());
             let (x, v) = (system.particles().position[0], system.particles().velocity[0]);
@@ -32,10 +32,10 @@ fn points_and_balls_bounce_as_zeno_says_and_rest() {
             }
             // Zeno's sum is 4.0644068 s; then it lies still for a minute.
             if i == 246 {
-                resting = Some(x);
+                static_ = Some(x);
                 assert!(y < 1e-3, "{radius}: at {y}");
             }
-            if let Some(rest) = resting {
+            if let Some(rest) = static_ {
                 assert!(gap(f64s(x), f64s(rest)) < 1e-5 && v.abs() < 1e-3, "{radius}: {x} {v} after {i} frames");
             }
         }

@@ -2,14 +2,14 @@
 
 use pointmass::force::Friction;
 use pointmass::shape::{Collider, Cuboid, Plane, Sphere};
-use pointmass::{Drag, Gravity, Grip, Method, Observer, Particle, Scene, Spread, Varied, Vec3};
+use pointmass::{ContactMaterial, Drag, Gravity, Method, Observer, Particle, Scene, Spread, Varied, Vec3};
 use pointmass_tests::{G, Random, emitting, run, started};
 
 /// Where a particle is and how fast, after steps until about an instant, among colliders and sinks under gravity; none if it is gone.
 fn after(
     particle: Particle,
     [colliders, sinks]: [&dyn Collider; 2],
-    grips: &[Grip],
+    contact_materials: &[ContactMaterial],
     method: Method,
     [h, end]: [f64; 2],
 ) -> Option<[Vec3; 2]> {
@@ -20,7 +20,7 @@ fn after(
         forces: &Gravity::EARTH,
         colliders,
         sinks,
-        grips,
+        contact_materials,
         integrator: &integrator,
         ..Scene::EMPTY
     };
@@ -103,13 +103,13 @@ fn slopes_brake_it_by_coulomb_s_law() {
     let mut random = Random::new(5);
     each_way(|method, h, radius, home| {
         let angle = f64::from(random.between(0.05, 1.2));
-        let friction = Friction { resting: 0.4, sliding: 0.3 };
-        let grips = [Grip { elasticity: None, friction: Some(friction) }];
+        let friction = Friction { static_: 0.4, kinetic: 0.3 };
+        let contact_materials = [ContactMaterial { elasticity: None, friction: Some(friction) }];
         let normal = Vec3::new(angle.sin() as f32, angle.cos() as f32, 0.0);
         let down = Vec3::new(normal.y, -normal.x, 0.0);
         let slope = Plane { point: home, normal };
         let start = Particle { position: home + normal * radius, radius, material: Some(0), ..Particle::REST };
-        let [x, v] = after(start, [&slope, &()], &grips, method, [h, 0.75]).expect("it is on the slope");
+        let [x, v] = after(start, [&slope, &()], &contact_materials, method, [h, 0.75]).expect("it is on the slope");
         let pull = G * (angle.sin() - 0.3 * angle.cos());
         let rate = if angle.tan() > 0.4 { pull } else { 0.0 };
         let along = f64::from((x - start.position).dot(down));
@@ -139,8 +139,8 @@ fn rows_a_few_at_a_time_do_as_all_at_once() {
             let emitter = pointmass::Emitter {
                 spread: Spread::Uniform(1.0),
                 drag: Varied::exactly(0.1),
-                elasticity: Varied { mean: 0.5, variance: 0.2 },
-                lifetime: Varied { mean: 1.0, variance: 0.5 },
+                elasticity: Varied { mean: 0.5, half_width: 0.2 },
+                lifetime: Varied { mean: 1.0, half_width: 0.5 },
                 ..emitting::varied(rate)
             };
             let integrator = method.integrator();

@@ -3,7 +3,7 @@
 use crate::tunnels::told;
 use pointmass::force::Friction;
 use pointmass::shape::{Aabb, Collider, Cuboid, Motion, Moving, Plane, Segment, Sphere};
-use pointmass::{Gravity, Grip, Method, Particle, Scene, Time, Vec3};
+use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{G, Random, f64s, gap, often, run, started};
 
 fn moving(cuboid: Cuboid, motion: Motion) -> Moving<Cuboid> {
@@ -34,7 +34,8 @@ fn a_motion_is_where_its_formula_says_early_and_late() {
 
 #[test]
 fn a_block_on_a_platform_is_carried() {
-    let grips = [Grip { elasticity: Some(0.0), friction: Some(Friction { resting: 0.5, sliding: 0.5 }) }];
+    let contact_materials =
+        [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: 0.5, kinetic: 0.5 }) }];
     for radius in [0.0f32, 0.1] {
         let slab = Cuboid { min: Vec3::new(-50.0, -1.0, -50.0), max: Vec3::new(50.0, 0.0, 50.0) };
         let platform = moving(slab, Motion { drift: Vec3::X * 2.0, ..Motion::STILL });
@@ -45,7 +46,7 @@ fn a_block_on_a_platform_is_carried() {
             start: &start,
             forces: &Gravity::EARTH,
             colliders: &platform,
-            grips: &grips,
+            contact_materials: &contact_materials,
             integrator,
             ..Scene::EMPTY
         };

@@ -2,7 +2,7 @@
 
 use pointmass::force::Friction;
 use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Disc, Motion, Moving, Placed, Plane};
-use pointmass::{Contacts, Gravity, Grip, Method, Particle, Scene, Time, Vec3};
+use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{f64s, gap, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
@@ -21,10 +21,18 @@ fn after_touching(
     rate: f64,
     seconds: f64,
 ) -> Vec<Vec3> {
-    let grips = [Grip { elasticity: Some(0.0), friction: Some(Friction { resting: mu, sliding: mu }) }];
+    let contact_materials =
+        [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }];
     let start: Vec<Particle> = start.iter().map(|p| Particle { material: Some(0), elasticity: 0.0, ..*p }).collect();
     let (forces, integrator) = (&Gravity::EARTH, method.integrator());
-    let scene = Scene { start: &start, forces, colliders: collider, grips: &grips, integrator, ..touching };
+    let scene = Scene {
+        start: &start,
+        forces,
+        colliders: collider,
+        contact_materials: &contact_materials,
+        integrator,
+        ..touching
+    };
     let mut system = started(&scene, start.len(), 0);
     run(&mut system, &scene, 1.0 / rate, (rate * seconds) as u32);
     system.particles().position.to_vec()

@@ -1,6 +1,6 @@
 //! Two that touch in a sub-step: what presses them, and Coulomb's friction by just that.
 
-use crate::collide::Feel;
+use crate::collide::Mixed;
 use crate::force::Friction;
 use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
@@ -16,13 +16,13 @@ pub(super) struct Touch {
     /// How much more of what weighs on the upper one goes through here than has changed that speed \[m/s\].
     carried: f32,
     pub(super) elasticity: f32,
-    resting: f32,
-    sliding: f32,
+    static_: f32,
+    kinetic: f32,
 }
 
 impl Touch {
-    pub(super) fn new(Feel { elasticity, friction: Friction { resting, sliding } }: Feel) -> Self {
-        Self { pressed: -1.0, held: 0.0, carried: 0.0, elasticity, resting, sliding }
+    pub(super) fn new(Mixed { elasticity, friction: Friction { static_, kinetic } }: Mixed) -> Self {
+        Self { pressed: -1.0, held: 0.0, carried: 0.0, elasticity, static_, kinetic }
     }
 
     /// Whether the two touch in this sub-step.
@@ -36,7 +36,7 @@ impl Touch {
     }
 
     pub(super) fn has_friction(&self) -> bool {
-        self.resting + self.sliding > 0.0
+        self.static_ + self.kinetic > 0.0
     }
 
     /// Whether the two touch in this sub-step, and not smoothly.
@@ -75,7 +75,7 @@ impl Touch {
     pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
         let speed = length(slip);
         let left = |share: f32| max(share * self.load() * weight - self.held, 0.0);
-        let taken = if speed <= left(self.resting) { speed } else { min(speed, left(self.sliding)) };
+        let taken = if speed <= left(self.static_) { speed } else { min(speed, left(self.kinetic)) };
         if !(taken > 0.0) {
             return Vec3::ZERO;
         }

@@ -5,7 +5,7 @@ mod local;
 mod moments;
 mod path;
 mod sums;
-mod view;
+mod target;
 
 pub use moments::Opening;
 
@@ -16,7 +16,7 @@ use glam::Vec3;
 use moments::Moments;
 use path::Path;
 use sums::{GROUP, Law, Sums, Wide};
-use view::{Seen, View, longest};
+use target::{Seen, Target, longest};
 
 /// Points with weights in an octree, for sums of Σ w d⃗ / (d² + s²)^{3/2} (Barnes and Hut 1986): weights are masses, or
 /// charges of both signs.
@@ -89,7 +89,7 @@ impl<'m> BarnesHut<'m> {
 
     /// One over points with weights; none if the memory is too small for them.
     #[must_use]
-    pub fn grow<'a>(memory: &'a mut [u32], points: &[Vec3], weights: &[f32]) -> Option<BarnesHut<'a>> {
+    pub fn over<'a>(memory: &'a mut [u32], points: &[Vec3], weights: &[f32]) -> Option<BarnesHut<'a>> {
         let mut grown = BarnesHut::new(memory);
         grown.build(points, weights).ok()?;
         Some(grown)
@@ -235,17 +235,17 @@ impl<'m> BarnesHut<'m> {
     /// False if there is no room for them.
     fn enter(&self, inner: usize, law: Law, path: &mut Path, wide: &mut Wide, cost: &mut Cost) -> bool {
         let nodes = self.tree.nodes();
-        let view = View::new([nodes[inner].low(), nodes[inner].high()], self.tree.all_slots(inner), law);
+        let target = Target::new([nodes[inner].low(), nodes[inner].high()], self.tree.all_slots(inner), law);
         let (given, first) = (path.nodes_left(), path.nodes_left().end);
-        wide.begin(&view.region);
+        wide.begin(&target.region);
         let mut room = true;
         for i in given {
             cost.visits += self.walk(path.at(i), |node, moments| {
-                let seen = view.sees(moments, || self.tree.all_slots(node));
+                let seen = target.sees(moments, || self.tree.all_slots(node));
                 if seen == Seen::ByAll {
                     wide.push(moments);
                     cost.tests += 1;
-                } else if seen == Seen::Near && moments.side >= view.side && !self.tree.is_leaf(node) {
+                } else if seen == Seen::Near && moments.side >= target.side && !self.tree.is_leaf(node) {
                     return true;
                 } else {
                     room = room && path.push(node);
@@ -284,13 +284,13 @@ impl<'m> BarnesHut<'m> {
     /// Takes the sums at the points of a group, of what the way to it has left and of its series.
     fn sum(&self, group: Range<usize>, law: Law, path: &Path, wide: &mut Wide, sums: &mut Sums) -> Cost {
         let (points, mut cost) = (self.tree.points(), Cost::default());
-        let view = View::new(points.bounds(group.clone()), group.clone(), law);
-        wide.begin(&view.region);
+        let target = Target::new(points.bounds(group.clone()), group.clone(), law);
+        wide.begin(&target.region);
         sums.begin(group.clone().map(|slot| points.point(slot)));
         for i in path.nodes_left() {
             cost.visits += self.walk(path.at(i), |node, moments| {
                 let slots = self.tree.all_slots(node);
-                let (seen, pairs) = (view.sees(moments, || slots.clone()), group.len() as u64);
+                let (seen, pairs) = (target.sees(moments, || slots.clone()), group.len() as u64);
                 match seen {
                     Seen::ByAll => {
                         wide.push(moments);

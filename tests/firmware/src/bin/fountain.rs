@@ -27,11 +27,11 @@ static MEMORY: ConstStaticCell<Inline<DROPS, 1, 0, 3>> = ConstStaticCell::new(In
 fn main() -> ! {
     let nozzle = Disc { center: Vec3::new(0.0, 0.1, 0.0), normal: Vec3::Y, radius: 0.05 };
     let emitter = Emitter {
-        speed: Varied { mean: 4.0, variance: 0.5 },
+        speed: Varied { mean: 4.0, half_width: 0.5 },
         spread: Spread::Uniform(0.3),
         drag: Varied::exactly(0.1),
         elasticity: Varied::exactly(0.4),
-        lifetime: Varied { mean: 1.5, variance: 0.3 },
+        lifetime: Varied { mean: 1.5, half_width: 0.3 },
         ..Emitter::new(nozzle, 35.0)
     };
     let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };

@@ -9,7 +9,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Thread {
+pub struct SpringParams {
     /// Stiffness \[N/m\].
     pub ks: f32,
     /// Damping \[N s/m\].
@@ -21,24 +21,24 @@ pub struct Thread {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Threads {
+pub struct ClothSprings {
     /// Along the edges: against stretching.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub structural: Option<Thread>,
+    pub structural: Option<SpringParams>,
     /// Across the cells of a sheet, both ways: against shearing.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub shear: Option<Thread>,
+    pub shear: Option<SpringParams>,
     /// Over two cells of a sheet, or between the far corners of two triangles with a common edge: against bending.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub bend: Option<Thread>,
+    pub bend: Option<SpringParams>,
 }
 
 /// A rectangular sheet of cells. It needs no heap: particles and springs come one by one.
 ///
 /// ```
-/// use pointmass::{Sheet, Thread, Threads, Vec3};
+/// use pointmass::{Sheet, SpringParams, ClothSprings, Vec3};
 ///
-/// let threads = Threads { structural: Some(Thread { ks: 100.0, kd: 0.1 }), ..Threads::default() };
+/// let threads = ClothSprings { structural: Some(SpringParams { ks: 100.0, kd: 0.1 }), ..ClothSprings::default() };
 /// let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [2, 3] };
 /// assert_eq!((sheet.positions().count(), sheet.springs(&threads, 0).count()), (3 * 4, 2 * 4 + 3 * 3));
 /// ```
@@ -78,9 +78,9 @@ impl Sheet {
     }
 
     /// Its springs, of which the particle with number 0 is `first` in the scene's start.
-    pub fn springs(&self, threads: &Threads, first: u32) -> impl Iterator<Item = Spring> {
+    pub fn springs(&self, springs: &ClothSprings, first: u32) -> impl Iterator<Item = Spring> {
         let sheet = *self;
-        let Threads { structural, shear, bend } = *threads;
+        let ClothSprings { structural, shear, bend } = *springs;
         // How far a spring goes along and across, and what it is made of. Those that run backward start one cell later.
         let kinds = [
             ([1, 0], structural),
@@ -90,20 +90,20 @@ impl Sheet {
             ([2, 0], bend),
             ([0, 2], bend),
         ];
-        kinds.into_iter().filter_map(|(way, thread)| Some((way, thread?))).flat_map(move |(way, thread)| {
+        kinds.into_iter().filter_map(|(way, params)| Some((way, params?))).flat_map(move |(way, params)| {
             (0..=sheet.cells[1]).flat_map(move |across| {
-                (0..=sheet.cells[0]).filter_map(move |along| sheet.spring([along, across], way, thread, first))
+                (0..=sheet.cells[0]).filter_map(move |along| sheet.spring([along, across], way, params, first))
             })
         })
     }
 
-    fn spring(&self, from: [u32; 2], way: [i32; 2], thread: Thread, first: u32) -> Option<Spring> {
+    fn spring(&self, from: [u32; 2], way: [i32; 2], params: SpringParams, first: u32) -> Option<Spring> {
         let [u, v] = [0, 1].map(|i| from[i].checked_add_signed(way[i]).filter(|&to| to <= self.cells[i]));
         let ends = [self.number(from[0], from[1]), self.number(u?, v?)].map(|number| first + number);
         let part = |i: usize| self.sides[i] * (way[i] as f32 / self.cells[i] as f32);
         // A side that is not gone along may have no cells.
         let step = (0..2).filter(|&i| way[i] != 0).map(part).fold(Vec3::ZERO, |sum, part| sum + part);
-        Some(Spring::new(ends, length(step), thread.ks).damped(thread.kd))
+        Some(Spring::new(ends, length(step), params.ks).damped(params.kd))
     }
 
     /// Two triangles for each cell, turned the same way.
@@ -126,7 +126,7 @@ impl Sheet {
 pub fn mesh_springs(
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
-    threads: &Threads,
+    springs: &ClothSprings,
     first: u32,
 ) -> alloc::vec::Vec<Spring> {
     use alloc::collections::BTreeMap;
@@ -139,15 +139,15 @@ pub fn mesh_springs(
             }
         }
     }
-    let spring = |[a, b]: [u32; 2], thread: Thread| {
+    let spring = |[a, b]: [u32; 2], params: SpringParams| {
         let ends = vertices.get(a as usize).zip(vertices.get(b as usize))?;
-        Some(Spring::new([first + a, first + b], length(*ends.1 - *ends.0), thread.ks).damped(thread.kd))
+        Some(Spring::new([first + a, first + b], length(*ends.1 - *ends.0), params.ks).damped(params.kd))
     };
     let along =
-        threads.structural.into_iter().flat_map(|thread| edges.keys().filter_map(move |&edge| spring(edge, thread)));
-    let over = threads.bend.into_iter().flat_map(|thread| {
+        springs.structural.into_iter().flat_map(|params| edges.keys().filter_map(move |&edge| spring(edge, params)));
+    let over = springs.bend.into_iter().flat_map(|params| {
         let pairs = edges.values().filter_map(|far| <[u32; 2]>::try_from(far.as_slice()).ok());
-        pairs.filter(|[a, b]| a != b).filter_map(move |pair| spring(pair, thread))
+        pairs.filter(|[a, b]| a != b).filter_map(move |pair| spring(pair, params))
     });
     along.chain(over).collect()
 }

@@ -2,10 +2,10 @@
 
 use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
 use super::{SceneError, SceneFile};
+use crate::cloth::{ClothSprings, Sheet, mesh_springs};
 use crate::force::{Pressure, Spring};
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
-use crate::weave::{Sheet, Threads, mesh_springs};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -15,20 +15,21 @@ use glam::Vec3;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Fabric {
+pub struct Cloth {
     /// Its form.
     pub form: Form,
     /// The mass of all of it \[kg\], of which every particle has an equal share.
     pub mass: f32,
     /// Its springs, at rest in this form.
-    pub threads: Threads,
+    #[cfg_attr(feature = "serde", serde(alias = "threads"))]
+    pub springs: ClothSprings,
     /// Springs break where a step ends with them so many times as long as at rest.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub breaks_at: Option<f32>,
     /// Gas inside, if it is a closed mesh seen from outside anticlockwise.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub gas: Option<Gas>,
-    /// The particles that never move, by their number in this fabric from 0: along a sheet's first side first.
+    /// The particles that never move, by their number in this cloth from 0: along a sheet's first side first.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub fixed: Vec<u32>,
     /// How it moves to begin with \[m/s\].
@@ -49,7 +50,7 @@ pub struct Fabric {
     pub color: Option<Color>,
 }
 
-/// Gas in a fabric: see [`Pressure`].
+/// Gas in a cloth: see [`Pressure`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -61,7 +62,7 @@ pub struct Gas {
     pub outside: f32,
 }
 
-/// The form of a fabric.
+/// The form of a cloth.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -75,13 +76,13 @@ pub enum Form {
 /// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
 const MOST: u64 = 1 << 22;
 
-impl Fabric {
+impl Cloth {
     /// Its particles and springs, the first particle having number `first` in the scene's start; `mesh` is that of its form.
-    pub(super) fn weave(&self, mesh: Option<&MeshBuf>, first: u32) -> (Vec<Particle>, Vec<Spring>) {
+    pub(super) fn make(&self, mesh: Option<&MeshBuf>, first: u32) -> (Vec<Particle>, Vec<Spring>) {
         let (positions, springs): (Vec<Vec3>, Vec<Spring>) = match (&self.form, mesh) {
-            (Form::Sheet(sheet), _) => (sheet.positions().collect(), sheet.springs(&self.threads, first).collect()),
+            (Form::Sheet(sheet), _) => (sheet.positions().collect(), sheet.springs(&self.springs, first).collect()),
             (Form::Mesh(_), Some(mesh)) => {
-                (mesh.vertices().to_vec(), mesh_springs(mesh.vertices(), mesh.triangles(), &self.threads, first))
+                (mesh.vertices().to_vec(), mesh_springs(mesh.vertices(), mesh.triangles(), &self.springs, first))
             }
             (Form::Mesh(_), None) => (Vec::new(), Vec::new()),
         };
@@ -125,38 +126,38 @@ impl Fabric {
 impl SceneFile {
     pub(super) fn check_fabrics(&self) -> Result<(), SceneError> {
         let mut count = 0u64;
-        for (i, fabric) in self.fabrics.iter().enumerate() {
-            let at = format!("fabrics[{i}]");
+        for (i, cloth) in self.cloths.iter().enumerate() {
+            let at = format!("cloths[{i}]");
             let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
-            let Threads { structural, shear, bend } = fabric.threads;
-            for (name, thread) in [("structural", structural), ("shear", shear), ("bend", bend)] {
-                let Some(thread) = thread else { continue };
-                zero_or_more(&format!("{at}.threads.{name}.ks"), thread.ks)?;
-                zero_or_more(&format!("{at}.threads.{name}.kd"), thread.kd)?;
+            let ClothSprings { structural, shear, bend } = cloth.springs;
+            for (name, params) in [("structural", structural), ("shear", shear), ("bend", bend)] {
+                let Some(params) = params else { continue };
+                zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
+                zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
             }
             if [structural, shear, bend].iter().all(Option::is_none) {
                 return refuse(
-                    "threads",
+                    "springs",
                     "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}",
                 );
             }
-            above_zero(&format!("{at}.mass"), fabric.mass)?;
-            finite(&format!("{at}.drag"), &[fabric.drag])?;
-            finite(&format!("{at}.elasticity"), &[fabric.elasticity])?;
-            finite(&format!("{at}.velocity"), &fabric.velocity.to_array())?;
-            check_breaking(&format!("{at}.breaks_at"), fabric.breaks_at)?;
-            if let Some(gas) = fabric.gas {
+            above_zero(&format!("{at}.mass"), cloth.mass)?;
+            finite(&format!("{at}.drag"), &[cloth.drag])?;
+            finite(&format!("{at}.elasticity"), &[cloth.elasticity])?;
+            finite(&format!("{at}.velocity"), &cloth.velocity.to_array())?;
+            check_breaking(&format!("{at}.breaks_at"), cloth.breaks_at)?;
+            if let Some(gas) = cloth.gas {
                 zero_or_more(&format!("{at}.gas.amount"), gas.amount)?;
                 finite(&format!("{at}.gas.outside"), &[gas.outside])?;
             }
-            if fabric.gas.is_some() && matches!(fabric.form, Form::Sheet(_)) {
+            if cloth.gas.is_some() && matches!(cloth.form, Form::Sheet(_)) {
                 return refuse("gas", "a sheet has no inside; only a closed mesh can hold gas");
             }
             let place = |sheet: &Sheet| [sheet.corner, sheet.sides[0], sheet.sides[1]];
-            if matches!(&fabric.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
+            if matches!(&cloth.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
                 return refuse("form", "corner and sides have to be finite");
             }
-            let more = fabric.count().unwrap_or(0);
+            let more = cloth.count().unwrap_or(0);
             count = count.saturating_add(more);
             if count > MOST {
                 let message =
@@ -164,14 +165,14 @@ impl SceneFile {
                 return refuse("form", &message);
             }
             if let Some(number) =
-                fabric.fixed.iter().find(|&&n| fabric.count().is_some_and(|count| u64::from(n) >= count))
+                cloth.fixed.iter().find(|&&n| cloth.count().is_some_and(|count| u64::from(n) >= count))
             {
                 return refuse(
                     "fixed",
-                    &format!("particle {number} is out of range; there are {}, from 0", fabric.count().unwrap_or(0)),
+                    &format!("particle {number} is out of range; there are {}, from 0", cloth.count().unwrap_or(0)),
                 );
             }
-            self.check_material(&at, fabric.material)?;
+            self.check_material(&at, cloth.material)?;
         }
         Ok(())
     }

@@ -7,12 +7,18 @@ use glam::Vec3;
 ///
 /// `()` makes none, and forces look at all pairs; a [`Structure`] is chosen by name; [`InGrid`] and [`InKd`] by type, so that
 /// firmware carries no other.
-pub trait Arrange: Sync {
+pub trait IndexChoice: Sync {
     /// Vectors of memory that it takes for each particle. With few particles they may not do: then there is no index.
     fn columns(&self) -> usize;
 
     /// Calls `then` with the points in an index, or with none if it has no room for them.
-    fn arrange(&self, memory: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>));
+    fn with_index(
+        &self,
+        memory: &mut [u32],
+        points: &[Vec3],
+        reach: f32,
+        then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
+    );
 }
 
 /// Vectors a point that so many words for a thousand points take.
@@ -20,20 +26,20 @@ const fn columns(words_for_1000: usize) -> usize {
     words_for_1000.div_ceil(3000)
 }
 
-impl Arrange for () {
+impl IndexChoice for () {
     fn columns(&self) -> usize {
         0
     }
-    fn arrange(&self, _: &mut [u32], _: &[Vec3], _: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
+    fn with_index(&self, _: &mut [u32], _: &[Vec3], _: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
         then(None);
     }
 }
 
-impl Arrange for Structure {
+impl IndexChoice for Structure {
     fn columns(&self) -> usize {
         columns(self.words(1000))
     }
-    fn arrange(
+    fn with_index(
         &self,
         memory: &mut [u32],
         points: &[Vec3],
@@ -52,11 +58,11 @@ macro_rules! by_type {
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct $name;
 
-        impl Arrange for $name {
+        impl IndexChoice for $name {
             fn columns(&self) -> usize {
                 const { columns(Structure::$index.words(1000)) }
             }
-            fn arrange(&self, memory: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
+            fn with_index(&self, memory: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
                 let mut index = $index::new(memory);
                 let built = index.build(points, reach).is_ok();
                 then(built.then_some(&index));

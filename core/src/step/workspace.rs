@@ -11,7 +11,7 @@ use crate::time::Time;
 
 /// A system with its memory at hand: every algorithm works on it, and it is generic over nothing.
 #[derive(Debug)]
-pub(crate) struct View<'a> {
+pub(crate) struct Workspace<'a> {
     pub(crate) memory: Slices<'a>,
     pub(crate) status: &'a mut Status,
 }
@@ -67,7 +67,7 @@ impl Status {
     };
 }
 
-impl View<'_> {
+impl Workspace<'_> {
     pub(crate) fn len(&self) -> usize {
         self.status.len
     }
@@ -86,7 +86,7 @@ impl View<'_> {
 
     #[inline(never)]
     pub(crate) fn start(&mut self, scene: &Scene<'_>) {
-        self.memory.tallies.fill(Default::default());
+        self.memory.emitter_states.fill(Default::default());
         self.status.emitters = scene.emitters.count();
         self.status.is_reaped = !scene.reapers.is_empty();
         self.status.kept = scene.plan().kept();

@@ -19,7 +19,7 @@ pub(super) enum Seen {
 }
 
 /// Points that look at nodes.
-pub(super) struct View {
+pub(super) struct Target {
     pub(super) region: Region,
     slots: Range<usize>,
     /// The longest side of their box.
@@ -32,7 +32,7 @@ pub(super) struct View {
 /// A series is as good as the moments of nodes that are larger than its box by so much.
 const SMOOTH: f32 = 1.5;
 
-impl View {
+impl Target {
     pub(super) fn new([low, high]: [Vec3; 2], slots: Range<usize>, law: Law) -> Self {
         let region = Region::new([low, high]);
         let side = longest(high - low);

@@ -21,7 +21,7 @@ pub(super) const fn words(pieces: usize, each: usize) -> usize {
 ///
 /// Entries are at the end of the memory, nodes grow from its beginning. If nodes run out, all is made anew with larger
 /// leaves: better than a huge one where they ran out.
-pub(super) fn grow<'m, P: Pieces + ?Sized, S: Split>(
+pub(super) fn build<'m, P: Pieces + ?Sized, S: Split>(
     structure: Structure,
     split: &S,
     pieces: &P,

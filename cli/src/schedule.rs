@@ -6,7 +6,7 @@ use pointmass::Time;
 ///
 /// Ends are rounded to the tick one by one, so that a long run does not drift.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
+pub struct Schedule {
     dt: f64,
     duration: f64,
     steps: u64,
@@ -15,7 +15,7 @@ pub struct Clock {
 /// A remainder of this part of a step is rounding, not time.
 const ROUNDING: f64 = 1e-6;
 
-impl Clock {
+impl Schedule {
     /// `duration` seconds in steps of `dt`.
     #[must_use]
     pub fn new(duration: f64, dt: f64) -> Self {
@@ -69,9 +69,9 @@ mod tests {
             (0.6 - 1e-9, 0.1, 6),
             (1e-9, 1.0, 0),
         ] {
-            let clock = Clock::new(duration, dt);
-            assert_eq!(clock.steps(), steps, "{duration} in {dt}");
-            let ends: Vec<_> = (0..=steps).map(|n| clock.end(n)).collect();
+            let schedule = Schedule::new(duration, dt);
+            assert_eq!(schedule.steps(), steps, "{duration} in {dt}");
+            let ends: Vec<_> = (0..=steps).map(|n| schedule.end(n)).collect();
             assert!(ends.windows(2).all(|e| e[0] < e[1]), "{duration} in {dt}");
             assert_eq!(ends.last(), Some(&Time::from_seconds_f64(duration)), "{duration} in {dt}");
         }

@@ -1,15 +1,15 @@
 //! The step of particles that meet, worked through in the order of time.
 
-use super::flight::Flight;
-use super::grip::of_two;
+use super::material::of_two;
 use super::meeting::{Answer, Touch, first_touch};
 use super::path::{Path, between};
-use super::queue::{Clock, GONE, NEVER, NOBODY, Queue, WALL};
+use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
+use super::sweep::Sweep;
 use crate::index::SpatialIndex;
 use crate::math::{high, largest, length, max};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
-use crate::reap::Fate;
+use crate::reap::PendingDeath;
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::shape::Segment;
@@ -21,19 +21,19 @@ use glam::Vec3;
 const FOUND_A_BOUNCE: u32 = 1 << 11;
 
 /// A step whose meetings are worked through one after the other.
-pub(super) struct Melee<'a> {
+pub(super) struct EventDriven<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) dt: Time,
     pub(super) end: Time,
-    /// Clocks count in 2 to this power ticks.
+    /// Events count in 2 to this power ticks.
     pub(super) unit: u32,
-    pub(super) clocks: Queue<'a>,
+    pub(super) events: Queue<'a>,
     /// Positions and velocities at the present paths' beginnings and ends.
     pub(super) starts: [&'a mut [Vec3]; 2],
     pub(super) ends: [&'a mut [Vec3]; 2],
     /// Positions at the step's beginning, which the index sorts.
     pub(super) home: &'a [Vec3],
-    pub(super) fate: &'a mut [Fate],
+    pub(super) pending_death: &'a mut [PendingDeath],
     pub(super) radius: &'a [f32],
     pub(super) mass: &'a [f32],
     pub(super) inverse_mass: &'a [f32],
@@ -44,29 +44,29 @@ pub(super) struct Melee<'a> {
     /// The largest radius.
     pub(super) widest: f32,
     /// Nobody goes farther than this from home, or all are looked at instead of the index.
-    pub(super) leash: f32,
+    pub(super) max_travel: f32,
     pub(super) report: &'a mut Report,
     pub(super) observer: &'a mut dyn Observer,
 }
 
-impl Melee<'_> {
-    /// Sets the clocks, and finds how far anybody goes.
+impl EventDriven<'_> {
+    /// Sets the events, and finds how far anybody goes.
     pub(super) fn prepare(&mut self, born: &[Time], old: usize) {
         let mut farthest = 0.0;
         for (row, &born) in born.iter().enumerate() {
             let start = self.end - (self.end - born).min(self.dt);
             let since = self.units(start);
-            self.clocks.set(row, Clock { since, until: NEVER, partner: NOBODY, ..Clock::default() });
+            self.events.set(row, NextEvent { since, until: NEVER, partner: NOBODY, ..NextEvent::default() });
             let path = self.path(row);
             if !path.is_finite() {
-                self.clocks.set(row, Clock { partner: GONE, until: NEVER, ..Clock::default() });
+                self.events.set(row, NextEvent { partner: GONE, until: NEVER, ..NextEvent::default() });
                 continue;
             }
             if row >= old {
-                let path = self.flight(row).let_go(path);
+                let path = self.sweep(row).let_go(path);
                 self.go(row, &path);
             } else if path.lags() {
-                let path = self.flight(row).pressed_on(path);
+                let path = self.sweep(row).pressed_on(path);
                 self.go(row, &path);
             }
             let hull = self.path(row).hull(0.0);
@@ -75,7 +75,7 @@ impl Melee<'_> {
                 self.widest = max(self.radius[row], self.widest);
             }
         }
-        self.leash = 2.0 * farthest;
+        self.max_travel = 2.0 * farthest;
     }
 
     /// Works through the meetings. Each particle has a bounded number of them, and so the work is bounded.
@@ -84,20 +84,20 @@ impl Melee<'_> {
         for row in 0..self.home.len() {
             self.foresee(row, near);
         }
-        while let Some(row) = self.clocks.first() {
-            let clock = *self.clocks.clock(row);
-            if clock.partner == WALL {
-                self.meet_wall(row, clock.until);
+        while let Some(row) = self.events.first() {
+            let event = *self.events.event(row);
+            if event.partner == WALL {
+                self.meet_wall(row, event.until);
                 near = near.filter(|_| !self.strays(row));
                 self.foresee(row, near);
                 continue;
             }
-            let other = clock.partner as usize;
-            if self.clocks.clock(other).turns != clock.partner_turns {
+            let other = event.partner as usize;
+            if self.events.event(other).turns != event.partner_turns {
                 self.foresee(row, near);
                 continue;
             }
-            self.meet(row, other, clock.until);
+            self.meet(row, other, event.until);
             near = near.filter(|_| !self.strays(row) && !self.strays(other));
             self.foresee(row, near);
             self.foresee(other, near);
@@ -108,37 +108,37 @@ impl Melee<'_> {
     fn strays(&self, row: usize) -> bool {
         let path = self.path(row);
         let (hull, home) = (path.hull(0.0), self.home[row]);
-        path.is_finite() && length(high(hull.max - home, home - hull.min)) > self.leash
+        path.is_finite() && length(high(hull.max - home, home - hull.min)) > self.max_travel
     }
 
     /// Finds out what happens first to a particle on its present path.
     fn foresee(&mut self, row: usize, near: Option<&dyn SpatialIndex>) {
-        let clock = *self.clocks.clock(row);
-        if self.inverse_mass[row] == 0.0 || clock.partner == GONE {
-            self.clocks.set(row, Clock { until: NEVER, ..clock });
+        let event = *self.events.event(row);
+        if self.inverse_mass[row] == 0.0 || event.partner == GONE {
+            self.events.set(row, NextEvent { until: NEVER, ..event });
             return;
         }
         // Whom one meets has to be met in turn: four times as many of these as of bounces off colliders.
         let most = self.scene.max_bounces.saturating_mul(4);
         let most_found = self.scene.max_bounces.saturating_mul(FOUND_A_BOUNCE);
-        if (clock.turns > most || clock.found > most_found) && clock.waits == 0 {
+        if (event.turns > most || event.found > most_found) && event.waits == 0 {
             self.wait(row);
         }
-        if clock.found > most_found.saturating_mul(2) {
-            self.clocks.set(row, Clock { until: NEVER, ..*self.clocks.clock(row) });
+        if event.found > most_found.saturating_mul(2) {
+            self.events.set(row, NextEvent { until: NEVER, ..*self.events.event(row) });
             return;
         }
-        let clock = *self.clocks.clock(row);
+        let event = *self.events.event(row);
         let path = self.path(row);
         let hull = path.hull(self.radius[row]);
-        let mut next = Clock { until: NEVER, partner: NOBODY, ..clock };
-        let moves = clock.waits == 0;
+        let mut next = NextEvent { until: NEVER, partner: NOBODY, ..event };
+        let moves = event.waits == 0;
         let near_walls = moves && (self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull));
-        let meeting = if near_walls { self.flight(row).first_meeting(&path) } else { None };
+        let meeting = if near_walls { self.sweep(row).first_meeting(&path) } else { None };
         if let Some(meeting) = meeting {
             (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
         }
-        let (middle, reach) = (hull.center(), hull.radius() + self.widest + self.leash);
+        let (middle, reach) = (hull.center(), hull.radius() + self.widest + self.max_travel);
         let (mut curved, mut found) = (false, 0_u32);
         let home = self.home;
         let mut consider = |other: usize| {
@@ -147,7 +147,7 @@ impl Melee<'_> {
             found += u32::from(offset.dot(offset) <= reach * reach);
             // Of several at one instant a wall comes first, then the lowest row: whatever order they are looked at in. Nobody
             // is met before the path begins.
-            if next.until <= clock.since && (next.partner == WALL || next.partner <= other as u32) {
+            if next.until <= event.since && (next.partner == WALL || next.partner <= other as u32) {
                 return;
             }
             let (until, bent) = self.first_touch(row, other, &path);
@@ -156,7 +156,7 @@ impl Melee<'_> {
                 until < next.until || (until == next.until && next.partner != WALL && (other as u32) < next.partner);
             if until != NEVER && earlier {
                 (next.until, next.partner) = (until, other as u32);
-                next.partner_turns = self.clocks.clock(other).turns;
+                next.partner_turns = self.events.event(other).turns;
             }
         };
         match near {
@@ -168,14 +168,14 @@ impl Melee<'_> {
             None => (0..self.home.len()).for_each(&mut consider),
         }
         // How a path bends after a meeting at its very beginning is nobody's concern.
-        self.report.caps.chords += u64::from(curved && next.until > clock.since);
-        next.found = clock.found.saturating_add(found);
-        self.clocks.set(row, next);
+        self.report.caps.chords += u64::from(curved && next.until > event.since);
+        next.found = event.found.saturating_add(found);
+        self.events.set(row, next);
     }
 
     /// When a particle on its path touches another.
     fn first_touch(&self, row: usize, other: usize, path: &Path) -> (u32, bool) {
-        let (own, its) = (self.clocks.clock(row), self.clocks.clock(other));
+        let (own, its) = (self.events.event(row), self.events.event(other));
         let reach = self.radius[row] + self.radius[other];
         let yielding = self.inverse_mass[row] + self.inverse_mass[other];
         // What has no size or no mass that an answer could be reckoned with meets nobody.
@@ -202,23 +202,24 @@ impl Melee<'_> {
 
     fn meet_wall(&mut self, row: usize, until: u32) {
         let path = self.path(row);
-        let mut flight = self.flight(row);
-        let meeting = flight.first_meeting(&path);
-        let clock = *self.clocks.clock(row);
-        let (turns, since) = (clock.turns + 1, until);
+        let mut sweep = self.sweep(row);
+        let meeting = sweep.first_meeting(&path);
+        let event = *self.events.event(row);
+        let (turns, since) = (event.turns + 1, until);
         let Some(meeting) = meeting else {
             // A collider that answers otherwise the second time: it must not be asked for ever.
-            self.clocks.set(row, Clock { turns, ..clock });
+            self.events.set(row, NextEvent { turns, ..event });
             return;
         };
         if meeting.is_sink {
             let end = meeting.arrival(&path);
-            (self.ends[0][row], self.ends[1][row], self.fate[row]) = (end.position, end.velocity, end.fate);
-            self.clocks.set(row, Clock { turns, partner: GONE, ..clock });
+            (self.ends[0][row], self.ends[1][row], self.pending_death[row]) =
+                (end.position, end.velocity, end.pending_death);
+            self.events.set(row, NextEvent { turns, partner: GONE, ..event });
             return;
         }
-        let onward = self.flight(row).rebound(&path, &meeting);
-        self.clocks.set(row, Clock { turns, since, partner: NOBODY, ..clock });
+        let onward = self.sweep(row).rebound(&path, &meeting);
+        self.events.set(row, NextEvent { turns, since, partner: NOBODY, ..event });
         self.go(row, &onward);
     }
 
@@ -226,7 +227,7 @@ impl Melee<'_> {
     fn meet(&mut self, row: usize, other: usize, until: u32) {
         let now = self.instant(until);
         let rows = [row, other];
-        let from = self.instant(self.clocks.clock(row).since.max(self.clocks.clock(other).since));
+        let from = self.instant(self.events.event(row).since.max(self.events.event(other).since));
         let whole = rows.map(|row| from_on(&self.path(row), from));
         let at = self.touch(row, other, [&whole[0], &whole[1]]).0;
         let mut paths = whole.map(|path| from_on(&path, now));
@@ -235,7 +236,7 @@ impl Melee<'_> {
                 path.x0 = whole.at(at);
             }
         }
-        let waits = rows.map(|row| self.clocks.clock(row).waits != 0);
+        let waits = rows.map(|row| self.events.event(row).waits != 0);
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
         let offset = paths[0].x0 - paths[1].x0;
         let normal = Touch::along(offset, velocity);
@@ -245,10 +246,10 @@ impl Melee<'_> {
             self.set_apart(rows, &mut paths, normal * overlap);
         }
         let material = rows.map(|row| self.material[row].checked_sub(1));
-        let feel = of_two(self.scene.grips, rows.map(|row| self.elasticity[row]), material);
+        let mixed = of_two(self.scene.contact_materials, rows.map(|row| self.elasticity[row]), material);
         let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
-        let touch = Touch { normal, velocity, acceleration, inverse_mass, feel, slack };
+        let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
         let Answer { velocity: after, way, ends, slid } = touch.answer(self.dt.seconds(), (self.end - now).seconds());
         if let Some(slid) = &slid {
             self.observer.slid(slid);
@@ -256,7 +257,7 @@ impl Melee<'_> {
         self.report.contacts += 1;
         let closing = max((velocity[1] - velocity[0]).dot(normal), 0.0);
         for i in 0..2 {
-            let (row, clock) = (rows[i], *self.clocks.clock(rows[i]));
+            let (row, event) = (rows[i], *self.events.event(rows[i]));
             if inverse_mass[i] == 0.0 {
                 continue;
             }
@@ -274,7 +275,7 @@ impl Melee<'_> {
                 surface: Vec3::ZERO,
                 time: now,
             });
-            self.clocks.set(row, Clock { turns: clock.turns + 1, since: until, ..clock });
+            self.events.set(row, NextEvent { turns: event.turns + 1, since: until, ..event });
             let Path { x0, during, .. } = paths[i];
             let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during };
             self.go(row, &onward);
@@ -309,14 +310,14 @@ impl Melee<'_> {
 
     /// It stays where it is until the step is over, unless a wall that moves takes it along, and keeps its velocity.
     fn wait(&mut self, row: usize) {
-        let clock = *self.clocks.clock(row);
-        if clock.waits == 0 {
+        let event = *self.events.event(row);
+        if event.waits == 0 {
             self.report.caps.bounces += 1;
         }
-        let during = [self.instant(clock.since), self.end];
+        let during = [self.instant(event.since), self.end];
         self.ends[0][row] = self.scene.colliders.carry(self.starts[0][row], self.radius[row], during);
         self.ends[1][row] = self.starts[1][row];
-        self.clocks.set(row, Clock { waits: 1, ..clock });
+        self.events.set(row, NextEvent { waits: 1, ..event });
     }
 
     /// Takes a new path.
@@ -327,10 +328,10 @@ impl Melee<'_> {
 
     /// The present path.
     fn path(&self, row: usize) -> Path {
-        let clock = self.clocks.clock(row);
-        let during = [self.instant(clock.since), self.end];
+        let event = self.events.event(row);
+        let during = [self.instant(event.since), self.end];
         let (x0, v0) = (self.starts[0][row], self.starts[1][row]);
-        if clock.waits != 0 || self.inverse_mass[row] == 0.0 {
+        if event.waits != 0 || self.inverse_mass[row] == 0.0 {
             return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during };
         }
         Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during }
@@ -340,8 +341,8 @@ impl Melee<'_> {
         Id { slot: self.slot[row], serial: self.serial[row] }
     }
 
-    fn flight(&mut self, row: usize) -> Flight<'_> {
-        Flight {
+    fn sweep(&mut self, row: usize) -> Sweep<'_> {
+        Sweep {
             scene: self.scene,
             walls: self.scene.colliders,
             sinks: Some(self.scene.sinks),
@@ -357,7 +358,7 @@ impl Melee<'_> {
         }
     }
 
-    /// An instant of the step as clocks show it: never later than it is.
+    /// An instant of the step as events have it: never later than it is.
     fn units(&self, instant: Time) -> u32 {
         let ticks = (instant + self.dt - self.end).ticks();
         // Below 2^31, as the unit was chosen.
