@@ -35,7 +35,7 @@ fn main() {
 
 fn run(drop: &Drop, response: &Response, seconds: usize) {
     let start = drop.particles();
-    let (walls, contact_materials) = (drop.walls(), drop.contact_materials());
+    let (walls, materials) = (drop.walls(), drop.materials());
     let (push, steps) = match response {
         Response::Force(penalty) => (penalty.reaching(2.0 * drop.radius), FORCE_STEPS),
         _ => (Penalty::NONE, 1),
@@ -45,7 +45,7 @@ fn run(drop: &Drop, response: &Response, seconds: usize) {
         start: &start,
         forces: &forces,
         colliders: &walls,
-        contact_materials: &contact_materials,
+        materials: &materials,
         constraints: &response.contacts(),
         substeps: response.substeps(),
         meetings: response.meetings(),

@@ -74,7 +74,7 @@ impl Drop {
 
     /// The materials.
     #[must_use]
-    pub fn contact_materials(&self) -> [ContactMaterial; 1] {
+    pub fn materials(&self) -> [ContactMaterial; 1] {
         let friction = pointmass::force::Friction { static_: self.friction, kinetic: self.friction };
         [ContactMaterial { elasticity: None, friction: Some(friction) }]
     }

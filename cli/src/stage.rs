@@ -4,6 +4,7 @@ use crate::draw::{self, Dot, Line, Piece, Segment, Stage, Surface, shapes};
 use crate::world::World;
 use glam::Vec3;
 use pointmass::Time;
+use pointmass::draw::{Appearance, appearance};
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
 use std::collections::HashMap;
@@ -59,19 +60,21 @@ impl Cast {
 
     /// The particles as they are now.
     pub(crate) fn dots(&mut self, world: &World) -> Vec<Dot> {
-        let particles = world.system.particles();
+        let (particles, scene) = (world.system.particles(), world.model.scene());
+        let state = world.system.state(&scene);
         let mut now = HashMap::with_capacity(particles.serial.len());
         let mut dots = Vec::with_capacity(particles.serial.len());
         for (row, (&position, &serial)) in particles.position.iter().zip(particles.serial).enumerate() {
-            // Rows count materials from one; zero is none.
-            let number = usize::from(particles.material[row]).checked_sub(1);
-            let material = number.and_then(|number| world.file.materials.get(number));
-            let (size, glow) = material.map_or((0.0, 0.0), |m| (m.size, m.glow));
-            let radius = particles.radius[row];
-            let solid = !(size > 0.0) && radius > 0.0;
-            let size = [size, 2.0 * radius, self.size].into_iter().find(|&size| size > 0.0).unwrap_or(0.0);
+            let Some(Appearance { diameter, scale, solid, color, glow, .. }) = appearance(&state, row) else {
+                continue;
+            };
+            let is_point = particles.radius[row] == 0.0 && !(diameter > 0.0) && scale > 0.0;
+            let size = if is_point { self.size * scale } else { diameter };
+            let is_seen = size > 0.0 && color[3] > 0;
             let previous = self.before.get(&serial).copied().unwrap_or(position);
-            dots.push(Dot { position, previous, color: particles.color[row], size, glow, solid });
+            if is_seen {
+                dots.push(Dot { position, previous, color, size, glow, solid });
+            }
             now.insert(serial, position);
         }
         self.before = now;

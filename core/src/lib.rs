@@ -14,9 +14,12 @@ extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+mod cloth;
 mod collide;
 pub mod constrain;
+mod curve;
 mod custom;
+pub mod draw;
 pub mod emit;
 mod events;
 pub mod force;
@@ -26,6 +29,7 @@ pub mod integrate;
 mod lanes;
 #[cfg(feature = "std")]
 mod ledger;
+pub mod material;
 pub mod math;
 #[cfg(feature = "std")]
 mod measure;
@@ -46,12 +50,10 @@ mod step;
 mod system;
 mod time;
 
-mod cloth;
-
 #[cfg(feature = "alloc")]
 pub use cloth::mesh_springs;
 pub use cloth::{ClothSprings, Sheet, SpringParams};
-pub use collide::{ContactMaterial, Impulse, Meetings};
+pub use collide::{Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
 pub use constrain::{Constraint, Contacts, Distance};
@@ -72,6 +74,7 @@ pub use integrate::{
 };
 #[cfg(feature = "std")]
 pub use ledger::{Books, Ledger};
+pub use material::{ContactMaterial, Material, MaterialList};
 #[cfg(feature = "std")]
 pub use measure::{Energy, Measures};
 #[cfg(feature = "alloc")]

@@ -212,8 +212,25 @@ impl<'a> Columns<'a> {
     /// The living as forces and reapers see them.
     pub(crate) fn state(self, scene: &Scene<'a>, status: &Status) -> State<'a> {
         let (springs, custom) = (self.springs(scene.springs, status), self.custom(scene, status.len));
-        let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, .. } = self;
-        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, custom, ..State::EMPTY };
+        let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, color, material, .. } =
+            self;
+        let materials = scene.materials;
+        let lives = State {
+            radius,
+            mass,
+            drag,
+            charge,
+            born,
+            dies,
+            slot,
+            key,
+            color,
+            material,
+            materials,
+            springs,
+            custom,
+            ..State::EMPTY
+        };
         lives.moved(status.time, &position[..status.len], &velocity[..status.len])
     }
 

@@ -59,7 +59,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         emitters: &emitters,
         forces: &forces,
         colliders: &(ground, box_),
-        contact_materials: &[],
+        materials: &(),
         constraints: &(),
         substeps: 1,
         meetings: Meetings::Through,

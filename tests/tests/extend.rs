@@ -675,7 +675,7 @@ fn memory() {
         sinks: &(),
         reapers: &(Doom, Chance { rate: 0.3 }),
         custom: &[Custom::new("heat")],
-        contact_materials: &[],
+        materials: &(),
         constraints: &(),
         substeps: 1,
         meetings: Meetings::Through,

@@ -85,8 +85,7 @@ fn the_short_way_has_the_bits_of_the_long_one() {
     let mut random = Random::new(2611);
     let friction =
         |static_, kinetic| ContactMaterial { friction: Some(Friction { static_, kinetic }), elasticity: None };
-    let contact_materials =
-        [friction(0.5, 0.4), friction(0.0, 0.0), ContactMaterial { elasticity: Some(0.3), friction: None }];
+    let materials = [friction(0.5, 0.4), friction(0.0, 0.0), ContactMaterial { elasticity: Some(0.3), friction: None }];
     let (mut hits, mut scenes) = (0, 0);
     for (number, method) in Method::ALL.iter().cycle().take(27).enumerate() {
         let scale = [1.0, 1e-3, 40.0][number % 3];
@@ -98,13 +97,13 @@ fn the_short_way_has_the_bits_of_the_long_one() {
         let emitter = fountain(&plane, scale);
         let gravity = Gravity { acceleration: (Vec3::NEG_Y * 9.8 + random.vector(2.0)) * scale };
         let max_bounces = [8, 8, 1, 2, 0][number % 5];
-        let contact_materials = if number % 2 == 0 { &contact_materials[..] } else { &[] };
+        let materials = if number % 2 == 0 { &materials[..] } else { &[] };
         let integrator: &dyn Integrator = method.integrator();
         let base = Scene {
             start: &start,
             emitters: &emitter,
             forces: &(gravity, Drag {}),
-            contact_materials,
+            materials: &materials,
             integrator,
             max_bounces,
             substeps: [1, 3][number / 7 % 2],
@@ -216,16 +215,11 @@ fn scenery_has_the_bits_of_the_list() {
         }
         let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
         let start = crowd(&mut random, &floor, 1.0, radius);
-        let contact_materials =
+        let materials =
             [ContactMaterial { friction: Some(Friction { static_: 0.5, kinetic: 0.4 }), elasticity: Some(0.4) }];
         let scenery = Scenery::new(things.iter().cloned().zip(boxes).collect());
         let response = [Response::Position(Position::default()), Response::Impulse {}][number / 2 % 2];
-        let base = Scene {
-            start: &start,
-            forces: &(Gravity::EARTH, Drag {}),
-            contact_materials: &contact_materials,
-            ..Scene::EMPTY
-        };
+        let base = Scene { start: &start, forces: &(Gravity::EARTH, Drag {}), materials: &materials, ..Scene::EMPTY };
         let method: &dyn Integrator = if number < 3 { &pointmass::Symplectic } else { &pointmass::Euler };
         let base = Scene { integrator: method, ..base };
         let contacts = response.contacts();

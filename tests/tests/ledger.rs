@@ -216,7 +216,7 @@ fn friction_has_its_line() {
                     start: &start,
                     forces: &Gravity::EARTH,
                     colliders: &ground,
-                    contact_materials: &MATERIAL,
+                    materials: &MATERIAL,
                     integrator: &method,
                     ..Scene::EMPTY
                 };
@@ -243,7 +243,7 @@ fn what_scenery_lifts_and_drags_along_has_its_line() {
             start: &start,
             forces: &Gravity::EARTH,
             colliders: &moving,
-            contact_materials: &MATERIAL,
+            materials: &MATERIAL,
             integrator: &Verlet,
             ..Scene::EMPTY
         };
@@ -266,7 +266,7 @@ fn what_scenery_lifts_and_drags_along_has_its_line() {
         start: &start,
         forces: &Gravity::EARTH,
         colliders: &disc,
-        contact_materials: &MATERIAL,
+        materials: &MATERIAL,
         integrator: &Rk4,
         ..Scene::EMPTY
     };
@@ -289,13 +289,8 @@ fn friction_of_hard_balls_has_its_line() {
     let pair = [ball(-2.0, 0.6, 4.0), ball(0.0, 0.0, 0.0)];
     let perched =
         [Particle { fixed: true, ..ball(0.0, 0.0, 0.0) }, Particle { elasticity: 0.0, ..ball(0.6, 0.8, 0.0) }];
-    let hitting = Scene {
-        start: &pair,
-        contact_materials: &MATERIAL,
-        meetings: Meetings::IMPULSE,
-        integrator: &Verlet,
-        ..Scene::EMPTY
-    };
+    let hitting =
+        Scene { start: &pair, materials: &MATERIAL, meetings: Meetings::IMPULSE, integrator: &Verlet, ..Scene::EMPTY };
     let kinetic = Scene { start: &perched, forces: &Gravity::EARTH, ..hitting };
     for (name, scene, least, bound) in [("hit", hitting, -0.5, 1e-5), ("slide", kinetic, -0.05, 1e-3)] {
         let (books, share) = books(&scene, 2, 1.0 / 240.0);

@@ -20,6 +20,7 @@ pub use files::Files;
 
 use arguments::{capacity, seconds, seed, text};
 use js_sys::{Float32Array, JsString, Uint8Array, Uint32Array};
+use pointmass::draw::{Appearance, appearance};
 use pointmass::scene::{Model, SceneFile, read_scn};
 use pointmass::{Heap, Storage, System};
 use wasm_bindgen::prelude::*;
@@ -39,6 +40,15 @@ pub struct World {
     system: System<Heap>,
     seed: u64,
     warnings: Vec<String>,
+}
+
+impl World {
+    /// Something of how each of the living looks.
+    fn appearances<T>(&self, of: impl Fn(Appearance) -> T) -> Vec<T> {
+        let scene = self.model.scene();
+        let state = self.system.state(&scene);
+        (0..self.system.len()).filter_map(|row| appearance(&state, row)).map(of).collect()
+    }
 }
 
 #[wasm_bindgen]
@@ -163,10 +173,20 @@ impl World {
         Ok(view(bytemuck::cast_slice(column)))
     }
 
-    /// Colours of the living, four bytes a particle: red, green, blue, opacity. A copy.
+    /// Colours of the living as they look now, four bytes a particle: red, green, blue, opacity, by materials and ages. A copy.
     #[must_use]
     pub fn colors(&self) -> Uint8Array {
-        Uint8Array::from(self.system.particles().color.as_flattened())
+        let colors: Vec<_> = self.appearances(|look| look.color);
+        Uint8Array::from(colors.as_flattened())
+    }
+
+    /// What else the living look like now, four numbers a particle: the diameter \[m\], zero for points, which take what suits the
+    /// picture; the factor that is in it, for points; from 0, a lit ball, to 1, a glow; and the angle by which a picture of it is
+    /// turned anticlockwise \[rad\]. A copy.
+    #[must_use]
+    pub fn looks(&self) -> Float32Array {
+        let looks: Vec<_> = self.appearances(|look| [look.diameter, look.scale, look.glow, look.rotation]);
+        Float32Array::from(looks.as_flattened())
     }
 
     /// Which of the living is in which row: numbers unique over the run, from 0. A copy.

@@ -8,7 +8,8 @@ use crate::formats::RecordFormat;
 use crate::schedule::nanoseconds;
 use crate::whole::{WholeFile, Written, publish};
 use crate::{Failure, Outcome};
-use pointmass::{Columns, Heap, Scene, System};
+use pointmass::draw::appearance;
+use pointmass::{Color, Columns, Heap, Scene, System};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -41,7 +42,8 @@ pub(crate) struct Frame {
     /// Names of columns of a user's own, and the values of each row in them.
     names: Vec<String>,
     custom: Vec<Vec<f32>>,
-    colors: Vec<[u8; 4]>,
+    /// How they look at that instant.
+    colors: Vec<Color>,
 }
 
 impl Frame {
@@ -49,7 +51,7 @@ impl Frame {
     pub(crate) fn of(step: u64, system: &System<Heap>, scene: &Scene<'_>, balls: bool) -> Self {
         let now = system.time();
         let time = nanoseconds(now.seconds_f64());
-        let Columns { serial, position, velocity, mass, radius, born, color, .. } = system.particles();
+        let Columns { serial, position, velocity, mass, radius, born, .. } = system.particles();
         let mut order: Vec<usize> = (0..serial.len()).collect();
         order.sort_unstable_by_key(|&row| serial[row]);
         let row = |&i: &usize| {
@@ -58,7 +60,8 @@ impl Frame {
             let radius = balls.then(|| radius[i]);
             Row { step, time, id: serial[i], x, y, z, vx, vy, vz, mass: mass[i], age, radius }
         };
-        let colors = order.iter().map(|&i| color[i]).collect();
+        let state = system.state(scene);
+        let colors = order.iter().filter_map(|&i| appearance(&state, i)).map(|look| look.color).collect();
         let own = system.custom(scene);
         let numbers = 0..own.count();
         let names = numbers.clone().filter_map(|number| own.name(number)).map(str::to_string).collect();

@@ -1,11 +1,11 @@
 //! The step of particles that meet, worked through in the order of time.
 
-use super::material::of_two;
 use super::meeting::{Answer, Touch, first_touch};
 use super::path::{Path, between};
 use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
 use super::sweep::Sweep;
 use crate::index::SpatialIndex;
+use crate::material::of_two;
 use crate::math::{high, largest, length, max};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
@@ -246,7 +246,7 @@ impl EventDriven<'_> {
             self.set_apart(rows, &mut paths, normal * overlap);
         }
         let material = rows.map(|row| self.material[row].checked_sub(1));
-        let mixed = of_two(self.scene.contact_materials, rows.map(|row| self.elasticity[row]), material);
+        let mixed = of_two(self.scene.materials, rows.map(|row| self.elasticity[row]), material);
         let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };

@@ -1,9 +1,9 @@
 //! When two balls touch, and what that does to them.
 
-use super::material::Mixed;
 use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::sweep::RESTING;
+use crate::material::Mixed;
 use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use crate::observe::Sliding;
 use glam::Vec3;

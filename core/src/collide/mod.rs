@@ -2,7 +2,6 @@
 
 mod event_driven;
 mod impulse;
-mod material;
 mod meeting;
 mod meetings;
 mod packet;
@@ -13,8 +12,6 @@ mod slide;
 mod sweep;
 mod tile_sweep;
 
-pub use material::ContactMaterial;
-pub(crate) use material::{Mixed, of_two, on_surface};
 pub use meetings::{Impulse, Meetings};
 pub(crate) use passage::Passage;
 #[cfg(feature = "std")]

@@ -1,8 +1,8 @@
 //! One particle's way through a step: hit by hit.
 
-use super::material::on_surface;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
+use crate::material::on_surface;
 use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
@@ -132,7 +132,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn lying(&mut self, path: &Path) -> Option<Path> {
         let acceleration = path.acceleration();
         let seat = self.seat(path, acceleration)?;
-        let mixed = on_surface(self.scene.contact_materials, self.elasticity, self.material, seat.material);
+        let mixed = on_surface(self.scene.materials, self.elasticity, self.material, seat.material);
         let (normal, time) = (seat.normal, path.during[0]);
         let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
         let (slip, drive) = (along(path.v0, normal, -incoming), along(acceleration, normal, pressing));
@@ -241,7 +241,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
-        let mixed = on_surface(self.scene.contact_materials, self.elasticity, self.material, material);
+        let mixed = on_surface(self.scene.materials, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
         let acceleration = path.acceleration();

@@ -1,11 +1,11 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
-use super::material::on_surface;
 use super::packet::{Outcome, Paths, Riders, near};
 use super::path::Path;
 use super::sweep::{Sweep, facing};
 use crate::constrain::{SHIFTED, TOUCHING};
 use crate::lanes::{LANES, Vectors};
+use crate::material::on_surface;
 use crate::memory::{Layout, Past};
 use crate::observe::{Attention, Observer};
 use crate::particles::Id;
@@ -241,10 +241,10 @@ impl TileSweep<'_, '_> {
         for (i, &row) in all.iter().enumerate() {
             (radius[i], elasticity[i]) = (m.lives.radius[row], m.elasticity[row]);
         }
-        if !scene.contact_materials.is_empty() {
+        if scene.materials.count() > 0 {
             for (i, &row) in all.iter().enumerate() {
-                let own = m.material[row].checked_sub(1);
-                let mixed = on_surface(scene.contact_materials, elasticity[i], own, face.material());
+                let own = m.lives.material[row].checked_sub(1);
+                let mixed = on_surface(scene.materials, elasticity[i], own, face.material());
                 (elasticity[i], at_rest[i], kinetic[i]) =
                     (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
             }
@@ -303,7 +303,7 @@ impl TileSweep<'_, '_> {
             radius,
             mass: lives.mass[row],
             elasticity: m.elasticity[row],
-            material: m.material[row].checked_sub(1),
+            material: m.lives.material[row].checked_sub(1),
             dt: dt.seconds(),
             report,
             observer,

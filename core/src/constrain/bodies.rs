@@ -1,8 +1,8 @@
 //! The particles as a constraint sees and moves them.
 
-use crate::collide::ContactMaterial;
 use crate::custom::CustomColumnsMut;
 use crate::index::IndexChoice;
+use crate::material::MaterialList;
 use crate::memory::{Demand, Kept, take};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
@@ -69,8 +69,8 @@ pub struct Bodies<'a> {
     pub substep: Substep,
     /// The scene's colliders.
     pub colliders: &'a dyn Collider,
-    /// How materials feel, by their numbers.
-    pub contact_materials: &'a [ContactMaterial],
+    /// What they and the colliders are made of, by numbers.
+    pub materials: &'a dyn MaterialList,
     /// Who is near whom.
     pub near: Near<'a>,
     /// What happened in the step.

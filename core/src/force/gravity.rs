@@ -1,11 +1,13 @@
 //! Uniform gravity.
 
 use super::{Force, State};
+use crate::material::Floating;
 use crate::rows::each_row_with;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Uniform gravity: f = m g, with the potential −m g·x, zero in the origin.
+/// Uniform gravity: f = m g, with the potential −m g·x, zero in the origin; less the share that a material's
+/// [buoyancy](crate::material::Life::buoyancy) carries, which has no potential.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -31,7 +33,12 @@ impl Force for Gravity {
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        each_row_with(total, self.acceleration, &state.mass[rows], |total, g, m| total + g * m);
+        each_row_with(total, self.acceleration, &state.mass[rows.clone()], |total, g, m| total + g * m);
+        if let Some(code) = state.materials.code().filter(|code| (code.floats)(state.materials)) {
+            let State { time, born, dies, material, key, mass, .. } = *state;
+            let floating = Floating { time, born, dies, material, key, mass };
+            (code.carry)(state.materials, &floating, rows, self.acceleration, total);
+        }
     }
 
     #[cfg(feature = "std")]

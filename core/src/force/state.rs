@@ -3,7 +3,8 @@
 use super::Springs;
 use crate::custom::CustomColumns;
 use crate::index::{BarnesHut, Neighbours};
-use crate::particles::Id;
+use crate::material::MaterialList;
+use crate::particles::{Color, Id};
 use crate::rng::later;
 use crate::time::Time;
 use core::ops::Range;
@@ -34,6 +35,12 @@ pub struct State<'a> {
     pub slot: &'a [u32],
     /// What their random numbers are drawn by; see [`word`](State::word).
     pub key: &'a [u32],
+    /// Their colours, without what materials make of them.
+    pub color: &'a [Color],
+    /// Numbers of their materials plus one; zero: none.
+    pub material: &'a [u16],
+    /// The scene's materials.
+    pub materials: &'a dyn MaterialList,
     /// Columns of a user's own.
     pub custom: CustomColumns<'a>,
     /// The springs between them.
@@ -60,6 +67,9 @@ impl<'a> State<'a> {
         dies: &[],
         slot: &[],
         key: &[],
+        color: &[],
+        material: &[],
+        materials: &(),
         custom: CustomColumns::NONE,
         springs: Springs {
             springs: &[],
@@ -94,6 +104,9 @@ impl<'a> State<'a> {
             dies: &self.dies[..len],
             slot: &self.slot[..len],
             key: &self.key[..len],
+            color: &self.color[..len],
+            material: &self.material[..len],
+            materials: self.materials,
             custom: self.custom.rows(0..len),
             springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
             near: Neighbours::among(position),
@@ -115,6 +128,8 @@ impl<'a> State<'a> {
             dies: &self.dies[rows.clone()],
             slot: &self.slot[rows.clone()],
             key: &self.key[rows.clone()],
+            color: &self.color[rows.clone()],
+            material: &self.material[rows.clone()],
             custom: self.custom.rows(rows.clone()),
             springs: Springs { serial: &self.springs.serial[rows], ..self.springs },
             ..*self

@@ -74,6 +74,8 @@ impl Demand {
 pub(crate) struct Plan {
     /// Columns of a user's own.
     pub(crate) custom: usize,
+    /// Words a particle for what materials change.
+    pub(crate) ageing: usize,
     /// Whether anybody asks for places and velocities at the step's beginning, and at each sub-step's.
     pub(crate) start: bool,
     pub(crate) before: bool,
@@ -99,9 +101,9 @@ impl Plan {
         words.div_ceil(3 * capacity.max(1))
     }
 
-    /// What is kept from step to step: columns of a user's own, and what constraints keep.
+    /// What is kept from step to step: columns of a user's own, what materials change, and what constraints keep.
     pub(crate) fn kept(&self) -> Words {
-        Words { per_row: self.custom, fixed: 0 }.and(self.constraints.kept)
+        Words { per_row: self.custom + self.ageing, fixed: 0 }.and(self.constraints.kept)
     }
 
     /// Words for each of so many particles that it takes.
@@ -222,8 +224,17 @@ impl Layout {
         let Words { per_row, fixed } = self.plan.constraints.kept;
         let mut rest = words;
         let custom = take(&mut rest, self.plan.custom * self.capacity);
+        take(&mut rest, self.plan.ageing * self.capacity);
         let rows = take(&mut rest, per_row * self.capacity);
         (bytemuck::cast_slice_mut(custom), Kept { rows, fixed: take(&mut rest, fixed) })
+    }
+
+    /// Drags and masses of before materials have changed them.
+    pub(crate) fn ageing<'m>(&self, words: &'m mut [u32]) -> [&'m mut [u32]; 2] {
+        let mut rest = words;
+        take(&mut rest, self.plan.custom * self.capacity);
+        let words = take(&mut rest, self.plan.ageing * self.capacity);
+        words.split_at_mut(words.len() / 2).into()
     }
 
     /// Memory for `rows` of `len`, and for the others, who work at the same time.

@@ -292,6 +292,7 @@ impl SceneFile {
                 let message = format!("{meant}, not {number}");
                 return Err(SceneError::value(format!("materials[{i}].contact.{name}"), message));
             }
+            m.life.check(&format!("materials[{i}].life"))?;
         }
         for (i, light) in self.lights.iter().enumerate() {
             let at = format!("lights[{i}]");

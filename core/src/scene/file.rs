@@ -1,8 +1,7 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::Cloth;
 use super::Response;
-use crate::collide::ContactMaterial;
+use super::{Cloth, Material};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -142,37 +141,6 @@ pub struct Group {
     pub parent: Option<u32>,
 }
 
-/// How a surface, or a particle, looks. Colours are red, green, blue from 0 to 1.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Material {
-    /// Reflected from ambient light.
-    pub ambient: [f32; 3],
-    /// Reflected in all directions; the colour of particles.
-    pub diffuse: [f32; 3],
-    /// Reflected in highlights.
-    pub specular: [f32; 3],
-    /// Let through.
-    pub transmission: [f32; 3],
-    /// Emitted; the colour of particles whose diffuse colour is black.
-    pub emission: [f32; 3],
-    /// Exponent of the highlights.
-    pub shininess: f32,
-    /// Index of refraction.
-    pub refraction: f32,
-    /// The file of a texture.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub texture: Option<String>,
-    /// The diameter particles are drawn with \[m\]; zero: that of their radius, or of points one that suits the picture.
-    pub size: f32,
-    /// How particles are drawn, from 0, a lit ball, to 1, a glow.
-    pub glow: f32,
-    /// How it feels to what touches it.
-    #[cfg_attr(feature = "serde", serde(alias = "grip", skip_serializing_if = "ContactMaterial::is_plain"))]
-    pub contact: ContactMaterial,
-}
-
 /// A light. Colours are red, green, blue; attenuation is ca, la, qa of 1 / (ca + la d + qa d²).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
@@ -292,24 +260,6 @@ impl Default for Run {
             max_bounces: 8,
             seed: 1,
             capacity: 65_536,
-        }
-    }
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self {
-            ambient: [0.2; 3],
-            diffuse: [0.5; 3],
-            specular: [0.5; 3],
-            transmission: [0.0; 3],
-            emission: [0.0; 3],
-            shininess: 10.0,
-            refraction: 1.0,
-            texture: None,
-            size: 0.0,
-            glow: 0.0,
-            contact: ContactMaterial::default(),
         }
     }
 }

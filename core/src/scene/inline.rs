@@ -134,7 +134,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             sinks: &self.forces.3,
             reapers: &(),
             custom: &(),
-            contact_materials: &[],
+            materials: &(),
             constraints: &(),
             substeps: 1,
             meetings: Meetings::Through,

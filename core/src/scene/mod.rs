@@ -18,6 +18,8 @@ mod inline;
 #[cfg(feature = "json")]
 mod json;
 #[cfg(feature = "alloc")]
+mod material;
+#[cfg(feature = "alloc")]
 mod model;
 #[cfg(feature = "alloc")]
 mod numbers;
@@ -38,8 +40,10 @@ pub use cloth::{Cloth, Form, Gas};
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
 #[cfg(feature = "alloc")]
-pub use file::{Camera, Group, Item, Light, Material, Run, SceneFile};
+pub use file::{Camera, Group, Item, Light, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
+#[cfg(feature = "alloc")]
+pub use material::{CurveBuf, LifeBuf, Material, Sides, VaryingBuf};
 #[cfg(feature = "alloc")]
 pub use model::{Model, Solid};
 #[cfg(feature = "alloc")]

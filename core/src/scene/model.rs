@@ -3,7 +3,7 @@
 use super::Response;
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
-use crate::collide::{ContactMaterial, Meetings};
+use crate::collide::Meetings;
 use crate::constrain::{ConstraintKind, Contacts};
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -45,8 +45,8 @@ pub struct Model {
     pub reapers: Vec<ReaperKind>,
     /// What each particle has beside the engine's own attributes.
     pub custom: Vec<CustomBuf>,
-    /// How materials feel, by their numbers.
-    pub contact_materials: Vec<ContactMaterial>,
+    /// What particles and surfaces are made of, by numbers.
+    pub materials: Vec<Material>,
     /// What is drawn.
     pub scenery: Vec<Solid>,
     /// How often a particle may bounce in one step.
@@ -138,7 +138,7 @@ impl Model {
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
             custom: file.custom.clone(),
-            contact_materials: file.materials.iter().map(|material| material.contact).collect(),
+            materials: file.materials.clone(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
             index: file.run.index,
@@ -165,7 +165,7 @@ impl Model {
             sinks: &self.forces.1,
             reapers: &self.reapers,
             custom: &self.custom,
-            contact_materials: &self.contact_materials,
+            materials: &self.materials,
             constraints: &self.constraints,
             substeps: self.substeps,
             meetings: self.contacts.map_or(Meetings::Through, |response| response.meetings()),
@@ -180,14 +180,6 @@ impl Model {
     pub fn size(&self, particles: usize) -> Size {
         let scene = self.scene();
         Size { particles, columns: scene.columns_with_lists(), ..scene.size() }
-    }
-}
-
-impl Material {
-    /// The colour of particles of this material: diffuse, or emitted where that is black.
-    #[must_use]
-    pub fn color(&self) -> Color {
-        super::shown(self.diffuse, self.emission)
     }
 }
 

@@ -1,12 +1,13 @@
 //! The scene as a system steps through it.
 
-use crate::collide::{ContactMaterial, Meetings};
+use crate::collide::Meetings;
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
 use crate::force::{Force, SpringList};
 use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
+use crate::material::MaterialList;
 use crate::memory::{Plan, Size};
 use crate::particles::Particle;
 use crate::reap::Reaper;
@@ -36,8 +37,8 @@ pub struct Scene<'a> {
     pub reapers: &'a dyn Reaper,
     /// What each particle has beside the engine's own attributes: numbers with names.
     pub custom: &'a dyn CustomList,
-    /// How materials feel, by their numbers; those beyond have no friction.
-    pub contact_materials: &'a [ContactMaterial],
+    /// What particles and surfaces are made of, by numbers; beyond them all nothing rubs or changes.
+    pub materials: &'a dyn MaterialList,
     /// What binds them together and keeps them apart.
     pub constraints: &'a dyn Constraint,
     /// Parts that a step is cut into for the method and the constraints, 1 to 1000: the finer, the stiffer are constraints.
@@ -73,7 +74,7 @@ impl Scene<'_> {
         sinks: &(),
         reapers: &(),
         custom: &(),
-        contact_materials: &[],
+        materials: &(),
         constraints: &(),
         substeps: 1,
         meetings: Meetings::Through,
@@ -108,6 +109,7 @@ impl Scene<'_> {
         let constrained = !self.constraints.is_empty();
         Plan {
             custom: self.custom.count(),
+            ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
             start: self.needs_start(),
             before: constrained || self.pieces() > 1,
             constrained,

@@ -129,6 +129,9 @@ impl Writer {
         if material.size != 0.0 || material.glow != 0.0 {
             self.warn("materials: .scn has neither size nor glow of particles; they are left out");
         }
+        if !material.life.is_plain() {
+            self.warn("materials: .scn has no lives of particles; they are left out");
+        }
         if !material.contact.is_plain() {
             self.warn("materials: .scn knows no friction and no elasticity of surfaces; they are left out");
         }

@@ -19,7 +19,6 @@ pub(crate) struct Attributes<'a> {
     pub(crate) lives: State<'a>,
     pub(crate) inverse_mass: &'a [f32],
     pub(crate) elasticity: &'a [f32],
-    pub(crate) material: &'a [u16],
 }
 
 impl<'a> Attributes<'a> {
@@ -36,7 +35,6 @@ impl<'a> Attributes<'a> {
         Self {
             inverse_mass: &self.inverse_mass[rows.clone()],
             elasticity: &self.elasticity[rows.clone()],
-            material: &self.material[rows.clone()],
             lives: self.lives.attributes_of(rows),
         }
     }
@@ -106,7 +104,10 @@ impl Dynamics for Field<'_> {
         let rows = self.first..position.len();
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
         let lives = &self.attributes.lives;
-        if let Some(steady) = if BLOCKS && lives.springs.force().is_none() { forces.steady() } else { None } {
+        let plain = BLOCKS
+            && lives.springs.force().is_none()
+            && !lives.materials.code().is_some_and(|code| (code.floats)(lives.materials));
+        if let Some(steady) = if plain { forces.steady() } else { None } {
             self.effort.evaluations += u64::from(!position.is_empty());
             let (mass, drag) = (&lives.mass[rows.clone()], &lives.drag[rows.clone()]);
             return steady.accelerate(&velocity[rows], mass, drag, inverse_mass, acceleration);

@@ -1,6 +1,7 @@
-//! The step: create, advance, snap, collide, reap. Each is a file.
+//! The step: create, age, advance, snap, collide, reap. Each is a file.
 
 mod advance;
+mod age;
 mod create;
 mod field;
 mod population;
@@ -32,6 +33,7 @@ impl Workspace<'_> {
         let span = [self.status.time, dt];
         self.tell(Phase::Begin, scene, observer);
         let old = self.create(scene, span[0] + dt, report, observer);
+        self.age(scene, span);
         self.tell(Phase::Create, scene, observer);
         if TILED && scene.is_local() && observer.attention() < Attention::Phases {
             self.tile_by_tile(scene, span, old, report, observer);

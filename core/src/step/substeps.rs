@@ -122,7 +122,7 @@ impl Moved<'_> {
     /// Lends the constraints what they move and the memory that they work in.
     fn ask(&mut self, code: ConstraintCode, moment: Moment, substep: Substep) {
         let scene = self.scene;
-        let Attributes { lives, inverse_mass, elasticity, material } = *self.attributes;
+        let Attributes { lives, inverse_mass, elasticity } = *self.attributes;
         let len = self.position.len();
         let [memory, scratch] = self.scratch.constraining();
         let (custom, kept) = Layout::of(scene.plan(), self.capacity).kept(self.kept);
@@ -134,11 +134,11 @@ impl Moved<'_> {
             mass: &lives.mass[..len],
             inverse_mass: &inverse_mass[..len],
             elasticity: &elasticity[..len],
-            material: &material[..len],
+            material: &lives.material[..len],
             custom: CustomColumnsMut::new(scene.custom, custom, self.capacity, len),
             substep,
             colliders: scene.colliders,
-            contact_materials: scene.contact_materials,
+            materials: scene.materials,
             near: Near { index: scene.index, memory },
             report: self.report,
             slot: &lives.slot[..len],

@@ -107,10 +107,25 @@ impl Workspace<'_> {
         };
         let (radius, mass, drag, charge) = (&*m.radius, &*m.mass, &*m.drag, &*m.charge);
         let (born, dies, slot, key) = (&*m.born, &*m.dies, &*m.slot, &*m.key);
+        let (color, material, materials) = (&*m.color, &*m.material, scene.materials);
         let custom = CustomColumns::kept(scene.custom, m.kept, whole, whole);
-        let lives = State { radius, mass, drag, charge, born, dies, slot, key, springs, custom, ..State::EMPTY };
-        let attributes =
-            Attributes { lives, inverse_mass: m.inverse_mass, elasticity: m.elasticity, material: m.material };
+        let lives = State {
+            radius,
+            mass,
+            drag,
+            charge,
+            born,
+            dies,
+            slot,
+            key,
+            color,
+            material,
+            materials,
+            springs,
+            custom,
+            ..State::EMPTY
+        };
+        let attributes = Attributes { lives, inverse_mass: m.inverse_mass, elasticity: m.elasticity };
         Tile {
             scene,
             now,

@@ -46,7 +46,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, system } = memory;
     heap(start);
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(1.72, 3.0, 1.72) };
-    let contact_materials =
+    let materials =
         [ContactMaterial { elasticity: Some(0.8), friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
     for (names, response) in &RESPONSES {
         let push = if let Response::Force(penalty) = response { *penalty } else { Penalty::NONE };
@@ -57,7 +57,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
                 start,
                 forces,
                 colliders: &room,
-                contact_materials: &contact_materials,
+                materials: &materials,
                 constraints: &response.contacts(),
                 substeps: response.substeps(),
                 meetings: response.meetings(),

@@ -19,7 +19,7 @@ struct Stage {
 impl Stage {
     /// Where all are in the end and how fast, by every method, step and number of sub-steps.
     fn each(&self, start: &[Particle], mut see: impl FnMut(&[Vec3], &[Vec3], &str)) {
-        let contact_materials =
+        let materials =
             [ContactMaterial { elasticity: None, friction: Some(Friction { static_: self.mu, kinetic: self.mu }) }];
         let planes: Vec<Plane> = self.plane.map(|normal| Plane { point: Vec3::ZERO, normal }).into_iter().collect();
         let forces = &Gravity { acceleration: self.gravity };
@@ -28,7 +28,7 @@ impl Stage {
                 let colliders = &planes;
                 let scene = Scene {
                     start,
-                    contact_materials: &contact_materials,
+                    materials: &materials,
                     forces,
                     colliders,
                     substeps,

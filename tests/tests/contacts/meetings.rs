@@ -47,7 +47,7 @@ fn momentum_is_conserved_to_rounding() {
             // All fly inward, so that they meet often before they have flown apart.
             ball.velocity += (Vec3::splat(2.5) - ball.position) * 3.0;
         }
-        let scene = Scene { start: &start, contact_materials: &MATERIALS, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
+        let scene = Scene { start: &start, materials: &MATERIALS, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 1);
         let before = momentum(system.particles().mass, system.particles().velocity);
         run(&mut system, &scene, 0.02, 50);
@@ -82,7 +82,7 @@ fn friction_keeps_within_coulomb_s_cone_and_never_turns_slip_round() {
     for _ in 0..often(20_000) {
         let friction = Friction { static_: random.between(0.0, 1.0), kinetic: random.between(0.0, 1.0) };
         let largest = f64::from(friction.static_.max(friction.kinetic));
-        let contact_materials = [ContactMaterial { elasticity: None, friction: Some(friction) }];
+        let materials = [ContactMaterial { elasticity: None, friction: Some(friction) }];
         let apart = random.direction();
         let mut ball = |place: Vec3| Particle {
             position: place,
@@ -94,8 +94,7 @@ fn friction_keeps_within_coulomb_s_cone_and_never_turns_slip_round() {
             ..Particle::REST
         };
         let start = [ball(apart * 0.5), ball(apart * -0.5)];
-        let scene =
-            Scene { start: &start, contact_materials: &contact_materials, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
+        let scene = Scene { start: &start, materials: &materials, meetings: Meetings::IMPULSE, ..Scene::EMPTY };
         let mut system = started(&scene, 2, 1);
         let mut records = Records::default();
         system.step_observed(&scene, Time::from_seconds(1.0), &mut records);
@@ -194,7 +193,7 @@ fn hash_with(index: &dyn IndexChoice, fast: bool) -> (u64, pointmass::Report) {
     let scene = Scene {
         start: &start,
         forces: &Gravity::EARTH,
-        contact_materials: &MATERIALS,
+        materials: &MATERIALS,
         colliders: &colliders,
         emitters: &emitter,
         meetings: Meetings::IMPULSE,

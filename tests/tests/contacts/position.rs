@@ -75,11 +75,10 @@ fn two_balls_bounce_off_each_other_with_their_share_of_the_speed() {
 #[test]
 fn what_slides_stops_after_its_way() {
     for kinetic in [0.2, 0.4, 0.8] {
-        let contact_materials =
-            [ContactMaterial { elasticity: None, friction: Some(Friction { static_: kinetic, kinetic }) }];
+        let materials = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: kinetic, kinetic }) }];
         let start = [Particle { velocity: Vec3::X * 3.0, material: Some(0), ..ball(0.1) }];
         let forces = &Gravity::EARTH;
-        let scene = Scene { start: &start, contact_materials: &contact_materials, forces, colliders: &GROUND, ..HEAP };
+        let scene = Scene { start: &start, materials: &materials, forces, colliders: &GROUND, ..HEAP };
         let mut system = started(&scene, 1, 1);
         run(&mut system, &scene, 1.0 / 60.0, 120);
         let want = 9.0 / (2.0 * f64::from(kinetic) * G);
@@ -93,8 +92,7 @@ fn what_slides_stops_after_its_way() {
 #[test]
 fn momentum_of_free_balls_is_conserved() {
     let mut random = Random::new(61);
-    let contact_materials =
-        [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
+    let materials = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
     let start: Vec<Particle> = (0..125)
         .map(|i| {
             let place = Vec3::new((i % 5) as f32, (i / 5 % 5) as f32, (i / 25) as f32) - 2.0;
@@ -109,13 +107,8 @@ fn momentum_of_free_balls_is_conserved() {
             }
         })
         .collect();
-    let scene = Scene {
-        start: &start,
-        contact_materials: &contact_materials,
-        substeps: 12,
-        constraints: &Contacts::HARD,
-        ..Scene::EMPTY
-    };
+    let scene =
+        Scene { start: &start, materials: &materials, substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 1);
     let momentum = |mass: &[f32], velocity: &[Vec3]| -> [f64; 3] {
         core::array::from_fn(|axis| mass.iter().zip(velocity).map(|(&m, &v)| f64::from(m) * f64s(v)[axis]).sum())
@@ -163,12 +156,11 @@ fn a_heap_settles_and_keeps_its_room() {
             ..Particle::REST
         })
         .collect();
-    let contact_materials =
-        [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.4, kinetic: 0.3 }) }];
+    let materials = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.4, kinetic: 0.3 }) }];
     let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(14.8, 200.0, 14.8) * RADIUS };
     let scene = Scene {
         start: &start,
-        contact_materials: &contact_materials,
+        materials: &materials,
         forces: &Gravity::EARTH,
         colliders: &room,
         substeps: 12,

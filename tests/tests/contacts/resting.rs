@@ -6,14 +6,12 @@ use pointmass_tests::{run, started};
 
 /// A ball that lies on a fixed one, where that slopes by so many degrees.
 fn perched(degrees: f32, mu: f32, method: Method, rate: f64, seconds: f64) -> (Vec3, Vec3) {
-    let contact_materials =
-        [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }];
+    let materials = [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }];
     let ball = Particle { radius: 0.5, elasticity: 0.0, material: Some(0), ..Particle::REST };
     let (sin, cos) = degrees.to_radians().sin_cos();
     let start = [Particle { fixed: true, ..ball }, Particle { position: Vec3::new(0.6 * sin, cos, 0.8 * sin), ..ball }];
     let (forces, meetings, integrator) = (&Gravity::EARTH, Meetings::IMPULSE, method.integrator());
-    let scene =
-        Scene { start: &start, forces, meetings, contact_materials: &contact_materials, integrator, ..Scene::EMPTY };
+    let scene = Scene { start: &start, forces, meetings, materials: &materials, integrator, ..Scene::EMPTY };
     let mut system = started(&scene, 2, 1);
     run(&mut system, &scene, 1.0 / rate, (rate * seconds) as u32);
     (system.particles().position[1] - start[1].position, system.particles().velocity[1])

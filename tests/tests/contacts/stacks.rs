@@ -30,7 +30,7 @@ impl Stack<'_> {
     /// How far each gets, as a share of v²/2μg.
     fn ways(&self, method: Method, (rate, substeps): (u32, u32)) -> Vec<f64> {
         const RADIUS: f32 = 0.1;
-        let contact_materials = [rubbing(1.0), rubbing(self.friction * self.friction)];
+        let materials = [rubbing(1.0), rubbing(self.friction * self.friction)];
         let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
         let floor = Placed::new(floor, Affine::IDENTITY).expect("a map that leaves all as it is").made_of(Some(1));
         let place = |i: usize| Vec3::Y * (RADIUS * (1.0 + 2.0 * i as f32));
@@ -40,7 +40,7 @@ impl Stack<'_> {
             .collect();
         let scene = Scene {
             start: &start,
-            contact_materials: &contact_materials,
+            materials: &materials,
             forces: &Gravity { acceleration: Vec3::NEG_Y * G as f32 },
             colliders: &floor,
             substeps,
@@ -77,7 +77,7 @@ fn a_stack_slides_as_far_as_one_ball() {
 #[test]
 fn a_pyramid_settles_and_then_stands_still() {
     for (friction, radius, origin) in [(0.3, 0.1, Vec3::ZERO), (0.8, 2.0, Vec3::new(5.0, 0.0, -3.0))] {
-        let contact_materials = [rubbing(friction)];
+        let materials = [rubbing(friction)];
         let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
         let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, z)| Vec3::new(x, 1.0, z));
         let places = corners.into_iter().chain([Vec3::Y * (1.0 + 2f32.sqrt())]);
@@ -86,7 +86,7 @@ fn a_pyramid_settles_and_then_stands_still() {
             for (rate, substeps) in [(24, 1), (60, 2), (60, 12), (240, 20)] {
                 let scene = Scene {
                     start: &start,
-                    contact_materials: &contact_materials,
+                    materials: &materials,
                     forces: &Gravity::EARTH,
                     colliders: &floor,
                     substeps,
@@ -120,11 +120,11 @@ fn a_heap_falls_to_the_same_bits_whatever_the_index() {
             Particle { velocity, elasticity: 0.3, ..ball(cell * 0.11 + random.vector(0.004), radius) }
         })
         .collect();
-    let (contact_materials, room) = ([rubbing(0.4)], Cuboid { min: Vec3::ZERO, max: Vec3::new(0.7, 9.0, 0.7) });
+    let (materials, room) = ([rubbing(0.4)], Cuboid { min: Vec3::ZERO, max: Vec3::new(0.7, 9.0, 0.7) });
     let hash = |structure: Structure| {
         let scene = Scene {
             start: &start,
-            contact_materials: &contact_materials,
+            materials: &materials,
             forces: &Gravity::EARTH,
             colliders: &room as &dyn Collider,
             substeps: 8,

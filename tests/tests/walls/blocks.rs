@@ -6,20 +6,19 @@ use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, run, started};
 
 /// What lies on the floor is of material 0.
-fn contact_materials(mu: f32) -> [ContactMaterial; 1] {
+fn materials(mu: f32) -> [ContactMaterial; 1] {
     [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }]
 }
 
 /// How far it is after some seconds, and how fast.
 fn slide(collider: &dyn Collider, mu: f32, particle: Particle, seconds: u32) -> (Vec3, Vec3) {
-    let (start, contact_materials) =
-        ([Particle { material: Some(0), elasticity: 0.0, ..particle }], contact_materials(mu));
+    let (start, materials) = ([Particle { material: Some(0), elasticity: 0.0, ..particle }], materials(mu));
     let integrator = Method::Verlet.integrator();
     let scene = Scene {
         start: &start,
         forces: &Gravity::EARTH,
         colliders: collider,
-        contact_materials: &contact_materials,
+        materials: &materials,
         integrator,
         ..Scene::EMPTY
     };

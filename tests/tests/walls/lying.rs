@@ -9,7 +9,7 @@ use pointmass_tests::{G, Random, emitting, run, started};
 fn after(
     particle: Particle,
     [colliders, sinks]: [&dyn Collider; 2],
-    contact_materials: &[ContactMaterial],
+    materials: &[ContactMaterial],
     method: Method,
     [h, end]: [f64; 2],
 ) -> Option<[Vec3; 2]> {
@@ -20,7 +20,7 @@ fn after(
         forces: &Gravity::EARTH,
         colliders,
         sinks,
-        contact_materials,
+        materials: &materials,
         integrator: &integrator,
         ..Scene::EMPTY
     };
@@ -104,12 +104,12 @@ fn slopes_brake_it_by_coulomb_s_law() {
     each_way(|method, h, radius, home| {
         let angle = f64::from(random.between(0.05, 1.2));
         let friction = Friction { static_: 0.4, kinetic: 0.3 };
-        let contact_materials = [ContactMaterial { elasticity: None, friction: Some(friction) }];
+        let materials = [ContactMaterial { elasticity: None, friction: Some(friction) }];
         let normal = Vec3::new(angle.sin() as f32, angle.cos() as f32, 0.0);
         let down = Vec3::new(normal.y, -normal.x, 0.0);
         let slope = Plane { point: home, normal };
         let start = Particle { position: home + normal * radius, radius, material: Some(0), ..Particle::REST };
-        let [x, v] = after(start, [&slope, &()], &contact_materials, method, [h, 0.75]).expect("it is on the slope");
+        let [x, v] = after(start, [&slope, &()], &materials, method, [h, 0.75]).expect("it is on the slope");
         let pull = G * (angle.sin() - 0.3 * angle.cos());
         let rate = if angle.tan() > 0.4 { pull } else { 0.0 };
         let along = f64::from((x - start.position).dot(down));

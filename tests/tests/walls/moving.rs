@@ -34,7 +34,7 @@ fn a_motion_is_where_its_formula_says_early_and_late() {
 
 #[test]
 fn a_block_on_a_platform_is_carried() {
-    let contact_materials =
+    let materials =
         [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: 0.5, kinetic: 0.5 }) }];
     for radius in [0.0f32, 0.1] {
         let slab = Cuboid { min: Vec3::new(-50.0, -1.0, -50.0), max: Vec3::new(50.0, 0.0, 50.0) };
@@ -46,7 +46,7 @@ fn a_block_on_a_platform_is_carried() {
             start: &start,
             forces: &Gravity::EARTH,
             colliders: &platform,
-            contact_materials: &contact_materials,
+            materials: &materials,
             integrator,
             ..Scene::EMPTY
         };

@@ -21,18 +21,10 @@ fn after_touching(
     rate: f64,
     seconds: f64,
 ) -> Vec<Vec3> {
-    let contact_materials =
-        [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }];
+    let materials = [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }];
     let start: Vec<Particle> = start.iter().map(|p| Particle { material: Some(0), elasticity: 0.0, ..*p }).collect();
     let (forces, integrator) = (&Gravity::EARTH, method.integrator());
-    let scene = Scene {
-        start: &start,
-        forces,
-        colliders: collider,
-        contact_materials: &contact_materials,
-        integrator,
-        ..touching
-    };
+    let scene = Scene { start: &start, forces, colliders: collider, materials: &materials, integrator, ..touching };
     let mut system = started(&scene, start.len(), 0);
     run(&mut system, &scene, 1.0 / rate, (rate * seconds) as u32);
     system.particles().position.to_vec()

@@ -2,7 +2,7 @@
 
 use super::super::{Bodies, Substep, Words};
 use super::touch::Touch;
-use crate::collide::{of_two, on_surface};
+use crate::material::{of_two, on_surface};
 use crate::math::{length, max, min};
 use crate::memory::{take, take_vectors};
 use crate::shape::{Collider, Contact, Segment};
@@ -117,7 +117,7 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
         *middle = x + v * half;
     }
     let (middle, lists, room) = (&*middle, &mut *kept.lists, &mut *kept.pairs);
-    let Bodies { velocity, radius, inverse_mass, material, elasticity, contact_materials, report, near, .. } = bodies;
+    let Bodies { velocity, radius, inverse_mass, material, elasticity, materials, report, near, .. } = bodies;
     near.pairs(middle, reach, &mut |row, other| {
         let (a, b) = (row as usize, other as usize);
         let way = length(velocity[a] - velocity[b]) * half;
@@ -133,7 +133,7 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
             return;
         };
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
-        let touch = Touch::new(of_two(contact_materials, [elasticity[a], elasticity[b]], of_both));
+        let touch = Touch::new(of_two(materials, [elasticity[a], elasticity[b]], of_both));
         lists.rough |= u32::from(touch.has_friction());
         *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, touch };
         lists.pairs += 1;
@@ -183,7 +183,7 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
             };
             lists.faces += 1;
             let Contact { point, normal, material, .. } = *contact;
-            let touch = Touch::new(on_surface(bodies.contact_materials, elasticity, own, material));
+            let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
             lists.moving |= u32::from(contact.velocity != Vec3::ZERO);
             lists.rough |= u32::from(touch.has_friction());
             let (way, velocity) = carried(colliders, center, contact, substep);

@@ -1,7 +1,7 @@
 //! Two that touch in a sub-step: what presses them, and Coulomb's friction by just that.
 
-use crate::collide::Mixed;
 use crate::force::Friction;
+use crate::material::Mixed;
 use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
 

@@ -1,0 +1,79 @@
+//! What particles look like: the same to whatever draws them.
+
+use crate::force::State;
+use crate::material::{Age, Life, Property, Varying, life_of};
+use crate::math::{max, min};
+use crate::particles::{Color, WHITE};
+use crate::time::Time;
+
+/// How a particle looks at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Appearance {
+    /// The diameter it is drawn with \[m\]; zero: it is a point, which takes whatever suits the picture.
+    pub diameter: f32,
+    /// The factor of that size which is in `diameter` already, for points.
+    pub scale: f32,
+    /// Whether it is drawn with its own radius: a body, no mark.
+    pub solid: bool,
+    /// Its colour, with the opacity it has now.
+    pub color: Color,
+    /// How it is drawn, from 0, a lit ball, to 1, a glow.
+    pub glow: f32,
+    /// The angle by which its picture is turned anticlockwise \[rad\].
+    pub rotation: f32,
+}
+
+/// The share of a life in which those fade of whose opacity nothing is said.
+const FADING: f32 = 0.2;
+
+/// How the particle in a row looks at the state's instant: by its material, its age, and the words that are its own. The same bits
+/// on every machine. Nobody is there beyond the last row.
+///
+/// ```
+/// use pointmass::{Heap, Particle, Scene, Size, System, Time, draw};
+///
+/// let start = [Particle { radius: 0.5, lifetime: 2.0, ..Particle::REST }];
+/// let scene = Scene { start: &start, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// system.step(&scene, Time::from_seconds(1.8));
+/// let look = draw::appearance(&system.state(&scene), 0).expect("it lives");
+/// assert_eq!((look.diameter, look.color[3]), (1.0, 128)); // Half of its last fifth is over.
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+#[must_use]
+pub fn appearance(state: &State<'_>, row: usize) -> Option<Appearance> {
+    let (&radius, &key, &[red, green, blue, alpha]) =
+        (state.radius.get(row)?, state.key.get(row)?, state.color.get(row).unwrap_or(&WHITE));
+    let material = state.material.get(row).copied().unwrap_or(0);
+    let own = material.checked_sub(1).and_then(|number| state.materials.get(usize::from(number))).unwrap_or_default();
+    let life = life_of(state.materials, material).unwrap_or_default();
+    let age = Age::of(*state.born.get(row)?, *state.dies.get(row)?, state.time);
+    let value =
+        |curve: Option<Varying<'_>>, property: Property| curve.map(|curve| curve.value(1, age, property.between(key)));
+    let scale = max(value(life.size, Property::Size).unwrap_or(1.0), 0.0);
+    let opacity = value(life.opacity, Property::Opacity).unwrap_or_else(|| fading(state.dies[row], age));
+    let tinted = |channel: u8, number: usize| {
+        let Life { color, .. } = life;
+        color.map_or(channel, |curve| faded(channel, curve.value(number, age, Property::Color.between(key))))
+    };
+    let solid = !(own.size > 0.0) && radius > 0.0;
+    Some(Appearance {
+        diameter: if own.size > 0.0 { own.size * scale } else { 2.0 * radius * scale },
+        scale,
+        solid,
+        color: [tinted(red, 1), tinted(green, 2), tinted(blue, 3), faded(alpha, opacity)],
+        glow: value(life.glow, Property::Glow).unwrap_or(own.glow),
+        rotation: value(life.rotation, Property::Rotation).unwrap_or(0.0),
+    })
+}
+
+/// The opacity at an age of those who die of it.
+fn fading(dies: Time, age: Age) -> f32 {
+    if dies == Time::NEVER { 1.0 } else { min((1.0 - age.life) * (1.0 / FADING), 1.0) }
+}
+
+/// A channel times a factor, rounded.
+fn faded(channel: u8, factor: f32) -> u8 {
+    (f32::from(channel) * factor + 0.5) as u8
+}

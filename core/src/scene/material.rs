@@ -1,0 +1,256 @@
+//! Materials in scene files: how surfaces and particles look, how they feel, and what becomes of them.
+
+use super::SceneError;
+use super::numbers::finite;
+use crate::material::{self, ContactMaterial, Curve, Life, MaterialList, Over, Varying};
+use crate::particles::Color;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// How a surface, or a particle, looks. Colours are red, green, blue from 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Material {
+    /// Reflected from ambient light.
+    pub ambient: [f32; 3],
+    /// Reflected in all directions; the colour of particles.
+    pub diffuse: [f32; 3],
+    /// Reflected in highlights.
+    pub specular: [f32; 3],
+    /// Let through.
+    pub transmission: [f32; 3],
+    /// Emitted; the colour of particles whose diffuse colour is black.
+    pub emission: [f32; 3],
+    /// Exponent of the highlights.
+    pub shininess: f32,
+    /// Index of refraction.
+    pub refraction: f32,
+    /// The file of a texture.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub texture: Option<String>,
+    /// The diameter particles are drawn with \[m\]; zero: that of their radius, or of points one that suits the picture.
+    pub size: f32,
+    /// How particles are drawn, from 0, a lit ball, to 1, a glow.
+    pub glow: f32,
+    /// How it feels to what touches it.
+    #[cfg_attr(feature = "serde", serde(alias = "grip", skip_serializing_if = "ContactMaterial::is_plain"))]
+    pub contact: ContactMaterial,
+    /// What becomes of particles of it over their lives.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "LifeBuf::is_plain"))]
+    pub life: LifeBuf,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            ambient: [0.2; 3],
+            diffuse: [0.5; 3],
+            specular: [0.5; 3],
+            transmission: [0.0; 3],
+            emission: [0.0; 3],
+            shininess: 10.0,
+            refraction: 1.0,
+            texture: None,
+            size: 0.0,
+            glow: 0.0,
+            contact: ContactMaterial::default(),
+            life: LifeBuf::default(),
+        }
+    }
+}
+
+/// What becomes of particles over their lives: see [`Life`]. A key is an instant and a value, or for colours three.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LifeBuf {
+    /// A factor of the diameter they are drawn with.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub size: Option<VaryingBuf<[f32; 2]>>,
+    /// Factors of red, green and blue.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub color: Option<VaryingBuf<[f32; 4]>>,
+    /// A factor of their opacity, 0 to 1. Without one, those who die of age fade in the last fifth of their lives.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub opacity: Option<VaryingBuf<[f32; 2]>>,
+    /// How they are drawn instead of as `glow` says, from 0, a lit ball, to 1, a glow.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub glow: Option<VaryingBuf<[f32; 2]>>,
+    /// The angle by which their picture is turned anticlockwise \[rad\].
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub rotation: Option<VaryingBuf<[f32; 2]>>,
+    /// A factor of their coefficient of drag.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub drag: Option<VaryingBuf<[f32; 2]>>,
+    /// A factor of their mass; what they lose takes its momentum along.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub mass: Option<VaryingBuf<[f32; 2]>>,
+    /// The share of their weight that what is around them carries: at 1 they float, beyond it they rise.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub buoyancy: Option<VaryingBuf<[f32; 2]>>,
+}
+
+/// A curve, or two between which each particle has its own place.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        untagged,
+        expecting = "expected [[instant, value], ...], {\"keys\": [...], \"over\": \"life\" or \"seconds\", \"smooth\": true or false}, or {\"between\": [one, other]}"
+    )
+)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum VaryingBuf<K> {
+    /// Keys over the life, with straight lines between them.
+    Keys(Vec<K>),
+    /// A curve.
+    Curve(CurveBuf<K>),
+    /// Something between two.
+    Between(Sides<K>),
+}
+
+/// A curve through keys.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CurveBuf<K> {
+    /// An instant and values each, in the order of the instants.
+    pub keys: Vec<K>,
+    /// The measure of the instants: shares of the life, or seconds.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub over: Over,
+    /// Whether it goes from key to key along cubics that overshoot nothing, instead of straight.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub smooth: bool,
+}
+
+/// What each particle has its own place between.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sides<K> {
+    /// The one side and the other.
+    pub between: [CurveBuf<K>; 2],
+}
+
+impl<const N: usize> CurveBuf<[f32; N]> {
+    fn lend(&self) -> Curve<'_, N> {
+        Curve { keys: &self.keys, over: self.over, smooth: self.smooth }
+    }
+}
+
+impl<const N: usize> VaryingBuf<[f32; N]> {
+    fn lend(&self) -> Varying<'_, N> {
+        match self {
+            Self::Keys(keys) => Varying { from: Curve { keys, over: Over::Life, smooth: false }, to: None },
+            Self::Curve(curve) => Varying { from: curve.lend(), to: None },
+            Self::Between(Sides { between: [from, to] }) => Varying { from: from.lend(), to: Some(to.lend()) },
+        }
+    }
+}
+
+impl LifeBuf {
+    /// Whether nothing becomes of them.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn lend(&self) -> Life<'_> {
+        fn lent<const N: usize>(curve: Option<&VaryingBuf<[f32; N]>>) -> Option<Varying<'_, N>> {
+            curve.map(VaryingBuf::lend)
+        }
+        Life {
+            size: lent(self.size.as_ref()),
+            color: lent(self.color.as_ref()),
+            opacity: lent(self.opacity.as_ref()),
+            glow: lent(self.glow.as_ref()),
+            rotation: lent(self.rotation.as_ref()),
+            drag: lent(self.drag.as_ref()),
+            mass: lent(self.mass.as_ref()),
+            buoyancy: lent(self.buoyancy.as_ref()),
+        }
+    }
+
+    /// Whether its curves can be used; `at` is where they stand.
+    pub(super) fn check(&self, at: &str) -> Result<(), SceneError> {
+        const ANY: f32 = f32::MAX;
+        let life = self.lend();
+        let plain = [
+            ("size", life.size, [0.0, ANY]),
+            ("opacity", life.opacity, [0.0, 1.0]),
+            ("glow", life.glow, [0.0, 1.0]),
+            ("rotation", life.rotation, [-ANY, ANY]),
+            ("drag", life.drag, [0.0, ANY]),
+            ("mass", life.mass, [f32::MIN_POSITIVE, ANY]),
+            ("buoyancy", life.buoyancy, [-ANY, ANY]),
+        ];
+        for (name, curve, range) in plain {
+            check_varying(&format!("{at}.{name}"), curve, range)?;
+        }
+        check_varying(&format!("{at}.color"), life.color, [0.0, ANY])
+    }
+}
+
+fn check_varying<const N: usize>(at: &str, curve: Option<Varying<'_, N>>, range: [f32; 2]) -> Result<(), SceneError> {
+    let Some(Varying { from, to }) = curve else { return Ok(()) };
+    check_curve(at, from, range)?;
+    to.map_or(Ok(()), |to| check_curve(at, to, range))
+}
+
+/// Whether keys are there, in order, and within a range.
+fn check_curve<const N: usize>(at: &str, curve: Curve<'_, N>, [least, most]: [f32; 2]) -> Result<(), SceneError> {
+    let refuse = |message| Err(SceneError::value(at, message));
+    if curve.keys.is_empty() {
+        return refuse("has no keys: [[instant, value], ...]".into());
+    }
+    for (i, key) in curve.keys.iter().enumerate() {
+        finite(at, key)?;
+        let instant = key[0];
+        if i > 0 && instant < curve.keys[i - 1][0] {
+            return refuse(format!(
+                "key {i} is at {instant}, before the one in front of it, at {}",
+                curve.keys[i - 1][0]
+            ));
+        }
+        if curve.over == Over::Life && !(0.0..=1.0).contains(&instant) {
+            return refuse(format!(
+                "key {i} is at {instant}, but a life goes from 0 to 1; instants in seconds need \"over\": \"seconds\""
+            ));
+        }
+        if let Some(value) = key[1..].iter().find(|value| !(least..=most).contains(*value)) {
+            let meant = match (least, most) {
+                (f32::MIN_POSITIVE, _) => "has to be above zero",
+                (_, 1.0) => "has to be from 0 to 1",
+                _ => "has to be zero or more",
+            };
+            return refuse(format!("key {i} {meant}, not {value}"));
+        }
+    }
+    Ok(())
+}
+
+impl Material {
+    /// The colour of particles of this material: diffuse, or emitted where that is black.
+    #[must_use]
+    pub fn color(&self) -> Color {
+        super::shown(self.diffuse, self.emission)
+    }
+}
+
+/// A scene's materials, as particles have them.
+impl MaterialList for Vec<Material> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+    fn get(&self, number: usize) -> Option<material::Material<'_>> {
+        let Material { contact, size, glow, life, .. } = self.as_slice().get(number)?;
+        Some(material::Material { contact: *contact, size: *size, glow: *glow, life: life.lend() })
+    }
+    fn contact(&self, number: usize) -> ContactMaterial {
+        self.as_slice().get(number).map(|material| material.contact).unwrap_or_default()
+    }
+}
