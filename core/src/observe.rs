@@ -8,6 +8,27 @@ use crate::time::Time;
 use glam::Vec3;
 
 /// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away.
+///
+/// ```
+/// use pointmass::{Cause, Heap, LifeEvent, Observer, Particle, Scene, System, Time};
+///
+/// /// Counts who dies of age.
+/// struct Registrar(u32);
+///
+/// impl Observer for Registrar {
+///     fn died(&mut self, _: &LifeEvent, cause: Cause) {
+///         self.0 += u32::from(cause == Cause::Age);
+///     }
+/// }
+///
+/// let start = [Particle { lifetime: 1.0, ..Particle::REST }, Particle::REST];
+/// let scene = Scene { start: &start, ..Scene::EMPTY };
+/// let (mut system, mut registrar) = (System::with(Heap::new(scene.size())), Registrar(0));
+/// system.start(&scene, 1)?;
+/// system.step_observed(&scene, Time::from_seconds(2.0), &mut registrar);
+/// assert_eq!(registrar.0, 1);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Observer {
     /// The step has come so far.
     fn after(&mut self, phase: Phase, state: &State<'_>) {

@@ -77,6 +77,13 @@ impl<B: Storage> System<B> {
         self.step_observed(scene, dt, &mut ())
     }
 
+    /// Moves the world on, in one step, to an instant; not back, and not at all where it is there.
+    ///
+    /// Stepping to [`Time::frame`] after frame drifts by nothing, however long.
+    pub fn step_to(&mut self, scene: &Scene<'_>, instant: Time) -> Report {
+        if instant > self.status.time { self.step(scene, instant - self.status.time) } else { Report::default() }
+    }
+
     /// `step`, while somebody watches.
     pub fn step_observed(&mut self, scene: &Scene<'_>, dt: Time, observer: &mut dyn Observer) -> Report {
         let mut report = Report::default();

@@ -24,6 +24,31 @@ pub use crate::memory::{Demand, Kept, Words};
 ///
 /// A tuple, slice or reference of constraints is a constraint: all of them, one after the other in each phase. Every
 /// constraint sees what those before it have done.
+///
+/// ```
+/// use pointmass::constrain::{Bodies, Share};
+/// use pointmass::{Constraint, Gravity, Heap, Particle, Scene, System, Time, Vec3};
+///
+/// /// Keeps all on the plane z = 0.
+/// struct Flat;
+///
+/// impl Constraint for Flat {
+///     fn project(&self, bodies: &mut Bodies<'_>, _: &mut Share<'_>) {
+///         for row in 0..bodies.len() {
+///             // Velocities follow what is shifted.
+///             bodies.shift(row, Vec3::NEG_Z * bodies.position[row].z);
+///         }
+///     }
+/// }
+///
+/// let start = [Particle { velocity: Vec3::new(1.0, 0.0, 5.0), ..Particle::REST }];
+/// let scene = Scene { start: &start, forces: &Gravity::EARTH, constraints: &Flat, substeps: 4, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// system.step(&scene, Time::frame(1, 60));
+/// assert!(system.particles().position[0].z == 0.0 && system.particles().velocity[0].z.abs() < 1e-6);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Constraint: Sync {
     /// The memory it works in.
     fn demand(&self) -> Demand {

@@ -25,7 +25,38 @@ use glam::Vec3;
 /// Something that brings particles into the world.
 ///
 /// A tuple, slice or reference of emitters is an emitter. Each has a number, its place in the flattened list, and
-/// keeps a `EmitterState` under it.
+/// keeps an `EmitterState` under it.
+///
+/// ```
+/// use pointmass::emit::Births;
+/// use pointmass::{Emit, Heap, Particle, Scene, Size, System, Time, Vec3};
+///
+/// /// Ten particles a second along a line, at places of their own.
+/// struct Row;
+///
+/// impl Emit for Row {
+///     fn count(&self) -> usize {
+///         1
+///     }
+///     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+///         let number = births.claim();
+///         for at in births.due(number, 10.0, from, to) {
+///             // Who finds no room is counted.
+///             let _ = births.give(number, at, |random| Particle {
+///                 position: Vec3::X * random.units(0)[0],
+///                 ..Particle::REST
+///             });
+///         }
+///     }
+/// }
+///
+/// let scene = Scene { emitters: &Row, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(Size { particles: 100, ..scene.size() }));
+/// system.start(&scene, 1)?;
+/// system.step(&scene, Time::from_seconds(2.0));
+/// assert_eq!(system.len(), 20);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Emit: Sync {
     /// How many emitters it is.
     fn count(&self) -> usize;

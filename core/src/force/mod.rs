@@ -6,6 +6,7 @@ mod curl;
 mod drag;
 mod flow;
 mod friction;
+mod goal;
 mod gravity;
 mod inverse_square;
 mod kind;
@@ -30,6 +31,7 @@ pub use curl::Curl;
 pub use drag::Drag;
 pub use flow::{Flow, FlowKind, Gusts, Uniform, Vortex};
 pub use friction::Friction;
+pub use goal::Goal;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
@@ -55,6 +57,31 @@ use glam::Vec3;
 /// A force field or an interaction.
 ///
 /// A tuple, slice or reference of forces is a force: their sum.
+///
+/// ```
+/// use core::ops::Range;
+/// use pointmass::force::State;
+/// use pointmass::{Force, Gravity, Heap, Particle, Scene, System, Time, Vec3};
+///
+/// /// Pulls all toward the y axis, 3 N for each metre.
+/// struct Rail;
+///
+/// impl Force for Rail {
+///     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+///         for (total, x) in total.iter_mut().zip(&state.position[rows]) {
+///             *total -= Vec3::new(x.x, 0.0, x.z) * 3.0;
+///         }
+///     }
+/// }
+///
+/// let start = [Particle { position: Vec3::X, ..Particle::REST }];
+/// let scene = Scene { start: &start, forces: &(Gravity::EARTH, Rail), ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// system.step(&scene, Time::from_seconds(0.125));
+/// assert!(system.particles().velocity[0].x < -0.3);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Force: Sync {
     /// Adds the force \[N\] on each particle of `rows` to `total`, whose first entry is that of the first row.
     ///

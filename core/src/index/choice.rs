@@ -7,6 +7,36 @@ use glam::Vec3;
 ///
 /// `()` makes none, and forces look at all pairs; a [`Structure`] is chosen by name; [`InGrid`] and [`InKd`] by type, so that
 /// firmware carries no other.
+///
+/// ```
+/// use pointmass::index::{Hash, IndexChoice, SpatialIndex, Structure};
+/// use pointmass::Vec3;
+///
+/// /// Hashed cells for many points, all pairs for a few.
+/// struct ForMany;
+///
+/// impl IndexChoice for ForMany {
+///     fn columns(&self) -> usize {
+///         Structure::Hash.words(1000).div_ceil(3000)
+///     }
+///     fn with_index(
+///         &self,
+///         memory: &mut [u32],
+///         points: &[Vec3],
+///         reach: f32,
+///         then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
+///     ) {
+///         let mut hash = Hash::new(memory);
+///         let built = points.len() > 100 && hash.build(points, reach).is_ok();
+///         then(if built { Some(&hash) } else { None });
+///     }
+/// }
+///
+/// let (points, mut memory) = ([Vec3::ZERO; 200], [0; 9000]);
+/// ForMany.with_index(&mut memory, &points, 0.1, &mut |index| {
+///     assert_eq!(index.map(|index| index.count(Vec3::ZERO, 0.1).found), Some(200));
+/// });
+/// ```
 pub trait IndexChoice: Sync {
     /// Vectors of memory that it takes for each particle. With few particles they may not do: then there is no index.
     fn columns(&self) -> usize;

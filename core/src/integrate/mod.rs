@@ -72,6 +72,36 @@ impl Linear<'_> {
 }
 
 /// A method to solve the equations of motion. It keeps no state of its own.
+///
+/// ```
+/// use pointmass::integrate::{Dynamics, Motion};
+/// use pointmass::{Gravity, Heap, Integrator, Particle, Scene, System, Time};
+///
+/// /// Kicks, then drifts.
+/// struct Kick;
+///
+/// impl Integrator for Kick {
+///     fn columns(&self) -> usize {
+///         1
+///     }
+///     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
+///         let Motion { position, velocity, work, .. } = motion;
+///         let [acceleration] = work.take();
+///         world.accelerations(time, position, velocity, acceleration);
+///         for ((x, v), &a) in position.iter_mut().zip(velocity).zip(&*acceleration) {
+///             *v += a * step.seconds();
+///             *x += *v * step.seconds();
+///         }
+///     }
+/// }
+///
+/// let scene = Scene { start: &[Particle::REST], forces: &Gravity::EARTH, integrator: &Kick, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// system.step(&scene, Time::from_seconds(0.5));
+/// assert!((system.particles().velocity[0].y + 4.903).abs() < 1e-3);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Integrator: Sync {
     /// Vectors it needs to work with for each particle.
     fn columns(&self) -> usize;

@@ -29,6 +29,33 @@ pub(crate) const CHUNK: usize = 64;
 /// A rule by which particles die.
 ///
 /// A tuple, slice or reference of reapers is a reaper: whoever any of them takes goes.
+///
+/// ```
+/// use core::ops::Range;
+/// use pointmass::force::State;
+/// use pointmass::reap::Verdicts;
+/// use pointmass::{Cause, Chance, Gravity, Heap, Particle, Reaper, Scene, System, Time, Vec3};
+///
+/// /// Takes whoever has fallen below the floor of the world.
+/// struct Abyss;
+///
+/// impl Reaper for Abyss {
+///     fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
+///         for (nth, x) in state.position[rows].iter().enumerate().filter(|(_, x)| x.y < -10.0) {
+///             verdicts.end(nth, Cause::Other);
+///         }
+///     }
+/// }
+///
+/// let start = [Particle::REST, Particle { position: Vec3::Y * 90.0, ..Particle::REST }];
+/// let reapers = (Abyss, Chance { rate: 1e-9 });
+/// let scene = Scene { start: &start, forces: &Gravity::EARTH, reapers: &reapers, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// (1..=120).for_each(|frame| drop(system.step_to(&scene, Time::frame(frame, 60))));
+/// assert_eq!((system.len(), system.totals().died.other), (1, 1));
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Reaper: Sync {
     /// Says who of `rows` has to go by `state.time`, the end of the step.
     ///

@@ -1,7 +1,7 @@
 //! What a declared scene may say: every number finite, every reference to something that is there.
 
 use super::check_force::check_force;
-use super::numbers::{Checked, check_breaking, check_direction, finite, zero_or_more};
+use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
 use super::{Group, Light, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::reap::ReaperKind;
@@ -80,6 +80,7 @@ impl SceneFile {
             check_shape(&format!("sinks[{i}].shape"), &sink.shape)?;
             self.check_group(&format!("sinks[{i}]"), sink.group)?;
         }
+        self.check_goals()?;
         for (i, force) in self.forces.iter().enumerate() {
             check_force(&format!("forces[{i}]"), force)?;
         }
@@ -278,6 +279,28 @@ impl SceneFile {
             }
             _ => Ok(()),
         }
+    }
+
+    fn check_goals(&self) -> Checked {
+        for (i, goal) in self.goals.iter().enumerate() {
+            let at = format!("goals[{i}]");
+            let against = goal.against.unwrap_or(Vec3::ZERO).to_array();
+            finite(&at, &[goal.start, goal.arrive, goal.release.unwrap_or(0.0)])?;
+            finite(&format!("{at}.against"), &against)?;
+            above_zero(&format!("{at}.settle"), goal.settle)?;
+            let later =
+                [("arrive", Some(goal.arrive), "start", goal.start), ("release", goal.release, "arrive", goal.arrive)];
+            for (name, instant, other, before) in later {
+                if instant.is_some_and(|instant| instant < before) {
+                    let message = format!("{} s is before {other}, {before} s", instant.unwrap_or(0.0));
+                    return Err(SceneError::value(format!("{at}.{name}"), message));
+                }
+            }
+            check_shape(&format!("{at}.shape"), &goal.shape)?;
+            self.check_group(&at, goal.group)?;
+            self.check_material(&at, goal.material)?;
+        }
+        Ok(())
     }
 
     fn check_look(&self) -> Checked {

@@ -5,7 +5,7 @@ use super::{Cloth, Material};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
-use crate::force::{ForceKind, Sink, Spring};
+use crate::force::{ForceKind, Goal, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::{Method, Tuning};
 use crate::particles::Particle;
@@ -52,6 +52,9 @@ pub struct SceneFile {
     /// What pulls them, after the forces, and removes those that touch it.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub sinks: Vec<Sink<String>>,
+    /// What leads them to places of surfaces by a given time.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub goals: Vec<Goal<String>>,
     /// What else they die of, beside age and sinks.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub reapers: Vec<ReaperKind>,
@@ -228,6 +231,7 @@ impl SceneFile {
             contacts: None,
             constraints: Vec::new(),
             sinks: Vec::new(),
+            goals: Vec::new(),
             reapers: Vec::new(),
             custom: Vec::new(),
             scenery: Vec::new(),

@@ -45,7 +45,7 @@ pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use material::{CurveBuf, LifeBuf, Material, Sides, VaryingBuf};
 #[cfg(feature = "alloc")]
-pub use model::{Model, Solid};
+pub use model::{Forces, Model, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use response::{Position, Response};

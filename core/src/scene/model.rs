@@ -7,20 +7,25 @@ use crate::collide::Meetings;
 use crate::constrain::{ConstraintKind, Contacts};
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
-use crate::force::{ForceKind, Penalty, Sink, Spring};
+use crate::force::{ForceKind, Goal, Penalty, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::Tuned;
 use crate::math::max;
-use crate::memory::Size;
+use crate::memory::{Heap, Size};
 use crate::particles::{Color, Particle};
 use crate::rays;
 use crate::reap::ReaperKind;
 use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Scenery, Shape};
-use alloc::collections::BTreeMap;
+use crate::system::System;
+use alloc::collections::{BTreeMap, TryReserveError};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use glam::Vec3;
+
+/// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
+pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
 
 /// What a scene file means, owned: lend it to a system with [`Model::scene`].
 #[derive(Clone, Debug)]
@@ -31,8 +36,8 @@ pub struct Model {
     pub springs: Vec<Spring>,
     /// What brings further particles into the world.
     pub emitters: Vec<Emitter<Shape<Arc<MeshBuf>>>>,
-    /// What acts on them: forces, then the pull of the sinks, then what pushes balls apart.
-    pub forces: (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>),
+    /// What acts on them, in this order.
+    pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
     /// What binds them: constraints, then contacts by position.
@@ -100,6 +105,16 @@ impl Model {
             let Sink { intensity, ca, la, qa, softening, .. } = *sink;
             sinks.push(Sink { shape, group: None, intensity, ca, la, qa, softening });
         }
+        let mut goals = Vec::with_capacity(file.goals.len());
+        for (i, goal) in file.goals.iter().enumerate() {
+            let shape = meshes.shape(&format!("goals[{i}].shape"), &goal.shape)?;
+            let shape = shape.moved(&placement(file, goal.group), file.run.collision_index);
+            let shape =
+                shape.map_err(|message| SceneError::value(format!("goals[{i}].group"), message).in_file(path))?;
+            let against = goal.against.or_else(|| Some(gravity(file)));
+            let Goal { start, arrive, release, settle, material, .. } = *goal;
+            goals.push(Goal { shape, group: None, start, arrive, release, settle, against, material });
+        }
         let mut scenery = Vec::with_capacity(file.scenery.len());
         for (i, item) in file.scenery.iter().enumerate() {
             let shape = meshes.shape(&format!("scenery[{i}].shape"), &item.shape)?;
@@ -132,7 +147,7 @@ impl Model {
             springs: start.springs,
             emitters,
             colliders: Scenery::new(colliders.collect::<Result<_, _>>()?),
-            forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes),
+            forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals),
             contacts: file.contacts,
             constraints: (file.constraints.clone(), file.contacts.and_then(|response| response.contacts())),
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
@@ -173,6 +188,29 @@ impl Model {
             integrator: &self.integrator,
             index: &self.index,
         }
+    }
+
+    /// A system at the scene's beginning, with room for `particles` alive at once, or for all that it begins with if these are more.
+    ///
+    /// ```
+    /// use pointmass::Time;
+    /// use pointmass::scene::{Model, SceneFile};
+    ///
+    /// let text = r#"{"particles": [{}], "forces": [{"gravity": {"acceleration": [0, -9.8, 0]}}]}"#;
+    /// let model = Model::load(&SceneFile::from_json("drop.json", text)?, "drop.json", &mut ())?;
+    /// let mut system = model.system(100, 1)?;
+    /// system.step_to(&model.scene(), Time::from_seconds(1.0));
+    /// assert!(system.particles().position[0].y < -4.8);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn system(&self, particles: usize, seed: u64) -> Result<System<Heap>, TryReserveError> {
+        let mut system = System::with(Heap::try_new(self.size(particles.max(self.particles.len())))?);
+        // Memory of that size is enough.
+        let _ = system.start(&self.scene(), seed);
+        Ok(system)
     }
 
     /// The memory it needs for `particles` alive at once, lists of neighbours included.
@@ -265,6 +303,13 @@ impl Start {
 fn widest<M>(particles: &[Particle], emitters: &[Emitter<M>]) -> f32 {
     let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
     particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
+}
+
+/// The uniform acceleration of all.
+fn gravity(file: &SceneFile) -> Vec3 {
+    let of =
+        |force: &ForceKind| if let ForceKind::Gravity(gravity) = force { gravity.acceleration } else { Vec3::ZERO };
+    file.forces.iter().map(of).sum()
 }
 
 /// The product of the transforms of all groups around.

@@ -76,6 +76,9 @@ impl Writer {
         if !scene.custom.is_empty() {
             self.warn("custom: in .scn particles have no further columns; they are left out");
         }
+        if !scene.goals.is_empty() {
+            self.warn("goals: .scn leads particles nowhere; they are left out");
+        }
         if !scene.reapers.is_empty() {
             self.warn("reapers: in .scn particles die of age and at sinks alone; that is left out");
         }

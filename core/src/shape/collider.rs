@@ -9,6 +9,43 @@ use glam::Vec3;
 ///
 /// A tuple, slice or reference of colliders is a collider: the earliest hit is its hit, of several at once that of the
 /// collider listed first.
+///
+/// ```
+/// use pointmass::shape::{Collider, Hit, Segment};
+/// use pointmass::{Gravity, Heap, Particle, Scene, System, Time, Vec3};
+///
+/// /// Ground that waves along x.
+/// struct Dunes;
+///
+/// impl Dunes {
+///     fn height(p: Vec3) -> f32 {
+///         p.y - 0.1 * p.x.sin()
+///     }
+/// }
+///
+/// impl Collider for Dunes {
+///     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+///         if !(Self::height(segment.from) > 0.0 && Self::height(segment.to) <= 0.0) {
+///             return None;
+///         }
+///         let (mut above, mut below) = (0.0, 1.0);
+///         for _ in 0..30 {
+///             let middle = 0.5 * (above + below);
+///             if Self::height(segment.at(middle)) > 0.0 { above = middle } else { below = middle }
+///         }
+///         let normal = Vec3::new(-0.1 * segment.at(above).x.cos(), 1.0, 0.0).normalize();
+///         Some(Hit::new(above, normal, 1e-6)) // The last: how far the place may be off by rounding [m].
+///     }
+/// }
+///
+/// let start = [Particle { position: Vec3::new(0.5, 1.0, 0.0), ..Particle::REST }];
+/// let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &Dunes, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// (1..=60).for_each(|frame| drop(system.step_to(&scene, Time::frame(frame, 60))));
+/// assert!(system.totals().hits > 0 && Dunes::height(system.particles().position[0]) > 0.0);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 pub trait Collider: Sync {
     /// Where `segment` first meets it, if it does.
     ///

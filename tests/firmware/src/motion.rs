@@ -1,15 +1,17 @@
 //! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! A charged sheet on springs, one that swings and some that break, and a balloon, moved through every force by every
-//! method.
+//! method; then the same once more of a material that changes over their lives, and how they look.
 
+use pointmass::draw::appearance;
 use pointmass::force::{
     Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, Viscosity, Vortex, Wind,
 };
 use pointmass::index::InGrid;
+use pointmass::material::{Curve, Life, Over, Varying};
 use pointmass::{
-    ClothSprings, Drag, Force, Gravity, Inline, Method, Particle, Scene, Sheet, Spring, SpringParams, System, Time,
-    Vec3,
+    ClothSprings, ContactMaterial, Drag, Fnv, Force, Gravity, Inline, Material, Method, Midpoint, Particle, Scene,
+    Sheet, Spring, SpringParams, System, Time, Vec3,
 };
 
 /// The hashes in the form of `all` in `expected.rs`.
@@ -32,12 +34,46 @@ const FACES: [[u32; 3]; 8] = {
 const PARTICLES: usize = WOVEN.0 + CORNERS.len();
 const SPRINGS: usize = WOVEN.1 + EDGES.len();
 const COLUMNS: usize = 24;
+/// What materials change.
+const KEPT: usize = 2;
+
+const fn curve(keys: &'static [[f32; 2]], smooth: bool) -> Curve<'static> {
+    Curve { keys, over: Over::Life, smooth }
+}
+
+const fn plain(keys: &'static [[f32; 2]], smooth: bool) -> Option<Varying<'static>> {
+    Some(Varying { from: curve(keys, smooth), to: None })
+}
+
+/// A material of which everything changes.
+const AGING: Material<'static> = Material {
+    life: Life {
+        size: plain(&[[0.0, 0.1], [0.2, 1.0], [0.7, 0.6]], true),
+        color: Some(Varying {
+            from: Curve { keys: &[[0.0, 1.0, 0.9, 0.2], [1.2, 0.4, 0.1, 0.0]], over: Over::Seconds, smooth: false },
+            to: None,
+        }),
+        opacity: Some(Varying {
+            from: curve(&[[0.0, 1.0], [1.0, 0.0]], false),
+            to: Some(curve(&[[0.0, 0.5], [0.5, 0.7], [1.0, 0.1]], true)),
+        }),
+        glow: plain(&[[0.1, 0.9], [0.6, 0.2], [0.9, 0.3]], true),
+        rotation: Some(Varying {
+            from: curve(&[[0.0, 0.0]], false),
+            to: Some(curve(&[[0.0, 1.0], [1.0, 7.0]], false)),
+        }),
+        drag: plain(&[[0.0, 3.0], [0.4, 1.0], [0.8, 2.5]], true),
+        mass: plain(&[[0.0, 1.0], [1.0, 0.6]], false),
+        buoyancy: plain(&[[0.0, 0.0], [0.3, 1.3], [1.0, 0.9]], true),
+    },
+    ..Material::of(ContactMaterial { elasticity: None, friction: None })
+};
 
 /// Everything that they need, none of it on the stack.
 pub(crate) struct Memory {
     start: [Particle; PARTICLES],
     springs: [Spring; SPRINGS],
-    system: System<Inline<PARTICLES, 0, SPRINGS, COLUMNS>>,
+    system: System<Inline<PARTICLES, 0, SPRINGS, COLUMNS, KEPT>>,
 }
 
 impl Memory {
@@ -64,6 +100,34 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         }
         out(method.name(), system.hash());
     }
+    out("lives", grow_old(start, springs, system));
+}
+
+/// The hash of the same by midpoint over most of their lives, and of how they look then.
+fn grow_old(
+    start: &mut [Particle],
+    springs: &[Spring],
+    system: &mut System<Inline<PARTICLES, 0, SPRINGS, COLUMNS, KEPT>>,
+) -> u64 {
+    for (number, particle) in start.iter_mut().enumerate() {
+        (particle.material, particle.lifetime) = (Some(0), 1.5 + 0.125 * (number % 5) as f32);
+    }
+    let (forces, materials) = (&forces(), &[AGING]);
+    let base = Scene { start, forces, integrator: &Midpoint, index: &InGrid, materials, ..Scene::EMPTY };
+    let scene = Scene { springs: &springs, ..base };
+    let mut hash = Fnv::new();
+    if system.start(&scene, 1).is_ok() {
+        for frame in 1..=88 {
+            system.step(&scene, Time::frame(frame, 60) - system.time());
+            let state = system.state(&scene);
+            for look in (0..system.len()).filter_map(|row| appearance(&state, row)) {
+                [look.diameter, look.scale, look.glow, look.rotation].into_iter().for_each(|x| hash.float(x));
+                hash.bytes(&look.color);
+            }
+        }
+    }
+    hash.long(system.hash());
+    hash.finish()
 }
 
 fn forces() -> impl Force {
