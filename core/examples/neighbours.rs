@@ -3,7 +3,7 @@
 //! `cargo run --release -p pointmass --example neighbours`
 
 use pointmass::Vec3;
-use pointmass::index::{AnyIndex, Neighbour, SpatialIndex, Structure};
+use pointmass::index::{Neighbour, SpatialIndex, Structure};
 use pointmass::rng::Stream;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -15,9 +15,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
         .collect();
     let radius = 0.05;
-    for structure in Structure::ALL {
+    for &structure in Structure::ALL {
         let mut memory = vec![0; structure.words(points.len())];
-        let mut index = AnyIndex::new(structure, &mut memory);
+        let mut index = structure.index(&mut memory);
         index.build(&points, radius)?;
         let (mut pairs, mut found) = (0, [Neighbour::default(); 8]);
         let cost = index.pairs(radius, &mut |_, others| pairs += others.len());

@@ -60,7 +60,7 @@ struct Snapshot {
 pub struct Books {
     /// Kinetic and potential energy when the books were opened.
     pub opening: f64,
-    /// That of the newborn, at the end of the step in which they were born.
+    /// That of the newborn, at the end of the step in which they were born; and that of the mass which materials let come and go.
     pub emission: f64,
     /// The work of forces that are not the slope of an energy, by name.
     pub work: Vec<(&'static str, f64)>,

@@ -4,7 +4,8 @@ use pointmass::draw::{Appearance, appearance};
 use pointmass::material::{Curve, Life, Over, Varying};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::{
-    ContactMaterial, Drag, Emitter, Gravity, Material, Method, Particle, QuadraticDrag, Scene, Time, Varied, Vec3,
+    ContactMaterial, Drag, Emitter, Gravity, Ledger, Material, Method, Particle, QuadraticDrag, Scene, Time, Varied,
+    Vec3,
 };
 use pointmass_tests::{often, point, started};
 
@@ -111,6 +112,27 @@ fn what_is_buoyant_rises_as_its_equation_says_by_every_method() {
             };
             assert!((at - x).length() < order && (speed - v).length() < order, "{} {at} {speed}", method.name());
         }
+    }
+}
+
+#[test]
+fn the_ledger_has_what_carries_and_what_mass_comes_and_goes() {
+    let (buoyant, lighter) = ([[0.0, 0.5], [1.0, 2.5]], [[0.0, 1.0], [1.0, 0.25]]);
+    let materials = of(Life { buoyancy: plain(&buoyant), mass: plain(&lighter), ..Life::default() });
+    let start = [Particle { velocity: Vec3::new(2.0, 1.0, 0.0), ..MORTAL }];
+    for mass_changes in [false, true] {
+        let only = of(Life { buoyancy: plain(&buoyant), ..Life::default() });
+        let materials = if mass_changes { &materials } else { &only };
+        let (forces, integrator) = (&Gravity::EARTH, &pointmass::Rk4);
+        let scene = Scene { start: &start, forces, materials, integrator, ..Scene::EMPTY };
+        let mut system = started(&scene, 1, 1);
+        let mut ledger = Ledger::new(&system, &scene);
+        for frame in 1..=360 {
+            system.step_observed(&scene, Time::frame(frame, 120) - system.time(), &mut ledger);
+        }
+        let books = ledger.books();
+        assert!(books.work("gravity").abs() > 1.0 && books.remainder.abs() < 2e-3, "{books:?}");
+        assert!(if mass_changes { books.emission < -1.0 } else { books.emission == 0.0 }, "{books:?}");
     }
 }
 

@@ -41,6 +41,25 @@ fn the_schema_is_that_of_the_types() {
 }
 
 #[test]
+fn the_guide_says_what_can_be_read_and_names_every_scene() {
+    let guide = std::fs::read_to_string(folder().join("README.md")).expect("a guide");
+    let mut listings = guide.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let whole = listings.next().expect("a whole scene");
+    let scene = SceneFile::from_json("guide", whole).unwrap_or_else(|error| panic!("{error}"));
+    let model = Model::load(&scene, "guide", &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    let mut system = model.system(1000, 1).expect("a little memory");
+    system.step_to(&model.scene(), Time::from_seconds(2.0));
+    assert!(system.len() == 400 && system.totals().hits > 0);
+    let material = listings.next().expect("a material");
+    let scene = SceneFile::from_json("guide", &format!("{{\"materials\": [{material}]}}"));
+    scene.and_then(|scene| scene.check()).unwrap_or_else(|error| panic!("{error}"));
+    for path in scenes() {
+        let name = path.file_name().expect("a name").to_string_lossy();
+        assert!(guide.contains(&format!("({name})")), "{name} is missing from scenes/README.md");
+    }
+}
+
+#[test]
 fn every_scene_runs_for_two_seconds_and_loses_nothing() {
     for path in scenes() {
         let file = read(&path);

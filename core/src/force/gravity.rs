@@ -22,6 +22,17 @@ impl Gravity {
     pub const EARTH: Self = Self { acceleration: Vec3::new(0.0, -9.80665, 0.0) };
 }
 
+impl Gravity {
+    /// Takes off what carries those that are buoyant.
+    fn carry(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+        if let Some(code) = state.materials.code().filter(|code| (code.floats)(state.materials)) {
+            let State { time, born, dies, material, key, mass, .. } = *state;
+            let floating = Floating { time, born, dies, material, key, mass };
+            (code.carry)(state.materials, &floating, rows, self.acceleration, total);
+        }
+    }
+}
+
 impl Force for Gravity {
     fn is_local(&self) -> bool {
         true
@@ -34,11 +45,7 @@ impl Force for Gravity {
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         each_row_with(total, self.acceleration, &state.mass[rows.clone()], |total, g, m| total + g * m);
-        if let Some(code) = state.materials.code().filter(|code| (code.floats)(state.materials)) {
-            let State { time, born, dies, material, key, mass, .. } = *state;
-            let floating = Floating { time, born, dies, material, key, mass };
-            (code.carry)(state.materials, &floating, rows, self.acceleration, total);
-        }
+        self.carry(state, rows, total);
     }
 
     #[cfg(feature = "std")]
@@ -46,6 +53,20 @@ impl Force for Gravity {
         let g = self.acceleration.to_array().map(f64::from);
         let height = |x: &Vec3| x.to_array().iter().zip(g).map(|(&x, g)| f64::from(x) * g).sum::<f64>();
         -state.position.iter().zip(state.mass).map(|(x, &m)| f64::from(m) * height(x)).sum::<f64>()
+    }
+
+    /// What carries those that are buoyant.
+    #[cfg(feature = "std")]
+    fn power(&self, state: &State<'_>) -> f64 {
+        let work = |(row, v): (usize, &Vec3)| {
+            let mut lift = [Vec3::ZERO];
+            self.carry(state, row..row + 1, &mut lift);
+            (0..3).map(|axis| f64::from(lift[0][axis]) * f64::from(v[axis])).sum::<f64>()
+        };
+        if state.materials.code().is_none() {
+            return 0.0;
+        }
+        state.velocity.iter().enumerate().map(work).sum()
     }
 
     #[cfg(feature = "std")]
