@@ -1,6 +1,6 @@
 //! Sums where an `f32` ends.
 
-use crate::{BOTH, law};
+use super::{BOTH, law};
 use pointmass::Vec3;
 use pointmass_tests::fields::Charges;
 use pointmass_tests::points::Spread;

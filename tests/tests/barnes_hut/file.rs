@@ -1,6 +1,6 @@
 //! The force in a file.
 
-use crate::UNIT;
+use super::UNIT;
 use pointmass::scene::{Files, Model, SceneFile};
 use pointmass::shape::MeshBuf;
 use pointmass::{ForceKind, MutualGravity};

@@ -1,6 +1,6 @@
 //! The sums as a force: what it needs, and whether the memory it is given makes a difference.
 
-use crate::{BOTH, UNIT, law, nested, particles};
+use super::{BOTH, UNIT, law, nested, particles};
 use pointmass::{
     Drag, Force, ForceKind, Gravity, Heap, Inline, Method, MutualGravity, Particle, Scene, Size, System, Time, Vec3,
 };

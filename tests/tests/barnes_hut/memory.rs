@@ -1,6 +1,6 @@
 //! Rows, memory, and what is told.
 
-use crate::{EPSILON, law};
+use super::{EPSILON, law};
 use pointmass::Vec3;
 use pointmass::index::{BarnesHut, FieldError};
 use pointmass_tests::fields::{Charges, bits, collect, used};

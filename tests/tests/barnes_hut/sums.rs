@@ -1,6 +1,6 @@
 //! The sums and their errors.
 
-use crate::{BOTH, EPSILON, law, nested};
+use super::{BOTH, EPSILON, law, nested};
 use pointmass::Vec3;
 use pointmass::index::{BarnesHut, FieldError};
 use pointmass_tests::fields::{Charges, Off, collect, used};

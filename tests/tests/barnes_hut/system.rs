@@ -1,6 +1,6 @@
 //! Systems under the force: what is born, gone, fixed or no number, and what is conserved.
 
-use crate::{BOTH, UNIT, particles};
+use super::{BOTH, UNIT, particles};
 use pointmass::emit::Burst;
 use pointmass::shape::Sphere;
 use pointmass::{Emitter, Heap, Measures, Method, MutualGravity, Particle, Scene, System, Time, Varied, Vec3};

@@ -1,7 +1,7 @@
 //! Points and lengths as they should not be, and many of them.
 
-use crate::INF;
-use crate::expected::check;
+use super::INF;
+use super::expected::check;
 use pointmass::Vec3;
 use pointmass_tests::Random;
 use pointmass_tests::points::{Spread, extent};

@@ -1,6 +1,6 @@
 //! What an index has to answer, and whether it does.
 
-use crate::INF;
+use super::INF;
 use core::fmt::Display;
 use pointmass::Vec3;
 use pointmass::index::{AnyIndex, Cost, Neighbour, SpatialIndex, Structure};

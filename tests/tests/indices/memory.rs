@@ -1,7 +1,7 @@
 //! Memory, and structures by their names.
 
-use crate::INF;
-use crate::expected::{Expected, centers, compare};
+use super::INF;
+use super::expected::{Expected, centers, compare};
 use pointmass::Vec3;
 use pointmass::index::{SpatialIndex, Structure, TooSmall};
 use pointmass_tests::fields::used;

@@ -1,8 +1,8 @@
 //! Boxes whose opposite faces are one.
 
-use crate::INF;
-use crate::expected::{Expected, centers, compare};
-use crate::sets::reaches;
+use super::INF;
+use super::expected::{Expected, centers, compare};
+use super::sets::reaches;
 use pointmass::Vec3;
 use pointmass::index::{SpatialIndex, Structure};
 use pointmass_tests::fields::used;

@@ -1,7 +1,7 @@
 //! Whatever the points are: built, refitted, in any order.
 
-use crate::expected::{centers, check, compare};
-use crate::sets::{radii, reaches, sets};
+use super::expected::{centers, check, compare};
+use super::sets::{radii, reaches, sets};
 use pointmass::Vec3;
 use pointmass::index::{Neighbour, SpatialIndex, Structure};
 use pointmass_tests::fields::used;

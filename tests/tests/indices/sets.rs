@@ -1,6 +1,6 @@
 //! Sets of points and radii that come by chance.
 
-use crate::INF;
+use super::INF;
 use pointmass::Vec3;
 use pointmass_tests::points::{Spread, extent};
 use pointmass_tests::{Random, f64s, gap};

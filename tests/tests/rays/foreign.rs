@@ -1,7 +1,7 @@
 //! Pieces that are no triangles: an outsider's own, and a list of solids; and what is counted.
 
-use crate::meshes;
-use crate::same::{bits, built, segment};
+use super::meshes;
+use super::same::{bits, built, segment};
 use pointmass::Vec3;
 use pointmass::rays::{Cost, Index, Pieces, Solids, Structure, UnknownStructure};
 use pointmass::shape::{Aabb, Collider, Cuboid, Hit, Mesh, Plane, Segment, Shape, Sphere};

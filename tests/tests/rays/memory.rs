@@ -1,7 +1,7 @@
 //! Memory: too little of it, words from elsewhere, words of another mesh.
 
-use crate::meshes;
-use crate::same::{bits, built, segment};
+use super::meshes;
+use super::same::{bits, built, segment};
 use pointmass::Vec3;
 use pointmass::rays::{Index, Structure, TooSmall, Unsound};
 use pointmass::shape::{Collider, Mesh, Segment};

@@ -1,6 +1,6 @@
 //! The same answers from all.
 
-use crate::meshes;
+use super::meshes;
 use pointmass::Time;
 use pointmass::Vec3;
 use pointmass::rays::{Index, Structure};

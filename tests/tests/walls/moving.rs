@@ -1,6 +1,6 @@
 //! What moving walls do to what they meet.
 
-use crate::tunnels::told;
+use super::tunnels::told;
 use pointmass::force::Friction;
 use pointmass::shape::{Aabb, Collider, Cuboid, Motion, Moving, Plane, Segment, Sphere};
 use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};

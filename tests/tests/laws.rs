@@ -1,0 +1,34 @@
+//! All tests of laws in one program, so that the engine is compiled for them once: `cargo test -p pointmass-tests --test laws walls`.
+
+mod adaptive;
+#[path = "barnes_hut/main.rs"]
+mod barnes_hut;
+mod births;
+mod collisions;
+mod constraints;
+#[path = "contacts/main.rs"]
+mod contacts;
+mod density;
+mod emission;
+mod extend;
+mod faces;
+#[path = "forces/main.rs"]
+mod forces;
+mod goals;
+mod identity;
+mod implicit;
+#[path = "indices/main.rs"]
+mod indices;
+mod integrators;
+mod ledger;
+mod lives;
+#[path = "rays/main.rs"]
+mod rays;
+mod reapers;
+mod rounding;
+mod sampling;
+mod springs;
+mod storage;
+mod tunnelling;
+#[path = "walls/main.rs"]
+mod walls;
