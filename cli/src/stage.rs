@@ -217,6 +217,7 @@ fn tessellate(shape: &Shape<Arc<MeshBuf>>, reach: f32) -> Surface {
         Shape::Sphere(s) => shapes::sphere(s.center, s.radius),
         Shape::Cylinder(s) => shapes::cylinder(s.center, s.radius, s.height),
         Shape::Cone(s) => shapes::cone(s.center, s.radius, s.height),
+        Shape::Capsule(s) => shapes::capsule(s.from, s.to, s.radius),
         Shape::Mesh(mesh) => shapes::mesh(mesh.view().vertices(), mesh.view().triangles()),
         Shape::Triangle(s) => shapes::mesh(&s.corners, &[[0, 1, 2]]),
         Shape::Plane(s) => shapes::plane(s.point, s.normal, reach),

@@ -247,6 +247,13 @@ impl Observer for Ledger<'_> {
                 self.books.outside += change;
                 self.depart(state);
             }
+            // Materials have changed what the old weigh.
+            Phase::Create if self.scene.materials.code().is_some() => {
+                let old = first(state, self.old);
+                let change = self.change(&old);
+                self.books.emission += change;
+                self.powers = self.powers(&old);
+            }
             Phase::Create => {}
             Phase::Advance => self.arrive(state),
             Phase::Project => {

@@ -1,7 +1,8 @@
 //! Closed convex solids, each with its depth in double precision as an oracle.
 
+use crate::surfaces::to_line;
 use crate::{Random, f64s, gap, icosahedron};
-use pointmass::shape::{Affine, Collider, Cone, Cuboid, Cylinder, MeshBuf, Placed, Sphere};
+use pointmass::shape::{Affine, Capsule, Collider, Cone, Cuboid, Cylinder, MeshBuf, Placed, Sphere};
 use pointmass::{Mat3, Vec3};
 
 /// A closed convex solid.
@@ -123,6 +124,8 @@ pub fn solids() -> Vec<Solid> {
     let sphere = Sphere { center, radius: 0.75 };
     let cylinder = Cylinder { center, radius: 0.5, height: 1.5 };
     let cone = Cone { center, radius: 0.75, height: 1.25 };
+    let (one, other) = (center - Vec3::new(0.4, 0.1, 0.3), center + Vec3::new(0.4, 0.1, 0.3));
+    let capsule = Capsule { from: one, to: other, radius: 0.5 };
     let turn = Mat3::from_axis_angle(Vec3::new(1.0, 2.0, -1.0).normalize(), 0.7);
     let shear = Mat3::from_cols(Vec3::new(1.0, 0.2, 0.0), Vec3::new(0.8, 1.0, 0.1), Vec3::new(-0.3, 0.4, 0.7));
     let flat = Mat3::from_diagonal(Vec3::new(3.0, 0.05, 0.3));
@@ -163,6 +166,14 @@ pub fn solids() -> Vec<Solid> {
         placed(shear * flat * turn, Vec3::new(5.0, -3.0, 2.0), "flattened, turned and sheared box"),
         placed(turn * 100.0, Vec3::ZERO, "large turned box"),
         placed(shear * 0.01, Vec3::ZERO, "small sheared box"),
+        Solid {
+            name: "capsule".into(),
+            collider: Box::new(capsule),
+            depth: Box::new(move |x| 0.5 - to_line(x, f64s(one), f64s(other))),
+            corners: rim(one, 0.5).chain(rim(other, 0.5)).collect(),
+            middle: center,
+            size: 1.25,
+        },
     ]
 }
 

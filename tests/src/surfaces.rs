@@ -2,7 +2,7 @@
 
 use crate::{Form, Random, f64s, gap};
 use pointmass::Vec3;
-use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, Plane, Sphere, Triangle};
+use pointmass::shape::{Capsule, Cone, Cuboid, Cylinder, Disc, Line, Plane, Sphere, Triangle};
 
 /// A vector in double precision.
 pub type Vec = [f64; 3];
@@ -95,6 +95,7 @@ pub fn distance(form: &Form, x: Vec) -> f64 {
             let [r, h] = [*radius, *height].map(f64::from);
             to_swept(x, *center, &[[0.0, -h / 2.0], [r, -h / 2.0], [0.0, h / 2.0]])
         }
+        Form::Capsule(Capsule { from, to, radius }) => (to_line(x, f64s(*from), f64s(*to)) - f64::from(*radius)).abs(),
         Form::Triangle(Triangle { corners }) => to_triangle(x, corners.map(f64s)),
         Form::Plane(Plane { point, normal }) => dot(minus(x, f64s(*point)), unit(f64s(*normal))).abs(),
         _ => panic!("a mesh is its triangles"),
@@ -123,7 +124,7 @@ pub fn first_touch(distance: impl Fn(Vec) -> f64, from: Vec, to: Vec, radius: f6
 
 /// Shapes that a ball may meet: small, thin, far from the origin and of all kinds.
 #[must_use]
-pub fn forms() -> [Form; 14] {
+pub fn forms() -> [Form; 17] {
     let center = Vec3::new(0.3, -0.2, 0.5);
     let far = Vec3::new(100.0, -70.0, 40.0);
     let triangle = |at: Vec3, a: Vec3, b: Vec3| Form::Triangle(Triangle { corners: [at, at + a, at + b] });
@@ -137,6 +138,9 @@ pub fn forms() -> [Form; 14] {
         Form::Cylinder(Cylinder { center, radius: 0.9, height: 0.001 }),
         Form::Cone(Cone { center, radius: 0.6, height: 1.1 }),
         Form::Cone(Cone { center: far, radius: 0.6, height: 0.4 }),
+        Form::Capsule(Capsule { from: center, to: Vec3::new(-0.5, 0.6, 0.1), radius: 0.4 }),
+        Form::Capsule(Capsule { from: far, to: far + Vec3::new(0.0, 2.0, 0.001), radius: 0.02 }),
+        Form::Capsule(Capsule { from: center, to: center, radius: 0.5 }),
         Form::Circle(Disc { center, normal: Vec3::new(1.0, 2.0, -3.0), radius: 0.8 }),
         triangle(center, Vec3::new(1.0, 0.2, -0.1), Vec3::new(0.3, 0.9, 0.8)),
         triangle(far, Vec3::new(2.0, 0.0, 0.01), Vec3::new(1.0, 0.02, 0.0)),

@@ -1,6 +1,6 @@
 //! Collisions: mirrors, bouncing balls, and what counts as a hit.
 
-use pointmass::shape::{Collider, Cone, Cuboid, Cylinder, Disc, Plane, Segment, Sphere, Surface, Triangle};
+use pointmass::shape::{Capsule, Collider, Cone, Cuboid, Cylinder, Disc, Plane, Segment, Sphere, Surface, Triangle};
 use pointmass::{Emitter, Gravity, Method, Particle, Scene, Time, Varied, Vec3};
 use pointmass_tests::solids::{extent, inside, solids};
 use pointmass_tests::{Form, G, Random, f64s, gap, often, point, run, started};
@@ -146,6 +146,7 @@ fn births_on_a_surface_do_not_hit_it_as_they_leave() {
         ("box", Form::Box(Cuboid { min: Vec3::splat(0.1), max: Vec3::splat(0.7) })),
         ("cylinder", Form::Cylinder(Cylinder { center, radius: 0.7, height: 0.9 })),
         ("cone", Form::Cone(Cone { center, radius: 0.7, height: 0.9 })),
+        ("capsule", Form::Capsule(Capsule { from: center, to: Vec3::new(0.9, 0.5, 0.2), radius: 0.7 })),
         ("disc", Form::Circle(Disc { center, normal: Vec3::new(1.0, 2.0, -3.0), radius: 0.7 })),
     ];
     let mut hits = vec![];

@@ -4,7 +4,7 @@
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use pointmass::emit::Burst;
-use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, Mesh, MeshBuf, Shape, Sphere, Surface};
+use pointmass::shape::{Capsule, Cone, Cuboid, Cylinder, Disc, Line, Mesh, MeshBuf, Shape, Sphere, Surface};
 use pointmass::{Emitter, Scene, Spread, Time, Varied, Vec3};
 use pointmass_tests::{
     CHI_99, Form, KS, Random, chi_squared, chi_squared_100, f64s, gap, icosahedron, ks, often, point, started, turn,
@@ -112,6 +112,24 @@ fn cylinder() {
     assert_even(part(|n| n == -1.0).map(|[x, _, z]| [x * x + z * z, turn(x, z)]), "lower cap");
     assert!(part(|n| n == 0.0).all(|[x, _, z]| (x.hypot(z) - 1.0).abs() < 1e-6));
     assert!(part(|n| n.abs() == 1.0).all(|[_, y, _]| (y.abs() - 1.0).abs() < 1e-6));
+}
+
+#[test]
+fn capsule() {
+    // Along any axis: here seen along y, the middle of it in the origin.
+    let axis = Vec3::new(1.0, 2.0, -2.0) / 3.0;
+    let (from, to) = (CENTER - axis, CENTER + axis);
+    let (right, up) = pointmass::math::frame(axis);
+    let spots = spots(Form::Capsule(Capsule { from, to, radius: 1.0 }));
+    let seen = |v: [f64; 3]| [right, axis, up].map(|side| f64s(side).iter().zip(v).map(|(a, b)| a * b).sum::<f64>());
+    let turned: Vec<_> = spots.iter().map(|s| (seen(from_center(s.0)), seen(s.1))).collect();
+    let part = |n: fn(f64) -> bool| turned.iter().filter(move |s| n(s.1[1])).map(|s| s.0);
+    // The side is as long as the ends are wide; between them no normal leans.
+    let side = |n: f64| n.abs() < 1e-6;
+    assert_share(part(side).count(), spots.len(), 0.5, "side");
+    assert_even(part(side).map(|[x, y, z]| [((y + 1.0) / 2.0).clamp(0.0, 0.999_999), turn(x, z)]), "side");
+    assert_even(part(|n| n > 1e-6).map(|[x, y, z]| [(y - 1.0).clamp(0.0, 0.999_999), turn(x, z)]), "upper end");
+    assert_even(part(|n| n < -1e-6).map(|[x, y, z]| [(-y - 1.0).clamp(0.0, 0.999_999), turn(x, z)]), "lower end");
 }
 
 #[test]

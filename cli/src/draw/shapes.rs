@@ -1,7 +1,7 @@
 //! The usual shapes as triangles, smooth where the shape is smooth.
 
 use super::Surface;
-use glam::{Quat, Vec3};
+use glam::{Mat3, Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 
 /// How many flat sides stand in for a circle.
@@ -35,6 +35,21 @@ pub fn sphere(center: Vec3, radius: f32) -> Surface {
         Rib { radius: radius * sin, height: radius * cos, out: sin, up: cos }
     });
     Surface::turned(center, outline)
+}
+
+/// A cylinder between two points with half a sphere at either end.
+pub fn capsule(from: Vec3, to: Vec3, radius: f32) -> Surface {
+    let half = 0.5 * (to - from).length();
+    let outline = (0..=SIDES / 2).flat_map(|step| {
+        let (sin, cos) = (PI * step as f32 / (SIDES / 2) as f32).sin_cos();
+        let sin = if step == SIDES / 2 { 0.0 } else { sin };
+        let rib = |height| Rib { radius: radius * sin, height: radius * cos + height, out: sin, up: cos };
+        // The ring in the middle is there twice: once at either end.
+        let upper = (step <= SIDES / 4).then(|| rib(half));
+        upper.into_iter().chain((step >= SIDES / 4).then(|| rib(-half)))
+    });
+    let turn = Mat3::from_quat(Quat::from_rotation_arc(Vec3::Y, (to - from).normalize_or(Vec3::Y)));
+    Surface::turned(Vec3::ZERO, outline).transformed(turn, 0.5 * (from + to))
 }
 
 /// A closed upright cylinder; `center` is half way up.

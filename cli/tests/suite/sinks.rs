@@ -58,6 +58,7 @@ fn signed_distance(x: P, shape: &Shape<Arc<MeshBuf>>) -> f64 {
             let deepest = out.into_iter().fold(f64::NEG_INFINITY, f64::max);
             if deepest <= 0.0 { deepest } else { length(out.map(|d| d.max(0.0))) }
         }
+        Shape::Capsule(pill) => to_segment(x, p(pill.from), p(pill.to)) - f64::from(pill.radius),
         Shape::Sphere(ball) => length(sub(x, p(ball.center))) - f64::from(ball.radius),
         Shape::Cylinder(can) => {
             let [x, y, z] = sub(x, p(can.center));

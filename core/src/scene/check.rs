@@ -371,6 +371,7 @@ fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
         Shape::Cylinder(s) => rows(&[s.center]).and(sizes(&[s.radius, s.height])),
         Shape::Cone(s) => rows(&[s.center]).and(sizes(&[s.radius, s.height])),
         Shape::Circle(s) => rows(&[s.center]).and(sizes(&[s.radius])).and(check_direction(at, s.normal)),
+        Shape::Capsule(s) => rows(&[s.from, s.to]).and(sizes(&[s.radius])),
         Shape::Triangle(s) => rows(&s.corners),
         Shape::Plane(s) => rows(&[s.point]).and(check_direction(at, s.normal)),
         Shape::Mesh(_) | Shape::HeightField(_) => Ok(()),

@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn former_names_are_read_and_remarked_on() {
-        let form = r#"{"sheet": {"origin": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [1, 1]}}"#;
+        let form = r#"{"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [1, 1]}}"#;
         let shape = r#"{"sphere": {"center": [0, 0, 0], "radius": 1}}"#;
         let old = format!(
             r#"{{"fabrics": [{{"form": {form}, "mass": 1, "threads": {{"bend": {{"ks": 1, "kd": 0}}}}}}],

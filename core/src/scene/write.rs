@@ -348,6 +348,7 @@ impl Writer {
             Shape::Circle(_) => "a circle that is solid",
             Shape::Triangle(_) => "a triangle that gives birth or takes away",
             Shape::Plane(_) => "a plane",
+            Shape::Capsule(_) => "a capsule",
             Shape::HeightField(_) => "a height field",
         };
         self.warn(format!("{at}: .scn does not have {kind}; it is left out"));

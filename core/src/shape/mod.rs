@@ -2,6 +2,7 @@
 
 mod aabb;
 mod ball;
+mod capsule;
 mod collider;
 mod cone;
 mod convex;
@@ -29,6 +30,7 @@ mod sphere;
 mod triangle;
 
 pub use aabb::Aabb;
+pub use capsule::Capsule;
 pub(crate) use collider::earlier;
 pub use collider::{Collider, Contact, Hit, Mapped, Ride, Segment};
 pub use cone::Cone;
@@ -102,6 +104,8 @@ pub enum Shape<M> {
     Cylinder(Cylinder),
     /// A cone about the y axis, with its base.
     Cone(Cone),
+    /// A cylinder about any axis with half a sphere at either end.
+    Capsule(Capsule),
     /// A triangle mesh.
     Mesh(M),
     /// One triangle.
@@ -124,6 +128,7 @@ macro_rules! each {
             Shape::Sphere($s) => $call,
             Shape::Cylinder($s) => $call,
             Shape::Cone($s) => $call,
+            Shape::Capsule($s) => $call,
             Shape::Mesh($s) => $call,
             Shape::Triangle($s) => $call,
             Shape::Plane($s) => $call,
@@ -181,7 +186,7 @@ impl<M> Shape<M> {
     #[must_use]
     pub fn meets_balls(&self, map: &Affine) -> bool {
         match self {
-            Self::Sphere(_) | Self::Circle(_) => map.keeps_shapes(),
+            Self::Sphere(_) | Self::Circle(_) | Self::Capsule(_) => map.keeps_shapes(),
             Self::Cylinder(_) | Self::Cone(_) => map.keeps_shapes() || map.keeps_bases(),
             _ => true,
         }
@@ -199,6 +204,7 @@ impl<M> Shape<M> {
             Self::Sphere(s) => Shape::Sphere(*s),
             Self::Cylinder(s) => Shape::Cylinder(*s),
             Self::Cone(s) => Shape::Cone(*s),
+            Self::Capsule(s) => Shape::Capsule(*s),
             Self::Mesh(m) => Shape::Mesh(f(m)?),
             Self::Triangle(s) => Shape::Triangle(*s),
             Self::Plane(s) => Shape::Plane(*s),

@@ -1,6 +1,6 @@
 //! Shapes as other shapes: where a transform puts them.
 
-use super::{Affine, Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
+use super::{Affine, Capsule, Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
 use crate::math::{high, low, unit};
 use crate::rays::Structure;
 use alloc::sync::Arc;
@@ -48,6 +48,10 @@ impl Shape<Arc<MeshBuf>> {
             Self::Sphere(Sphere { center, radius }) => {
                 let [scale, _] = map.scale().ok_or(SQUASHED)?;
                 Self::Sphere(Sphere { center: map.point(*center), radius: radius * scale })
+            }
+            Self::Capsule(Capsule { from, to, radius }) => {
+                let [scale, _] = map.scale().ok_or(SQUASHED)?;
+                Self::Capsule(Capsule { from: map.point(*from), to: map.point(*to), radius: radius * scale })
             }
             Self::Circle(disc) => {
                 let [scale, _] = map.scale().ok_or(SQUASHED)?;

@@ -4,13 +4,14 @@ use super::*;
 use crate::rng::Stream;
 use proptest::prelude::*;
 
-fn all() -> [Shape<Mesh<'static>>; 5] {
+fn all() -> [Shape<Mesh<'static>>; 6] {
     let center = Vec3::new(0.3, -0.2, 0.5);
     [
         Shape::Box(Cuboid { min: Vec3::new(-0.5, -0.4, -0.3), max: Vec3::new(0.6, 0.7, 0.2) }),
         Shape::Sphere(Sphere { center, radius: 0.7 }),
         Shape::Cylinder(Cylinder { center, radius: 0.5, height: 1.2 }),
         Shape::Cone(Cone { center, radius: 0.6, height: 1.1 }),
+        Shape::Capsule(Capsule { from: center, to: Vec3::new(0.8, 0.9, -0.4), radius: 0.5 }),
         Shape::Circle(Disc { center, normal: Vec3::new(1.0, 2.0, -3.0), radius: 0.8 }),
     ]
 }

@@ -1,8 +1,8 @@
 //! What cannot be used harms nobody: no panic, and rows that are no numbers are taken out and counted.
 
 use pointmass::shape::{
-    Aabb, Affine, Collider, Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Motion, Moving, Placed, Plane, Segment,
-    Sphere, Triangle,
+    Aabb, Affine, Capsule, Collider, Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Motion, Moving, Placed, Plane,
+    Segment, Sphere, Triangle,
 };
 use pointmass::{Gravity, Mat3, Particle, Scene, Time, Vec3};
 use pointmass_tests::{Form, Random, started};
@@ -21,7 +21,8 @@ fn vector(random: &mut Random) -> Vec3 {
 
 fn shape(random: &mut Random) -> Form {
     let (a, b, x, y) = (vector(random), vector(random), number(random), number(random));
-    match random.word() % 8 {
+    match random.word() % 9 {
+        8 => Form::Capsule(Capsule { from: a, to: b, radius: x }),
         0 => Form::Box(Cuboid { min: a, max: b }),
         1 => Form::Sphere(Sphere { center: a, radius: x }),
         2 => Form::Cylinder(Cylinder { center: a, radius: x, height: y }),
