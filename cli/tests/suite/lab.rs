@@ -103,7 +103,8 @@ fn a_scene_is_told_in_every_format_and_the_same_each_time() {
     let folder = Folder::with("a.scn", ROPE);
     let args = "lab a.scn --duration 0.5 --dt 1/60,1/120,1/240 --integrators verlet,embedded";
     let said = folder.run(&format!("{args} --out a.csv --out a.json --out a.html --out a.svg")).fine().stdout;
-    for words in ["a.scn", "against RK4 in steps of", "  verlet ", "  embedded fixed ", "by tolerance [m]", "\norder: "]
+    for words in
+        ["a.scn", "against RK4 in steps of", "  verlet ", "  embedded fixed ", "by tolerance [m]", "\n  order: "]
     {
         assert!(said.contains(words), "{words} in {said}");
     }

@@ -1,48 +1,7 @@
 //! Numbers and sentences as people read them.
 
-use std::fmt::Write;
-
-/// What was typed, as a shell takes it.
-pub(crate) fn command(args: impl Iterator<Item = String>) -> String {
-    let plain =
-        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || "-_=.,/:+%@".contains(c));
-    let quoted =
-        args.skip(1).map(|word| if plain(&word) { word } else { format!("'{}'", word.replace('\'', r"'\''")) });
-    std::iter::once("pointmass".to_string()).chain(quoted).collect::<Vec<_>>().join(" ")
-}
-
-/// Writing to a string cannot fail.
-pub(crate) fn say(text: &mut String, line: &str) {
-    let _ = writeln!(text, "{}", line.trim_end());
-}
-
 /// Letters that a line of a terminal has room for.
 pub(crate) const WIDTH: usize = 80;
-
-/// Words in lines that fit a terminal, behind a mark; what follows the first line stands further in.
-pub(crate) fn paragraph(text: &mut String, mark: &str, words: &str) {
-    let mut line = mark.to_string();
-    for word in words.split_whitespace().flat_map(|word| pieces(word, WIDTH - 4)) {
-        if line.chars().count() + 1 + word.chars().count() > WIDTH {
-            say(text, &line);
-            line = "   ".into();
-        }
-        line.push(' ');
-        line.push_str(word);
-    }
-    say(text, &line);
-}
-
-/// A word in pieces of so many letters at the most.
-fn pieces(word: &str, most: usize) -> impl Iterator<Item = &str> {
-    let mut rest = word;
-    std::iter::from_fn(move || {
-        let end = rest.char_indices().nth(most).map_or(rest.len(), |(end, _)| end);
-        let (piece, after) = rest.split_at(end);
-        rest = after;
-        (!piece.is_empty()).then_some(piece)
-    })
-}
 
 /// A number of things, in words that agree.
 pub(crate) fn counted(n: usize, what: &str) -> String {
@@ -60,6 +19,15 @@ pub(crate) fn digits(x: f64) -> String {
         0.0 => "0".into(),
         a if a >= 1e-4 => format!("{x:.*}", (2 - a.log10().floor() as i32).clamp(3, 7) as usize),
         _ => format!("{x:.2e}"),
+    }
+}
+
+/// How many times the best; coarser where it is large.
+pub(crate) fn ratio(ratio: f64) -> String {
+    match ratio {
+        ratio if ratio >= 99.5 => format!("{ratio:.0}"),
+        ratio if ratio >= 9.95 => format!("{ratio:.1}"),
+        _ => format!("{ratio:.2}"),
     }
 }
 
