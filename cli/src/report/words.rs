@@ -1,5 +1,7 @@
 //! Numbers and sentences as people read them.
 
+use std::ops::Range;
+
 /// Letters that a line of a terminal has room for.
 pub(crate) const WIDTH: usize = 80;
 
@@ -8,18 +10,33 @@ pub(crate) fn counted(n: usize, what: &str) -> String {
     format!("{} {what}{}", thousands(n), if n == 1 { "" } else { "s" })
 }
 
+/// A number with so many digits that count; with an exponent beyond a range.
+pub(crate) fn significant(x: f64, digits: i32, range: Range<f64>) -> String {
+    // What rounds up to a power of ten has its digits.
+    let rounded = x.abs() * (1.0 + 0.5 * 0.1f64.powi(digits));
+    match x.abs() {
+        0.0 => "0".into(),
+        a if !range.contains(&a) => format!("{x:.*e}", digits as usize - 1),
+        _ => format!("{x:.*}", (digits - 1 - rounded.log10().floor() as i32).max(0) as usize),
+    }
+}
+
 /// A number with three digits that count.
 pub(crate) fn digits(x: f64) -> String {
-    match x.abs() {
-        x if !x.is_finite() => "-".into(),
-        a if a >= 999_500.0 => format!("{x:.2e}"),
-        a if a >= 99.95 => format!("{x:.0}"),
-        a if a >= 9.995 => format!("{x:.1}"),
-        a if a >= 0.9995 => format!("{x:.2}"),
-        0.0 => "0".into(),
-        a if a >= 1e-4 => format!("{x:.*}", (2 - a.log10().floor() as i32).clamp(3, 7) as usize),
-        _ => format!("{x:.2e}"),
+    if x.is_finite() { significant(x, 3, 1e-4..999_500.0) } else { "-".into() }
+}
+
+/// Digits without zeros that say nothing.
+pub(crate) fn trimmed(text: String) -> String {
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
     }
+}
+
+/// A number with three digits that count, without zeros that say nothing.
+pub(crate) fn short(x: f64) -> String {
+    trimmed(digits(x))
 }
 
 /// How many times the best; coarser where it is large.
@@ -28,15 +45,6 @@ pub(crate) fn ratio(ratio: f64) -> String {
         ratio if ratio >= 99.5 => format!("{ratio:.0}"),
         ratio if ratio >= 9.95 => format!("{ratio:.1}"),
         _ => format!("{ratio:.2}"),
-    }
-}
-
-/// The same without zeros that say nothing.
-pub(crate) fn short(x: f64) -> String {
-    let text = digits(x);
-    match text.contains('.') && !text.contains('e') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
     }
 }
 
