@@ -11,7 +11,7 @@ use crate::outcome::Outcome;
 use plot::Chart;
 use table::Table;
 
-/// Where findings are told. Words come in lower case and without a full stop.
+/// Where findings are told. Words may begin in lower case and lack a full stop: a page puts that right.
 pub(crate) trait Report {
     /// Whether there is room for what a reader at a terminal does without.
     fn is_page(&self) -> bool;

@@ -192,7 +192,7 @@ impl Ranged for Scale {
 }
 
 /// Times the shortest of some bars from which on a longer one would squash it, so that they have a logarithmic scale.
-const SQUASHED: f64 = 30.0;
+const SQUASHED: f64 = 10.0;
 
 impl<'a> Chart<'a> {
     /// Lines; what is not above zero has no place on a logarithmic scale and must not be among them.

@@ -6,7 +6,7 @@ use super::table::{Cell, Column, Table};
 use super::words::WIDTH;
 use crate::outcome::Outcome;
 use comfy_table::{CellAlignment, ContentArrangement};
-use textwrap::Options;
+use textwrap::{Options, WordSplitter};
 
 /// Lines of text in the making.
 #[derive(Debug, Default)]
@@ -24,6 +24,8 @@ impl Terminal {
     fn fill(&mut self, mark: &str, indent: usize, words: &str) {
         let indent = " ".repeat(indent);
         let options = Options::new(WIDTH).initial_indent(mark).subsequent_indent(&indent);
+        // Options keep their names.
+        let options = options.word_splitter(WordSplitter::NoHyphenation);
         for line in textwrap::wrap(&words.split_whitespace().collect::<Vec<_>>().join(" "), options) {
             self.0.push_str(line.trim_end());
             self.0.push('\n');
