@@ -1,34 +1,40 @@
 //! `pointmass convert`: translates a scene between the formats.
 
-use crate::args;
-use crate::formats::SceneFormat;
-use crate::whole::{WholeFile, existing_folder_of};
-use crate::{Failure, Outcome, load, warn};
+use crate::formats::{SceneFormat, named};
+use crate::load::{self, Reading};
+use crate::outcome::{Failure, Outcome, warn};
+use crate::whole::{Outs, existing_folder_of};
 use pointmass::scene::{SceneFile, write_scn};
 use pointmass::shape::Shape;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// Arguments of `convert`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Convert {
+    /// The scene to read: .scn or .json
+    pub(crate) from: PathBuf,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// The scene to write: .scn or .json
+    #[arg(value_parser = named::<SceneFormat>)]
+    pub(crate) to: (PathBuf, SceneFormat),
+}
+
 /// Converts a scene; warns of what the other format cannot say.
-///
-/// # Errors
-/// If the scene cannot be used or the file cannot be written, which is then left as it was.
-pub fn convert(args: &args::Convert) -> Outcome {
+pub(crate) fn convert(args: &Convert) -> Outcome {
     let mut scene = load::declared(&args.from, args.reading.unknown())?;
     scene.check().map_err(|error| error.in_file(&args.from.to_string_lossy()))?;
-    let (path, format) = &args.to;
-    rebase(&mut scene, folder(&args.from)?, folder(path)?);
-    let text = match format {
-        SceneFormat::Json => scene.to_json(),
+    rebase(&mut scene, folder(&args.from)?, folder(&args.to.0)?);
+    let outs = Outs::create(std::slice::from_ref(&args.to), None)?;
+    outs.write(|format| match format {
+        SceneFormat::Json => Ok(scene.to_json()),
         SceneFormat::Scn => {
             let (text, warnings) = write_scn(&scene);
             warn(&warnings);
-            text
+            Ok(text)
         }
-    };
-    let mut file = WholeFile::create(path)?;
-    file.write_all(text.as_bytes()).map_err(|error| Failure::io(path, &error))?;
-    file.complete()
+    })
 }
 
 /// The folder a file lies in, wherever the names lead.

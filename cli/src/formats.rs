@@ -1,12 +1,13 @@
-//! Formats of files, by the end of their names.
+//! Formats of files, by the end of their names, and of what is said on standard output.
 
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
+use clap::ValueEnum;
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A format of scenes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SceneFormat {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SceneFormat {
     /// The course's.
     Scn,
     /// Ours.
@@ -14,8 +15,8 @@ pub enum SceneFormat {
 }
 
 /// A format of recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RecordFormat {
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum RecordFormat {
     /// A table with a head line.
     Csv,
     /// The same, each line a JSON object.
@@ -26,9 +27,18 @@ pub enum RecordFormat {
     Xyz,
 }
 
+/// A format of pictures.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PictureFormat {
+    /// An animation.
+    Gif,
+    /// A picture, or one of many.
+    Png,
+}
+
 /// A format of points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PointsFormat {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PointsFormat {
     /// A table, with or without a head line.
     Csv,
     /// Point clouds and meshes, text or binary.
@@ -40,115 +50,56 @@ pub enum PointsFormat {
 }
 
 /// A format of studies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StudyFormat {
-    /// A table, one row a measurement.
-    Csv,
-    /// Everything, for programs.
-    Json,
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum StudyFormat {
     /// A page for people: tables, charts, advice.
     Html,
     /// The charts alone.
     Svg,
+    /// A table, one row a measurement.
+    Csv,
+    /// Everything, for programs.
+    Json,
 }
 
-/// A format of plots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlotFormat {
-    /// A page with what there is to say.
-    Html,
-    /// The picture alone.
-    Svg,
+/// How to say on standard output what there is to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Said {
+    /// For people
+    Text,
+    /// One JSON object
+    Json,
 }
 
-impl SceneFormat {
-    /// By the end of the file's name.
-    #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "scn" => Some(Self::Scn),
-            "json" => Some(Self::Json),
-            _ => None,
+/// A format by the end of a file's name.
+pub(crate) fn format_of<F: ValueEnum>(path: &Path) -> Option<F> {
+    F::from_str(&path.extension()?.to_string_lossy(), true).ok()
+}
+
+/// A file of the command line with the format that its name ends in.
+pub(crate) fn named<F: ValueEnum>(text: &str) -> Result<(PathBuf, F), String> {
+    let path = PathBuf::from(text);
+    match format_of(&path) {
+        Some(format) => Ok((path, format)),
+        None => {
+            let known = F::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+            let known: Vec<_> = known.map(|value| format!(".{}", value.get_name())).collect();
+            let (last, others) = known.split_last().ok_or("no format is known")?;
+            Err(format!("expected a name that ends in {} or {last}", others.join(", ")))
         }
     }
 }
 
-impl RecordFormat {
-    /// By the end of the file's name.
-    #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "csv" => Some(Self::Csv),
-            "jsonl" => Some(Self::Jsonl),
-            "ply" => Some(Self::Ply),
-            "xyz" => Some(Self::Xyz),
-            _ => None,
-        }
-    }
+/// Everything as one line of JSON, in which numbers that are not finite are null.
+pub(crate) fn line(value: &impl Serialize) -> Outcome<String> {
+    written(serde_json::to_string(value))
 }
 
-impl PointsFormat {
-    /// By the end of the file's name.
-    #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "csv" => Some(Self::Csv),
-            "ply" => Some(Self::Ply),
-            "xyz" => Some(Self::Xyz),
-            "npy" => Some(Self::Npy),
-            _ => None,
-        }
-    }
-}
-
-impl StudyFormat {
-    /// By the end of the file's name.
-    #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "csv" => Some(Self::Csv),
-            "json" => Some(Self::Json),
-            "html" => Some(Self::Html),
-            "svg" => Some(Self::Svg),
-            _ => None,
-        }
-    }
-}
-
-impl PlotFormat {
-    /// By the end of the file's name.
-    #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        match extension(path).as_str() {
-            "html" => Some(Self::Html),
-            "svg" => Some(Self::Svg),
-            _ => None,
-        }
-    }
-}
-
-/// A table for other programs: a head line, then a line a row.
-///
-/// # Errors
-/// If it cannot be written.
-pub(crate) fn sheet<R: Serialize>(rows: impl IntoIterator<Item = R>) -> Outcome<String> {
-    let fail = |error: &dyn std::fmt::Display| Failure::new(error.to_string());
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    rows.into_iter().try_for_each(|row| writer.serialize(row)).map_err(|error| fail(&error))?;
-    let bytes = writer.into_inner().map_err(|error| fail(&error))?;
-    String::from_utf8(bytes).map_err(|error| fail(&error))
-}
-
-/// Everything, for programs, in lines that people can read too.
-///
-/// # Errors
-/// If it cannot be written.
+/// The same in lines that people can read too.
 pub(crate) fn json(value: &impl Serialize) -> Outcome<String> {
-    let text = serde_json::to_string_pretty(value).map_err(|error| Failure::new(error.to_string()))?;
-    Ok(text + "\n")
+    written(serde_json::to_string_pretty(value))
 }
 
-/// The lower-case end of a file's name.
-pub(crate) fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+fn written(text: serde_json::Result<String>) -> Outcome<String> {
+    text.map(|text| text + "\n").map_err(|error| Failure::new(error.to_string()))
 }

@@ -1,39 +1,82 @@
-//! The library behind the `pointmass` binary.
+//! The library behind the `pointmass` binary: one module a command, which has its arguments beside it.
 //!
-//! `args` parses, one module a command does the work: `run`, `render`, `convert`, `check`, `compare`, `lab`. They share
-//! `load` (scenes and meshes from disk), `world` (a scene in motion), `schedule` (when steps end), `substeps` (how they are
-//! divided), `record` (state to files), `draw` (state to pictures), and what reports are made of: `plot`, `page`, `words`.
+//! The commands are `run`, `render`, `convert`, `check`, `compare` and `lab`. They share `load` (scenes and meshes from
+//! disk), `world` (a scene in motion), `schedule` (when steps end), `substeps` (how they are divided), `record` (state to
+//! files), `draw` (state to pictures), `report` (findings to a terminal, a page or a table) and `outcome` (what went wrong).
 
-pub mod args;
-pub mod check;
+mod check;
 pub mod compare;
-pub mod convert;
+mod convert;
 pub mod draw;
-pub mod formats;
-mod grid;
-pub mod groups;
-pub mod lab;
+mod fault;
+mod formats;
+mod lab;
 pub mod load;
 pub mod meshes;
-mod page;
-mod plot;
+mod outcome;
+mod parse;
 mod progress;
 mod record;
-pub mod render;
-pub mod report;
-pub mod run;
-pub mod schedule;
+mod render;
+mod report;
+mod run;
+mod schedule;
 mod stage;
 mod stall;
-pub mod substeps;
-pub mod temporary;
-pub mod whole;
-mod words;
-pub mod world;
+mod statistics;
+mod substeps;
+mod temporary;
+mod whole;
+mod world;
 
-use args::{Args, Command};
-use clap::Parser;
+pub use outcome::{Failure, Outcome};
+
+use clap::{Parser, Subcommand};
+use outcome::{harmless, print, tell};
 use std::process::ExitCode;
+
+/// Particle systems that are exact, bounded and the same everywhere.
+#[derive(Debug, Parser)]
+#[command(
+    name = "pointmass",
+    version,
+    max_term_width = 100,
+    after_help = "\
+Examples:
+  pointmass render scenes/fountain.json --out fountain.gif
+  pointmass run scenes/rope.scn --duration 10 --dt 0.001 --out rope.csv
+  pointmass run scenes/fountain.json --report json | jq .died
+  pointmass check scenes/rope.scn --dt 1/30
+  pointmass convert lab.scn lab.json
+  pointmass compare --distribution uniform,plummer --n 1e3,1e4,1e5 --out study.html
+  pointmass compare --mesh bunny.ply --out rays.html
+  pointmass lab --problems oscillator,kepler --out lab.html
+  pointmass lab scenes/rope.scn --duration 2 --dt 1/60,1/120,1/240,1/480"
+)]
+struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene and report what happened
+    Run(run::Run),
+    /// Draw a scene as an animation or pictures
+    Render(render::Render),
+    /// Translate a scene between .scn and .json
+    Convert(convert::Convert),
+    /// Say which steps a scene stands with every integrator, what limits them and what to change
+    Check(check::Check),
+    /// Measure which spatial partition suits which points and queries, or which mesh and rays
+    Compare(compare::Compare),
+    /// Measure how exact the integrators are, and how well they keep energy
+    Lab(lab::Lab),
+    /// Print the JSON Schema of .json scenes
+    Schema,
+}
 
 /// What the command does: parses its arguments, does what they say, and turns the outcome into an exit code.
 #[must_use]
@@ -69,109 +112,8 @@ fn refuse(error: &clap::Error) -> ! {
     std::process::exit(error.exit_code());
 }
 
-/// What went wrong, as one line for a person.
-#[derive(Debug)]
-pub struct Failure(String);
-
-impl Failure {
-    /// A failure with a message that names what it is about.
-    pub fn new(message: impl Into<String>) -> Self {
-        Self(message.into())
-    }
-
-    /// A failure to read or write `path`.
-    pub fn io(path: &std::path::Path, error: &std::io::Error) -> Self {
-        Self(format!("{}: {error}{}", path.display(), hint(path, error)))
-    }
-}
-
-impl std::fmt::Display for Failure {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&one_line(&self.0))
-    }
-}
-
-/// Which file may be meant where there is none.
-pub(crate) fn hint(path: &std::path::Path, error: &std::io::Error) -> String {
-    let is_missing = error.kind() == std::io::ErrorKind::NotFound;
-    let alike = is_missing.then(|| load::alike(path)).flatten();
-    alike.map_or(String::new(), |name| format!("; did you mean {name}?"))
-}
-
-/// Text as a terminal may show it: names in it come from files and arguments, and may hold codes that terminals obey.
-/// Lines stay lines, and JSON stays the same JSON.
-#[must_use]
-pub fn harmless(text: &str) -> String {
-    let obeyed = |c: char| c != '\n' && (c.is_control() || is_bidirectional(c));
-    let mut harmless = String::with_capacity(text.len());
-    for c in text.chars() {
-        if obeyed(c) { harmless.push_str(&format!("\\u{:04x}", u32::from(c))) } else { harmless.push(c) }
-    }
-    harmless
-}
-
-/// Whether it changes the order in which letters are shown.
-fn is_bidirectional(c: char) -> bool {
-    matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
-
-/// A message as one line of bounded length: names in it come from files, and may hold anything.
-fn one_line(message: &str) -> String {
-    const LONGEST: usize = 600;
-    let mut line: String = message
-        .chars()
-        .flat_map(|c| {
-            let escaped = c.is_control() || is_bidirectional(c);
-            escaped.then(|| c.escape_debug()).into_iter().flatten().chain((!escaped).then_some(c))
-        })
-        .take(LONGEST)
-        .collect();
-    if message.chars().nth(LONGEST).is_some() {
-        line.push_str(" ...");
-    }
-    line
-}
-
-impl std::error::Error for Failure {}
-
-impl From<pointmass::scene::SceneError> for Failure {
-    fn from(error: pointmass::scene::SceneError) -> Self {
-        Self(error.to_string())
-    }
-}
-
-/// What a command comes to.
-pub type Outcome<T = ()> = Result<T, Failure>;
-
-/// Prints to standard output; a reader that has gone away is no error.
-///
-/// # Errors
-/// If the output cannot be written for another reason.
-pub fn print(text: &str) -> Outcome {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure(format!("standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Prints warnings to standard error, the first hundred of them.
-pub fn warn(warnings: &[String]) {
-    const MOST: usize = 100;
-    for warning in warnings.iter().take(MOST) {
-        tell("warning", warning);
-    }
-    if warnings.len() > MOST {
-        tell("warning", &format!("{} more of the kind", warnings.len() - MOST));
-    }
-}
-
-/// Prints a line to standard error.
-pub fn tell(what: &str, message: &str) {
-    use std::io::Write;
-    // If standard error is closed or full, nobody is left to be told.
-    let _ = writeln!(std::io::stderr(), "{what}: {}", one_line(message));
+#[test]
+fn the_command_line_is_sound() {
+    use clap::CommandFactory;
+    Args::command().debug_assert();
 }

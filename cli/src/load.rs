@@ -1,13 +1,28 @@
 //! Scenes and meshes from disk.
 
-use crate::formats::SceneFormat;
+use crate::formats::{SceneFormat, format_of};
 use crate::meshes::{self, MAX_BYTES};
-use crate::{Failure, Outcome, warn};
-use pointmass::scene::{Files, Reading, SceneError, SceneFile, Unknown, read_scn_with};
+use crate::outcome::{Failure, Outcome, alike, warn};
+use pointmass::scene::{self, Files, SceneError, SceneFile, Unknown, read_scn_with};
 use pointmass::shape::MeshBuf;
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+/// How a scene is read.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub(crate) struct Reading {
+    /// Pass over commands that .scn does not have, up to the next line that begins with one it has, with a warning each
+    #[arg(long)]
+    pub(crate) skip_unknown: bool,
+}
+
+impl Reading {
+    /// What becomes of a command that `.scn` does not have.
+    pub(crate) fn unknown(self) -> Unknown {
+        if self.skip_unknown { Unknown::Skip } else { Unknown::Refuse }
+    }
+}
 
 /// Files on disk, by path.
 #[derive(Debug)]
@@ -45,7 +60,7 @@ pub fn scene(path: &Path) -> Outcome<SceneFile> {
 /// # Errors
 /// As of [`scene`].
 pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
-    let Reading { scene, warnings, remarks } = read(path, unknown)?;
+    let scene::Reading { scene, warnings, remarks } = read(path, unknown)?;
     warn(&[warnings, remarks].concat());
     Ok(scene)
 }
@@ -55,13 +70,13 @@ pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
 /// # Errors
 /// As of [`scene`].
 pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
-    let Reading { scene, warnings, .. } = read(path, unknown)?;
+    let scene::Reading { scene, warnings, .. } = read(path, unknown)?;
     warn(&warnings);
     Ok(scene)
 }
 
-fn read(path: &Path, unknown: Unknown) -> Outcome<Reading> {
-    let format = SceneFormat::of(path);
+fn read(path: &Path, unknown: Unknown) -> Outcome<scene::Reading> {
+    let format = format_of::<SceneFormat>(path);
     if format.is_none() && path.is_file() {
         let path = path.display();
         return Err(Failure::new(format!("{path}: expected a scene, whose name ends in .json or .scn")));
@@ -75,7 +90,7 @@ fn read(path: &Path, unknown: Unknown) -> Outcome<Reading> {
     let scene = SceneFile::from_json(&name, &text)?;
     let remarks = SceneFile::former_names(&text).into_iter().chain(scene.remarks());
     let remarks = remarks.map(|remark| format!("{name}:{remark}")).collect();
-    Ok(Reading { scene, warnings: Vec::new(), remarks })
+    Ok(scene::Reading { scene, warnings: Vec::new(), remarks })
 }
 
 /// How to go on where a command is unknown.
@@ -83,30 +98,6 @@ fn hinted(error: SceneError) -> SceneError {
     let is_unknown = error.message.starts_with("unknown command");
     let hint = if is_unknown { "; --skip-unknown passes over such commands" } else { "" };
     SceneError { message: error.message + hint, ..error }
-}
-
-/// The name of a file that differs from that of a missing one in capitals alone, from the first folder that does.
-pub(crate) fn alike(path: &Path) -> Option<String> {
-    let (mut found, mut shown) = (PathBuf::new(), PathBuf::new());
-    for part in path.components() {
-        let next = found.join(part);
-        if next.symlink_metadata().is_ok() {
-            found = next;
-            if shown.as_os_str().is_empty() {
-                continue;
-            }
-            shown.push(part);
-        } else {
-            let wanted = part.as_os_str().to_string_lossy().to_lowercase();
-            let folder = if found.as_os_str().is_empty() { Path::new(".") } else { &found };
-            let names = folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.file_name()));
-            let name = names.filter(|name| name.to_string_lossy().to_lowercase() == wanted).min()?;
-            found.push(&name);
-            shown.push(&name);
-        }
-    }
-    let is_other = found.is_file() && !shown.as_os_str().is_empty();
-    is_other.then(|| shown.display().to_string())
 }
 
 fn text(path: &Path) -> Outcome<String> {

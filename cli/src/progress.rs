@@ -37,7 +37,7 @@ impl Progress {
         self.bar.set_length(self.bar.position() + units + left);
         self.bar.inc(units);
         if self.shown {
-            self.bar.set_message(crate::harmless(doing));
+            self.bar.set_message(crate::outcome::harmless(doing));
         }
     }
 

@@ -1,19 +1,38 @@
 //! `pointmass render`: steps a scene and draws it.
 
 use crate::draw::{Renderer, Sink};
+use crate::formats::{PictureFormat, named};
+use crate::outcome::{Failure, Outcome};
 use crate::progress::Progress;
 use crate::stage::{Cast, moves, stage};
-use crate::world::World;
-use crate::{Failure, Outcome, args};
+use crate::world::{Settings, World};
 use pointmass::Time;
+use std::path::PathBuf;
+
+/// Arguments of `render`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Render {
+    /// How the scene is run.
+    #[command(flatten)]
+    pub(crate) world: Settings,
+    /// FILE.gif, an animation; FILE.png, the last picture; or DIR/%04d.png, all pictures
+    #[arg(long, value_name = "FILE", value_parser = named::<PictureFormat>)]
+    pub(crate) out: (PathBuf, PictureFormat),
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// Pictures per second of the scene's time
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) fps: u32,
+    /// Draw the surfaces that particles come from and vanish at as well
+    #[arg(long)]
+    pub(crate) show_sources: bool,
+}
 
 /// Draws a scene as the arguments say. Files are written whole, at the end, or not at all.
-///
-/// # Errors
-/// If the scene cannot be used or a file cannot be written.
-pub fn render(args: &args::Render) -> Outcome {
+pub(crate) fn render(args: &Render) -> Outcome {
     let mut world = World::load(&args.world)?;
-    let mut sink = Sink::create(&args.out, f64::from(args.fps)).map_err(Failure::new)?;
+    let mut sink = Sink::create(&args.out.0, f64::from(args.fps)).map_err(Failure::new)?;
     let frame_time = 1.0 / f64::from(args.fps);
     let frames = (world.duration / frame_time + 1e-6) as u64;
     // Between two pictures lie equal steps, none longer than the step of the run.
@@ -38,14 +57,23 @@ pub fn render(args: &args::Render) -> Outcome {
             }
         }
         // Every picture remembers where things were in the one before, drawn or not.
-        let dots = cast.dots(&world);
+        let dots = cast.dots(&world.system, &world.model.scene());
         if frame == frames || !sink.keeps_only_last() {
             if moves {
                 seen = renderer(&world);
             }
-            sink.push(&seen.frame(&dots, &Cast::segments(&world))).map_err(Failure::new)?;
+            sink.push(&seen.frame(&dots, &Cast::segments(&world.system, &world.model.scene())))
+                .map_err(Failure::new)?;
         }
     }
     progress.finish();
     sink.finish().map_err(Failure::new)
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match sides {
+        Some((w, h)) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok((w, h)),
+        _ => Err("expected WIDTHxHEIGHT, such as 640x480, each from 1 to 8192".into()),
+    }
 }

@@ -6,7 +6,7 @@ use pointmass::Time;
 ///
 /// Ends are rounded to the tick one by one, so that a long run does not drift.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Schedule {
+pub(crate) struct Schedule {
     dt: f64,
     duration: f64,
     steps: u64,
@@ -17,8 +17,7 @@ const ROUNDING: f64 = 1e-6;
 
 impl Schedule {
     /// `duration` seconds in steps of `dt`.
-    #[must_use]
-    pub fn new(duration: f64, dt: f64) -> Self {
+    pub(crate) fn new(duration: f64, dt: f64) -> Self {
         let ratio = duration / dt;
         let whole = if (ratio - ratio.round()).abs() <= ROUNDING { ratio.round() } else { ratio.floor() };
         let rest = ratio - whole > ROUNDING;
@@ -26,27 +25,23 @@ impl Schedule {
     }
 
     /// `steps` whole steps of `dt`.
-    #[must_use]
-    pub fn steps_of(steps: u64, dt: f64) -> Self {
+    pub(crate) fn steps_of(steps: u64, dt: f64) -> Self {
         Self { dt, duration: steps as f64 * dt, steps }
     }
 
     /// How many steps there are.
-    #[must_use]
-    pub fn steps(&self) -> u64 {
+    pub(crate) fn steps(&self) -> u64 {
         self.steps
     }
 
     /// When step `n` ends, from 1.
-    #[must_use]
-    pub fn end(&self, n: u64) -> Time {
+    pub(crate) fn end(&self, n: u64) -> Time {
         let seconds = if n >= self.steps { self.duration } else { n as f64 * self.dt };
         Time::from_seconds_f64(seconds)
     }
 }
 
 /// Seconds rounded to the nanosecond: a tick of the clock is a quarter of that, and 0.001 shall read 0.001.
-#[must_use]
 pub(crate) fn nanoseconds(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e9
 }

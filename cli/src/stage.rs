@@ -1,12 +1,11 @@
 //! A scene as the renderer sees it: scenery, and what moves.
 
 use crate::draw::{self, Dot, Line, Piece, Segment, Stage, Surface, shapes};
-use crate::world::World;
 use glam::Vec3;
-use pointmass::Time;
 use pointmass::draw::{Appearance, appearance};
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
+use pointmass::{Heap, Scene, System, Time};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -59,9 +58,8 @@ impl Cast {
     }
 
     /// The particles as they are now.
-    pub(crate) fn dots(&mut self, world: &World) -> Vec<Dot> {
-        let (particles, scene) = (world.system.particles(), world.model.scene());
-        let state = world.system.state(&scene);
+    pub(crate) fn dots(&mut self, system: &System<Heap>, scene: &Scene<'_>) -> Vec<Dot> {
+        let (particles, state) = (system.particles(), system.state(scene));
         let mut now = HashMap::with_capacity(particles.serial.len());
         let mut dots = Vec::with_capacity(particles.serial.len());
         for (row, (&position, &serial)) in particles.position.iter().zip(particles.serial).enumerate() {
@@ -82,10 +80,9 @@ impl Cast {
     }
 
     /// The springs as they are now.
-    pub(crate) fn segments(world: &World) -> Vec<Segment> {
-        let scene = world.model.scene();
-        let springs = world.system.state(&scene).springs;
-        let position = world.system.particles().position;
+    pub(crate) fn segments(system: &System<Heap>, scene: &Scene<'_>) -> Vec<Segment> {
+        let springs = system.state(scene).springs;
+        let position = system.particles().position;
         springs.ends().map(|[a, b]| Segment { a: position[a], b: position[b], color: [170, 170, 180, 255] }).collect()
     }
 }

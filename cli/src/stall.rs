@@ -1,6 +1,6 @@
 //! Steps that are too short for where a scene is: rounding swallows what moves there.
 
-use crate::words::thousands;
+use crate::report::words::thousands;
 use pointmass::scene::Model;
 use pointmass::{ForceKind, Report, Vec3};
 

@@ -3,22 +3,37 @@
 use pointmass::stability::Limit;
 use pointmass::{Heap, Observer, Report, Scene, System, Time};
 use serde::Serialize;
+use std::str::FromStr;
 
 /// How many sub-steps a step may have at the most when their number is chosen here.
-pub const MOST: u32 = 1024;
+pub(crate) const MOST: u32 = 1024;
 
 /// How many sub-steps a step has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Substeps {
+pub(crate) enum Substeps {
     /// So many.
     Fixed(u32),
     /// As many as stability and the tolerance ask, `MOST` at the most.
     Auto,
 }
 
+impl FromStr for Substeps {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "auto" => Ok(Self::Auto),
+            text => match text.parse() {
+                Ok(n) if (1..=1_000_000).contains(&n) => Ok(Self::Fixed(n)),
+                _ => Err("expected a whole number from 1 to 1000000, or auto".into()),
+            },
+        }
+    }
+}
+
 /// Divides the steps of a run.
 #[derive(Clone, Debug)]
-pub struct Pace {
+pub(crate) struct Pace {
     substeps: Substeps,
     /// The largest stable sub-step.
     limit: Limit,
@@ -31,45 +46,42 @@ pub struct Pace {
 
 /// How steps were divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Told {
+pub(crate) struct Told {
     /// Whether the numbers were chosen by the program.
-    pub auto: bool,
+    pub(crate) auto: bool,
     /// The fewest sub-steps of a step.
-    pub least: u32,
+    pub(crate) least: u32,
     /// The most.
-    pub most: u32,
+    pub(crate) most: u32,
     /// Sub-steps of all steps.
-    pub total: u64,
+    pub(crate) total: u64,
     /// Steps that may end farther off, since they had as many as they may have or more did not help.
-    pub beyond: u64,
+    pub(crate) beyond: u64,
     /// How far a step of half as many sub-steps may end from it \[m\], if the numbers were chosen.
-    pub tolerance: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
 }
 
 impl Pace {
     /// A given number of sub-steps, or as many as it takes to stay below the largest stable step and within the tolerance
     /// \[m\].
-    #[must_use]
-    pub fn new(substeps: Substeps, limit: Limit, tolerance: f64) -> Self {
+    pub(crate) fn new(substeps: Substeps, limit: Limit, tolerance: f64) -> Self {
         let auto = substeps == Substeps::Auto;
         let told = Told { auto, tolerance: auto.then_some(tolerance), ..Told::default() };
         Self { substeps, limit, tolerance, first: 1, told }
     }
 
     /// How many sub-steps a step has.
-    #[must_use]
-    pub fn substeps(&self) -> Substeps {
+    pub(crate) fn substeps(&self) -> Substeps {
         self.substeps
     }
 
     /// How steps were divided so far.
-    #[must_use]
-    pub fn told(&self) -> Told {
+    pub(crate) fn told(&self) -> Told {
         self.told
     }
 
     /// Steps a system to the instant `end`, while somebody may watch.
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         system: &mut System<Heap>,
         scene: &Scene<'_>,

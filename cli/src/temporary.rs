@@ -23,9 +23,6 @@ pub(crate) struct Temporary(PathBuf);
 
 impl Temporary {
     /// What `make` makes, and its path.
-    ///
-    /// # Errors
-    /// If it cannot.
     pub(crate) fn new<T, E>(make: impl FnOnce() -> Result<(T, PathBuf), E>) -> Result<(T, Self), E> {
         let mut all = uninterrupted();
         let (made, path) = make()?;
@@ -61,7 +58,7 @@ fn remove(path: &Path) {
 
 /// From now on, an interrupt removes what is temporary, and ends the program with 128 plus the signal's number.
 #[cfg(unix)]
-pub fn clean_up_when_interrupted() {
+pub(crate) fn clean_up_when_interrupted() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // What `nohup` starts outlives its terminal.
     let wanted = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| signal != SIGHUP || !is_ignored(SIGHUP));
@@ -80,7 +77,7 @@ pub fn clean_up_when_interrupted() {
 }
 
 #[cfg(not(unix))]
-pub fn clean_up_when_interrupted() {}
+pub(crate) fn clean_up_when_interrupted() {}
 
 /// Whether the program was started with a signal turned off; only Linux tells without unsafe code.
 #[cfg(unix)]

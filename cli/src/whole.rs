@@ -3,15 +3,15 @@
 //! Each is written under a passing name in the folder where it is going to be, and waits until all of a command are
 //! complete. What is no plain file, such as a pipe, gets all at once then.
 
+use crate::outcome::{Failure, Outcome};
 use crate::temporary::{PREFIX, Temporary, uninterrupted};
-use crate::{Failure, Outcome};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// A file in the making. Dropped, it is gone.
 #[derive(Debug)]
-pub struct WholeFile {
+pub(crate) struct WholeFile {
     path: PathBuf,
     file: BufWriter<File>,
     temporary: Temporary,
@@ -20,10 +20,7 @@ pub struct WholeFile {
 
 impl WholeFile {
     /// Begins a file under a passing name in the folder of `path`, or of what that links to.
-    ///
-    /// # Errors
-    /// If that folder does not exist, cannot be written to, or has a folder of that name.
-    pub fn create(path: &Path) -> Outcome<Self> {
+    pub(crate) fn create(path: &Path) -> Outcome<Self> {
         let target = target_of(path)?;
         // Nothing can lie beside a pipe in /dev.
         let folder = if is_special(&target) { std::env::temp_dir() } else { folder_of(&target).to_path_buf() };
@@ -38,34 +35,24 @@ impl WholeFile {
     }
 
     /// What the file will be called.
-    #[must_use]
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Opens the file once more, for those who have to own what they write to.
-    ///
-    /// # Errors
-    /// If the system has no more handles.
-    pub fn reopen(&self) -> io::Result<File> {
+    pub(crate) fn reopen(&self) -> io::Result<File> {
         self.file.get_ref().try_clone()
     }
 
     /// Nothing more is going to be written.
-    ///
-    /// # Errors
-    /// If what is left in the buffer cannot be.
-    pub fn close(self) -> Outcome<Written> {
+    pub(crate) fn close(self) -> Outcome<Written> {
         let Self { path, file, temporary, target } = self;
         file.into_inner().map_err(|error| Failure::io(&path, error.error()))?;
         Ok(Written { passing: temporary.path().to_path_buf(), target, path, _kept: vec![temporary] })
     }
 
     /// Gives the file its name, in place of any older file that has it.
-    ///
-    /// # Errors
-    /// If what is left in the buffer cannot be written, or the file not be named.
-    pub fn complete(self) -> Outcome {
+    pub(crate) fn complete(self) -> Outcome {
         publish(&[self.close()?])
     }
 }
@@ -82,7 +69,7 @@ impl Write for WholeFile {
 
 /// A file that is complete and waits for its name. Dropped, it is gone.
 #[derive(Debug)]
-pub struct Written {
+pub(crate) struct Written {
     /// Its passing name.
     passing: PathBuf,
     /// Where it will be.
@@ -103,9 +90,6 @@ pub(crate) struct Series {
 
 impl Series {
     /// Begins beside `path`.
-    ///
-    /// # Errors
-    /// If its folder is not there and not to be made, or cannot be written to.
     pub(crate) fn create(path: &Path, may_make_folder: bool) -> Outcome<Self> {
         let folder = folder_of(path);
         let mut made = None;
@@ -123,9 +107,6 @@ impl Series {
     }
 
     /// A new file, which will be called `path`.
-    ///
-    /// # Errors
-    /// If it cannot be made.
     pub(crate) fn next(&mut self, path: PathBuf) -> io::Result<File> {
         // Who cleans up has to find all that there is.
         let _uninterrupted = uninterrupted();
@@ -139,9 +120,6 @@ impl Series {
     }
 
     /// Nothing more is going to be written.
-    ///
-    /// # Errors
-    /// If something is in the way of one of them.
     pub(crate) fn close(self) -> Outcome<Vec<Written>> {
         let Self { waiting, _made, paths } = self;
         let number = |(i, path): (usize, PathBuf)| {
@@ -158,9 +136,6 @@ impl Series {
 }
 
 /// Gives all of them their names, or none of them if one cannot be written or something is in its way.
-///
-/// # Errors
-/// If that is so.
 pub(crate) fn publish(files: &[Written]) -> Outcome {
     let fail = |file: &Written, error: &io::Error| Failure::io(&file.path, error);
     for file in files {
@@ -204,14 +179,11 @@ impl Written {
 
 /// The files that a command was asked to write, each in a format.
 #[derive(Debug)]
-pub struct Outs<F>(Vec<(WholeFile, F)>);
+pub(crate) struct Outs<F>(Vec<(WholeFile, F)>);
 
 impl<F: Copy> Outs<F> {
     /// Begins all of them, but none in place of what is `read`.
-    ///
-    /// # Errors
-    /// If one of them cannot be written.
-    pub fn create<'a>(outs: &[(PathBuf, F)], read: impl IntoIterator<Item = &'a PathBuf>) -> Outcome<Self> {
+    pub(crate) fn create<'a>(outs: &[(PathBuf, F)], read: impl IntoIterator<Item = &'a PathBuf>) -> Outcome<Self> {
         let read: Vec<_> = read.into_iter().filter_map(|path| path.canonicalize().ok()).collect();
         let is_read = |path: &Path| path.canonicalize().is_ok_and(|path| read.contains(&path));
         if let Some((path, _)) = outs.iter().find(|(path, _)| is_read(path)) {
@@ -222,10 +194,7 @@ impl<F: Copy> Outs<F> {
     }
 
     /// Writes all of them, and then gives them their names.
-    ///
-    /// # Errors
-    /// If a text cannot be made or a file not be written.
-    pub fn write(self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
+    pub(crate) fn write(self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
         let write = |(mut file, format): (WholeFile, F)| {
             let written = file.write_all(text(format)?.as_bytes());
             written.map_err(|error| Failure::io(file.path(), &error))?;
@@ -263,16 +232,12 @@ fn is_special(path: &Path) -> bool {
 }
 
 /// The folder a path is in, as it is named.
-#[must_use]
-pub fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// The folder a path is in, which has to exist.
-///
-/// # Errors
-/// If it does not.
-pub fn existing_folder_of(path: &Path) -> Outcome<&Path> {
+pub(crate) fn existing_folder_of(path: &Path) -> Outcome<&Path> {
     let folder = folder_of(path);
     if folder.is_dir() {
         return Ok(folder);

@@ -1,35 +1,114 @@
 //! A scene in motion: the system, the scene it steps through, and the settings of the run.
 
-use crate::args;
 use crate::check::Bounds;
-use crate::load::{self, Disk};
+use crate::load::{self, Disk, Reading};
+use crate::outcome::{Failure, Outcome, warn};
+use crate::parse::{number, seconds, step};
 use crate::stage::size;
 use crate::stall;
 use crate::substeps::{Pace, Substeps};
-use crate::{Failure, Outcome, warn};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::Limit;
-use pointmass::{Heap, Method, Observer, Report, Response, System, Time};
+use pointmass::{Heap, Method, Observer, Report, Response, System, Time, index, rays};
 use rayon::ThreadPool;
+use std::path::{Path, PathBuf};
 
 /// The tolerance of sub-steps that nobody gave, in parts of the scene's size.
 const TOLERANCE: f64 = 1e-4;
 
+/// The arguments of a command that runs a scene.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Settings {
+    /// The scene: .json or .scn
+    pub(crate) scene: PathBuf,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// How many seconds; by default what the scene says, 10 for .scn
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub(crate) duration: Option<f64>,
+    /// The step in seconds, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
+    #[arg(long, value_name = "S", value_parser = step)]
+    pub(crate) dt: Option<f64>,
+    /// The method: euler, symplectic, midpoint, lecture_midpoint, verlet, rk4, adaptive, embedded or implicit; by default
+    /// what the scene says, rk4 for .scn
+    #[arg(long, value_name = "NAME")]
+    pub(crate) integrator: Option<Method>,
+    /// How forces between neighbours find them: brute, grid, hash, quadtree, octree, kd, bsp or bvh; by default what the
+    /// scene says, else grid. They end in the same bits by all of them
+    #[arg(long, value_name = "NAME")]
+    pub(crate) index: Option<index::Structure>,
+    /// How particles that have a radius answer each other: impulse, force or position; by default what the scene says,
+    /// else they pass through each other
+    #[arg(long, value_name = "NAME", value_parser = clap::builder::PossibleValuesParser::new(Response::NAMES))]
+    pub(crate) response: Option<String>,
+    /// How paths find what they run into among the triangles of a mesh: brute, grid, octree, kd, bsp or bvh, all to the
+    /// same end; by default what the scene says, else bvh
+    #[arg(long, value_name = "NAME")]
+    pub(crate) collision_index: Option<rays::Structure>,
+    /// The seed of all randomness; by default what the scene says, else 1
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// How many particles may live at once, what finds no room is refused and counted; by default what the scene says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=500_000_000))]
+    pub(crate) capacity: Option<u32>,
+    /// Divide every step into N sub-steps, or `auto`: into as few as springs, drag and contacts need to be stable and
+    /// --tolerance asks, at most 1024
+    #[arg(long, value_name = "N|auto", default_value = "1")]
+    pub(crate) substeps: Substeps,
+    /// With --substeps auto, how far a step may end, in metres and at any particle, from where half as many sub-steps
+    /// would take it; by default 1e-4 of the radius of what is there at the start. With adaptive and embedded, how far an
+    /// inner step may err; by default what the scene says, 1e-4
+    #[arg(long, value_name = "M", value_parser = tolerance)]
+    pub(crate) tolerance: Option<f64>,
+    /// On how many threads many particles are stepped, to the same bits: whole steps where they have nothing to do with each
+    /// other, else the sums of their forces; by default as many as the machine has
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+impl Settings {
+    /// A scene as it says itself, in steps that are not divided and on one thread.
+    pub(crate) fn of(scene: &Path, reading: Reading) -> Self {
+        Self {
+            scene: scene.to_path_buf(),
+            reading,
+            duration: None,
+            dt: None,
+            integrator: None,
+            index: None,
+            response: None,
+            collision_index: None,
+            seed: None,
+            capacity: None,
+            substeps: Substeps::Fixed(1),
+            tolerance: None,
+            threads: Some(1),
+        }
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    // Integrators keep it as a 32-bit float.
+    if (1e-30..=1e30).contains(&value) { Ok(value) } else { Err("expected metres, from 1e-30 to 1e30".into()) }
+}
+
 /// A scene made ready and the system it is done to.
 #[derive(Debug)]
-pub struct World {
+pub(crate) struct World {
     /// What the file says.
-    pub file: SceneFile,
+    pub(crate) file: SceneFile,
     /// The scene.
-    pub model: Model,
+    pub(crate) model: Model,
     /// The state.
-    pub system: System<Heap>,
+    pub(crate) system: System<Heap>,
     /// How it is run: the file's settings with those of the command line laid over.
-    pub duration: f64,
+    pub(crate) duration: f64,
     /// The step \[s\].
-    pub dt: f64,
+    pub(crate) dt: f64,
     /// How steps are divided.
-    pub pace: Pace,
+    pub(crate) pace: Pace,
     /// The threads that steps run on, if there are more than this one.
     threads: Option<ThreadPool>,
 }
@@ -39,10 +118,7 @@ const WORTH_THREADS: usize = 4096;
 
 impl World {
     /// Loads the scene and puts in what it begins with.
-    ///
-    /// # Errors
-    /// If the scene cannot be used.
-    pub fn load(args: &args::World) -> Outcome<Self> {
+    pub(crate) fn load(args: &Settings) -> Outcome<Self> {
         let mut file = load::scene_with(&args.scene, args.reading.unknown())?;
         let run = &mut file.run;
         run.integrator = args.integrator.unwrap_or(run.integrator);
@@ -76,9 +152,7 @@ impl World {
             Failure::new(format!("there is no memory for {capacity} particles; lower --capacity (or the scene's)"))
         })?;
         let mut system = System::with(memory);
-        system
-            .start(&model.scene(), seed)
-            .map_err(|insufficient_memory| Failure::new(insufficient_memory.to_string()))?;
+        system.start(&model.scene(), seed)?;
         let method = model.integrator.method;
         let chosen = args.substeps == Substeps::Auto && !method.chooses_steps();
         let limit = if chosen { Bounds::of(&model).largest_step(method) } else { Limit::Unconditional };
@@ -89,13 +163,12 @@ impl World {
     }
 
     /// The method of the run.
-    #[must_use]
-    pub fn integrator(&self) -> Method {
+    pub(crate) fn integrator(&self) -> Method {
         self.model.integrator.method
     }
 
     /// Warns of steps \[s\] that are going to explode in a run of some duration \[s\], unless they are divided as need be.
-    pub fn warn_of_steps(&self, step: f64, duration: f64) {
+    pub(crate) fn warn_of_steps(&self, step: f64, duration: f64) {
         if let Substeps::Fixed(n) = self.pace.substeps() {
             let step = step / f64::from(n);
             warn(&Bounds::of(&self.model).warnings(self.integrator(), step, duration));
@@ -104,7 +177,7 @@ impl World {
     }
 
     /// Steps to the instant `end`.
-    pub fn step_to(&mut self, end: Time) -> Report {
+    pub(crate) fn step_to(&mut self, end: Time) -> Report {
         let Self { model, system, pace, threads, .. } = self;
         let scene = model.scene();
         match threads {
@@ -114,7 +187,7 @@ impl World {
     }
 
     /// Steps to the instant `end` while somebody watches.
-    pub fn step_observed(&mut self, end: Time, observer: &mut dyn Observer) -> Report {
+    pub(crate) fn step_observed(&mut self, end: Time, observer: &mut dyn Observer) -> Report {
         self.pace.step(&mut self.system, &self.model.scene(), end, Some(observer))
     }
 }

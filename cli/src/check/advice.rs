@@ -1,10 +1,10 @@
 //! What to change.
 
-use super::bounds::place;
 use super::contact::STEPS;
-use super::report::{Check, Stand};
+use super::part::place;
+use super::study::{Stand, Study};
 use super::words::{plain, time, typed};
-use crate::words::counted;
+use crate::report::words::counted;
 use pointmass::Spring;
 use pointmass::scene::Model;
 use pointmass::stability::Limit;
@@ -14,7 +14,7 @@ const ORBIT: f64 = 50.0;
 const PULL: f64 = 10.0;
 
 /// What to change, the most urgent first; or that nothing has to be.
-pub(crate) fn advise(check: &Check, model: &Model) -> Vec<String> {
+pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
     let mut advice = Vec::new();
     match stand.every_pose.and(stand.drag).and(stand.contact) {
@@ -29,7 +29,7 @@ pub(crate) fn advise(check: &Check, model: &Model) -> Vec<String> {
     advice
 }
 
-fn fine(check: &Check, limit: Limit) -> String {
+fn fine(check: &Study, limit: Limit) -> String {
     let (step, method) = (time(check.dt), &check.integrator);
     match limit {
         Limit::Step(limit) => {
@@ -44,7 +44,7 @@ fn fine(check: &Check, limit: Limit) -> String {
     }
 }
 
-fn too_long(check: &Check, stand: &Stand, limit: f64) -> Vec<String> {
+fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
     let parts = (check.dt / limit).ceil();
     let step = time(check.dt);
     let mut advice = vec![
@@ -69,7 +69,7 @@ fn too_long(check: &Check, stand: &Stand, limit: f64) -> Vec<String> {
 }
 
 /// Of a method without any stable step, or of a scene that drives itself.
-fn never(check: &Check, model: &Model, stand: &Stand) -> String {
+fn never(check: &Study, model: &Model, stand: &Stand) -> String {
     let drives = |spring: &&Spring| spring.ks < 0.0 || spring.kd < 0.0;
     if let Some(i) = model.springs.iter().position(|spring| drives(&spring)) {
         let place = place(model, 1, i);
@@ -88,7 +88,7 @@ fn never(check: &Check, model: &Model, stand: &Stand) -> String {
 }
 
 /// Damping beyond the critical costs steps and does not calm any faster.
-fn damping(check: &Check, model: &Model) -> Option<String> {
+fn damping(check: &Study, model: &Model) -> Option<String> {
     let part = check.stiffest.as_ref()?;
     let ratio = 0.5 * part.mode.damping / part.mode.omega2.sqrt();
     if !(ratio > 1.5 && ratio.is_finite()) {
@@ -103,7 +103,7 @@ fn damping(check: &Check, model: &Model) -> Option<String> {
     ))
 }
 
-fn taut(check: &Check, stand: &Stand) -> Option<String> {
+fn taut(check: &Study, stand: &Stand) -> Option<String> {
     let is_worth_saying = stand.growth_across > 0.0 && stand.every_pose.admits(check.dt) && !stand.chooses_steps;
     is_worth_saying.then(|| {
         format!(
@@ -115,7 +115,7 @@ fn taut(check: &Check, stand: &Stand) -> Option<String> {
     })
 }
 
-fn world(check: &Check) -> Vec<String> {
+fn world(check: &Study) -> Vec<String> {
     let mut advice = Vec::new();
     if !check.not_judged.is_empty() {
         advice.push(format!(

@@ -1,11 +1,11 @@
 //! What bounds the step of a scene: its springs in every pose, and drag.
 
 use super::contact::Contact;
+use super::part::{Part, place};
 use super::words::{plain, time};
 use pointmass::scene::Model;
 use pointmass::stability::{Limit, Mode, Poses};
 use pointmass::{ForceKind, Method, Particle, Spring};
-use serde::Serialize;
 
 /// What bounds the step of a scene.
 pub(crate) struct Bounds {
@@ -16,20 +16,6 @@ pub(crate) struct Bounds {
     pub(crate) dragged: Option<Part>,
     /// The balls that push each other apart most abruptly.
     pub(crate) contact: Option<Contact>,
-}
-
-/// A part of a scene that bounds the step.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct Part {
-    /// Where it stands in the file.
-    pub(crate) place: String,
-    /// Its number among all springs, if it is one.
-    #[serde(skip)]
-    pub(crate) spring: Option<usize>,
-    /// What it is.
-    pub(crate) about: String,
-    /// Its oscillation, were it alone.
-    pub(crate) mode: Mode,
 }
 
 impl Bounds {
@@ -122,14 +108,6 @@ pub(crate) fn in_air(model: &Model) -> (Vec<Particle>, bool) {
     let [own, all] = air(model);
     let braked = |particle: &Particle| Particle { drag: own * particle.drag + all, ..*particle };
     (model.particles.iter().map(braked).collect(), own != 0.0 || all != 0.0)
-}
-
-/// Where particle (0) or spring (1) number `number` stands in the file: in a list, or in a cloth.
-pub(crate) fn place(model: &Model, kind: usize, number: usize) -> String {
-    match model.cloths.partition_point(|begin| begin[kind] <= number) {
-        0 => format!("{}[{number}]", ["particles", "springs"][kind]),
-        after => format!("cloths[{}]", after - 1),
-    }
 }
 
 fn stiffest(model: &Model) -> Option<Part> {

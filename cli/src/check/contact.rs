@@ -1,7 +1,7 @@
 //! Bounds that contacts by force put on the step: springs between balls that touch.
 
-use super::bounds::{Part, place};
 use super::hit;
+use super::part::{Part, place};
 use super::words::{plain, time, typed};
 use pointmass::force::Penalty;
 use pointmass::scene::Model;

@@ -1,7 +1,8 @@
 //! `pointmass check`: which steps a scene stands, what limits them, and what to change.
 //!
 //! `net` makes matrices of the springs, `modes` and `verlet` work out their oscillations at rest, `bounds` what holds in
-//! every pose, `contact` and `hit` what touching balls ask for, `world` what else has a time of its own; `report` is what it came to, which `advice` puts into words, and `text`, `plot` and `page` tell.
+//! every pose, `contact` and `hit` what touching balls ask for, `world` what else has a time of its own; `study` is what it
+//! came to, which `advice` puts into words, and `report` and `plot` tell.
 
 mod advice;
 mod bounds;
@@ -9,74 +10,85 @@ mod contact;
 mod hit;
 mod modes;
 mod net;
-mod page;
+mod part;
 mod plot;
 mod report;
+mod study;
 #[cfg(test)]
 mod tests;
-mod text;
 mod verlet;
 mod words;
 mod world;
 
 pub(crate) use bounds::Bounds;
 
-use crate::args::{self, Report};
-use crate::formats::PlotFormat;
-use crate::load::{self, Disk};
-use crate::whole::WholeFile;
-use crate::{Failure, Outcome, print, stall};
+use crate::formats::{Said, StudyFormat, json, line, named};
+use crate::load::{self, Disk, Reading};
+use crate::outcome::{Outcome, print};
+use crate::parse::step;
+use crate::report::origin::Origin;
+use crate::report::page::Page;
+use crate::report::plot::all;
+use crate::report::terminal::Terminal;
+use crate::stall;
+use crate::whole::Outs;
 use modes::Spectrum;
 use plot::Scenery;
 use pointmass::Method;
 use pointmass::scene::Model;
-use report::Check;
-use std::io::Write;
+use std::path::PathBuf;
+use study::Study;
 
-/// Writes the picture, or the page around it.
-fn draw(
-    mut file: WholeFile,
-    format: PlotFormat,
-    check: &Check,
-    spectrum: Option<&Spectrum>,
-    method: Method,
-) -> Outcome {
-    let modes = spectrum.iter().flat_map(|spectrum| spectrum.modes.iter().copied());
-    let parts = check.dragged.iter().chain(&check.touching);
-    let modes = modes.chain(parts.map(|part| part.mode)).collect();
-    let scenery = Scenery { check, modes, method };
-    let text = match format {
-        PlotFormat::Svg => plot::svg(&scenery)?,
-        PlotFormat::Html => page::html(&scenery)?,
-    };
-    file.write_all(text.as_bytes()).map_err(|error| Failure::io(file.path(), &error))?;
-    file.complete()
+/// Arguments of `check`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Check {
+    /// The scene: .json or .scn
+    pub(crate) scene: PathBuf,
+    /// How the scene is read.
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// The step in seconds that is judged, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
+    #[arg(long, value_name = "S", value_parser = step)]
+    pub(crate) dt: Option<f64>,
+    /// The method that is advised on, any that `run` knows; by default what the scene says, rk4 for .scn
+    #[arg(long, value_name = "NAME")]
+    pub(crate) integrator: Option<Method>,
+    /// Write the findings into FILE: .html, a page with charts of where methods are stable and where the scene's
+    /// oscillations lie; .svg, the charts; .csv or .json, all figures; may be given several times
+    #[arg(long, value_name = "FILE", visible_alias = "plot", value_parser = named::<StudyFormat>)]
+    pub(crate) out: Vec<(PathBuf, StudyFormat)>,
+    /// How to say it on standard output
+    #[arg(long, value_enum, default_value_t = Said::Text)]
+    pub(crate) report: Said,
 }
 
-/// A vector in double precision.
-fn wide(v: pointmass::Vec3) -> nalgebra::Vector3<f64> {
-    v.to_array().map(f64::from).into()
-}
-
-/// Checks a scene as the arguments say. A file is written whole or not at all.
-///
-/// # Errors
-/// If the scene cannot be used or a file cannot be written.
-pub fn check(args: &args::Check) -> Outcome {
+/// Checks a scene as the arguments say. Files are written whole, at the end, or not at all.
+pub(crate) fn check(args: &Check) -> Outcome {
     let mut file = load::scene_with(&args.scene, args.reading.unknown())?;
     let run = &mut file.run;
     run.integrator = args.integrator.unwrap_or(run.integrator);
     run.dt = args.dt.unwrap_or(run.dt);
     let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
-    let plot =
-        args.plot.as_ref().map(|(path, format)| WholeFile::create(path).map(|file| (file, *format))).transpose()?;
-    let (mut check, spectrum) = Check::of(&args.scene, &model, &file.run);
-    check.advice.extend(stall::foreseen(&model, file.run.dt, file.run.duration));
-    if let Some((file, format)) = plot {
-        draw(file, format, &check, spectrum.as_ref(), model.integrator.method)?;
-    }
-    match args.report {
-        Report::Text => print(&text::text(&check)),
-        Report::Json => print(&(serde_json::to_string(&check).unwrap_or_default() + "\n")),
-    }
+    let outs = Outs::create(&args.out, [&args.scene])?;
+    let (mut study, spectrum) = Study::of(&args.scene, &model, &file.run);
+    study.advice = advice::advise(&study, &model);
+    study.advice.extend(stall::foreseen(&model, file.run.dt, file.run.duration));
+    let charts = scenery(&study, spectrum, model.integrator.method).charts();
+    outs.write(|format| match format {
+        StudyFormat::Csv => report::sheet(&study).csv(),
+        StudyFormat::Json => json(&study),
+        StudyFormat::Html => Page::told("Which step?", &Origin::this(), |page| report::tell(&study, &charts, page)),
+        StudyFormat::Svg => all(&charts),
+    })?;
+    print(&match args.report {
+        Said::Text => Terminal::told(|terminal| report::tell(&study, &charts, terminal))?,
+        Said::Json => line(&study)?,
+    })
+}
+
+/// What is drawn.
+fn scenery(study: &Study, spectrum: Option<Spectrum>, method: Method) -> Scenery {
+    let modes = spectrum.map_or(Vec::new(), |spectrum| spectrum.modes);
+    let parts = study.dragged.iter().chain(&study.touching).map(|part| part.mode);
+    Scenery { modes: modes.into_iter().chain(parts).collect(), method, dt: study.dt }
 }

@@ -3,9 +3,9 @@
 //! In coordinates scaled by the roots of the masses, x'' = −K x − C x'. Each spring adds k d dᵀ to K, d being its
 //! direction: at its rest length it does not pull across itself. Gravity and other forces are left out.
 
-use super::net::{Net, ROUNDING, mixed};
+use super::net::{Net, ROUNDING, eigenvalues, mixed};
 use super::verlet;
-use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use pointmass::stability::{Limit, Mode, Scheme};
 use pointmass::{Method, Particle, Spring};
 
@@ -122,15 +122,6 @@ fn independent(k: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Mode> {
 /// Zero, if that is what it would be without rounding.
 fn snapped(value: f64, scale: f64) -> f64 {
     if value.abs() <= ROUNDING * scale { 0.0 } else { value }
-}
-
-/// All eigenvalues of a square matrix, by iterations that give up the last digits where they do not come to rest. None if
-/// they do not at all.
-pub(super) fn eigenvalues(m: &DMatrix<f64>) -> Option<DVector<Complex<f64>>> {
-    /// Rounds for each row; two or three are usual.
-    const ROUNDS: usize = 60;
-    let schur = |digits: &f64| Schur::try_new(m.clone(), digits * f64::EPSILON, ROUNDS * m.nrows());
-    [1.0, 30.0, 1e3, 1e5].iter().find_map(schur).map(|schur| schur.complex_eigenvalues())
 }
 
 /// The rates λ of λ² + λC + K, the eigenvalues of [0 1; −K −C], as modes that have them. None should they not be found.

@@ -1,7 +1,6 @@
 //! A scene's springs as two matrices, about the places where it starts.
 
-use super::wide;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 use pointmass::stability::{Limit, Mode};
 use pointmass::{Method, Particle, Spring};
 
@@ -158,4 +157,18 @@ impl Net {
 /// A sum of both that has no more equal eigenvalues than it must, and turns to zero what both do.
 pub(super) fn mixed(k: &DMatrix<f64>, c: &DMatrix<f64>) -> DMatrix<f64> {
     if c.norm() > 0.0 { k + c * (0.618 * k.norm().max(c.norm()) / c.norm()) } else { k.clone() }
+}
+
+/// All eigenvalues of a square matrix, by iterations that give up the last digits where they do not come to rest. None if
+/// they do not at all.
+pub(super) fn eigenvalues(m: &DMatrix<f64>) -> Option<DVector<Complex<f64>>> {
+    /// Rounds for each row; two or three are usual.
+    const ROUNDS: usize = 60;
+    let schur = |digits: &f64| Schur::try_new(m.clone(), digits * f64::EPSILON, ROUNDS * m.nrows());
+    [1.0, 30.0, 1e3, 1e5].iter().find_map(schur).map(|schur| schur.complex_eigenvalues())
+}
+
+/// A vector in double precision.
+pub(super) fn wide(v: pointmass::Vec3) -> nalgebra::Vector3<f64> {
+    v.to_array().map(f64::from).into()
 }

@@ -1,73 +1,26 @@
 //! Where methods are stable, and where a scene's oscillations lie.
 //!
-//! On the left the plane of hλ, λ being the rates of the solutions e^{λt}: a method whose step multiplies them by R(hλ) is
-//! stable where |R| ≤ 1. On the right hω against the damping ratio, for methods that have no such factor as well.
+//! One chart shows the plane of hλ, λ being the rates of the solutions e^{λt}: a method whose step multiplies them by R(hλ)
+//! is stable where |R| ≤ 1. The other shows hω against the damping ratio, for methods that have no such factor as well.
 
-use super::report::Check;
 use super::words::time;
-use crate::Outcome;
-use crate::plot::{Area, FAINT, INK, PALETTE, undrawn};
+use crate::report::plot::{Axis, Chart, Line, Style};
 use nalgebra::Complex;
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::{
-    Cartesian2d, ChartBuilder, ChartContext, Circle, Color, IntoDrawingArea, IntoFont, LineSeries, PathElement,
-    Polygon, RGBColor, SVGBackend, Text, TextStyle, WHITE,
-};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 use pointmass::Method;
 use pointmass::stability::{Limit, Mode, Scheme};
 
-/// Units of a pixel: the library draws at whole units, which as pixels would make curves of stairs.
-const FINE: u32 = 2;
-/// Width and height of each half, in units as all that follow.
-const HALF: (u32, u32) = (640 * FINE, 560 * FINE);
-/// What surrounds a plot: above, beside the axes, and the legend's width.
-const MARGIN: u32 = 8 * FINE;
-const TITLE: u32 = 40 * FINE;
-const AXES: (u32, u32) = (40 * FINE, 56 * FINE);
-const LEGEND: u32 = 122 * FINE;
-/// Letters of titles and of all else, the radius of dots, the width of lines.
-const LETTERS: (u32, u32) = (17 * FINE, 14 * FINE);
-const DOT: u32 = 4 * FINE;
-const LINE: u32 = 2 * FINE;
-/// Height of a line of the legend.
-const ROW: i32 = 20 * FINE as i32;
-/// Dots of what is not stable.
-const ALARM: RGBColor = RGBColor(200, 30, 30);
+/// Width and height of each chart, in pixels.
+const SIZE: (u32, u32) = (640, 560);
 
-type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
-/// What is drawn: oscillations, stepped by `dt`.
-pub(crate) struct Scenery<'a> {
-    pub(crate) check: &'a Check,
+/// What is drawn: oscillations, stepped by a method in steps of `dt` \[s\].
+pub(crate) struct Scenery {
     pub(crate) modes: Vec<Mode>,
     pub(crate) method: Method,
+    pub(crate) dt: f64,
 }
 
-/// A line of the legend.
-struct Entry {
-    name: String,
-    color: RGBColor,
-}
-
-/// The picture.
-///
-/// # Errors
-/// If it cannot be drawn.
-pub(crate) fn svg(scenery: &Scenery<'_>) -> Outcome<String> {
-    let mut picture = String::new();
-    {
-        let root = SVGBackend::with_string(&mut picture, (2 * HALF.0, HALF.1)).into_drawing_area();
-        root.fill(&WHITE).map_err(undrawn)?;
-        let (left, right) = root.split_horizontally(HALF.0);
-        scenery.draw_plane(&left)?;
-        scenery.draw_limits(&right)?;
-        root.present().map_err(undrawn)?;
-    }
-    // The same picture in pixels.
-    let size = |unit: u32| format!("width=\"{}\" height=\"{}\"", 2 * HALF.0 / unit, HALF.1 / unit);
-    Ok(picture.replacen(&size(1), &size(FINE), 1))
-}
+/// A dot, and whether what it stands for is stable.
+type Dot = ((f64, f64), bool);
 
 /// The border of where |R(z)| ≤ 1, from the origin around: the solutions of R(z) = e^{iθ}, each found by Newton's method
 /// from the one before.
@@ -88,21 +41,31 @@ fn border(coefficients: &[f64]) -> Vec<(f64, f64)> {
     (0..=degree * POINTS).map(point).collect()
 }
 
-/// What methods do to a linear system, by the first that does it.
-fn schemes() -> Vec<(Scheme, Entry)> {
-    let mut schemes: Vec<(Scheme, Entry)> = Vec::new();
-    for (&method, color) in Method::ALL.iter().zip(&PALETTE[1..]) {
-        if schemes.iter().all(|(scheme, _)| *scheme != method.scheme()) {
-            schemes.push((method.scheme(), Entry { name: method.to_string(), color: *color }));
+/// What methods do to a linear system, by the first that does it, and the look of its line.
+fn schemes() -> Vec<(Scheme, Method, usize)> {
+    let mut schemes: Vec<(Scheme, Method, usize)> = Vec::new();
+    for (&method, look) in Method::ALL.iter().zip(1..) {
+        if schemes.iter().all(|(scheme, ..)| *scheme != method.scheme()) {
+            schemes.push((method.scheme(), method, look));
         }
     }
     schemes
 }
 
-impl Scenery<'_> {
+/// A line without marks.
+fn plain(name: &str, look: usize, dots: Vec<(f64, f64)>) -> Line<'static> {
+    Line { style: Style::Around(0.0), ..Line::new(name.to_string(), look, dots) }
+}
+
+impl Scenery {
+    /// Both charts.
+    pub(crate) fn charts(&self) -> Vec<Chart<'static>> {
+        vec![self.plane().sized(SIZE.0, SIZE.1), self.limits().sized(SIZE.0, SIZE.1)]
+    }
+
     /// Rates times the step.
-    fn dots(&self) -> Vec<((f64, f64), bool)> {
-        let h = self.check.dt;
+    fn rates(&self) -> Vec<Dot> {
+        let h = self.dt;
         let of = |mode: &Mode| {
             let stable = self.is_stable(mode);
             let rates = mode.rates().map(|[re, im]| ((h * re, h * im), stable || self.is_calm([h * re, h * im])));
@@ -113,7 +76,7 @@ impl Scenery<'_> {
     }
 
     fn is_stable(&self, mode: &Mode) -> bool {
-        mode.largest_step(self.method).admits(self.check.dt)
+        mode.largest_step(self.method).admits(self.dt)
     }
 
     /// Of an oscillation that grows, one rate may still decay.
@@ -121,49 +84,38 @@ impl Scenery<'_> {
         self.method.scheme().factor(z).is_some_and(|factor| factor <= 1.0)
     }
 
-    fn draw_plane(&self, area: &Area<'_>) -> Outcome {
+    fn plane(&self) -> Chart<'static> {
         /// No farther than so many times the usual width is shown.
         const FARTHEST: f64 = 6.0;
-        let dots = self.dots();
+        let dots = self.rates();
         let (mut left, right) = (-3.7f64, 2.3);
         let reach = dots.iter().fold(0.0f64, |reach, ((re, im), _)| reach.max(-re).max(im.abs()));
         left = left.min(-1.08 * reach).max(FARTHEST * left);
-        let size = (HALF.0 - LEGEND - 2 * MARGIN - AXES.1, HALF.1 - TITLE - MARGIN - AXES.0);
-        let top = 0.5 * (right - left) * f64::from(size.1) / f64::from(size.0);
-        let title = format!("Steps of {}: rates hλ, and where methods are stable", time(self.check.dt));
-        let (plot, legend) = area.split_horizontally(HALF.0 - LEGEND);
-        let mut chart = framed(
-            area,
-            &plot,
-            &title,
-            [left, right],
-            [-top, top],
-            ["real part of hλ: decay", "imaginary part: swing"],
-        )?;
-        let line = |from, to| LineSeries::new([from, to], INK.mix(0.5).stroke_width(LINE / 2));
-        chart.draw_series(line((left, 0.0), (right, 0.0))).map_err(undrawn)?;
-        chart.draw_series(line((0.0, -top), (0.0, top))).map_err(undrawn)?;
-        let mut entries = Vec::new();
-        for (scheme, entry) in schemes() {
-            let (around, fill) = match scheme {
-                Scheme::Polynomial(coefficients) => (border(coefficients), 0.10),
+        let top = 0.5 * (right - left) * Chart::aspect(SIZE.0, SIZE.1);
+        let cross = [vec![(left, 0.0), (right, 0.0)], vec![(0.0, -top), (0.0, top)]];
+        let mut lines: Vec<_> = cross.into_iter().map(|dots| plain("", 0, dots)).collect();
+        for (scheme, method, look) in schemes() {
+            let (dots, fill, beyond) = match scheme {
+                Scheme::Polynomial(coefficients) => (border(coefficients), 0.10, ""),
                 // |1 − z| = 1; stable outside.
-                Scheme::Implicit => (border(&[1.0, -1.0]), 0.0),
+                Scheme::Implicit => (border(&[1.0, -1.0]), 0.0, " (outside)"),
                 Scheme::Symplectic | Scheme::Verlet => continue,
             };
-            chart.draw_series([Polygon::new(around.clone(), entry.color.mix(fill))]).map_err(undrawn)?;
-            chart.draw_series(LineSeries::new(around, entry.color.stroke_width(LINE))).map_err(undrawn)?;
-            let beyond = if scheme == Scheme::Implicit { " (outside)" } else { "" };
-            entries.push(Entry { name: entry.name + beyond, color: entry.color });
+            lines.push(Line { style: Style::Around(fill), ..plain(&format!("{method}{beyond}"), look, dots) });
         }
         let is_seen = |(x, y): (f64, f64)| (left..=right).contains(&x) && (-top..=top).contains(&y);
-        let hidden = draw_dots(&mut chart, &dots, is_seen)?;
-        draw_legend(&legend, &entries, self, hidden)
+        lines.extend(self.dots(&dots, is_seen));
+        let title = format!("Steps of {}: rates hλ, and where methods are stable", time(self.dt));
+        let axes = [
+            Axis::between("real part of hλ: decay", [left, right]),
+            Axis::between("imaginary part: swing", [-top, top]),
+        ];
+        Chart::of_lines("", title, lines, axes)
     }
 
-    fn draw_limits(&self, area: &Area<'_>) -> Outcome {
+    fn limits(&self) -> Chart<'static> {
         const CURVE: u32 = 400;
-        let h = self.check.dt;
+        let h = self.dt;
         let swing = self.modes.iter().filter(|mode| mode.omega2 > 0.0);
         let dots: Vec<_> = swing
             .map(|mode| ((0.5 * mode.damping / mode.omega2.sqrt(), h * mode.omega2.sqrt()), self.is_stable(mode)))
@@ -171,11 +123,8 @@ impl Scenery<'_> {
         let most =
             |start: f64, of: fn((f64, f64)) -> f64| dots.iter().fold(start, |most, (dot, _)| most.max(1.08 * of(*dot)));
         let (right, top) = (most(1.5, |dot| dot.0).min(20.0), most(3.2, |dot| dot.1).min(12.0));
-        let (plot, legend) = area.split_horizontally(HALF.0 - LEGEND);
-        let title = "Stable below the line: hω against damping";
-        let mut chart = framed(area, &plot, title, [0.0, right], [0.0, top], ["damping ratio", "hω"])?;
-        let mut entries = Vec::new();
-        for (scheme, entry) in schemes() {
+        let mut lines = Vec::new();
+        for (scheme, method, look) in schemes() {
             let limit = |i: u32| {
                 let ratio = right * f64::from(i) / f64::from(CURVE);
                 match scheme.largest_step(Mode { omega2: 1.0, damping: 2.0 * ratio }) {
@@ -185,104 +134,30 @@ impl Scenery<'_> {
                 }
             };
             let curve: Vec<_> = (0..=CURVE).filter_map(limit).filter(|(_, y)| *y <= top).collect();
-            if curve.is_empty() {
-                continue;
+            if !curve.is_empty() {
+                lines.push(plain(method.name(), look, curve));
             }
-            chart.draw_series(LineSeries::new(curve, entry.color.stroke_width(LINE))).map_err(undrawn)?;
-            entries.push(entry);
         }
-        let hidden = draw_dots(&mut chart, &dots, |(x, y)| x <= right && y <= top)?;
-        draw_legend(&legend, &entries, self, hidden)
+        lines.extend(self.dots(&dots, |(x, y)| x <= right && y <= top));
+        let axes = [Axis::between("damping ratio", [0.0, right]), Axis::between("hω", [0.0, top])];
+        Chart::of_lines("", "Stable below the line: hω against damping".into(), lines, axes)
     }
-}
 
-/// Axes under a title.
-fn framed<'a, 'b>(
-    area: &Area<'b>,
-    plot: &'a Area<'b>,
-    title: &str,
-    [left, right]: [f64; 2],
-    [bottom, top]: [f64; 2],
-    [x, y]: [&str; 2],
-) -> Outcome<Plot<'a, 'b>> {
-    let large = TextStyle::from(("sans-serif", LETTERS.0).into_font()).color(&INK);
-    area.draw(&Text::new(title.to_string(), (ROW / 2, ROW / 2), large)).map_err(undrawn)?;
-    let mut chart = ChartBuilder::on(plot)
-        .margin_top(TITLE)
-        .margin_right(MARGIN)
-        .margin_left(MARGIN)
-        .margin_bottom(MARGIN)
-        .x_label_area_size(AXES.0)
-        .y_label_area_size(AXES.1)
-        .build_cartesian_2d(left..right, bottom..top)
-        .map_err(undrawn)?;
-    let small = TextStyle::from(("sans-serif", LETTERS.1).into_font()).color(&INK);
-    chart
-        .configure_mesh()
-        .x_desc(x)
-        .y_desc(y)
-        .label_style(small.clone())
-        .axis_desc_style(small)
-        .bold_line_style(FAINT.stroke_width(LINE / 2))
-        .axis_style(INK.stroke_width(LINE / 2))
-        .light_line_style(WHITE.mix(0.0))
-        .x_label_formatter(&|x| super::words::plain(round(*x)))
-        .y_label_formatter(&|y| super::words::plain(round(*y)))
-        .draw()
-        .map_err(undrawn)?;
-    Ok(chart)
-}
-
-/// A tick without what rounding adds to zero.
-fn round(x: f64) -> f64 {
-    (x * 1e6).round() / 1e6
-}
-
-/// Draws those dots that can be seen; how many cannot.
-fn draw_dots(
-    chart: &mut Plot<'_, '_>,
-    dots: &[((f64, f64), bool)],
-    is_seen: impl Fn((f64, f64)) -> bool,
-) -> Outcome<usize> {
-    let (seen, hidden): (Vec<_>, Vec<_>) = dots.iter().partition(|(dot, _)| is_seen(*dot));
-    let circle = |(dot, stable): &((f64, f64), bool)| Circle::new(*dot, DOT, color(*stable).mix(0.75).filled());
-    chart.draw_series(seen.into_iter().map(circle)).map_err(undrawn)?;
-    Ok(hidden.len())
-}
-
-fn color(stable: bool) -> RGBColor {
-    if stable { INK } else { ALARM }
-}
-
-fn draw_legend(area: &Area<'_>, entries: &[Entry], scenery: &Scenery<'_>, hidden: usize) -> Outcome {
-    let small = TextStyle::from(("sans-serif", LETTERS.1).into_font()).color(&INK);
-    let small = small.pos(Pos::new(HPos::Left, VPos::Center));
-    let mut y = TITLE as i32 + ROW / 2;
-    let mut word = |text: String, mark: Option<(RGBColor, bool)>| {
-        match mark {
-            Some((color, true)) => area.draw(&Circle::new((ROW / 2, y), DOT, color.mix(0.75).filled())),
-            Some((color, false)) => area.draw(&PathElement::new(vec![(0, y), (ROW, y)], color.stroke_width(LINE))),
-            None => Ok(()),
+    /// Those dots that can be seen, and words on the others.
+    fn dots(&self, dots: &[Dot], is_seen: impl Fn((f64, f64)) -> bool) -> Vec<Line<'static>> {
+        if self.modes.is_empty() {
+            return vec![Line::new("no oscillations", 0, Vec::new())];
         }
-        .map_err(undrawn)?;
-        area.draw(&Text::new(text, (if mark.is_some() { ROW * 13 / 10 } else { 0 }, y), small.clone()))
-            .map_err(undrawn)?;
-        y += ROW;
-        Ok(())
-    };
-    entries.iter().try_for_each(|entry| word(entry.name.clone(), Some((entry.color, false))))?;
-    if scenery.modes.is_empty() {
-        return word("no oscillations".into(), None);
+        let (seen, hidden): (Vec<&Dot>, Vec<_>) = dots.iter().partition(|(dot, _)| is_seen(*dot));
+        let of = |stable: bool, what: &str| {
+            let dots: Vec<_> = seen.iter().filter(|dot| dot.1 == stable).map(|dot| dot.0).collect();
+            let line = Line::new(format!("{}: {what}", self.method), 0, dots);
+            Line { style: Style::Dots { alarm: !stable }, ..line }
+        };
+        let grows = self.modes.iter().any(|mode| !self.is_stable(mode)).then(|| of(false, "grows"));
+        let outside = (!hidden.is_empty()).then(|| Line::new(format!("{} lie outside", hidden.len()), 0, Vec::new()));
+        [of(true, "stable")].into_iter().chain(grows).chain(outside).collect()
     }
-    let method = scenery.method;
-    word(format!("{method}: stable"), Some((color(true), true)))?;
-    if scenery.modes.iter().any(|mode| !scenery.is_stable(mode)) {
-        word(format!("{method}: grows"), Some((color(false), true)))?;
-    }
-    if hidden > 0 {
-        word(format!("{hidden} lie outside"), None)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

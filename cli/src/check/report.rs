@@ -1,137 +1,160 @@
-//! What there is to say about a scene's step.
+//! A check, told at a terminal or on a page, and as a table.
 
-use super::advice::advise;
-use super::bounds::{Bounds, Part, in_air};
-use super::contact::Contact;
-use super::modes::{How, Spectrum};
-use super::world::{Followed, Pair, Pull, fastest_pair, followed, not_judged, pulls};
-use pointmass::Method;
-use pointmass::scene::{Model, Run};
+use super::modes::How;
+use super::study::{Oscillations, Stand, Study};
+use super::words::{limit, plain, time};
+use crate::outcome::Outcome;
+use crate::report::Report;
+use crate::report::plot::Chart;
+use crate::report::table::{Cell, Table};
+use crate::report::words::{counted, thousands};
 use pointmass::stability::Limit;
-use serde::Serialize;
-use std::path::Path;
+use std::fmt::Write;
 
-/// What there is to say about a scene's step. Times are in seconds, rates per second.
-#[derive(Debug, Serialize)]
-pub(crate) struct Check {
-    /// The scene's file.
-    pub(crate) scene: String,
-    /// The step that is judged.
-    pub(crate) dt: f64,
-    /// The method that is advised on.
-    pub(crate) integrator: String,
-    /// Particles at the start, and those of them that can move.
-    pub(crate) particles: usize,
-    pub(crate) free: usize,
-    pub(crate) springs: usize,
-    pub(crate) emitters: usize,
-    /// The oscillations of the springs at rest.
-    pub(crate) oscillations: Option<Oscillations>,
-    /// The spring whose two ends alone would oscillate fastest.
-    pub(crate) stiffest: Option<Part>,
-    /// What drag slows down most.
-    pub(crate) dragged: Option<Part>,
-    /// The balls that push each other apart most abruptly, and how long a hit of them lasts.
-    pub(crate) touching: Option<Part>,
-    pub(crate) hit: Option<f64>,
-    pub(crate) methods: Vec<Stand>,
-    /// How long paths may be to be followed with full accuracy to what they hit.
-    pub(crate) followed: Option<Followed>,
-    /// The two particles that attract each other into the quickest orbit.
-    pub(crate) pair: Option<Pair>,
-    /// The sinks whose pull changes from place to place.
-    pub(crate) sinks: Vec<Pull>,
-    /// Forces that bound the step as well, by a law that is not looked at.
-    pub(crate) not_judged: Vec<&'static str>,
-    pub(crate) advice: Vec<String>,
-}
+/// What the figures mean.
+const NOTES: [&str; 5] = [
+    "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
+    "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
+     and other forces; what only drifts is left out.",
+    "Every pose: the stiffness at each particle over its mass, as if all its springs pulled in one line, which no pose \
+     exceeds near the springs' rest lengths. Springs that are damped more or less than others are taken at their worst.",
+    "Contact: hits of balls that push each other apart give back no more energy than they take, however the steps fall \
+     within them, nor does a ball grow restless among as many of its size as can touch it.",
+    "Taut springs pull across themselves as well, and their damping does not act there: explicit Euler and the midpoint \
+     method make that grow at any step, however slowly.",
+];
 
-/// The oscillations of the springs at rest.
-#[derive(Debug, Serialize)]
-pub(crate) struct Oscillations {
-    /// How many of them move.
-    pub(crate) count: usize,
-    pub(crate) how: How,
-    /// The largest rate |λ| \[1/s\].
-    pub(crate) fastest: f64,
-    /// Its damping ratio.
-    pub(crate) damping_ratio: Option<f64>,
-}
-
-/// What a method stands.
-#[derive(Debug, Serialize)]
-pub(crate) struct Stand {
-    pub(crate) method: String,
-    /// It chooses its own steps: the limits are those of the steps within.
-    pub(crate) chooses_steps: bool,
-    /// The largest step stable for springs that are where they start, and at rest there.
-    pub(crate) at_rest: Limit,
-    /// Whether that is an estimate, since there are too many oscillations to work out all.
-    pub(crate) estimated: bool,
-    /// The largest step stable in every pose.
-    pub(crate) every_pose: Limit,
-    /// The largest step that drag allows.
-    pub(crate) drag: Limit,
-    /// The largest step in which contacts by force add no energy.
-    pub(crate) contact: Limit,
-    /// Whether it stands the step that is judged.
-    pub(crate) stable: bool,
-    /// How fast an oscillation across taut springs may grow at that step.
-    pub(crate) growth_across: f64,
-}
-
-impl Check {
-    pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Option<Spectrum>) {
-        let (dt, bounds) = (run.dt, Bounds::of(model));
-        let (braked, has_drag) = in_air(model);
-        let spectrum = Spectrum::of(&braked, &model.springs, has_drag);
-        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, spectrum.as_ref(), dt)).collect();
-        let mut check = Self {
-            scene: path.display().to_string(),
-            dt,
-            integrator: model.integrator.method.to_string(),
-            particles: model.particles.len(),
-            free: model.particles.iter().filter(|particle| !particle.fixed).count(),
-            springs: model.springs.len(),
-            emitters: model.emitters.len(),
-            oscillations: spectrum.as_ref().map(oscillations),
-            stiffest: bounds.stiffest,
-            dragged: bounds.dragged,
-            hit: bounds.contact.as_ref().map(Contact::duration),
-            touching: bounds.contact.map(|contact| contact.part),
-            methods,
-            followed: followed(model),
-            // An orbit that takes far longer than the run is none.
-            pair: fastest_pair(model).filter(|pair| pair.period < 10.0 * run.duration),
-            sinks: pulls(model),
-            not_judged: not_judged(model),
-            advice: Vec::new(),
-        };
-        check.advice = advise(&check, model);
-        (check, spectrum)
+/// Tells all of it.
+pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report) -> Outcome {
+    report.facts(&facts(study));
+    if report.is_page() {
+        report.heading(2, "What to do");
+        report.list(&study.advice);
     }
-}
-
-fn stand(method: Method, bounds: &Bounds, spectrum: Option<&Spectrum>, dt: f64) -> Stand {
-    let at_rest = spectrum.map_or(Limit::Unconditional, |spectrum| spectrum.largest_step(method));
-    let (every_pose, drag) = (bounds.poses.largest_step(method), bounds.drag_step(method));
-    let contact = bounds.contact_step(method);
-    Stand {
-        method: method.to_string(),
-        chooses_steps: method.chooses_steps(),
-        at_rest,
-        estimated: spectrum.is_some_and(|spectrum| spectrum.is_estimate(method)),
-        every_pose,
-        drag,
-        contact,
-        stable: method.chooses_steps() || every_pose.and(drag).and(contact).admits(dt),
-        growth_across: bounds.growth(method, dt),
+    report.heading(2, "The largest steps");
+    report.table(&steps(study));
+    if report.is_page() {
+        report.heading(2, "Where methods are stable");
+        report.charts(&charts.iter().collect::<Vec<_>>())?;
+        report.heading(2, "What it means");
+        NOTES.iter().for_each(|note| report.paragraph(note));
+    } else {
+        report.heading(2, "What to do");
+        report.list(&study.advice);
     }
+    Ok(())
 }
 
-fn oscillations(spectrum: &Spectrum) -> Oscillations {
-    let mode = spectrum.fastest();
-    let fastest = mode.rates().iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max);
-    let damping_ratio = (mode.omega2 > 0.0).then(|| 0.5 * mode.damping / mode.omega2.sqrt());
-    Oscillations { count: spectrum.modes.len(), how: spectrum.how, fastest, damping_ratio }
+/// What bounds the steps of every method; that of contacts only where there are some.
+fn steps(study: &Study) -> Table {
+    let stands = || study.methods.iter();
+    let mut table = Table::default();
+    table.column("", stands().map(|stand| Cell::from(&*stand.method).best(stand.method == study.integrator)));
+    table.column("at rest", stands().map(at_rest));
+    table.column("every pose", stands().map(|stand| limit(stand.every_pose)));
+    table.column("drag", stands().map(|stand| limit(stand.drag)));
+    if study.touching.is_some() {
+        table.column("contact", stands().map(|stand| limit(stand.contact)));
+    }
+    table.words(format!("at {}", time(study.dt)), stands().map(verdict));
+    table
+}
+
+/// The same for other programs.
+pub(crate) fn sheet(study: &Study) -> Table {
+    let stands = || study.methods.iter();
+    let seconds = |limit: Limit| match limit {
+        Limit::Step(step) => Cell::from(step),
+        _ => super::words::limit(limit).into(),
+    };
+    let mut table = Table::default();
+    table.column("method", stands().map(|stand| stand.method.as_str()));
+    table.column("chooses_steps", stands().map(|stand| stand.chooses_steps));
+    table.column("at_rest_s", stands().map(|stand| seconds(stand.at_rest)));
+    table.column("estimated", stands().map(|stand| stand.estimated));
+    table.column("every_pose_s", stands().map(|stand| seconds(stand.every_pose)));
+    table.column("drag_s", stands().map(|stand| seconds(stand.drag)));
+    table.column("contact_s", stands().map(|stand| seconds(stand.contact)));
+    table.column("dt_s", stands().map(|_| study.dt));
+    table.column("stable", stands().map(|stand| stand.stable));
+    table.column("growth_across_per_s", stands().map(|stand| stand.growth_across));
+    table
+}
+
+/// What there is to know beside the table, each with its name.
+fn facts(study: &Study) -> Vec<(&'static str, String)> {
+    let Study { particles, free, springs, emitters, dt, integrator, .. } = study;
+    let mut facts = vec![
+        ("scene", study.scene.clone()),
+        ("judged", format!("steps of {} by {integrator}", time(*dt))),
+        (
+            "holds",
+            format!(
+                "{} ({} free), {}, {}",
+                counted(*particles, "particle"),
+                thousands(*free),
+                counted(*springs, "spring"),
+                counted(*emitters, "emitter")
+            ),
+        ),
+    ];
+    facts.extend(study.oscillations.as_ref().map(|modes| ("at rest", oscillations(modes))));
+    facts.extend(study.stiffest.as_ref().map(|part| ("stiffest", format!("{} {}", part.place, part.about))));
+    let drag = study.dragged.as_ref();
+    facts.extend(drag.map(|part| ("drag", format!("{} {}: {} /s", part.place, part.about, plain(part.mode.damping)))));
+    facts.extend(
+        study
+            .touching
+            .as_ref()
+            .zip(study.hit)
+            .map(|(part, hit)| ("contact", format!("{} {}; a hit lasts {}", part.place, part.about, time(hit)))),
+    );
+    facts.extend(study.followed.as_ref().map(|followed| {
+        let (step, g) = (time(followed.step), plain(followed.acceleration));
+        let bounces = counted(followed.max_bounces as usize, "bounce");
+        (
+            "hits",
+            format!("found within 0.1 mm on paths bent by {g} m/s² up to steps of {step}; at most {bounces} a step"),
+        )
+    }));
+    facts.extend(study.pair.as_ref().map(|pair| {
+        let ([a, b], distance, period) = (pair.particles, plain(pair.distance), time(pair.period));
+        ("orbits", format!("particles {a} and {b}, {distance} m apart, could circle each other in {period}"))
+    }));
+    facts.extend(study.sinks.iter().map(|sink| {
+        let (gradient, mass, within) = (plain(sink.gradient), plain(sink.mass), time(1.0 / sink.rate));
+        ("sink", format!("{}: its pull changes by {gradient} N/m; {mass} kg mixed that within {within}", sink.place))
+    }));
+    facts
+}
+
+fn oscillations(modes: &Oscillations) -> String {
+    let mut text = match modes.how {
+        How::Independent => format!("{} oscillations, the fastest", modes.count),
+        How::Coupled => format!("{} oscillations (damping couples them), the fastest", modes.count),
+        How::Extreme => "too many oscillations to work out all; the fastest alone".to_string(),
+    };
+    let _ = write!(text, " of {} /s", plain(modes.fastest));
+    if let Some(ratio) = modes.damping_ratio {
+        let _ = write!(text, ", damping ratio {}", plain(ratio));
+    }
+    text
+}
+
+/// The largest step at rest.
+fn at_rest(stand: &Stand) -> String {
+    if stand.estimated { format!("about {}", limit(stand.at_rest)) } else { limit(stand.at_rest) }
+}
+
+/// What becomes of the step.
+fn verdict(stand: &Stand) -> String {
+    let grows = stand.growth_across > 0.0;
+    let across = || format!("up to e-fold in {}", time(1.0 / stand.growth_across));
+    match stand.every_pose {
+        _ if stand.chooses_steps => "chooses its own steps".into(),
+        Limit::Never if grows => format!("grows, {}", across()),
+        _ if !stand.stable => "unstable".into(),
+        _ if grows => format!("stable; taut springs grow, {}", across()),
+        _ => "stable".into(),
+    }
 }

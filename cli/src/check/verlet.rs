@@ -3,7 +3,7 @@
 //! Verlet gives the second evaluation v + h a, so its step holds products of stiffness and damping, which no single
 //! oscillation shows: the eigenvalues have to be those of the whole step.
 
-use super::modes::eigenvalues;
+use super::net::eigenvalues;
 use nalgebra::DMatrix;
 
 /// Where the spectral radius of one step first exceeds 1, between zero and `beyond` \[s\], by bisection. None should the

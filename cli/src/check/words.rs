@@ -1,5 +1,6 @@
 //! Numbers in words.
 
+use crate::report::words::{significant, trimmed};
 use pointmass::stability::Limit;
 
 /// Seconds, with four digits that count and a unit that suits.
@@ -14,23 +15,13 @@ pub(crate) fn time(seconds: f64) -> String {
 }
 
 /// A number with four digits that count.
-pub(crate) fn digits(x: f64) -> String {
-    match x.abs() {
-        0.0 => "0".into(),
-        a if !(1e-3..1e6).contains(&a) => format!("{x:.3e}"),
-        // What rounds up to a power of ten has its digits.
-        a => format!("{x:.*}", (3 - (a * 1.000_05).log10().floor() as i32).clamp(0, 6) as usize),
-    }
+fn digits(x: f64) -> String {
+    significant(x, 4, 1e-3..1e6)
 }
 
 /// The same without zeros at the end.
 pub(crate) fn plain(x: f64) -> String {
-    let text = digits(x);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').into()
-    } else {
-        text
-    }
+    trimmed(digits(x))
 }
 
 /// A limit as a table has it.
@@ -48,8 +39,7 @@ pub(crate) fn typed(step: f64) -> String {
     // Rounding up first: what has three digits keeps them.
     let rounded = (step / unit + 1e-9).floor() * unit;
     let decimals = (2 - step.log10().floor() as i32).max(0) as usize;
-    let text = format!("{rounded:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+    trimmed(format!("{rounded:.decimals$}"))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What other than springs and drag has a time of its own: collisions, orbits, the pull of sinks.
 
-use super::wide;
+use super::net::wide;
 use nalgebra::Vector3;
 use pointmass::scene::Model;
 use pointmass::stability::longest_followed_step;

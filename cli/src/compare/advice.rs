@@ -2,7 +2,7 @@
 
 use super::study::{Advice, Case, Contestant, Figure, Subject, line, series, workloads};
 use super::workload::Workload;
-use crate::words::{digits, thousands};
+use crate::report::words::{digits, thousands};
 
 /// One sentence or two for every workload of every series of cases, about the largest; and one for all.
 pub(crate) fn advise(cases: &[Case]) -> Vec<Advice> {

@@ -1,45 +1,30 @@
 //! Where contenders meet: one set of points after the other, first verified, then measured.
 
-use super::contender::{Effort, Entrant, Question};
-use super::measure::{Measured, Plan, measure};
+use super::args::Compare;
+use super::contender::{Effort, Question, provide};
+use super::entrant::Entrant;
+use super::gauge::Gauge;
+use super::measure::{Measured, Plan, Share, measure};
 use super::radius::radius_for;
 use super::sample::sample;
 use super::source::Source;
 use super::study::{Case, Subject};
 use super::verify::{EXHAUSTIVE, Expected, SAMPLE};
 use super::workload::Workload;
-use super::{k, neighbours};
-use crate::progress::Progress;
-use crate::words::thousands;
-use crate::{Failure, Outcome, args};
+use crate::outcome::{Failure, Outcome};
+use crate::report::words::thousands;
 use pointmass::Vec3;
 use pointmass::rng::Stream;
 
 /// What all cases share.
 pub(crate) struct Bench<'a> {
-    args: &'a args::Compare,
+    args: &'a Compare,
     seed: u64,
     queries: Vec<Workload>,
     entrants: &'a mut [Entrant],
     /// Lent to one structure after the other.
     memory: Vec<u32>,
     gauge: Gauge,
-}
-
-/// What an entrant does in a case.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Share {
-    /// What is asked of it; of those who do not take part, nothing.
-    pub(crate) queries: Vec<Workload>,
-    /// What it does not do, and why.
-    pub(crate) left_out: Option<String>,
-}
-
-impl Share {
-    /// Whether it takes part.
-    pub(crate) fn is_in(&self) -> bool {
-        !self.queries.is_empty()
-    }
 }
 
 /// Up to so many distances for a query of all points, anybody may take part: a few seconds.
@@ -60,15 +45,10 @@ const ROUNDS: u64 = 7;
 
 impl<'a> Bench<'a> {
     /// For so many points in all.
-    pub(crate) fn new(
-        args: &'a args::Compare,
-        queries: Vec<Workload>,
-        entrants: &'a mut [Entrant],
-        points: usize,
-    ) -> Self {
+    pub(crate) fn new(args: &'a Compare, queries: Vec<Workload>, entrants: &'a mut [Entrant], points: usize) -> Self {
         let ahead = points as u64 * entrants.len() as u64 * (VERIFICATION + ROUNDS);
         let gauge = Gauge::new(ahead);
-        Self { args, seed: args.seed.unwrap_or(1), queries, entrants, memory: Vec::new(), gauge }
+        Self { args, seed: args.seed(), queries, entrants, memory: Vec::new(), gauge }
     }
 
     /// Everything is done.
@@ -77,9 +57,6 @@ impl<'a> Bench<'a> {
     }
 
     /// Verifies and measures everybody on so many of the source's points.
-    ///
-    /// # Errors
-    /// If somebody's answer is wrong, or nobody can be asked.
     pub(crate) fn case(&mut self, source: &Source, n: usize) -> Outcome<Case> {
         let points = source.points(n);
         let words = self.entrants.iter().map(|entrant| entrant.words(n)).max().unwrap_or(0);
@@ -89,10 +66,10 @@ impl<'a> Bench<'a> {
         self.gauge.step(0, all * (VERIFICATION + ROUNDS), "radius");
         let radius = match self.args.radius {
             Some(radius) => radius,
-            None => radius_for(&points, neighbours(self.args), &mut self.memory)?,
+            None => radius_for(&points, self.args.neighbours(), &mut self.memory)?,
         };
         let moved = moved(&points, radius, self.seed);
-        let question = Question { points: &points, moved: &moved, radius, k: k(self.args) };
+        let question = Question { points: &points, moved: &moved, radius, k: self.args.k() };
         let shares = self.shares(&question)?;
         let (expected, verified) = self.verify(&question, &shares)?;
         let plan = Plan { shares: &shares, repeat: self.args.repeat };
@@ -210,48 +187,6 @@ pub(crate) fn limit(n: usize, efforts: impl Iterator<Item = Effort>) -> f64 {
     });
     let each = (TIMES * least.distances).min(DEAR.max(DEAR_FOUND * least.found));
     CHEAP.max(n as f64 * each).min(MOST)
-}
-
-/// How far the whole comparison is; a unit of work is a point that an entrant goes through once.
-pub(crate) struct Gauge {
-    progress: Progress,
-    /// Units of the cases after this one.
-    ahead: u64,
-    title: String,
-}
-
-impl Gauge {
-    /// Of so much work.
-    pub(crate) fn new(ahead: u64) -> Self {
-        Self { progress: Progress::of_work(ahead), ahead, title: String::new() }
-    }
-
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.progress.finish();
-    }
-
-    /// A case begins, of which so much was expected.
-    pub(crate) fn begin(&mut self, title: String, expected: u64) {
-        self.title = title;
-        self.ahead = self.ahead.saturating_sub(expected);
-    }
-
-    /// So many units further, and so many left in this case.
-    pub(crate) fn step(&mut self, units: u64, left: u64, doing: &str) {
-        self.progress.work(units, left + self.ahead, &format!("{}: {doing}", self.title));
-    }
-}
-
-/// Makes so many words of memory available.
-pub(crate) fn provide(memory: &mut Vec<u32>, words: usize) -> Outcome {
-    let more = words.saturating_sub(memory.len());
-    memory.try_reserve_exact(more).map_err(|_| {
-        let megabytes = words >> 18;
-        Failure::new(format!("there are no {megabytes} MB of memory for a structure of so many; ask for fewer"))
-    })?;
-    memory.resize(memory.len() + more, 0);
-    Ok(())
 }
 
 /// All points, each a little further: up to 5 % of the radius along every axis.

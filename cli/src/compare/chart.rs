@@ -1,19 +1,9 @@
 //! Charts: time against the number of points or triangles on paper of two logarithmic scales, and bars at the largest number.
 
 use super::study::{Case, Contestant, Study, Subject, line, names, series, workloads};
-use super::table::ratio;
 use super::workload::Workload;
-use crate::Outcome;
-use crate::plot::{self, Axis, Bar, Chart, Line};
-use crate::words::{digits, thousands};
-
-/// All charts in one picture.
-///
-/// # Errors
-/// If it cannot be drawn.
-pub(crate) fn all(study: &Study) -> Outcome<String> {
-    plot::all(&charts(study))
-}
+use crate::report::plot::{Axis, Bar, Chart, Line, look};
+use crate::report::words::{digits, ratio, thousands};
 
 /// All charts, in the order in which they should be looked at.
 pub(crate) fn charts(study: &Study) -> Vec<Chart<'_>> {
@@ -32,16 +22,12 @@ pub(crate) fn charts(study: &Study) -> Vec<Chart<'_>> {
     charts
 }
 
-fn look(looks: &[&str], name: &str) -> usize {
-    looks.iter().position(|look| *look == name).unwrap_or(0)
-}
-
 fn lines<'a>(of: &'a str, cases: &[&'a Case], workload: Workload, looks: &[&'a str]) -> Chart<'a> {
     let mut lines: Vec<_> = looks
         .iter()
         .map(|name| {
             let dots = line(cases, name, workload).into_iter().map(|(n, figure)| (n as f64, figure.median));
-            Line { name, look: look(looks, name), dots: dots.filter(|(_, y)| *y > 0.0).collect() }
+            Line::new(*name, look(looks, name), dots.filter(|(_, y)| *y > 0.0).collect())
         })
         .filter(|line| !line.dots.is_empty())
         .collect();
@@ -96,14 +82,14 @@ fn memory<'a>(of: &'a str, case: &'a Case, looks: &[&'a str]) -> Chart<'a> {
 mod tests {
     use super::super::tests::case;
     use super::*;
-    use crate::plot::Kind;
+    use crate::report::plot::Kind;
 
     #[test]
     fn lines_and_bars_are_as_long_as_medians() {
         let cases = [case(10, &[("a", 100.0), ("b", 70.0)]), case(20, &[("a", 200.0), ("b", 90.0)])];
         let looks = names(&cases);
         let Kind::Lines(lines, _) = lines("p", &[&cases[0], &cases[1]], Workload::Count, &looks).kind else { panic!() };
-        assert_eq!((lines[0].name, &lines[0].dots[..]), ("a", &[(10.0, 100.0), (20.0, 200.0)][..]));
+        assert_eq!((&*lines[0].name, &lines[0].dots[..]), ("a", &[(10.0, 100.0), (20.0, 200.0)][..]));
         let Kind::Bars(bars) = bars("p", &cases[1], Workload::Count, &looks).kind else { panic!() };
         // The build takes 10 ns everywhere.
         assert_eq!((bars[0].name, bars[0].parts, bars[1].parts), ("b", [90.0, 10.0], [200.0, 10.0]));

@@ -1,7 +1,7 @@
 //! Who takes part: our structures, and other libraries where the program has them.
 
 use super::workload::Workload;
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
 use pointmass::Vec3;
 use pointmass::index::{AnyIndex, Cost, Neighbour, SpatialIndex, Structure};
 use serde::Serialize;
@@ -56,17 +56,17 @@ pub(crate) fn link(a: u32, b: u32) -> u64 {
 
 /// What has been built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Build {
+pub(crate) struct Build {
     /// Nodes or cells; none if it does not say.
-    pub nodes: Option<usize>,
+    pub(crate) nodes: Option<usize>,
     /// Levels below the root.
-    pub depth: Option<usize>,
+    pub(crate) depth: Option<usize>,
     /// The most points or triangles in a leaf or cell.
-    pub fullest: Option<usize>,
+    pub(crate) fullest: Option<usize>,
     /// Leaves left too large, or times that cells were doubled, for want of memory.
-    pub crowded: Option<usize>,
+    pub(crate) crowded: Option<usize>,
     /// Bytes for each point or triangle.
-    pub bytes_each: Option<f64>,
+    pub(crate) bytes_each: Option<f64>,
 }
 
 /// What a query takes for a point, before it is asked of all.
@@ -119,11 +119,11 @@ impl<'m> Own<'m> {
 
 impl Contender for Own<'_> {
     fn build(&mut self, points: &[Vec3], reach: f32) -> Outcome {
-        self.0.build(points, reach).map_err(|small| Failure::new(small.to_string()))
+        Ok(self.0.build(points, reach)?)
     }
 
     fn follow(&mut self, points: &[Vec3], _: f32) -> Outcome {
-        self.0.refit(points).map_err(|small| Failure::new(small.to_string()))
+        Ok(self.0.refit(points)?)
     }
 
     fn built(&self) -> Build {
@@ -211,41 +211,13 @@ pub(crate) fn tie(links: &mut [u64], a: u32, b: u32) {
     }
 }
 
-/// Who may take part.
-pub(crate) enum Entrant {
-    Own(Structure),
-    Peer(super::foreign::Foreign),
-}
-
-impl Entrant {
-    pub(crate) fn name(&self) -> &str {
-        match self {
-            Self::Own(structure) => structure.name(),
-            Self::Peer(peer) => peer.name(),
-        }
-    }
-
-    /// Whether it is one of our structures.
-    pub(crate) fn is_own(&self) -> bool {
-        matches!(self, Self::Own(_))
-    }
-
-    /// Words of memory it has to be lent.
-    pub(crate) fn words(&self, points: usize) -> usize {
-        match self {
-            Self::Own(structure) => structure.words(points),
-            Self::Peer(_) => 0,
-        }
-    }
-
-    /// Takes its place in the memory.
-    pub(crate) fn enter<'a>(&'a mut self, points: usize, memory: &'a mut [u32]) -> Box<dyn Contender + 'a> {
-        match self {
-            Self::Own(structure) => Box::new(Own::new(*structure, points, memory)),
-            Self::Peer(peer) => {
-                let _ = (points, memory);
-                Box::new(peer)
-            }
-        }
-    }
+/// Makes so many words of memory available.
+pub(crate) fn provide(memory: &mut Vec<u32>, words: usize) -> Outcome {
+    let more = words.saturating_sub(memory.len());
+    memory.try_reserve_exact(more).map_err(|_| {
+        let megabytes = words >> 18;
+        Failure::new(format!("there are no {megabytes} MB of memory for a structure of so many; ask for fewer"))
+    })?;
+    memory.resize(memory.len() + more, 0);
+    Ok(())
 }

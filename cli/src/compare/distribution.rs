@@ -4,12 +4,10 @@ use clap::ValueEnum;
 use pointmass::Vec3;
 use pointmass::math::{frame, sin_cos_turns, sqrt, unit};
 use pointmass::rng::Stream;
-use serde::Serialize;
 
 /// A way to make points up. The first points of a larger cloud are those of a smaller one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Distribution {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Distribution {
     /// Evenly in a cube of side 1
     Uniform,
     /// A star cluster: Plummer's sphere of scale length 1, its innermost 99.9 %
@@ -33,36 +31,29 @@ const CENTERS: u32 = 1 << 16;
 
 impl Distribution {
     /// What it is called.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::Plummer => "plummer",
-            Self::Sphere => "sphere",
-            Self::Plane => "plane",
-            Self::Line => "line",
-            Self::Clusters => "clusters",
-            Self::Mixed => "mixed",
-        }
+    pub(crate) fn name(self) -> &'static str {
+        self.told()[0]
     }
 
     /// What it is, for those who read a report.
-    #[must_use]
-    pub fn describe(self) -> &'static str {
+    pub(crate) fn describe(self) -> &'static str {
+        self.told()[1]
+    }
+
+    fn told(self) -> [&'static str; 2] {
         match self {
-            Self::Uniform => "evenly in a cube of side 1",
-            Self::Plummer => "Plummer's sphere of scale length 1, the innermost 99.9 % of its mass",
-            Self::Sphere => "evenly on the surface of a sphere of radius 1",
-            Self::Plane => "evenly on a square of side 1 with the normal (1, 1, 1)",
-            Self::Line => "evenly on a segment of length 1 along (1, 1, 1)",
-            Self::Clusters => "32 Gaussian clusters of uneven number and width in a cube of side 1",
-            Self::Mixed => "half uniform, half clusters, every 16th point at the place of another",
+            Self::Uniform => ["uniform", "evenly in a cube of side 1"],
+            Self::Plummer => ["plummer", "Plummer's sphere of scale length 1, the innermost 99.9 % of its mass"],
+            Self::Sphere => ["sphere", "evenly on the surface of a sphere of radius 1"],
+            Self::Plane => ["plane", "evenly on a square of side 1 with the normal (1, 1, 1)"],
+            Self::Line => ["line", "evenly on a segment of length 1 along (1, 1, 1)"],
+            Self::Clusters => ["clusters", "32 Gaussian clusters of uneven number and width in a cube of side 1"],
+            Self::Mixed => ["mixed", "half uniform, half clusters, every 16th point at the place of another"],
         }
     }
 
     /// So many points.
-    #[must_use]
-    pub fn points(self, n: usize, seed: u64) -> Vec<Vec3> {
+    pub(crate) fn points(self, n: usize, seed: u64) -> Vec<Vec3> {
         (0..n as u32).map(|serial| self.point(serial, seed)).collect()
     }
 

@@ -3,7 +3,7 @@
 use super::contender::{Answer, Build, Contender, Effort, Question, Scratch, tie};
 use super::peers::Peer;
 use super::workload::Workload;
-use crate::Outcome;
+use crate::outcome::Outcome;
 use pointmass::Vec3;
 use pointmass::index::Cost;
 use std::hint::black_box;

@@ -1,11 +1,12 @@
 //! The clock: everybody in turn, round after round, so that what else the machine does hits all alike.
 
-use super::bench::{Gauge, Share};
-use super::contender::{Build, Contender, Entrant, Question, Scratch};
+use super::contender::{Build, Contender, Question, Scratch};
+use super::entrant::Entrant;
+use super::gauge::Gauge;
 use super::stopwatch::Stopwatch;
 use super::study::{Contestant, Figure};
 use super::workload::Workload;
-use crate::Outcome;
+use crate::outcome::Outcome;
 use pointmass::index::Cost;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -18,6 +19,22 @@ const LONG: Duration = Duration::from_secs(60);
 const FEWEST: usize = 3;
 /// Fewer than this are gone through several times.
 const FEW: usize = 2000;
+
+/// What an entrant does in a case.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Share {
+    /// What is asked of it; of those who do not take part, nothing.
+    pub(crate) queries: Vec<Workload>,
+    /// What it does not do, and why.
+    pub(crate) left_out: Option<String>,
+}
+
+impl Share {
+    /// Whether it takes part.
+    pub(crate) fn is_in(&self) -> bool {
+        !self.queries.is_empty()
+    }
+}
 
 /// Who is asked what, and how often.
 pub(crate) struct Plan<'a> {
@@ -57,9 +74,6 @@ impl Measured {
 }
 
 /// Measures all entrants that take part.
-///
-/// # Errors
-/// If one of them has no room for the points.
 pub(crate) fn measure(
     entrants: &mut [Entrant],
     question: &Question<'_>,
@@ -81,9 +95,6 @@ pub(crate) fn measure(
 }
 
 /// Has every player take a turn in every round, of which it is told how many turns are left, that is expected.
-///
-/// # Errors
-/// If a turn fails.
 pub(crate) fn take_turns(
     players: &[usize],
     repeat: Option<u32>,

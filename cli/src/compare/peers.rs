@@ -1,7 +1,7 @@
 //! Other libraries that a program may bring to be compared with: those that find what is near, and those that find what a
 //! ray hits, behind one small trait for either. This program brings none; `pointmass-peers` does.
 
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
 
 /// A library that finds what is near.
 ///

@@ -1,8 +1,7 @@
 //! The radius within which a point has so many others on average.
 
-use super::bench::provide;
-use super::contender::Own;
-use crate::{Failure, Outcome};
+use super::contender::{Own, provide};
+use crate::outcome::Outcome;
 use pointmass::Vec3;
 use pointmass::index::{SpatialIndex, Structure};
 
@@ -13,9 +12,6 @@ const HALVINGS: u32 = 40;
 
 /// Finds it by bisection on the counts of a sample of points, which is true to a few per cent: the sample is taken at equal
 /// distances of the structure's order, so that every part of space is in it with its share.
-///
-/// # Errors
-/// If the points cannot be sorted in.
 pub(crate) fn radius_for(points: &[Vec3], neighbours: f64, memory: &mut Vec<u32>) -> Outcome<f32> {
     // Of all structures the one least sensitive to how points lie and to the radius.
     let tree = Structure::ALL.iter().copied().find(|structure| structure.name() == "kd");
@@ -24,7 +20,7 @@ pub(crate) fn radius_for(points: &[Vec3], neighbours: f64, memory: &mut Vec<u32>
     provide(memory, words)?;
     let mut own = Own::new(structure, points.len(), memory);
     let index = own.index();
-    index.build(points, 0.0).map_err(|small| Failure::new(small.to_string()))?;
+    index.build(points, 0.0)?;
     let (order, asked) = (index.order(), ASKED.min(points.len()));
     let asked: Vec<_> = (0..asked).map(|i| points[order[i * order.len() / asked] as usize]).collect();
     let enough = neighbours * asked.len() as f64;
@@ -59,7 +55,7 @@ fn widest(points: &[Vec3]) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Distribution;
+    use super::super::distribution::Distribution;
     use super::*;
 
     fn mean(points: &[Vec3], radius: f32) -> f64 {

@@ -1,141 +1,87 @@
 //! A comparison as a table for other programs: one row a measurement, units in the head.
 
-use super::study::{Case, Contestant, Figure, Study, Subject};
-use crate::Outcome;
-use crate::formats::sheet;
-use serde::Serialize;
+use super::study::{Figure, Study, Subject};
+use crate::report::table::{Cell, Table};
 
-/// Of points.
-#[derive(Serialize)]
-struct Row<'a> {
-    points: &'a str,
-    n: usize,
-    radius: f32,
-    mean_neighbours: Option<f64>,
-    name: &'a str,
-    workload: &'a str,
-    median_ns_per_point: Option<f64>,
-    min_ns_per_point: Option<f64>,
-    spread_iqr_per_median: Option<f64>,
-    ratio_to_best: Option<f64>,
-    ties_with_best: Option<bool>,
-    samples: Option<usize>,
-    nodes_visited_per_point: Option<f64>,
-    distance_tests_per_point: Option<f64>,
-    found_per_point: Option<f64>,
-    nodes: Option<usize>,
-    depth: Option<usize>,
-    fullest_leaf: Option<usize>,
-    crowded: Option<usize>,
-    bytes_per_point: Option<f64>,
-    samples_ns_per_point: String,
-    left_out: &'a str,
+/// Heads that differ between what points are asked and what a mesh is.
+struct Heads {
+    of: &'static str,
+    n: &'static str,
+    queries: &'static str,
+    radius: &'static str,
+    times: [&'static str; 3],
+    counters: [&'static str; 3],
+    bytes: &'static str,
 }
 
-/// The table.
-///
-/// # Errors
-/// If it cannot be written.
-pub(crate) fn csv(study: &Study) -> Outcome<String> {
-    let mut all = Vec::new();
-    for case in &study.cases {
-        for one in &case.contestants {
-            match one.figures.is_empty() {
-                true => all.push((case, one, None)),
-                false => all.extend(one.figures.iter().map(|figure| (case, one, Some(figure)))),
-            }
-        }
+const OF_POINTS: Heads = Heads {
+    of: "points",
+    n: "n",
+    queries: "mean_neighbours",
+    radius: "radius",
+    times: ["median_ns_per_point", "min_ns_per_point", "samples_ns_per_point"],
+    counters: ["nodes_visited_per_point", "distance_tests_per_point", "found_per_point"],
+    bytes: "bytes_per_point",
+};
+
+/// Times are in ns for each triangle that is built, else for each query.
+const OF_A_MESH: Heads = Heads {
+    of: "mesh",
+    n: "triangles",
+    queries: "queries",
+    radius: "ball_radius",
+    times: ["median_ns", "min_ns", "samples_ns"],
+    counters: ["nodes_visited_per_query", "triangles_tested_per_query", "hits_per_query"],
+    bytes: "bytes_per_triangle",
+};
+
+/// The table. Who was not measured has a row that says why.
+pub(crate) fn sheet(study: &Study) -> Table {
+    let of_mesh = study.subject() == Subject::Mesh;
+    let heads = if of_mesh { OF_A_MESH } else { OF_POINTS };
+    let all = study.cases.iter().flat_map(|case| case.contestants.iter().map(move |one| (case, one)));
+    let rows = all.flat_map(|(case, one)| {
+        let figures = one.figures.iter().map(Some).chain(one.figures.is_empty().then_some(None));
+        figures.map(move |figure| (case, one, figure))
+    });
+    let rows: Vec<_> = rows.collect();
+    let mut table = Table::default();
+    let cases = || rows.iter().map(|(case, ..)| case);
+    let builds = || rows.iter().map(|(_, one, _)| &one.build);
+    let figures = |cell: fn(&Figure) -> Cell| rows.iter().map(move |(.., figure)| figure.map(cell));
+    table.column(heads.of, cases().map(|case| case.of.as_str()));
+    table.column(heads.n, cases().map(|case| case.n));
+    if of_mesh {
+        table.column(heads.queries, cases().map(|case| case.queries));
     }
-    match study.subject() {
-        Subject::Points => sheet(all.into_iter().map(|(case, one, figure)| row(case, one, figure))),
-        Subject::Mesh => sheet(all.into_iter().map(|(case, one, figure)| mesh_row(case, one, figure))),
+    table.column(heads.radius, cases().map(|case| case.radius));
+    if !of_mesh {
+        table.column(heads.queries, cases().map(|case| case.neighbours));
     }
+    table.column("name", rows.iter().map(|(_, one, _)| one.name.as_str()));
+    table.column("workload", figures(|figure| figure.workload.name().into()));
+    table.column(heads.times[0], figures(|figure| figure.median.into()));
+    table.column(heads.times[1], figures(|figure| figure.min.into()));
+    table.column("spread_iqr_per_median", figures(|figure| figure.spread.into()));
+    table.column("ratio_to_best", figures(|figure| figure.ratio.into()));
+    table.column("ties_with_best", figures(|figure| figure.ties.into()));
+    table.column("samples", figures(|figure| figure.samples.len().into()));
+    table.column(heads.counters[0], figures(|figure| figure.visits.into()));
+    table.column(heads.counters[1], figures(|figure| figure.tests.into()));
+    table.column(heads.counters[2], figures(|figure| figure.found.into()));
+    table.column("nodes", builds().map(|build| build.nodes));
+    table.column("depth", builds().map(|build| build.depth));
+    table.column("fullest_leaf", builds().map(|build| build.fullest));
+    table.column("crowded", builds().map(|build| build.crowded));
+    table.column(heads.bytes, builds().map(|build| build.bytes_each));
+    if of_mesh {
+        table.column("mismatches", rows.iter().map(|(_, one, _)| one.mismatches));
+    }
+    table.column(heads.times[2], figures(|figure| listed(&figure.samples).into()));
+    table.column("left_out", rows.iter().map(|(_, one, _)| one.left_out.as_deref()));
+    table
 }
 
-fn listed(figure: Option<&Figure>) -> String {
-    let samples = figure.map(|figure| figure.samples.as_slice()).unwrap_or_default();
+fn listed(samples: &[f64]) -> String {
     samples.iter().map(|sample| format!("{sample:.3}")).collect::<Vec<_>>().join(" ")
-}
-
-fn row<'a>(case: &'a Case, one: &'a Contestant, figure: Option<&'a Figure>) -> Row<'a> {
-    Row {
-        points: &case.of,
-        n: case.n,
-        radius: case.radius,
-        mean_neighbours: case.neighbours,
-        name: &one.name,
-        workload: figure.map_or("", |figure| figure.workload.name()),
-        median_ns_per_point: figure.map(|figure| figure.median),
-        min_ns_per_point: figure.map(|figure| figure.min),
-        spread_iqr_per_median: figure.map(|figure| figure.spread),
-        ratio_to_best: figure.map(|figure| figure.ratio),
-        ties_with_best: figure.map(|figure| figure.ties),
-        samples: figure.map(|figure| figure.samples.len()),
-        nodes_visited_per_point: figure.and_then(|figure| figure.visits),
-        distance_tests_per_point: figure.and_then(|figure| figure.tests),
-        found_per_point: figure.and_then(|figure| figure.found),
-        nodes: one.build.nodes,
-        depth: one.build.depth,
-        fullest_leaf: one.build.fullest,
-        crowded: one.build.crowded,
-        bytes_per_point: one.build.bytes_each,
-        samples_ns_per_point: listed(figure),
-        left_out: one.left_out.as_deref().unwrap_or_default(),
-    }
-}
-
-/// Of a mesh: times are in ns for each triangle that is built, else for each query.
-#[derive(Serialize)]
-struct MeshRow<'a> {
-    mesh: &'a str,
-    triangles: usize,
-    queries: Option<usize>,
-    ball_radius: f32,
-    name: &'a str,
-    workload: &'a str,
-    median_ns: Option<f64>,
-    min_ns: Option<f64>,
-    spread_iqr_per_median: Option<f64>,
-    ratio_to_best: Option<f64>,
-    ties_with_best: Option<bool>,
-    samples: Option<usize>,
-    nodes_visited_per_query: Option<f64>,
-    triangles_tested_per_query: Option<f64>,
-    hits_per_query: Option<f64>,
-    nodes: Option<usize>,
-    depth: Option<usize>,
-    fullest_leaf: Option<usize>,
-    crowded: Option<usize>,
-    bytes_per_triangle: Option<f64>,
-    mismatches: Option<usize>,
-    samples_ns: String,
-    left_out: &'a str,
-}
-
-fn mesh_row<'a>(case: &'a Case, one: &'a Contestant, figure: Option<&'a Figure>) -> MeshRow<'a> {
-    MeshRow {
-        mesh: &case.of,
-        triangles: case.n,
-        queries: case.queries,
-        ball_radius: case.radius,
-        name: &one.name,
-        workload: figure.map_or("", |figure| figure.workload.name()),
-        median_ns: figure.map(|figure| figure.median),
-        min_ns: figure.map(|figure| figure.min),
-        spread_iqr_per_median: figure.map(|figure| figure.spread),
-        ratio_to_best: figure.map(|figure| figure.ratio),
-        ties_with_best: figure.map(|figure| figure.ties),
-        samples: figure.map(|figure| figure.samples.len()),
-        nodes_visited_per_query: figure.and_then(|figure| figure.visits),
-        triangles_tested_per_query: figure.and_then(|figure| figure.tests),
-        hits_per_query: figure.and_then(|figure| figure.found),
-        nodes: one.build.nodes,
-        depth: one.build.depth,
-        fullest_leaf: one.build.fullest,
-        crowded: one.build.crowded,
-        bytes_per_triangle: one.build.bytes_each,
-        mismatches: one.mismatches,
-        samples_ns: listed(figure),
-        left_out: one.left_out.as_deref().unwrap_or_default(),
-    }
 }

@@ -1,15 +1,16 @@
 //! Where the points come from: made up, a file, or a scene that was run.
 
+use super::args::Compare;
 use super::distribution::Distribution;
 use super::points;
 use super::sample::sample;
-use crate::args;
-use crate::meshes::error::excerpt;
+use crate::fault::excerpt;
+use crate::outcome::{Failure, Outcome};
+use crate::parse::sorted;
 use crate::progress::Progress;
-use crate::schedule::Schedule;
-use crate::words::thousands;
-use crate::world::World;
-use crate::{Failure, Outcome};
+use crate::report::words::thousands;
+use crate::schedule::{Schedule, nanoseconds};
+use crate::world::{Settings, World};
 use pointmass::Vec3;
 
 /// How many points are made up if nobody says.
@@ -22,49 +23,27 @@ pub(crate) enum Source {
 }
 
 /// All that the arguments name, and the numbers of points, ascending.
-///
-/// # Errors
-/// If a file or scene cannot be used, or has fewer points than are asked for.
-pub(crate) fn sources(args: &args::Compare) -> Outcome<(Vec<Source>, Vec<usize>)> {
-    let seed = args.seed.unwrap_or(1);
+pub(crate) fn sources(args: &Compare) -> Outcome<(Vec<Source>, Vec<usize>)> {
+    let seed = args.seed();
     let given = match (&args.points, &args.scene) {
-        (Some((path, format)), _) => Some(from_file(path, *format, seed)?),
-        (None, Some(scene)) => Some(from_scene(scene, args, seed)?),
-        (None, None) => None,
-    };
-    let mut sizes = args.n.clone();
-    let sources = match given {
-        Some(source) => {
-            if let Source::Given { name, points, .. } = &source {
-                let len = points.len();
-                if let Some(n) = sizes.iter().find(|n| **n > len) {
-                    return Err(Failure::new(format!("{name}: has {len} points: expected --n {n} or more; lower --n")));
-                }
-                if sizes.is_empty() {
-                    sizes.push(len);
-                }
-            }
-            vec![source]
-        }
-        None => {
-            if sizes.is_empty() {
-                sizes = SIZES.to_vec();
-            }
-            let mut made: Vec<Distribution> = Vec::new();
-            args.distribution.iter().for_each(|one| {
-                if !made.contains(one) {
-                    made.push(*one);
-                }
-            });
+        (Some((path, format)), _) => from_file(path, *format, seed)?,
+        (None, Some(scene)) => from_scene(scene, args, seed)?,
+        (None, None) => {
+            let made = args.distribution.iter().enumerate();
+            let mut made: Vec<_> =
+                made.filter(|(i, one)| !args.distribution[..*i].contains(one)).map(|(_, one)| *one).collect();
             if made.is_empty() {
                 made.push(Distribution::Uniform);
             }
-            made.into_iter().map(|distribution| Source::Made(distribution, seed)).collect()
+            return Ok((made.into_iter().map(|one| Source::Made(one, seed)).collect(), sorted(&args.n, &SIZES)));
         }
     };
-    sizes.sort_unstable();
-    sizes.dedup();
-    Ok((sources, sizes))
+    let len = given.len();
+    if let Some(n) = args.n.iter().find(|n| **n > len) {
+        let name = given.name();
+        return Err(Failure::new(format!("{name}: has {len} points: expected --n {n} or more; lower --n")));
+    }
+    Ok((vec![given], sorted(&args.n, &[len])))
 }
 
 fn from_file(path: &std::path::Path, format: crate::formats::PointsFormat, seed: u64) -> Outcome<Source> {
@@ -90,22 +69,8 @@ fn from_file(path: &std::path::Path, format: crate::formats::PointsFormat, seed:
     Ok(Source::Given { name, about, points: cloud.points, seed })
 }
 
-fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outcome<Source> {
-    let settings = args::World {
-        scene: scene.to_path_buf(),
-        reading: args.reading,
-        duration: args.at,
-        dt: None,
-        integrator: None,
-        index: None,
-        response: None,
-        collision_index: None,
-        seed: args.seed,
-        capacity: None,
-        substeps: crate::substeps::Substeps::Fixed(1),
-        tolerance: None,
-        threads: Some(1),
-    };
+fn from_scene(scene: &std::path::Path, args: &Compare, seed: u64) -> Outcome<Source> {
+    let settings = Settings { duration: args.at, seed: args.seed, ..Settings::of(scene, args.reading) };
     let mut world = World::load(&settings)?;
     let schedule = Schedule::new(world.duration, world.dt);
     let mut progress = Progress::new(schedule.steps());
@@ -115,8 +80,7 @@ fn from_scene(scene: &std::path::Path, args: &args::Compare, seed: u64) -> Outco
     }
     progress.finish();
     let points = world.system.particles().position.to_vec();
-    let (len, at, path) =
-        (points.len(), crate::schedule::nanoseconds(world.system.time().seconds_f64()), scene.display());
+    let (len, at, path) = (points.len(), nanoseconds(world.system.time().seconds_f64()), scene.display());
     if len < 2 {
         return Err(Failure::new(format!(
             "{path}: {len} particles live at {at} s: expected two or more; try another --at"
@@ -131,6 +95,14 @@ impl Source {
         match self {
             Self::Made(distribution, _) => distribution.name(),
             Self::Given { name, .. } => name,
+        }
+    }
+
+    /// How many points there are.
+    fn len(&self) -> usize {
+        match self {
+            Self::Made(..) => usize::MAX,
+            Self::Given { points, .. } => points.len(),
         }
     }
 

@@ -1,15 +1,15 @@
 //! What a comparison came to, as every report tells it.
 
 use super::contender::Build;
-use super::machine::Machine;
-use super::statistics::{Summary, crossing, growth};
 use super::workload::Workload;
+use crate::report::origin::Origin;
+use crate::statistics::{Summary, crossing, growth};
 use serde::Serialize;
 
 /// What structures are compared on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Subject {
+pub(crate) enum Subject {
     /// Points, which queries are asked about, one for each of them.
     Points,
     /// The triangles of a mesh, which segments are held against.
@@ -17,189 +17,174 @@ pub enum Subject {
 }
 
 impl Subject {
+    fn choose(self, of_points: &'static str, of_mesh: &'static str) -> &'static str {
+        match self {
+            Self::Points => of_points,
+            Self::Mesh => of_mesh,
+        }
+    }
+
     /// What is sorted in.
     pub(crate) fn thing(self) -> &'static str {
-        match self {
-            Self::Points => "point",
-            Self::Mesh => "triangle",
-        }
+        self.choose("point", "triangle")
     }
 
     /// Many of it.
     pub(crate) fn things(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Mesh => "triangles",
-        }
+        self.choose("points", "triangles")
     }
 
     /// What times and counters of queries are those of.
     pub(crate) fn query(self) -> &'static str {
-        match self {
-            Self::Points => "point",
-            Self::Mesh => "query",
-        }
+        self.choose("point", "query")
     }
 
     /// What is computed to find out.
     pub(crate) fn tests(self) -> &'static str {
-        match self {
-            Self::Points => "distances",
-            Self::Mesh => "triangles",
-        }
+        self.choose("distances", "triangles")
     }
 
     /// What times are given in, such as `ns a point`.
     pub(crate) fn unit(self, workload: Workload) -> &'static str {
-        match (self, workload.is_query()) {
-            (Self::Points, _) => "ns a point",
-            (Self::Mesh, true) => "ns a query",
-            (Self::Mesh, false) => "ns a triangle",
-        }
+        self.choose("ns a point", if workload.is_query() { "ns a query" } else { "ns a triangle" })
     }
 
     /// The same of all workloads.
     pub(crate) fn units(self) -> &'static str {
-        match self {
-            Self::Points => "ns a point",
-            Self::Mesh => "ns a query, of the build in ns a triangle",
-        }
+        self.choose("ns a point", "ns a query, of the build in ns a triangle")
     }
 }
 
 /// A comparison.
 #[derive(Clone, Debug, Serialize)]
-pub struct Study {
-    /// Of this program.
-    pub version: String,
-    /// What to type to have it all again.
-    pub command: String,
-    /// What it ran on.
-    pub machine: Machine,
+pub(crate) struct Study {
+    /// What it comes from.
+    #[serde(flatten)]
+    pub(crate) origin: Origin,
     /// The seed of all randomness.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// How many nearest others of points were looked for.
-    pub k: usize,
+    pub(crate) k: usize,
     /// One for every set of points or mesh.
-    pub cases: Vec<Case>,
+    pub(crate) cases: Vec<Case>,
     /// How time grows with the number of points or triangles.
-    pub growth: Vec<Growth>,
+    pub(crate) growth: Vec<Growth>,
     /// Where one overtakes another.
-    pub crossovers: Vec<Crossover>,
+    pub(crate) crossovers: Vec<Crossover>,
     /// What to use, and why.
-    pub advice: Vec<Advice>,
+    pub(crate) advice: Vec<Advice>,
     /// What a reader should know before believing any of it.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// A set of points or a mesh, and all that was measured on it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Case {
+pub(crate) struct Case {
     /// Which of the two.
-    pub subject: Subject,
+    pub(crate) subject: Subject,
     /// The name of the distribution, surface, file or scene.
-    pub of: String,
+    pub(crate) of: String,
     /// What it is.
-    pub about: String,
+    pub(crate) about: String,
     /// How many points or triangles.
-    pub n: usize,
+    pub(crate) n: usize,
     /// The radius of queries, or of balls, in the unit of the coordinates.
-    pub radius: f32,
+    pub(crate) radius: f32,
     /// How many others a point has within the radius, on average.
-    pub neighbours: Option<f64>,
+    pub(crate) neighbours: Option<f64>,
     /// How many queries of each kind were asked of a mesh; of points it is one for each.
-    pub queries: Option<usize>,
+    pub(crate) queries: Option<usize>,
     /// How the answers were verified.
-    pub verified: String,
+    pub(crate) verified: String,
     /// How often everything was measured.
-    pub rounds: usize,
+    pub(crate) rounds: usize,
     /// Who took part.
-    pub contestants: Vec<Contestant>,
+    pub(crate) contestants: Vec<Contestant>,
 }
 
 /// One who took part.
 #[derive(Clone, Debug, Serialize)]
-pub struct Contestant {
+pub(crate) struct Contestant {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// What it did not do, and why.
-    pub left_out: Option<String>,
+    pub(crate) left_out: Option<String>,
     /// How many of another library's first hits differ from ours by more than rounding.
-    pub mismatches: Option<usize>,
+    pub(crate) mismatches: Option<usize>,
     /// What it built.
-    pub build: Build,
+    pub(crate) build: Build,
     /// What was measured.
-    pub figures: Vec<Figure>,
+    pub(crate) figures: Vec<Figure>,
 }
 
 /// A measurement; times are in nanoseconds for each point, or of a mesh for each query, but for each triangle if built.
 #[derive(Clone, Debug, Serialize)]
-pub struct Figure {
+pub(crate) struct Figure {
     /// What was measured.
-    pub workload: Workload,
+    pub(crate) workload: Workload,
     /// In the middle of all samples.
-    pub median: f64,
+    pub(crate) median: f64,
     /// The least.
-    pub min: f64,
+    pub(crate) min: f64,
     /// The interquartile range over the median.
-    pub spread: f64,
+    pub(crate) spread: f64,
     /// The median over the best contestant's.
-    pub ratio: f64,
+    pub(crate) ratio: f64,
     /// Whether the best cannot be told apart from it.
-    pub ties: bool,
+    pub(crate) ties: bool,
     /// Nodes or rows of cells looked at, for each point or query.
-    pub visits: Option<f64>,
+    pub(crate) visits: Option<f64>,
     /// Distances computed for each point, or triangles tested for each query.
-    pub tests: Option<f64>,
+    pub(crate) tests: Option<f64>,
     /// Others, pairs or nearest found for each point, or hits for each query.
-    pub found: Option<f64>,
+    pub(crate) found: Option<f64>,
     /// All samples, in the order in which they were taken.
-    pub samples: Vec<f64>,
+    pub(crate) samples: Vec<f64>,
 }
 
 /// How a contestant's time grows with the number of points or triangles.
 #[derive(Clone, Debug, Serialize)]
-pub struct Growth {
+pub(crate) struct Growth {
     /// Of which points or mesh.
-    pub of: String,
+    pub(crate) of: String,
     /// Doing what.
-    pub workload: Workload,
+    pub(crate) workload: Workload,
     /// Who.
-    pub name: String,
+    pub(crate) name: String,
     /// The power of their number that its time grows with: in all, but of a mesh for each query.
-    pub exponent: f64,
+    pub(crate) exponent: f64,
 }
 
 /// Where one contestant overtakes another.
 #[derive(Clone, Debug, Serialize)]
-pub struct Crossover {
+pub(crate) struct Crossover {
     /// Of which points or mesh.
-    pub of: String,
+    pub(crate) of: String,
     /// Doing what.
-    pub workload: Workload,
+    pub(crate) workload: Workload,
     /// The faster of more of them.
-    pub winner: String,
+    pub(crate) winner: String,
     /// The faster of fewer.
-    pub loser: String,
+    pub(crate) loser: String,
     /// The sizes that were measured next to it.
-    pub between: [usize; 2],
+    pub(crate) between: [usize; 2],
     /// Where the lines cross.
-    pub at: f64,
+    pub(crate) at: f64,
     /// Whether the loser was the best of all at fewer, and the winner is at more.
-    pub leads: bool,
+    pub(crate) leads: bool,
 }
 
 /// A sentence of advice.
 #[derive(Clone, Debug, Serialize)]
-pub struct Advice {
+pub(crate) struct Advice {
     /// For which points or mesh.
-    pub of: String,
+    pub(crate) of: String,
     /// For what; none: for all of it.
-    pub workload: Option<Workload>,
+    pub(crate) workload: Option<Workload>,
     /// What to use.
-    pub best: String,
+    pub(crate) best: String,
     /// The advice and its reason.
-    pub text: String,
+    pub(crate) text: String,
 }
 
 /// Two medians closer than this are not told apart: what surrounds a loop, such as where it lies in memory, does as much.

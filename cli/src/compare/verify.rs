@@ -6,7 +6,7 @@
 use super::contender::{Answer, Contender, Question, link};
 use super::sample::sample;
 use super::workload::Workload;
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
 use pointmass::Vec3;
 
 /// Up to so many points, every row is searched exhaustively.
@@ -47,9 +47,6 @@ impl Expected {
     }
 
     /// By what one contender says, which is searched exhaustively for a sample of rows.
-    ///
-    /// # Errors
-    /// If it is wrong about one of these.
     pub(crate) fn by(
         leader: &mut dyn Contender,
         name: &str,
@@ -126,9 +123,6 @@ impl Expected {
     }
 
     /// Builds a contender and has it answer everything.
-    ///
-    /// # Errors
-    /// If it is wrong: by a bit if it is one of ours, by more than rounding if not.
     pub(crate) fn check(
         &self,
         contender: &mut dyn Contender,

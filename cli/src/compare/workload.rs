@@ -50,38 +50,29 @@ impl Workload {
     /// What it is called.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Build => "build",
-            Self::Refit => "refit",
-            Self::Count => "count",
-            Self::Within => "within",
-            Self::Nearest => "nearest",
-            Self::Pairs => "pairs",
-            Self::Moving => "moving",
-            Self::Ray => "ray",
-            Self::Short => "short",
-            Self::Sorted => "sorted",
-            Self::Long => "long",
-            Self::Balls => "balls",
-        }
+        self.told()[0]
     }
 
     /// What it is, for those who read a report.
     #[must_use]
     pub fn describe(self) -> &'static str {
+        self.told()[1]
+    }
+
+    fn told(self) -> [&'static str; 2] {
         match self {
-            Self::Build => "sort everything in",
-            Self::Refit => "follow all points after a small move",
-            Self::Count => "count the others within the radius of every point",
-            Self::Within => "list the others within the radius of every point",
-            Self::Nearest => "find the nearest others of every point",
-            Self::Pairs => "visit every two points within the radius of each other once",
-            Self::Moving => "follow all points after a small move, then count: a step of a simulation",
-            Self::Ray => "find the first triangle that segments hit",
-            Self::Short => "find the first triangle that steps near the surface hit, in no order",
-            Self::Sorted => "the same steps, in the order of a Morton curve through their beginnings",
-            Self::Long => "find the first triangle that segments across the whole mesh hit",
-            Self::Balls => "the short steps in no order, of balls instead of points",
+            Self::Build => ["build", "sort everything in"],
+            Self::Refit => ["refit", "follow all points after a small move"],
+            Self::Count => ["count", "count the others within the radius of every point"],
+            Self::Within => ["within", "list the others within the radius of every point"],
+            Self::Nearest => ["nearest", "find the nearest others of every point"],
+            Self::Pairs => ["pairs", "visit every two points within the radius of each other once"],
+            Self::Moving => ["moving", "follow all points after a small move, then count: a step of a simulation"],
+            Self::Ray => ["ray", "find the first triangle that segments hit"],
+            Self::Short => ["short", "find the first triangle that steps near the surface hit, in no order"],
+            Self::Sorted => ["sorted", "the same steps, in the order of a Morton curve through their beginnings"],
+            Self::Long => ["long", "find the first triangle that segments across the whole mesh hit"],
+            Self::Balls => ["balls", "the short steps in no order, of balls instead of points"],
         }
     }
 

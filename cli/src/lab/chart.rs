@@ -1,7 +1,7 @@
 //! Charts: errors against steps, work and tolerances on paper of two logarithmic scales, and energy over time.
 
 use super::study::{Case, Point, Row, Steps, Study};
-use crate::plot::{Axis, Chart, Line};
+use crate::report::plot::{Axis, Chart, Line, look};
 
 /// What the line of floors is called.
 const ROUNDING: &str = "rounding";
@@ -41,10 +41,6 @@ fn of_case<'a>(case: &'a Case, looks: &[&'a str]) -> Vec<Chart<'a>> {
     charts
 }
 
-fn look(looks: &[&str], name: &str) -> usize {
-    looks.iter().position(|look| *look == name).unwrap_or(0)
-}
-
 /// A line for each of some rows, errors against something; those of solutions that are no solutions are left out.
 fn lines<'a>(case: &'a Case, looks: &[&str], of: fn(&Row) -> bool, x: fn(&Point) -> f64) -> Vec<Line<'a>> {
     let mut lines = Vec::new();
@@ -58,7 +54,7 @@ fn lines<'a>(case: &'a Case, looks: &[&str], of: fn(&Row) -> bool, x: fn(&Point)
 
 fn push<'a>(lines: &mut Vec<Line<'a>>, name: &'a str, looks: &[&str], dots: Vec<(f64, f64)>) {
     if !dots.is_empty() {
-        lines.push(Line { name, look: look(looks, name), dots });
+        lines.push(Line::new(name, look(looks, name), dots));
     }
 }
 
@@ -73,7 +69,7 @@ fn rounding(case: &Case) -> Option<Line<'static>> {
     };
     let points = &fixed().next()?.points;
     let dots: Vec<_> = points.iter().enumerate().filter_map(|(i, point)| Some((point.dt, at(i)?))).collect();
-    (!dots.is_empty()).then_some(Line { name: ROUNDING, look: 0, dots })
+    (!dots.is_empty()).then(|| Line::new(ROUNDING, 0, dots))
 }
 
 fn energies<'a>(case: &'a Case, looks: &[&str]) -> Vec<Line<'a>> {

@@ -1,32 +1,16 @@
 //! What is solved: reference problems, and scenes from files.
 
+use super::args::{Lab, Named};
 use super::exact::{self, Exact};
 use super::law::{self, on_the_axis};
-use crate::args;
-use crate::world::World;
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
+use crate::parse::sorted;
+use crate::world::{Settings, World};
 use clap::ValueEnum;
 use pointmass::integrate::{Method, Tuning};
 use pointmass::scene::Model;
 use pointmass::{Force, Gravity, Heap, MutualGravity, Particle, Scene, Spring, System, Vec3};
 use std::path::Path;
-
-/// A reference problem by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
-pub enum Named {
-    /// The harmonic oscillator x'' = −4 x
-    Oscillator,
-    /// The pendulum θ'' = −sin θ, let go from up to 2 rad
-    Pendulum,
-    /// The driven oscillator x'' = −4 x + 2 cos t: its force depends on time
-    Driven,
-    /// Two bodies on ellipses of eccentricity 0.41
-    Kepler,
-    /// Overdamped springs, whose fast decay is 98 times the slow one
-    Stiff,
-    /// A chain of ten damped springs that swings
-    Rope,
-}
 
 /// Something to be solved from its start to an end.
 pub(crate) struct Problem {
@@ -57,18 +41,10 @@ enum Made {
 }
 
 /// All that the arguments name.
-///
-/// # Errors
-/// If a scene cannot be used.
-pub(crate) fn problems(args: &args::Lab) -> Outcome<Vec<Problem>> {
+pub(crate) fn problems(args: &Lab) -> Outcome<Vec<Problem>> {
     let mut problems = match &args.scene {
         Some(path) => vec![from_file(path, args)?],
-        None => {
-            let mut named = args.problems.clone();
-            named.sort_unstable();
-            named.dedup();
-            named.into_iter().map(Named::problem).collect()
-        }
+        None => sorted(&args.problems, Named::value_variants()).into_iter().map(Named::problem).collect(),
     };
     for problem in &mut problems {
         if let Some(duration) = args.duration {
@@ -192,22 +168,8 @@ fn phases() -> Vec<Particle> {
 }
 
 /// A scene, in its own step and down to a sixteenth of it.
-fn from_file(path: &Path, args: &args::Lab) -> Outcome<Problem> {
-    let world = World::load(&args::World {
-        scene: path.to_path_buf(),
-        reading: args.reading,
-        duration: args.duration,
-        dt: None,
-        integrator: None,
-        index: None,
-        response: None,
-        collision_index: None,
-        seed: None,
-        capacity: None,
-        substeps: crate::substeps::Substeps::Fixed(1),
-        tolerance: None,
-        threads: Some(1),
-    })?;
+fn from_file(path: &Path, args: &Lab) -> Outcome<Problem> {
+    let world = World::load(&Settings { duration: args.duration, ..Settings::of(path, args.reading) })?;
     let World { file, model, system, duration, dt, .. } = world;
     if !(duration > 0.0) {
         return Err(Failure::new(format!("{}: runs for 0 s; choose a --duration", path.display())));
@@ -238,16 +200,13 @@ impl Problem {
     }
 
     /// A system that has started a scene of this problem.
-    ///
-    /// # Errors
-    /// If there is no memory.
     pub(crate) fn system(&self, scene: &Scene<'_>) -> Outcome<System<Heap>> {
         let size = pointmass::Size { particles: self.capacity, ..scene.size() };
         let memory = Heap::try_new(size);
         let memory = memory
             .map_err(|_| Failure::new(format!("{}: there is no memory for {} particles", self.name, self.capacity)))?;
         let mut system = System::with(memory);
-        system.start(scene, self.seed).map_err(|insufficient_memory| Failure::new(insufficient_memory.to_string()))?;
+        system.start(scene, self.seed)?;
         Ok(system)
     }
 

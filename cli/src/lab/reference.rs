@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use super::trial::{Outturn, Places, Trial, apart};
-use crate::Outcome;
+use crate::outcome::Outcome;
 use pointmass::Method;
 use pointmass::integrate::Tuned;
 
@@ -24,9 +24,6 @@ pub(crate) struct Reference {
 const CLOSE: f64 = 0.01;
 
 /// RK4 in steps that are halved until that brings nothing: there, rounding outweighs the error of the method.
-///
-/// # Errors
-/// If there is no memory.
 pub(crate) fn reference(problem: &Problem) -> Outcome<Reference> {
     let mut dt = problem.dts[0];
     let least = (problem.dts[problem.dts.len() - 1] / 4.0).min(problem.duration / 4096.0);

@@ -1,7 +1,7 @@
 //! What the figures mean, in words.
 
 use super::study::{Case, Energy, Point, Row, Steps};
-use crate::words::{counted, digits, short};
+use crate::report::words::{counted, digits, short};
 use pointmass::Method;
 
 /// Errors of energy below this share are rounding.
@@ -18,8 +18,16 @@ pub(crate) fn step(dt: f64) -> String {
     }
 }
 
+/// The case with what there is to remark on it.
+pub(crate) fn remarked(mut case: Case) -> Case {
+    let remarks: Vec<_> = case.rows.iter().map(|row| of_row(row, &case)).collect();
+    case.rows.iter_mut().zip(remarks).for_each(|(row, remark)| row.remark = remark);
+    case.notes = case.notes();
+    case
+}
+
 /// What stands out in a row.
-pub(crate) fn of_row(row: &Row, case: &Case) -> String {
+fn of_row(row: &Row, case: &Case) -> String {
     let mut words: Vec<String> = Vec::new();
     if let Some(worst) =
         row.points.iter().filter(|point| point.blew_up_at.is_some()).map(|point| point.dt).reduce(f64::min)
@@ -56,7 +64,7 @@ fn of_order(row: &Row) -> Option<String> {
 
 impl Energy {
     /// Whether energy is kept, swings or drifts.
-    pub(crate) fn words(&self, duration: f64) -> &'static str {
+    fn words(&self, duration: f64) -> &'static str {
         let drift = self.trend.per_second * duration;
         match self.blew_up_at {
             Some(_) => "energy explodes",
@@ -82,7 +90,7 @@ impl Case {
     }
 
     /// What a reader should know.
-    pub(crate) fn notes(&self) -> Vec<String> {
+    fn notes(&self) -> Vec<String> {
         let points = || self.rows.iter().flat_map(|row| &row.points);
         let most = |count: fn(&Point) -> u64| points().map(count).max().unwrap_or(0);
         let mut notes = Vec::new();

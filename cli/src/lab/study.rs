@@ -2,20 +2,19 @@
 
 use super::problem::Problem;
 use super::reference::Reference;
-use super::remark;
 use super::trial::{Outturn, Trend, Trial, apart};
-use crate::Outcome;
-use crate::compare::statistics::growth;
+use crate::outcome::Outcome;
+use crate::report::origin::Origin;
+use crate::statistics::growth;
 use pointmass::integrate::{Method, Tuned, Tuning};
 use serde::Serialize;
 
 /// All of it.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Study {
-    /// Of this program.
-    pub(crate) version: String,
-    /// What to type to have it all again.
-    pub(crate) command: String,
+    /// What it comes from.
+    #[serde(flatten)]
+    pub(crate) origin: Origin,
     pub(crate) cases: Vec<Case>,
 }
 
@@ -69,6 +68,16 @@ pub(crate) enum Steps {
     Own,
     /// The method, by several tolerances.
     Tolerance,
+}
+
+impl Steps {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Own => "own",
+            Self::Tolerance => "tolerance",
+        }
+    }
 }
 
 /// One solution.
@@ -131,9 +140,9 @@ const FITTED: usize = 3;
 const FAR: f64 = 1000.0;
 
 impl Case {
-    /// Of rows, which it remarks on.
+    /// Of rows, without remarks.
     pub(crate) fn new(problem: &Problem, reference: &Reference, rows: Vec<Row>) -> Self {
-        let mut case = Self {
+        Self {
             problem: problem.name.clone(),
             about: problem.about.clone(),
             duration: problem.duration,
@@ -146,11 +155,7 @@ impl Case {
             energy_dt: problem.usual(),
             rows,
             notes: Vec::new(),
-        };
-        let remarks: Vec<_> = case.rows.iter().map(|row| remark::of_row(row, &case)).collect();
-        case.rows.iter_mut().zip(remarks).for_each(|(row, remark)| row.remark = remark);
-        case.notes = case.notes();
-        case
+        }
     }
 }
 
@@ -178,9 +183,6 @@ pub(crate) struct Bench<'a> {
 
 impl Bench<'_> {
     /// A method in its way of stepping.
-    ///
-    /// # Errors
-    /// If there is no memory.
     pub(crate) fn row(&self, method: Method, steps: Steps) -> Outcome<Row> {
         let Problem { tuning, dts, frame, .. } = self.problem;
         let fixed = Tuning { tolerance: f32::INFINITY, ..*tuning };

@@ -1,7 +1,7 @@
 //! A problem solved once: by one method, in steps of one length.
 
 use super::problem::Problem;
-use crate::Outcome;
+use crate::outcome::Outcome;
 use crate::schedule::Schedule;
 use pointmass::integrate::Tuned;
 use pointmass::{Effort, Heap, Ledger, Particle, Scene, System};
@@ -75,9 +75,6 @@ pub(crate) struct Trend {
 
 impl Trial<'_> {
     /// Solves it, and keeps account of its energy.
-    ///
-    /// # Errors
-    /// If there is no memory.
     pub(crate) fn watched(&self) -> Outcome<Outturn> {
         let scene = Scene { integrator: &self.method, ..self.problem.scene() };
         let mut system = self.problem.system(&scene)?;
@@ -93,9 +90,6 @@ impl Trial<'_> {
     }
 
     /// Solves it from a start that is moved by the least an `f32` can tell.
-    ///
-    /// # Errors
-    /// If there is no memory.
     pub(crate) fn nudged(&self) -> Outcome<Outturn> {
         let problem = self.problem.scene();
         let nudge = |x: f32| if x == 0.0 { x } else { x.next_up() };

@@ -5,11 +5,9 @@ use clap::ValueEnum;
 use pointmass::Vec3;
 use pointmass::math::{sin_cos_turns, unit};
 use pointmass::rng::Stream;
-use serde::Serialize;
 
 /// A surface to be made of triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum Made {
     /// A tube with bumps around a trefoil knot: closed, curved, and behind itself from most sides
     Knot,

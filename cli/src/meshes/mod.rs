@@ -3,7 +3,6 @@
 //! Whatever the bytes are, the answer is a mesh or one line saying what is wrong with the file: nothing here panics,
 //! and nothing is allocated because a header promises it.
 
-pub(crate) mod error;
 mod made;
 mod obj;
 mod off;
@@ -13,16 +12,15 @@ mod stl;
 mod tests;
 mod text;
 
-pub use error::MeshError;
 pub use made::Made;
 
+use crate::fault::Fault;
+use crate::outcome::{Outcome, hint};
 use pointmass::Vec3;
 use pointmass::shape::{BadMesh, MeshBuf};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-
-use error::Fault;
 
 /// The largest file that is read, in bytes.
 pub const MAX_BYTES: u64 = 256 << 20;
@@ -57,13 +55,11 @@ impl MeshData {
 /// # Errors
 ///
 /// Where the extension is unknown, the file can't be read or is larger than [`MAX_BYTES`], or [`parse`] refuses it.
-pub fn load(path: &Path) -> Result<MeshData, MeshError> {
-    let name = path.display().to_string();
+pub fn load(path: &Path) -> Outcome<MeshData> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     // Before the file is opened, so that a wrong name is reported even where there is no such file.
-    let reader = reader(&extension).map_err(|fault| MeshError::new(&name, fault))?;
-    let mesh = bytes_of(path).and_then(|bytes| read(reader, &bytes));
-    mesh.map_err(|fault| MeshError::new(&name, fault))
+    let mesh = reader(&extension).and_then(|reader| read(reader, &bytes_of(path)?));
+    mesh.map_err(|fault| fault.of(path.display()))
 }
 
 /// Reads a mesh from the bytes of a file; `extension` says which format they are in.
@@ -72,8 +68,8 @@ pub fn load(path: &Path) -> Result<MeshData, MeshError> {
 ///
 /// Where the extension is unknown, the bytes are not in its format, there are more than [`MAX_BYTES`] of them, a
 /// coordinate is not a finite `f32`, a face names a vertex that isn't there, or there is no triangle at all.
-pub fn parse(name_for_messages: &str, extension: &str, bytes: &[u8]) -> Result<MeshData, MeshError> {
-    reader(extension).and_then(|reader| read(reader, bytes)).map_err(|fault| MeshError::new(name_for_messages, fault))
+pub fn parse(name_for_messages: &str, extension: &str, bytes: &[u8]) -> Outcome<MeshData> {
+    reader(extension).and_then(|reader| read(reader, bytes)).map_err(|fault| fault.of(name_for_messages))
 }
 
 type Reader = fn(&[u8]) -> Result<MeshData, Fault>;
@@ -91,7 +87,7 @@ fn reader(extension: &str) -> Result<Reader, Fault> {
 }
 
 fn bytes_of(path: &Path) -> Result<Vec<u8>, Fault> {
-    let unreadable = |error: std::io::Error| Fault::new(format!("can't be read: {error}{}", crate::hint(path, &error)));
+    let unreadable = |error: std::io::Error| Fault::new(format!("can't be read: {error}{}", hint(path, &error)));
     let file = File::open(path).map_err(unreadable)?;
     let facts = file.metadata().map_err(unreadable)?;
     if facts.is_dir() {

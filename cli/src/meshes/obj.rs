@@ -6,8 +6,8 @@
 //! it takes more code than the two statements that make a mesh.
 
 use super::MeshData;
-use super::error::{Fault, excerpt};
 use super::text;
+use crate::fault::{Fault, excerpt};
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
     let text = text::decode(bytes);
@@ -57,11 +57,12 @@ fn corner(word: &str, known: usize, line: usize) -> Result<u32, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{MeshData, MeshError, parse};
+    use super::super::{MeshData, parse};
+    use crate::outcome::Outcome;
 
     const POINTS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-    fn read(text: &[u8]) -> Result<MeshData, MeshError> {
+    fn read(text: &[u8]) -> Outcome<MeshData> {
         parse("x.obj", "obj", text)
     }
 

@@ -4,8 +4,8 @@
 //! line, and faces coloured in any way but with four floats, and it accepts NaN and vertices that aren't there.
 
 use super::MeshData;
-use super::error::{Fault, excerpt};
 use super::text::{self, Line};
+use crate::fault::{Fault, excerpt};
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
     let text = text::decode(bytes);

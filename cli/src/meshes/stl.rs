@@ -9,8 +9,8 @@ use std::io::{self, Cursor};
 use stl_io::IndexedMesh;
 
 use super::MeshData;
-use super::error::{Fault, excerpt};
 use super::text;
+use crate::fault::{Fault, excerpt};
 
 /// Eighty bytes that say anything, then the number of triangles.
 const HEADER: usize = 84;
@@ -111,11 +111,12 @@ fn facets_before_fault(bytes: &[u8]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{MeshData, MeshError, parse};
+    use super::super::{MeshData, parse};
+    use crate::outcome::Outcome;
 
     const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
 
-    fn read(bytes: impl AsRef<[u8]>) -> Result<MeshData, MeshError> {
+    fn read(bytes: impl AsRef<[u8]>) -> Outcome<MeshData> {
         parse("x.stl", "stl", bytes.as_ref())
     }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::str::SplitWhitespace;
 
-use super::error::{Fault, excerpt};
+use crate::fault::{Fault, excerpt};
 
 /// The file as text: without a byte order mark, and with a replacement for what isn't UTF-8.
 ///

@@ -5,9 +5,9 @@ mod table;
 mod xyz;
 
 use crate::formats::RecordFormat;
+use crate::outcome::{Failure, Outcome};
 use crate::schedule::nanoseconds;
 use crate::whole::{WholeFile, Written, publish};
-use crate::{Failure, Outcome};
 use pointmass::draw::appearance;
 use pointmass::{Color, Columns, Heap, Scene, System};
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! PLY point clouds, binary, one file a record.
 
 use super::{Frame, Row, Writer};
-use crate::Outcome;
+use crate::outcome::Outcome;
 use crate::whole::{Series, Written};
 use ply_rs_bw::ply::{
     Addable, DefaultElement, ElementDef, Encoding, Ply as Cloud, Property, PropertyDef, PropertyType, ScalarType,

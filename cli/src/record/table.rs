@@ -1,8 +1,8 @@
 //! Tables: CSV and lines of JSON, with the same columns.
 
 use super::{Frame, Row, Writer};
+use crate::outcome::{Failure, Outcome};
 use crate::whole::{WholeFile, Written};
-use crate::{Failure, Outcome};
 use serde::{Serialize, Serializer};
 use std::io::{self, Write};
 

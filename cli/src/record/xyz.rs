@@ -1,7 +1,7 @@
 //! XYZ, as molecule viewers read it: all records one behind the other, in the extended form that names its columns.
 
 use super::{Frame, Row, Writer};
-use crate::Outcome;
+use crate::outcome::Outcome;
 use crate::whole::{WholeFile, Written};
 use std::io::{self, Write};
 

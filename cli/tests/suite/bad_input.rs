@@ -290,7 +290,7 @@ fn balls_contacts_and_motion_that_are_wrong() {
             "a.json:contacts.position.substeps: has to be from 1 to",
         ),
         (contact(r#""elasticity": 1.5"#), "a.json:materials[0].contact.elasticity: has to be from 0 to 1, not 1.5"),
-        (contact(r#""friction": 0.5"#), "a.json:1:72: invalid type: floating point `0.5`, expected {\"static\": "),
+        (contact(r#""friction": 0.5"#), "a.json:1:75: invalid type: floating point `0.5`, expected {\"static\": "),
         (
             contact(r#""friction": {"static": 1, "kinetic": -1}"#),
             "a.json:materials[0].contact.friction.kinetic: has to be zero or more, not -1",

@@ -159,6 +159,31 @@ fn plots_are_whole() {
 }
 
 #[test]
+fn a_check_is_told_in_every_format() {
+    let folder = Folder::with("rope.scn", rope(20.0));
+    let files = "--out a.csv --out a.json --out a.html --out a.svg";
+    let said = folder.run(&format!("check rope.scn --dt 1/30 {files}")).fine().stdout;
+    assert!(said.lines().all(|line| line.chars().count() <= 80), "{said}");
+    assert!(said.contains("  rk4*  ") && said.contains("The largest steps"), "{said}");
+    let sheet = folder.read("a.csv");
+    assert!(sheet.starts_with("method,chooses_steps,at_rest_s,") && sheet.contains("\nimplicit,false,any,"), "{sheet}");
+    assert_eq!(sheet.lines().count(), 1 + pointmass::Method::ALL.len(), "{sheet}");
+    let study: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+    assert_eq!(study, check(&folder, "rope.scn --dt 1/30"));
+    let page = folder.read("a.html");
+    let program = concat!("<dd>pointmass ", env!("CARGO_PKG_VERSION"));
+    for part in [program, "<code>pointmass check rope.scn", "<dt>Machine</dt>", "prefers-color-scheme:dark", "rk4</td>"]
+    {
+        assert!(page.contains(part), "no {part}: {page}");
+    }
+    assert_eq!((page.matches("<svg").count(), folder.read("a.svg").matches("<svg").count()), (2, 1));
+    let answer = folder.run("check rope.scn --out rope.scn");
+    assert!(answer.code == 2 && answer.stderr.contains("ends in .html, .svg, .csv or .json"), "{answer:?}");
+    folder.write("a.json", "{}");
+    assert!(folder.run("check a.json --out a.json").error().contains("a.json: is read, so it cannot be written"));
+}
+
+#[test]
 fn steps_beyond_the_bound_are_warned_of() {
     let folder = Folder::with("rope.scn", rope(20.0));
     let said = folder.run("run rope.scn --dt 1/30 --integrator symplectic --steps 2");

@@ -114,6 +114,16 @@ impl Folder {
         self.command(Command::new(PROGRAM).args(args))
     }
 
+    /// Runs a command with arguments that it does not take; each time it has to say what it expects.
+    #[track_caller]
+    pub(crate) fn misuse(&self, command: &str, cases: &[(&str, &str)]) {
+        for (args, expected) in cases {
+            let answer = self.run(&format!("{command} {args}"));
+            assert_eq!(answer.code, 2, "{args}: {answer:?}");
+            assert!(answer.stderr.contains(expected), "{args}: {expected} in {}", answer.stderr);
+        }
+    }
+
     /// The report of a run that goes well and without a warning.
     #[track_caller]
     pub(crate) fn report(&self, args: &str) -> Value {

@@ -4,7 +4,7 @@
 //! empty line, and the second half of a Windows line end, to the row before.
 
 use super::{Fault, Lines, Rows, number};
-use crate::meshes::error::excerpt;
+use crate::fault::excerpt;
 use std::io::BufRead;
 
 /// What columns of coordinates are called, by axis, the likeliest first; units in brackets may follow.

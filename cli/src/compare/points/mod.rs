@@ -11,9 +11,9 @@ mod ply;
 mod tests;
 mod xyz;
 
+use crate::fault::{Fault, excerpt};
 use crate::formats::PointsFormat;
-use crate::meshes::error::excerpt;
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
 use pointmass::Vec3;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -26,17 +26,17 @@ const LONGEST: u64 = 1 << 20;
 
 /// Points, and what was met on the way to them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Cloud {
+pub(crate) struct Cloud {
     /// All of them finite.
-    pub points: Vec<Vec3>,
+    pub(crate) points: Vec<Vec3>,
     /// Where the file has what is the origin here.
-    pub origin: [f64; 3],
+    pub(crate) origin: [f64; 3],
     /// Rows left out because they are not finite.
-    pub skipped: usize,
+    pub(crate) skipped: usize,
     /// Records that came before, of a file that has several; only the last is kept.
-    pub earlier: usize,
+    pub(crate) earlier: usize,
     /// The columns that were taken as x, y and z, from 1 on, where no head names them.
-    pub columns: Vec<usize>,
+    pub(crate) columns: Vec<usize>,
 }
 
 /// Rows as they are read, before they are rounded.
@@ -98,55 +98,22 @@ fn origin(coordinates: impl Iterator<Item = f64> + Clone) -> f64 {
 /// # Errors
 /// If it cannot be read, is not in the format, or has fewer than two finite points; with the row's number where there is
 /// one.
-pub fn load(path: &Path, format: PointsFormat) -> Outcome<Cloud> {
+pub(crate) fn load(path: &Path, format: PointsFormat) -> Outcome<Cloud> {
     if path.is_dir() {
         return Err(Failure::new(format!("{}: is a directory, expected a file of points", path.display())));
     }
     let file = File::open(path).map_err(|error| Failure::io(path, &error))?;
     let length = file.metadata().map_or(0, |facts| facts.len());
     if format == PointsFormat::Ply {
-        ply::check_size(length).map_err(|fault| Failure::new(format!("{}{fault}", path.display())))?;
+        ply::check_size(length).map_err(|fault| fault.of(path.display()))?;
     }
-    let cloud = read(BufReader::with_capacity(1 << 18, file), format)
-        .map_err(|fault| Failure::new(format!("{}{fault}", path.display())))?;
+    let cloud = read(BufReader::with_capacity(1 << 18, file), format).map_err(|fault| fault.of(path.display()))?;
     if cloud.points.len() < 2 {
         let found = if cloud.points.is_empty() { "no finite point" } else { "one finite point" };
         let skipped = if cloud.skipped > 0 { format!(" and {} that are not", cloud.skipped) } else { String::new() };
         return Err(Failure::new(format!("{}: has {found}{skipped}: expected two or more", path.display())));
     }
     Ok(cloud)
-}
-
-/// What is wrong with a file, to be put behind its name.
-#[derive(Debug, PartialEq)]
-struct Fault {
-    row: Option<u64>,
-    message: String,
-}
-
-impl Fault {
-    fn new(message: impl Into<String>) -> Self {
-        Self { row: None, message: message.into() }
-    }
-
-    fn at(row: u64, message: impl Into<String>) -> Self {
-        Self { row: Some(row), message: message.into() }
-    }
-}
-
-impl std::fmt::Display for Fault {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.row {
-            Some(row) => write!(out, ":{row}: {}", self.message),
-            None => write!(out, ": {}", self.message),
-        }
-    }
-}
-
-impl From<std::io::Error> for Fault {
-    fn from(error: std::io::Error) -> Self {
-        Self::new(format!("can't be read: {error}"))
-    }
 }
 
 fn read(mut file: impl BufRead, format: PointsFormat) -> Result<Cloud, Fault> {

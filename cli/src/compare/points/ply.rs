@@ -72,10 +72,3 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Rows, Fault> {
     }
     Ok(rows)
 }
-
-impl From<crate::meshes::error::Fault> for Fault {
-    fn from(fault: crate::meshes::error::Fault) -> Self {
-        let (line, message) = fault.parts();
-        Self { row: line.map(|line| line as u64), message }
-    }
-}

@@ -1,17 +1,18 @@
 //! Where tracers meet: one mesh after the other, first verified, then measured.
 
-use super::super::bench::{Gauge, provide};
+use super::super::args::Compare;
+use super::super::contender::provide;
+use super::super::gauge::Gauge;
 use super::super::measure::{Measured, take_turns, times};
 use super::super::stopwatch::Stopwatch;
 use super::super::study::{Case, Subject};
 use super::super::workload::Workload;
-use super::SEGMENTS;
 use super::query::{Query, ball};
 use super::surface::Surface;
 use super::tracer::{Answers, Entrant};
 use super::verify::Expected;
-use crate::words::{digits, thousands};
-use crate::{Failure, Outcome, args};
+use crate::outcome::{Failure, Outcome};
+use crate::report::words::{digits, thousands};
 use pointmass::shape::Mesh;
 
 /// About how many triangles brute force tests for a kind of segments in a round, and for how many segments at the least.
@@ -23,7 +24,7 @@ const ROUNDS: usize = 8;
 
 /// What all cases share.
 pub(crate) struct Bench<'a> {
-    args: &'a args::Compare,
+    args: &'a Compare,
     seed: u64,
     segments: usize,
     entrants: &'a mut [Entrant],
@@ -43,9 +44,9 @@ struct Task<'a> {
 
 impl<'a> Bench<'a> {
     /// For so many meshes.
-    pub(crate) fn new(args: &'a args::Compare, entrants: &'a mut [Entrant], meshes: usize) -> Self {
+    pub(crate) fn new(args: &'a Compare, entrants: &'a mut [Entrant], meshes: usize) -> Self {
         let gauge = Gauge::new((meshes * ROUNDS * entrants.len()) as u64);
-        let (seed, segments) = (args.seed.unwrap_or(1), args.segments.unwrap_or(SEGMENTS));
+        let (seed, segments) = (args.seed(), args.segments());
         Self { args, seed, segments, entrants, memory: Vec::new(), gauge }
     }
 
@@ -55,9 +56,6 @@ impl<'a> Bench<'a> {
     }
 
     /// Verifies and measures everybody on a mesh.
-    ///
-    /// # Errors
-    /// If somebody's answer is wrong, or there is too little memory.
     pub(crate) fn case(&mut self, surface: &Surface) -> Outcome<Case> {
         let mesh = surface.mesh.view();
         let n = mesh.triangles().len();
@@ -132,7 +130,6 @@ impl<'a> Bench<'a> {
             let (tracer, _) = entrant.build(task.mesh, &mut self.memory, 1)?;
             *unlike = Some(task.expected.unlike(&*tracer, &name, task.queries)?);
         }
-        let _ = task;
         Ok(all)
     }
 

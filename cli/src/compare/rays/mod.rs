@@ -4,7 +4,6 @@
 //! clock, once `verify` has held their answers against every triangle.
 
 mod bench;
-mod foreign;
 mod query;
 mod surface;
 #[cfg(test)]
@@ -15,22 +14,17 @@ mod verify;
 pub use query::Query;
 pub use surface::Surface;
 
+use super::args::Compare;
 use super::peers::RayPeer;
 use super::study::Case;
-use crate::words::thousands;
-use crate::{Failure, Outcome, args};
+use crate::outcome::{Failure, Outcome};
+use crate::report::words::thousands;
 use bench::Bench;
 use pointmass::rays::Structure;
 use tracer::Entrant;
 
-/// How many segments of every kind there are, if nobody says.
-const SEGMENTS: usize = 20_000;
-
 /// Verifies and measures everything.
-///
-/// # Errors
-/// If a mesh cannot be used, or somebody's answer is wrong.
-pub(super) fn cases(args: &args::Compare, peers: Vec<Box<dyn RayPeer>>) -> Outcome<Vec<Case>> {
+pub(super) fn cases(args: &Compare, peers: Vec<Box<dyn RayPeer>>) -> Outcome<Vec<Case>> {
     let mut entrants = entrants(args)?;
     entrants.extend(peers.into_iter().map(Entrant::Peer));
     let surfaces = surface::surfaces(args)?;
@@ -41,7 +35,7 @@ pub(super) fn cases(args: &args::Compare, peers: Vec<Box<dyn RayPeer>>) -> Outco
 }
 
 /// Our structures that take part, in the order of every table.
-fn entrants(args: &args::Compare) -> Outcome<Vec<Entrant>> {
+fn entrants(args: &Compare) -> Outcome<Vec<Entrant>> {
     let asked = &args.structures.0;
     let is_all = asked.len() == pointmass::index::Structure::ALL.len();
     let of_rays = |name: &str| Structure::ALL.iter().copied().find(|structure| structure.name() == name);

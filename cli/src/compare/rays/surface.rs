@@ -1,9 +1,11 @@
 //! Where triangles come from: made up, or a file.
 
-use crate::meshes::error::excerpt;
+use super::super::args::Compare;
+use crate::fault::excerpt;
 use crate::meshes::{self, Made, MeshData};
-use crate::words::thousands;
-use crate::{Failure, Outcome, args};
+use crate::outcome::{Failure, Outcome};
+use crate::parse::sorted;
+use crate::report::words::thousands;
 use pointmass::shape::{MeshBuf, Surface as _};
 use std::path::Path;
 
@@ -24,19 +26,12 @@ pub struct Surface {
 }
 
 /// All that the arguments name, each in all its sizes, ascending.
-///
-/// # Errors
-/// If a file cannot be used.
-pub(super) fn surfaces(args: &args::Compare) -> Outcome<Vec<Surface>> {
+pub(super) fn surfaces(args: &Compare) -> Outcome<Vec<Surface>> {
     if let Some(path) = &args.mesh {
         return Surface::read(path).map(|surface| vec![surface]);
     }
-    let mut made = if args.surface.is_empty() { vec![Made::Knot, Made::Terrain] } else { args.surface.clone() };
-    made.sort_by_key(|made| *made as usize);
-    made.dedup();
-    let mut sizes = if args.triangles.is_empty() { vec![TRIANGLES] } else { args.triangles.clone() };
-    sizes.sort_unstable();
-    sizes.dedup();
+    let made = sorted(&args.surface, &[Made::Knot, Made::Terrain]);
+    let sizes = sorted(&args.triangles, &[TRIANGLES]);
     made.into_iter().flat_map(|made| sizes.iter().map(move |n| Surface::made(made, *n))).collect()
 }
 
@@ -46,7 +41,7 @@ impl Surface {
     /// # Errors
     /// If it cannot be read, with file and line where there is one, or is too large or small to be measured.
     pub fn read(path: &Path) -> Outcome<Self> {
-        let data = meshes::load(path).map_err(|error| Failure::new(error.to_string()))?;
+        let data = meshes::load(path)?;
         let (vertices, shown) = (thousands(data.vertices.len()), excerpt(&path.to_string_lossy()));
         let about = format!("{} triangles between {vertices} vertices of {shown}", thousands(data.triangles.len()));
         let name = excerpt(&path.file_name().unwrap_or_default().to_string_lossy());

@@ -3,8 +3,9 @@
 use super::super::contender::Build;
 use super::super::peers::{FirstHit, RayPeer};
 use super::super::stopwatch::Stopwatch;
+use super::super::workload::Workload;
 use super::query::Query;
-use crate::{Failure, Outcome};
+use crate::outcome::Outcome;
 use pointmass::rays::{Cost, Index, Structure};
 use pointmass::shape::{Hit, Mesh};
 use std::hint::black_box;
@@ -64,6 +65,33 @@ impl Tracer for Own<'_> {
     }
 }
 
+/// A library that has been built, and of how many triangles.
+struct Foreign<'a> {
+    peer: &'a dyn RayPeer,
+    triangles: usize,
+}
+
+impl Tracer for Foreign<'_> {
+    fn built(&self) -> Build {
+        Build { bytes_each: Some(self.peer.bytes() as f64 / self.triangles.max(1) as f64), ..Build::default() }
+    }
+
+    fn trace(&self, query: &Query, asked: usize, answers: &mut Answers) -> bool {
+        if query.workload == Workload::Balls {
+            return false;
+        }
+        let asked = asked.min(query.ends.len());
+        answers.rounded.resize(asked, None);
+        self.peer.first_hits(&query.ends[..asked], &mut answers.rounded);
+        true
+    }
+
+    /// Libraries do not say.
+    fn cost(&self, _: &Query, _: usize) -> Option<Cost> {
+        None
+    }
+}
+
 /// Who may take part.
 pub(crate) enum Entrant {
     Own(Structure),
@@ -97,9 +125,6 @@ impl Entrant {
     }
 
     /// Builds so many times; what was built last, and what one of them took.
-    ///
-    /// # Errors
-    /// If there is too little memory.
     pub(crate) fn build<'a>(
         &'a mut self,
         mesh: Mesh<'a>,
@@ -111,18 +136,17 @@ impl Entrant {
             Self::Own(structure) => {
                 let words = structure.words(mesh.triangles().len()).min(memory.len());
                 let memory = &mut memory[..words];
-                let small = |small: pointmass::rays::TooSmall| Failure::new(small.to_string());
                 for _ in 1..times {
-                    black_box(structure.build(&mesh, &mut *memory).map_err(small)?);
+                    black_box(structure.build(&mesh, &mut *memory)?);
                 }
-                let index = structure.build(&mesh, memory).map_err(small)?;
+                let index = structure.build(&mesh, memory)?;
                 let took = begun.elapsed() / times as u32;
                 Ok((Box::new(Own { mesh, index }), took))
             }
             Self::Peer(peer) => {
                 (0..times).for_each(|_| peer.build(bytemuck::cast_slice(mesh.vertices()), mesh.triangles()));
                 let took = begun.elapsed() / times as u32;
-                Ok((Box::new(super::foreign::Foreign { peer: &**peer, triangles: mesh.triangles().len() }), took))
+                Ok((Box::new(Foreign { peer: &**peer, triangles: mesh.triangles().len() }), took))
             }
         }
     }

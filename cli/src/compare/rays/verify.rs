@@ -5,8 +5,8 @@
 use super::super::sample::sample;
 use super::query::Query;
 use super::tracer::{Answers, Tracer};
-use crate::words::thousands;
-use crate::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome};
+use crate::report::words::thousands;
 use pointmass::shape::{Collider, Hit, Mesh, Segment};
 
 /// About how many triangles are tested for a kind of segments, and of how many segments at the least.
@@ -23,9 +23,6 @@ pub(crate) struct Expected(Vec<Vec<Option<Hit>>>);
 impl Expected {
     /// By what one structure says of the first so many segments, a sample of which are held against every triangle; of
     /// how many.
-    ///
-    /// # Errors
-    /// If it is wrong about one of these.
     pub(crate) fn by(
         (leader, name): (&dyn Tracer, &str),
         mesh: Mesh<'_>,
@@ -56,9 +53,6 @@ impl Expected {
     }
 
     /// Holds the answers to the first so many segments of each query against these.
-    ///
-    /// # Errors
-    /// If one of ours is wrong by a bit.
     pub(crate) fn check(&self, tracer: &dyn Tracer, name: &str, queries: &[Query], asked: usize) -> Outcome {
         let mut answers = Answers::default();
         for (query, all) in queries.iter().zip(&self.0) {
@@ -72,9 +66,6 @@ impl Expected {
     }
 
     /// How many of another library's first hits differ by more than rounding.
-    ///
-    /// # Errors
-    /// If they are too many to be that.
     pub(crate) fn unlike(&self, tracer: &dyn Tracer, name: &str, queries: &[Query]) -> Outcome<usize> {
         let (mut answers, mut sum) = (Answers::default(), 0);
         for (query, all) in queries.iter().zip(&self.0) {

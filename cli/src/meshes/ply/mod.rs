@@ -10,8 +10,8 @@ mod payload;
 use ply_rs_bw::ply::Property;
 
 use super::MeshData;
-use super::error::{Fault, excerpt};
 use super::text;
+use crate::fault::{Fault, excerpt};
 pub(crate) use elements::Skipped;
 use elements::{Face, Point};
 pub(crate) use header::split;
@@ -76,13 +76,14 @@ fn smallest(list: &Property) -> Option<i32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{MeshData, MeshError, parse};
+    use super::super::{MeshData, parse};
+    use crate::outcome::Outcome;
 
     const HEAD: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                         element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     const BODY: &str = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
-    fn read(bytes: impl AsRef<[u8]>) -> Result<MeshData, MeshError> {
+    fn read(bytes: impl AsRef<[u8]>) -> Outcome<MeshData> {
         parse("x.ply", "ply", bytes.as_ref())
     }
 

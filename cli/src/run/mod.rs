@@ -1,21 +1,49 @@
 //! `pointmass run`: steps a scene, records it, reports.
 
-use crate::args::{self, Report};
-use crate::groups;
+mod groups;
+mod summary;
+
+use crate::formats::{RecordFormat, Said, line, named};
+use crate::outcome::{Outcome, print, warn};
 use crate::progress::Progress;
 use crate::record::{Frame, Recorder};
-use crate::report::{Effort, Summary};
 use crate::schedule::Schedule;
-use crate::world::World;
-use crate::{Outcome, print, stall, warn};
+use crate::stall;
+use crate::world::{Settings, World};
 use pointmass::Ledger;
+use std::path::PathBuf;
 use std::time::Instant;
+use summary::{Effort, Summary};
+
+/// Arguments of `run`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Run {
+    /// How the scene is run.
+    #[command(flatten)]
+    pub(crate) world: Settings,
+    /// How many steps, instead of a duration
+    #[arg(long, value_name = "N", conflicts_with = "duration")]
+    pub(crate) steps: Option<u64>,
+    /// Record every K-th step (step 0 and the last always)
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) every: u64,
+    /// Record into FILE: .csv, .jsonl, .xyz, or .ply for one file a record; may be given several times
+    #[arg(long, value_name = "FILE", value_parser = named::<RecordFormat>)]
+    pub(crate) out: Vec<(PathBuf, RecordFormat)>,
+    /// Keep account of energy and say where it went
+    #[arg(long)]
+    pub(crate) ledger: bool,
+    /// Hold forces that take far groups as one (by their theta) against the sums over all pairs, at the end and at about a
+    /// thousand particles
+    #[arg(long)]
+    pub(crate) group_error: bool,
+    /// How to say on standard output what happened
+    #[arg(long, value_enum, default_value_t = Said::Text)]
+    pub(crate) report: Said,
+}
 
 /// Runs a scene as the arguments say. Files are written whole, at the end, or not at all.
-///
-/// # Errors
-/// If the scene cannot be used or a file cannot be written.
-pub fn run(args: &args::Run) -> Outcome {
+pub(crate) fn run(args: &Run) -> Outcome {
     let mut world = World::load(&args.world)?;
     let schedule = match args.steps {
         Some(steps) => Schedule::steps_of(steps, world.dt),
@@ -62,7 +90,7 @@ pub fn run(args: &args::Run) -> Outcome {
     summary.ledger = ledger.map(|ledger| ledger.books().clone());
     Recorder::finish(recorders)?;
     match args.report {
-        Report::Text => print(&summary.text()),
-        Report::Json => print(&summary.json()),
+        Said::Text => print(&summary.text()),
+        Said::Json => print(&line(&summary)?),
     }
 }

@@ -1,25 +1,52 @@
-//! What a comparison runs on.
+//! What findings come from: the program, what was typed, and the machine.
 
 use serde::Serialize;
 use std::fs;
 
+/// What findings come from.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Origin {
+    /// The version of this program.
+    pub(crate) version: String,
+    /// What to type to have it all again.
+    pub(crate) command: String,
+    /// What it ran on.
+    pub(crate) machine: Machine,
+}
+
+impl Origin {
+    /// That of this run.
+    pub(crate) fn this() -> Self {
+        let (version, command) = (env!("CARGO_PKG_VERSION").into(), command(std::env::args()));
+        Self { version, command, machine: Machine::this() }
+    }
+}
+
+/// What was typed, as a shell takes it.
+pub(crate) fn command(args: impl Iterator<Item = String>) -> String {
+    let plain =
+        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || "-_=.,/:+%@".contains(c));
+    let quoted =
+        args.skip(1).map(|word| if plain(&word) { word } else { format!("'{}'", word.replace('\'', r"'\''")) });
+    std::iter::once("pointmass".to_string()).chain(quoted).collect::<Vec<_>>().join(" ")
+}
+
 /// A machine, as far as it says what it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Machine {
+pub(crate) struct Machine {
     /// The processor.
-    pub cpu: String,
+    pub(crate) cpu: String,
     /// How many cores the program may use. It uses one.
-    pub cores: usize,
+    pub(crate) cores: usize,
     /// The operating system.
-    pub os: String,
+    pub(crate) os: String,
     /// What the program was compiled for, and how.
-    pub build: String,
+    pub(crate) build: String,
 }
 
 impl Machine {
     /// This one.
-    #[must_use]
-    pub fn this() -> Self {
+    pub(crate) fn this() -> Self {
         let arch = std::env::consts::ARCH;
         let optimised = if cfg!(debug_assertions) { "not optimised" } else { "optimised" };
         Self {

@@ -10,22 +10,21 @@ const SAMPLED: usize = 1000;
 
 /// The error of one force at one instant, as a share of the force on each particle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GroupError {
+pub(crate) struct GroupError {
     /// The force.
-    pub force: &'static str,
+    pub(crate) force: &'static str,
     /// Its opening angle.
-    pub theta: f32,
+    pub(crate) theta: f32,
     /// Root mean square.
-    pub rms: f64,
+    pub(crate) rms: f64,
     /// The largest.
-    pub largest: f64,
+    pub(crate) largest: f64,
     /// Particles that were looked at.
-    pub particles: usize,
+    pub(crate) particles: usize,
 }
 
 /// The errors of all forces of the scene that have an opening angle, over the particles as they are.
-#[must_use]
-pub fn errors(world: &World) -> Vec<GroupError> {
+pub(crate) fn errors(world: &World) -> Vec<GroupError> {
     let particles = world.system.particles();
     let mut memory = vec![0; BarnesHut::words(particles.position.len())];
     let mut measured = |force: &'static str, law: Opening, weights: &[f32]| {

@@ -1,6 +1,6 @@
 //! What a run came to, for people and for programs.
 
-use crate::groups::GroupError;
+use super::groups::GroupError;
 use crate::schedule::nanoseconds;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
@@ -11,78 +11,77 @@ use std::fmt::Write;
 
 /// What a run came to. Times are in seconds of the scene, except `seconds`, which people had to wait.
 #[derive(Debug, Serialize)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// The scene's file.
-    pub scene: String,
+    pub(crate) scene: String,
     /// The method.
-    pub integrator: String,
+    pub(crate) integrator: String,
     /// The step \[s\].
-    pub dt: f64,
+    pub(crate) dt: f64,
     /// The seed.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Steps made.
-    pub steps: u64,
+    pub(crate) steps: u64,
     /// The instant reached \[s\].
-    pub time: f64,
+    pub(crate) time: f64,
     /// How steps were divided.
-    pub substeps: Told,
+    pub(crate) substeps: Told,
     /// Particles put in at the beginning.
-    pub initial: u64,
+    pub(crate) initial: u64,
     /// Particles born.
-    pub born: u64,
+    pub(crate) born: u64,
     /// Particles alive at the end.
-    pub live: u64,
+    pub(crate) live: u64,
     /// Particles removed, by cause.
-    pub died: Died,
+    pub(crate) died: Died,
     /// Particles that found no room.
-    pub refused: u64,
+    pub(crate) refused: u64,
     /// Times that a particle met a collider.
-    pub hits: u64,
+    pub(crate) hits: u64,
     /// Times that a bound cut work short.
-    pub caps: Caps,
+    pub(crate) caps: Caps,
     /// Times that two particles met.
-    pub contacts: u64,
+    pub(crate) contacts: u64,
     /// Springs that broke.
-    pub broken: u64,
+    pub(crate) broken: u64,
     /// What the method did.
-    pub effort: pointmass::Effort,
+    pub(crate) effort: pointmass::Effort,
     /// How far sums over far groups are from all pairs, if that was asked.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub group_errors: Option<Vec<GroupError>>,
+    pub(crate) group_errors: Option<Vec<GroupError>>,
     /// Where energy went, if account of it was kept.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub ledger: Option<Books>,
+    pub(crate) ledger: Option<Books>,
     /// Energy at the end \[J\].
-    pub energy: Energy,
+    pub(crate) energy: Energy,
     /// Energy and power of every force at the end.
-    pub forces: Vec<Entry>,
+    pub(crate) forces: Vec<Entry>,
     /// Momentum at the end \[kg m/s\].
-    pub momentum: [f64; 3],
+    pub(crate) momentum: [f64; 3],
     /// Angular momentum about the origin at the end \[kg m²/s\].
-    pub angular_momentum: [f64; 3],
+    pub(crate) angular_momentum: [f64; 3],
     /// The state's fingerprint.
-    pub hash: String,
+    pub(crate) hash: String,
     /// Time it took \[s\].
-    pub seconds: f64,
+    pub(crate) seconds: f64,
     /// Time it took for each particle and step \[ns\].
-    pub ns_per_particle_step: f64,
+    pub(crate) ns_per_particle_step: f64,
 }
 
 /// Effort spent on a run.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Steps made.
-    pub steps: u64,
+    pub(crate) steps: u64,
     /// Particles alive, summed over all steps.
-    pub particle_steps: u64,
+    pub(crate) particle_steps: u64,
     /// Time spent stepping \[s\].
-    pub seconds: f64,
+    pub(crate) seconds: f64,
 }
 
 impl Summary {
     /// Sums up the world as it is.
-    #[must_use]
-    pub fn of(scene: &std::path::Path, world: &World, effort: Effort) -> Self {
+    pub(crate) fn of(scene: &std::path::Path, world: &World, effort: Effort) -> Self {
         let totals = world.system.totals();
         let measures = Measures::of(&world.system, &world.model.scene());
         Self {
@@ -118,18 +117,8 @@ impl Summary {
         }
     }
 
-    /// One line of JSON.
-    #[must_use]
-    pub fn json(&self) -> String {
-        // Numbers that are not finite become null.
-        let mut text = serde_json::to_string(self).unwrap_or_default();
-        text.push('\n');
-        text
-    }
-
     /// A page for people.
-    #[must_use]
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut rows: Vec<(&str, String)> = vec![
             ("scene", self.scene.clone()),
             ("run", format!("{} steps of {:.6} s by {}, seed {}", self.steps, self.dt, self.integrator, self.seed)),

@@ -1,0 +1,27 @@
+//! Parts of a scene, by where they stand in its file.
+
+use pointmass::scene::Model;
+use pointmass::stability::Mode;
+use serde::Serialize;
+
+/// A part of a scene that bounds the step.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Part {
+    /// Where it stands in the file.
+    pub(crate) place: String,
+    /// Its number among all springs, if it is one.
+    #[serde(skip)]
+    pub(crate) spring: Option<usize>,
+    /// What it is.
+    pub(crate) about: String,
+    /// Its oscillation, were it alone.
+    pub(crate) mode: Mode,
+}
+
+/// Where particle (0) or spring (1) number `number` stands in the file: in a list, or in a cloth.
+pub(crate) fn place(model: &Model, kind: usize, number: usize) -> String {
+    match model.cloths.partition_point(|begin| begin[kind] <= number) {
+        0 => format!("{}[{number}]", ["particles", "springs"][kind]),
+        after => format!("cloths[{}]", after - 1),
+    }
+}

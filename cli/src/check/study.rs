@@ -1,0 +1,137 @@
+//! What there is to say about a scene's step.
+
+use super::bounds::{Bounds, in_air};
+use super::contact::Contact;
+use super::modes::{How, Spectrum};
+use super::part::Part;
+use super::world::{Followed, Pair, Pull, fastest_pair, followed, not_judged, pulls};
+use pointmass::Method;
+use pointmass::scene::{Model, Run};
+use pointmass::stability::Limit;
+use serde::Serialize;
+use std::path::Path;
+
+/// What there is to say about a scene's step. Times are in seconds, rates per second.
+#[derive(Debug, Serialize)]
+pub(crate) struct Study {
+    /// The scene's file.
+    pub(crate) scene: String,
+    /// The step that is judged.
+    pub(crate) dt: f64,
+    /// The method that is advised on.
+    pub(crate) integrator: String,
+    /// Particles at the start, and those of them that can move.
+    pub(crate) particles: usize,
+    pub(crate) free: usize,
+    pub(crate) springs: usize,
+    pub(crate) emitters: usize,
+    /// The oscillations of the springs at rest.
+    pub(crate) oscillations: Option<Oscillations>,
+    /// The spring whose two ends alone would oscillate fastest.
+    pub(crate) stiffest: Option<Part>,
+    /// What drag slows down most.
+    pub(crate) dragged: Option<Part>,
+    /// The balls that push each other apart most abruptly, and how long a hit of them lasts.
+    pub(crate) touching: Option<Part>,
+    pub(crate) hit: Option<f64>,
+    pub(crate) methods: Vec<Stand>,
+    /// How long paths may be to be followed with full accuracy to what they hit.
+    pub(crate) followed: Option<Followed>,
+    /// The two particles that attract each other into the quickest orbit.
+    pub(crate) pair: Option<Pair>,
+    /// The sinks whose pull changes from place to place.
+    pub(crate) sinks: Vec<Pull>,
+    /// Forces that bound the step as well, by a law that is not looked at.
+    pub(crate) not_judged: Vec<&'static str>,
+    pub(crate) advice: Vec<String>,
+}
+
+/// The oscillations of the springs at rest.
+#[derive(Debug, Serialize)]
+pub(crate) struct Oscillations {
+    /// How many of them move.
+    pub(crate) count: usize,
+    pub(crate) how: How,
+    /// The largest rate |λ| \[1/s\].
+    pub(crate) fastest: f64,
+    /// Its damping ratio.
+    pub(crate) damping_ratio: Option<f64>,
+}
+
+/// What a method stands.
+#[derive(Debug, Serialize)]
+pub(crate) struct Stand {
+    pub(crate) method: String,
+    /// It chooses its own steps: the limits are those of the steps within.
+    pub(crate) chooses_steps: bool,
+    /// The largest step stable for springs that are where they start, and at rest there.
+    pub(crate) at_rest: Limit,
+    /// Whether that is an estimate, since there are too many oscillations to work out all.
+    pub(crate) estimated: bool,
+    /// The largest step stable in every pose.
+    pub(crate) every_pose: Limit,
+    /// The largest step that drag allows.
+    pub(crate) drag: Limit,
+    /// The largest step in which contacts by force add no energy.
+    pub(crate) contact: Limit,
+    /// Whether it stands the step that is judged.
+    pub(crate) stable: bool,
+    /// How fast an oscillation across taut springs may grow at that step.
+    pub(crate) growth_across: f64,
+}
+
+impl Study {
+    /// That of a scene, without advice, and the modes of its springs.
+    pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Option<Spectrum>) {
+        let (dt, bounds) = (run.dt, Bounds::of(model));
+        let (braked, has_drag) = in_air(model);
+        let spectrum = Spectrum::of(&braked, &model.springs, has_drag);
+        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, spectrum.as_ref(), dt)).collect();
+        let study = Self {
+            scene: path.display().to_string(),
+            dt,
+            integrator: model.integrator.method.to_string(),
+            particles: model.particles.len(),
+            free: model.particles.iter().filter(|particle| !particle.fixed).count(),
+            springs: model.springs.len(),
+            emitters: model.emitters.len(),
+            oscillations: spectrum.as_ref().map(oscillations),
+            stiffest: bounds.stiffest,
+            dragged: bounds.dragged,
+            hit: bounds.contact.as_ref().map(Contact::duration),
+            touching: bounds.contact.map(|contact| contact.part),
+            methods,
+            followed: followed(model),
+            // An orbit that takes far longer than the run is none.
+            pair: fastest_pair(model).filter(|pair| pair.period < 10.0 * run.duration),
+            sinks: pulls(model),
+            not_judged: not_judged(model),
+            advice: Vec::new(),
+        };
+        (study, spectrum)
+    }
+}
+
+fn stand(method: Method, bounds: &Bounds, spectrum: Option<&Spectrum>, dt: f64) -> Stand {
+    let at_rest = spectrum.map_or(Limit::Unconditional, |spectrum| spectrum.largest_step(method));
+    let (every_pose, drag) = (bounds.poses.largest_step(method), bounds.drag_step(method));
+    let contact = bounds.contact_step(method);
+    Stand {
+        method: method.to_string(),
+        chooses_steps: method.chooses_steps(),
+        at_rest,
+        estimated: spectrum.is_some_and(|spectrum| spectrum.is_estimate(method)),
+        every_pose,
+        drag,
+        contact,
+        stable: method.chooses_steps() || every_pose.and(drag).and(contact).admits(dt),
+        growth_across: bounds.growth(method, dt),
+    }
+}
+
+fn oscillations(spectrum: &Spectrum) -> Oscillations {
+    let mode = spectrum.fastest();
+    let fastest = mode.rates().iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max);
+    let damping_ratio = (mode.omega2 > 0.0).then(|| 0.5 * mode.damping / mode.omega2.sqrt());
+    Oscillations { count: spectrum.modes.len(), how: spectrum.how, fastest, damping_ratio }
+}
