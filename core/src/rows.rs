@@ -3,6 +3,7 @@
 //! A column of `Vec3` is a flat list of numbers with period three. Where every number is treated alike the flat list
 //! does; where each row has a factor of its own, four rows and their four factors make blocks of twelve.
 
+use crate::lanes::widest;
 use crate::math::max;
 use glam::Vec3;
 use wide::f32x4;
@@ -14,17 +15,28 @@ pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
 #[inline]
 pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3]) {
     let (out, base, rate) = (flat_mut(out), flat(base), flat(rate));
-    for ((out, &base), &rate) in out.iter_mut().zip(base).zip(rate) {
-        *out = base + rate * h;
-    }
+    widest(
+        #[inline(always)]
+        || {
+            for ((out, &base), &rate) in out.iter_mut().zip(base).zip(rate) {
+                *out = base + rate * h;
+            }
+        },
+    );
 }
 
 /// `sum` += `h` × `rate`, row by row.
 #[inline]
 pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
-    for (sum, &rate) in flat_mut(sum).iter_mut().zip(flat(rate)) {
-        *sum += rate * h;
-    }
+    let (sum, rate) = (flat_mut(sum), flat(rate));
+    widest(
+        #[inline(always)]
+        || {
+            for (sum, &rate) in sum.iter_mut().zip(rate) {
+                *sum += rate * h;
+            }
+        },
+    );
 }
 
 /// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
@@ -72,24 +84,39 @@ pub(crate) fn fall(
 ) {
     let [x, y, z] = g.to_array();
     let g = [[x, y, z, x], [y, z, x, y], [z, x, y, z]].map(f32x4::new);
-    let step = |out: &mut [Vec3; 4], v: &[Vec3; 4], m: &[f32; 4], k: &[f32; 4], inverse: &[f32; 4]| {
-        let (out, v): (&mut [[f32; 4]; 3], &[[f32; 4]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(v));
-        let (m, k, inverse) = (spread(m), spread(k), spread(inverse));
-        for i in 0..3 {
-            let moves = !inverse[i].simd_eq(f32x4::ZERO);
-            out[i] = ((force(g[i], m[i], f32x4::new(v[i]), k[i]) * inverse[i]) & moves).to_array();
-        }
-    };
     let ((out, out_rest), (v, v_rest)) = (out.as_chunks_mut(), velocity.as_chunks());
     let ((m, m_rest), (k, k_rest)) = (mass.as_chunks(), drag.as_chunks());
     let (inverse, inverse_rest) = inverse_mass.as_chunks();
-    for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
-        step(out, v, m, k, inverse);
-    }
+    widest(
+        #[inline(always)]
+        || {
+            for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
+                fall_four(out, g, [m, k, inverse], v, &force);
+            }
+        },
+    );
     if !out_rest.is_empty() {
         let mut last = [Vec3::ZERO; 4];
-        step(&mut last, &filled(v_rest), &filled(m_rest), &filled(k_rest), &filled(inverse_rest));
+        let factors = [&filled(m_rest), &filled(k_rest), &filled(inverse_rest)];
+        fall_four(&mut last, g, factors, &filled(v_rest), &force);
         out_rest.copy_from_slice(&last[..out_rest.len()]);
+    }
+}
+
+/// The same for four, of three numbers each as they follow one another.
+#[inline(always)]
+fn fall_four(
+    out: &mut [Vec3; 4],
+    g: [f32x4; 3],
+    factors: [&[f32; 4]; 3],
+    velocity: &[Vec3; 4],
+    force: &impl Fn(f32x4, f32x4, f32x4, f32x4) -> f32x4,
+) {
+    let (out, v): (&mut [[f32; 4]; 3], &[[f32; 4]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(velocity));
+    let [m, k, inverse] = factors.map(spread);
+    for i in 0..3 {
+        let moves = !inverse[i].simd_eq(f32x4::ZERO);
+        out[i] = ((force(g[i], m[i], f32x4::new(v[i]), k[i]) * inverse[i]) & moves).to_array();
     }
 }
 
@@ -122,14 +149,45 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
 /// The largest number of a column, whatever its sign; what is no number does not count.
 #[inline]
 pub(crate) fn farthest(column: &[Vec3]) -> f32 {
-    let (blocks, rest) = if BLOCKS { flat(column).as_chunks::<8>() } else { (&[][..], flat(column)) };
-    let mut most = [0.0; 8];
-    for block in blocks {
-        for (most, x) in most.iter_mut().zip(block) {
-            *most = max(x.abs(), *most);
-        }
-    }
+    let (blocks, rest) = if BLOCKS { flat(column).as_chunks::<16>() } else { (&[][..], flat(column)) };
+    let most = widest(
+        #[inline(always)]
+        || {
+            let mut most = [0.0; 16];
+            for block in blocks {
+                for (most, x) in most.iter_mut().zip(block) {
+                    *most = max(x.abs(), *most);
+                }
+            }
+            most
+        },
+    );
     rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most))
+}
+
+/// The same, and whether all numbers of it and of another column are finite for sure: in one pass, as what is not makes a sum that
+/// is not. A sum may be so without, and where there are no vectors nothing is sure.
+#[inline]
+pub(crate) fn farthest_of_finite(column: &[Vec3], other: &[Vec3]) -> (f32, bool) {
+    if !BLOCKS {
+        return (farthest(column), false);
+    }
+    let ((x, x_rest), (v, v_rest)) = (flat(column).as_chunks::<16>(), flat(other).as_chunks::<16>());
+    let (most, sum) = widest(
+        #[inline(always)]
+        || {
+            let (mut most, mut sum) = ([0.0; 16], [0.0; 16]);
+            for (x, v) in x.iter().zip(v) {
+                for i in 0..16 {
+                    most[i] = max(x[i].abs(), most[i]);
+                    sum[i] += x[i] + v[i];
+                }
+            }
+            (most, sum)
+        },
+    );
+    let farthest = x_rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most));
+    (farthest, sum.iter().chain(x_rest).chain(v_rest).fold(0.0, |nought, x| nought + x * 0.0) == 0.0)
 }
 
 /// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
@@ -156,14 +214,19 @@ mod tests {
 
     #[test]
     fn one_number_that_is_not_finite_is_seen_wherever_it_is() {
-        for n in 0..20 {
+        for n in 0..40 {
             let mut column = std::vec![Vec3::new(f32::MAX, -f32::MAX, -0.0); n];
+            let good_ones = std::vec![Vec3::new(-1.5, 0.0, 1e30); n];
+            assert_eq!(farthest_of_finite(&good_ones, &good_ones), (if n > 0 { 1e30 } else { 0.0 }, true));
             assert!(are_finite(&column));
             assert_eq!(farthest(&column), if n > 0 { f32::MAX } else { 0.0 });
             for (i, bad) in (0..3 * n).zip([f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().cycle())
             {
                 let good = core::mem::replace(&mut column[i / 3][i % 3], bad);
                 assert!(!are_finite(&column), "{bad} at {i} of {n}");
+                for (one, other) in [(&column, &good_ones), (&good_ones, &column)] {
+                    assert_eq!(farthest_of_finite(one, other), (farthest(one), false), "{bad} at {i} of {n}");
+                }
                 assert_eq!(farthest(&column) == f32::INFINITY, bad.is_infinite());
                 column[i / 3][i % 3] = good;
             }

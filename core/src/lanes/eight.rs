@@ -1,0 +1,262 @@
+//! Eight numbers or vectors side by side, in whatever registers the machine turns out to have.
+//!
+//! What is done to them is the same operations in the same order, each correctly rounded, and so the same bits. A kernel is compiled
+//! for each kind of registers; functions that it calls have to be spread over it for that.
+
+use super::LANES;
+use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
+
+/// Eight numbers side by side. A mask has all bits of a lane set, or none.
+pub(crate) trait Eight:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+{
+    /// These, in registers as those that `self` is in.
+    fn of(self, lanes: [f32; LANES]) -> Self;
+    /// One number in all of them.
+    fn all(self, x: f32) -> Self;
+    fn to_array(self) -> [f32; LANES];
+    fn abs(self) -> Self;
+    /// Correctly rounded.
+    fn sqrt(self) -> Self;
+    fn simd_eq(self, other: Self) -> Self;
+    fn simd_lt(self, other: Self) -> Self;
+    fn simd_le(self, other: Self) -> Self;
+    fn simd_gt(self, other: Self) -> Self;
+    fn simd_ge(self, other: Self) -> Self;
+    /// The first of two where this mask says so, else the second.
+    fn select(self, a: Self, b: Self) -> Self;
+    /// A bit for each lane of this mask.
+    fn to_bitmask(self) -> u32;
+
+    /// Whether this mask holds for any.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.to_bitmask() != 0
+    }
+}
+
+/// What can be done in registers of any kind.
+pub(crate) trait Kernel {
+    type Output;
+    /// Does it in such registers as `like` is in.
+    fn run<F: Eight>(self, like: F) -> Self::Output;
+}
+
+/// Runs a kernel in the widest registers that it is compiled for.
+#[inline(always)]
+pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(
+            avx2,
+            #[inline(always)]
+            || kernel.run(avx2::Wide::zero(avx2)),
+        );
+    }
+    kernel.run(wide::f32x8::ZERO)
+}
+
+/// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
+#[inline(always)]
+pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(avx2, f);
+    }
+    f()
+}
+
+/// The larger of two numbers, as [`crate::math::max`] has it.
+#[inline(always)]
+pub(crate) fn max<F: Eight>(a: F, b: F) -> F {
+    a.simd_gt(b).select(a, b)
+}
+
+/// The smaller of two numbers, as [`crate::math::min`] has it.
+#[inline(always)]
+pub(crate) fn min<F: Eight>(a: F, b: F) -> F {
+    a.simd_lt(b).select(a, b)
+}
+
+/// Numbers with their signs turned round, those of zeros as well.
+#[inline(always)]
+pub(crate) fn negated<F: Eight>(x: F) -> F {
+    x ^ x.all(-0.0)
+}
+
+/// Lanes for which a mask does not hold.
+#[inline(always)]
+pub(crate) fn not<F: Eight>(mask: F) -> F {
+    mask ^ mask.all(f32::from_bits(u32::MAX))
+}
+
+/// As many as the target has for sure: two registers, or four numbers and four, or eight.
+impl Eight for wide::f32x8 {
+    #[inline(always)]
+    fn of(self, lanes: [f32; LANES]) -> Self {
+        Self::new(lanes)
+    }
+    #[inline(always)]
+    fn all(self, x: f32) -> Self {
+        Self::splat(x)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; LANES] {
+        Self::to_array(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        super::sqrt(self)
+    }
+    #[inline(always)]
+    fn simd_eq(self, other: Self) -> Self {
+        Self::simd_eq(self, other)
+    }
+    #[inline(always)]
+    fn simd_lt(self, other: Self) -> Self {
+        Self::simd_lt(self, other)
+    }
+    #[inline(always)]
+    fn simd_le(self, other: Self) -> Self {
+        Self::simd_le(self, other)
+    }
+    #[inline(always)]
+    fn simd_gt(self, other: Self) -> Self {
+        Self::simd_gt(self, other)
+    }
+    #[inline(always)]
+    fn simd_ge(self, other: Self) -> Self {
+        Self::simd_ge(self, other)
+    }
+    #[inline(always)]
+    fn select(self, a: Self, b: Self) -> Self {
+        ((a ^ b) & self) ^ b
+    }
+    #[inline(always)]
+    fn to_bitmask(self) -> u32 {
+        Self::to_bitmask(self)
+    }
+}
+
+/// Eight in one register of an x86-64 that has them.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+mod avx2 {
+    use super::{Eight, LANES};
+    use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
+    use fearless_simd::x86::Avx2;
+    use fearless_simd::{Bytes, ExtractToken, Select, SimdBase, SimdFloat, SimdMask, f32x8, mask32x8, u32x8};
+
+    #[derive(Clone, Copy)]
+    pub(super) struct Wide(f32x8<Avx2>);
+
+    impl Wide {
+        #[inline(always)]
+        pub(super) fn zero(avx2: Avx2) -> Self {
+            Self(f32x8::splat(avx2, 0.0))
+        }
+
+        #[inline(always)]
+        fn bits(self) -> u32x8<Avx2> {
+            self.0.bitcast()
+        }
+
+        #[inline(always)]
+        fn of_mask(mask: mask32x8<Avx2>) -> Self {
+            Self(mask.to_vector().bitcast())
+        }
+
+        #[inline(always)]
+        fn mask(self) -> mask32x8<Avx2> {
+            mask32x8::from_vector(self.0.bitcast())
+        }
+    }
+
+    macro_rules! numbers {
+        ($($op:ident $name:ident)+) => {
+            $(impl $op for Wide {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    Self($op::$name(self.0, other.0))
+                }
+            })+
+        };
+    }
+    numbers!(Add add Sub sub Mul mul Div div);
+
+    macro_rules! bits {
+        ($($op:ident $name:ident)+) => {
+            $(impl $op for Wide {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    Self($op::$name(self.bits(), other.bits()).bitcast())
+                }
+            })+
+        };
+    }
+    bits!(BitAnd bitand BitOr bitor BitXor bitxor);
+
+    impl Eight for Wide {
+        #[inline(always)]
+        fn of(self, lanes: [f32; LANES]) -> Self {
+            Self(f32x8::from_slice(self.0.token(), &lanes))
+        }
+        #[inline(always)]
+        fn all(self, x: f32) -> Self {
+            Self(f32x8::splat(self.0.token(), x))
+        }
+        #[inline(always)]
+        fn to_array(self) -> [f32; LANES] {
+            self.0.into()
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(self.0.abs())
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(self.0.sqrt())
+        }
+        #[inline(always)]
+        fn simd_eq(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_eq(other.0))
+        }
+        #[inline(always)]
+        fn simd_lt(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_lt(other.0))
+        }
+        #[inline(always)]
+        fn simd_le(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_le(other.0))
+        }
+        #[inline(always)]
+        fn simd_gt(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_gt(other.0))
+        }
+        #[inline(always)]
+        fn simd_ge(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_ge(other.0))
+        }
+        #[inline(always)]
+        fn select(self, a: Self, b: Self) -> Self {
+            Self(self.mask().select(a.0, b.0))
+        }
+        #[inline(always)]
+        fn to_bitmask(self) -> u32 {
+            self.mask().to_bitmask() as u32
+        }
+    }
+}
+
