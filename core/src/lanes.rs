@@ -7,8 +7,8 @@ mod eight;
 mod vectors;
 
 pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
-pub(crate) use vectors::Vectors;
 use glam::Vec3;
+pub(crate) use vectors::Vectors;
 use wide::{f32x4, f32x8};
 
 /// How many there are.
@@ -95,4 +95,3 @@ pub(crate) fn turned(vectors: &[Vec3; 4]) -> [f32x4; 3] {
     let [x, y, z, _] = f32x4::transpose([at(0), at(3), at(6), at(9)]);
     [x, y, z]
 }
-

@@ -3,10 +3,9 @@
 //! A column of `Vec3` is a flat list of numbers with period three. Where every number is treated alike the flat list
 //! does; where each row has a factor of its own, four rows and their four factors make blocks of twelve.
 
-use crate::lanes::widest;
+use crate::lanes::{Eight, Kernel, not, widest};
 use crate::math::max;
 use glam::Vec3;
-use wide::f32x4;
 
 /// Whether there may be vectors: chips without an operating system are spared the code, and work number by number.
 pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
@@ -69,67 +68,69 @@ pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f:
     }
 }
 
-/// `out` = `force`(`g`, mass, velocity, drag) over the mass, number by number. What is fixed stays so under a force beyond an f32.
-///
-/// Apart, with a reference for each column, so that compilers know that none is another, and make vectors of them.
-#[inline(never)]
-pub(crate) fn fall(
-    out: &mut [Vec3],
-    g: Vec3,
-    mass: &[f32],
-    velocity: &[Vec3],
-    drag: &[f32],
-    inverse_mass: &[f32],
-    force: impl Fn(f32x4, f32x4, f32x4, f32x4) -> f32x4,
-) {
-    let [x, y, z] = g.to_array();
-    let g = [[x, y, z, x], [y, z, x, y], [z, x, y, z]].map(f32x4::new);
-    let ((out, out_rest), (v, v_rest)) = (out.as_chunks_mut(), velocity.as_chunks());
-    let ((m, m_rest), (k, k_rest)) = (mass.as_chunks(), drag.as_chunks());
-    let (inverse, inverse_rest) = inverse_mass.as_chunks();
-    widest(
-        #[inline(always)]
-        || {
-            for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
-                fall_four(out, g, [m, k, inverse], v, &force);
+/// Rows that fall, each braked by its own drag.
+pub(crate) struct Fall<'a, const FALLS: bool, const DRAGS: bool> {
+    pub(crate) g: Vec3,
+    pub(crate) mass: &'a [f32],
+    pub(crate) velocity: &'a [Vec3],
+    pub(crate) drag: &'a [f32],
+    pub(crate) inverse_mass: &'a [f32],
+    pub(crate) acceleration: &'a mut [Vec3],
+}
+
+impl<const FALLS: bool, const DRAGS: bool> Kernel for Fall<'_, FALLS, DRAGS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) {
+        let Self { g, mass, velocity, drag, inverse_mass, acceleration } = self;
+        let [a, b, c]: [[f32; 8]; 3] = bytemuck::cast([g; 8]);
+        let g = [like.of(a), like.of(b), like.of(c)];
+        let ((out, out_rest), (v, v_rest)) = (acceleration.as_chunks_mut(), velocity.as_chunks());
+        let ((m, m_rest), (k, k_rest)) = (mass.as_chunks(), drag.as_chunks());
+        let (inverse, inverse_rest) = inverse_mass.as_chunks();
+        for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
+            Self::eight(out, g, v, [m, k, inverse]);
+        }
+        if !out_rest.is_empty() {
+            let mut last = [Vec3::ZERO; 8];
+            Self::eight(&mut last, g, &filled(v_rest), [&filled(m_rest), &filled(k_rest), &filled(inverse_rest)]);
+            out_rest.copy_from_slice(&last[..out_rest.len()]);
+        }
+    }
+}
+
+impl<const FALLS: bool, const DRAGS: bool> Fall<'_, FALLS, DRAGS> {
+    /// The sum of forces over the mass, for eight rows: number by number, as they follow one another. What is fixed stays so under a
+    /// force beyond an f32.
+    #[inline(always)]
+    fn eight<F: Eight>(out: &mut [Vec3; 8], g: [F; 3], v: &[Vec3; 8], factors: [&[f32; 8]; 3]) {
+        let (out, v): (&mut [[f32; 8]; 3], &[[f32; 8]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(v));
+        let (like, zero) = (g[0], g[0].all(0.0));
+        let (m, k, inverse) = (spread(like, factors[0]), spread(like, factors[1]), spread(like, factors[2]));
+        for i in 0..3 {
+            let mut force = zero;
+            if FALLS {
+                force = force + g[i] * m[i];
             }
-        },
-    );
-    if !out_rest.is_empty() {
-        let mut last = [Vec3::ZERO; 4];
-        let factors = [&filled(m_rest), &filled(k_rest), &filled(inverse_rest)];
-        fall_four(&mut last, g, factors, &filled(v_rest), &force);
-        out_rest.copy_from_slice(&last[..out_rest.len()]);
+            if DRAGS {
+                force = force - like.of(v[i]) * k[i];
+            }
+            out[i] = ((force * inverse[i]) & not(inverse[i].simd_eq(zero))).to_array();
+        }
     }
 }
 
-/// The same for four, of three numbers each as they follow one another.
-#[inline(always)]
-fn fall_four(
-    out: &mut [Vec3; 4],
-    g: [f32x4; 3],
-    factors: [&[f32; 4]; 3],
-    velocity: &[Vec3; 4],
-    force: &impl Fn(f32x4, f32x4, f32x4, f32x4) -> f32x4,
-) {
-    let (out, v): (&mut [[f32; 4]; 3], &[[f32; 4]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(velocity));
-    let [m, k, inverse] = factors.map(spread);
-    for i in 0..3 {
-        let moves = !inverse[i].simd_eq(f32x4::ZERO);
-        out[i] = ((force(g[i], m[i], f32x4::new(v[i]), k[i]) * inverse[i]) & moves).to_array();
-    }
-}
-
-/// Four of which the last ones are nothing.
-pub(crate) fn filled<T: Copy + Default>(rest: &[T]) -> [T; 4] {
+/// So many of which the last ones are nothing.
+pub(crate) fn filled<T: Copy + Default, const N: usize>(rest: &[T]) -> [T; N] {
     core::array::from_fn(|i| rest.get(i).copied().unwrap_or_default())
 }
 
-/// Four factors, each for the three numbers of a row, in registers.
+/// Eight factors, each for the three numbers of a row, in registers.
 #[inline(always)]
-fn spread(k: &[f32; 4]) -> [f32x4; 3] {
-    let k = f32x4::new(*k).to_array();
-    [f32x4::new([k[0], k[0], k[0], k[1]]), f32x4::new([k[1], k[1], k[2], k[2]]), f32x4::new([k[2], k[3], k[3], k[3]])]
+fn spread<F: Eight>(like: F, k: &[f32; 8]) -> [F; 3] {
+    let [a, b, c, d, e, f, g, h] = like.of(*k).to_array();
+    [like.of([a, a, a, b, b, b, c, c]), like.of([c, d, d, d, e, e, e, f]), like.of([f, f, g, g, g, h, h, h])]
 }
 
 #[inline(always)]
@@ -149,7 +150,13 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
 /// The largest number of a column, whatever its sign; what is no number does not count.
 #[inline]
 pub(crate) fn farthest(column: &[Vec3]) -> f32 {
-    let (blocks, rest) = if BLOCKS { flat(column).as_chunks::<16>() } else { (&[][..], flat(column)) };
+    largest_of(flat(column))
+}
+
+/// The same of numbers.
+#[inline]
+pub(crate) fn largest_of(numbers: &[f32]) -> f32 {
+    let (blocks, rest) = if BLOCKS { numbers.as_chunks::<16>() } else { (&[][..], numbers) };
     let most = widest(
         #[inline(always)]
         || {
@@ -159,7 +166,8 @@ pub(crate) fn farthest(column: &[Vec3]) -> f32 {
                     *most = max(x.abs(), *most);
                 }
             }
-            most
+            let [a, b] = [0, 8].map(|i| core::array::from_fn::<f32, 8, _>(|j| most[i + j]));
+            core::array::from_fn::<f32, 8, _>(|i| max(a[i], b[i]))
         },
     );
     rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most))

@@ -48,11 +48,12 @@ impl<F: Eight> Segments<F> {
         let Self { from, to } = *self;
         let (like, [point, normal, unit]) = (radius, face.vectors());
         let (zero, one) = (like.all(0.0), like.all(1.0));
-        let (point, normal, unit) = (Vectors::splat(like, point), Vectors::splat(like, normal), Vectors::splat(like, unit));
+        let (point, normal, unit) =
+            (Vectors::splat(like, point), Vectors::splat(like, normal), Vectors::splat(like, unit));
         let size = like.all(face.size());
         let slack = like.all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + radius + size);
         let (before, after) = (normal.dot(from - point), normal.dot(to - point));
-                let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
+        let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
         let rises = before.simd_lt(zero) & after.simd_ge(zero);
         let time = min(max(before / (before - after), zero), one);
         let center = Hits { are: falls | rises, time, normal: Vectors::select(falls, unit, -unit), slack };
@@ -86,7 +87,7 @@ impl<F: Eight> Hits<F> {
 impl<F: Eight> Meetings<F> {
     fn none(place: Vectors<F>, unclear: F) -> Self {
         let (like, zero) = (unclear, unclear.all(0.0));
-                let hits = Hits { are: zero, time: zero, normal: Vectors::splat(like, Vec3::ZERO), slack: zero };
+        let hits = Hits { are: zero, time: zero, normal: Vectors::splat(like, Vec3::ZERO), slack: zero };
         Self { hits, unclear, place, begun: zero, chord_from: place }
     }
 
@@ -379,7 +380,12 @@ impl<F: Eight> Riders<F> {
         let hit = meetings.hits.are & clear;
         let misses = (clear & not(hit)).to_bitmask();
         if !hit.any() {
-            return Outcome { settled: misses, hit: 0, left: !misses, ends: [paths.x1, paths.v1].map(Vectors::columns) };
+            return Outcome {
+                settled: misses,
+                hit: 0,
+                left: !misses,
+                ends: [paths.x1, paths.v1].map(Vectors::columns),
+            };
         }
         let (onward, bounces) = self.rebound(paths, &cubics, &meetings, face, step);
         let again = onward.first_meetings(&onward.cubics(), face, self.radius);
@@ -392,8 +398,15 @@ impl<F: Eight> Riders<F> {
 
     /// The ways on from hits, and whose are free and lead off the face.
     #[inline(always)]
-    fn rebound(&self, paths: &Paths<F>, cubics: &Cubics<F>, meetings: &Meetings<F>, face: &Face, step: Time) -> (Paths<F>, F) {
-                let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
+    fn rebound(
+        &self,
+        paths: &Paths<F>,
+        cubics: &Cubics<F>,
+        meetings: &Meetings<F>,
+        face: &Face,
+        step: Time,
+    ) -> (Paths<F>, F) {
+        let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
         let left = |s: f32| Time::from_ticks(step.ticks() - ((step.ticks() as f32 * s) as u64).min(step.ticks()));

@@ -150,8 +150,9 @@ impl TileSweep<'_, '_> {
         let mut waiting = Waiting::before(*face);
         for first in (0..old).step_by(BLOCK) {
             let marks = self.balls().near(first..old.min(first + BLOCK), face);
-            for (row, marks) in (first..).step_by(u32::BITS as usize).zip(marks) {
-                for row in ones(marks).map(|i| row + i) {
+            let words = marks.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes));
+            for (row, marks) in (first..old).step_by(u32::BITS as usize).zip(words) {
+                for row in ones(marks).map(|i| row + i).take_while(|&row| row < old) {
                     let is_fixed = self.tile.attributes.inverse_mass[row] == 0.0;
                     if in_packets && !is_fixed { self.queue(row, &mut waiting) } else { self.follow(row) }
                 }
@@ -261,10 +262,12 @@ impl TileSweep<'_, '_> {
                     (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
             }
         }
-        let [radius, elasticity, at_rest, kinetic] = [radius, elasticity, at_rest, kinetic].map(|lanes| like.of(lanes));
-        let [x0, v0] = self.past.start.map(|column| Vectors::gather(like, column, &all));
-        let (x1, v1) =
-            (Vectors::gather(like, self.tile.position, &all), Vectors::gather(like, self.tile.velocity, &all));
+        let (radius, elasticity) = (like.of(radius), like.of(elasticity));
+        let (at_rest, kinetic) = (like.of(at_rest), like.of(kinetic));
+        let [start_x, start_v] = self.past.start;
+        let (x0, v0) = (Vectors::gather(like, start_x, &all), Vectors::gather(like, start_v, &all));
+        let x1 = Vectors::gather(like, self.tile.position, &all);
+        let v1 = Vectors::gather(like, self.tile.velocity, &all);
         let time = like.all(self.tile.dt.seconds());
         (Riders { radius, elasticity, at_rest, kinetic }, Paths { x0, v0, x1, v1, time })
     }

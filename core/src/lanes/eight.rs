@@ -32,6 +32,9 @@ pub(crate) trait Eight:
     fn simd_ge(self, other: Self) -> Self;
     /// The first of two where this mask says so, else the second.
     fn select(self, a: Self, b: Self) -> Self;
+    /// The smaller of two, and the larger; either, or none, where one is no number.
+    fn least(self, other: Self) -> Self;
+    fn most(self, other: Self) -> Self;
     /// A bit for each lane of this mask.
     fn to_bitmask(self) -> u32;
 
@@ -144,6 +147,14 @@ impl Eight for wide::f32x8 {
         ((a ^ b) & self) ^ b
     }
     #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.fast_min(other)
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.fast_max(other)
+    }
+    #[inline(always)]
     fn to_bitmask(self) -> u32 {
         Self::to_bitmask(self)
     }
@@ -254,9 +265,16 @@ mod avx2 {
             Self(self.mask().select(a.0, b.0))
         }
         #[inline(always)]
+        fn least(self, other: Self) -> Self {
+            Self(self.0.min(other.0))
+        }
+        #[inline(always)]
+        fn most(self, other: Self) -> Self {
+            Self(self.0.max(other.0))
+        }
+        #[inline(always)]
         fn to_bitmask(self) -> u32 {
             self.mask().to_bitmask() as u32
         }
     }
 }
-
