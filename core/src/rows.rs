@@ -107,7 +107,8 @@ impl<const FALLS: bool, const DRAGS: bool> Fall<'_, FALLS, DRAGS> {
     fn eight<F: Eight>(out: &mut [Vec3; 8], g: [F; 3], v: &[Vec3; 8], factors: [&[f32; 8]; 3]) {
         let (out, v): (&mut [[f32; 8]; 3], &[[f32; 8]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(v));
         let (like, zero) = (g[0], g[0].all(0.0));
-        let (m, k, inverse) = (spread(like, factors[0]), spread(like, factors[1]), spread(like, factors[2]));
+        let [m, k, inverse] =
+            [like.of(*factors[0]).thrice(), like.of(*factors[1]).thrice(), like.of(*factors[2]).thrice()];
         for i in 0..3 {
             let mut force = zero;
             if FALLS {
@@ -124,13 +125,6 @@ impl<const FALLS: bool, const DRAGS: bool> Fall<'_, FALLS, DRAGS> {
 /// So many of which the last ones are nothing.
 pub(crate) fn filled<T: Copy + Default, const N: usize>(rest: &[T]) -> [T; N] {
     core::array::from_fn(|i| rest.get(i).copied().unwrap_or_default())
-}
-
-/// Eight factors, each for the three numbers of a row, in registers.
-#[inline(always)]
-fn spread<F: Eight>(like: F, k: &[f32; 8]) -> [F; 3] {
-    let [a, b, c, d, e, f, g, h] = like.of(*k).to_array();
-    [like.of([a, a, a, b, b, b, c, c]), like.of([c, d, d, d, e, e, e, f]), like.of([f, f, g, g, g, h, h, h])]
 }
 
 #[inline(always)]
@@ -166,8 +160,7 @@ pub(crate) fn largest_of(numbers: &[f32]) -> f32 {
                     *most = max(x.abs(), *most);
                 }
             }
-            let [a, b] = [0, 8].map(|i| core::array::from_fn::<f32, 8, _>(|j| most[i + j]));
-            core::array::from_fn::<f32, 8, _>(|i| max(a[i], b[i]))
+            core::array::from_fn::<f32, 8, _>(|i| max(most[i], most[i + 8]))
         },
     );
     rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most))

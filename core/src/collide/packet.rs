@@ -144,17 +144,38 @@ pub(super) struct Riders<F> {
     pub(super) kinetic: F,
 }
 
+/// How many hits of a particle in a step are found in packets.
+const ROUNDS: usize = 4;
+
 /// The outcome of a packet: a bit for each particle.
 pub(super) struct Outcome {
-    /// Particles that are at the end of the step now, those of them that were hit, and those to be followed alone.
+    /// Particles that are at the end of the step now, those of them that were hit, were so again ..., and those to be followed alone.
     pub(super) settled: u32,
-    pub(super) hit: u32,
+    pub(super) hits: [u32; ROUNDS],
     pub(super) left: u32,
     /// Places and velocities, coordinate by coordinate.
     pub(super) ends: [[[f32; LANES]; 3]; 2],
 }
 
 impl<F: Eight> Paths<F> {
+    /// The first of two where a mask says so, else the second.
+    #[inline(always)]
+    fn select(mask: F, a: Self, b: Self) -> Self {
+        Self {
+            x0: Vectors::select(mask, a.x0, b.x0),
+            v0: Vectors::select(mask, a.v0, b.v0),
+            x1: Vectors::select(mask, a.x1, b.x1),
+            v1: Vectors::select(mask, a.v1, b.v1),
+            time: mask.select(a.time, b.time),
+        }
+    }
+
+    /// Where they lead, and the velocities there.
+    #[inline(always)]
+    fn ends(&self) -> [[[f32; LANES]; 3]; 2] {
+        [self.x1.columns(), self.v1.columns()]
+    }
+
     #[inline(always)]
     fn acceleration(&self) -> Vectors<F> {
         (self.v1 - self.v0) / self.time
@@ -190,18 +211,16 @@ impl<F: Eight> Paths<F> {
         let Cubics { bend, excess, .. } = *cubics;
         let steady = self.v0 + (self.v1 - self.v0) * s;
         let all = |x| s.all(x);
-        let ([x, y, z], zero) = (excess.0, all(0.0));
-        let is_none = x.simd_eq(zero) & y.simd_eq(zero) & z.simd_eq(zero);
-        let is_smooth = not(is_none) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
+        let is_smooth = not(excess.is_zero()) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
         let share = all(6.0) * s * (all(1.0) - s) / self.time;
         Vectors::select(is_smooth, steady + excess * share, steady)
     }
 
-    /// Where they first meet a face.
+    /// Where those who are asked for first meet a face.
     #[inline(always)]
-    fn first_meetings(&self, cubics: &Cubics<F>, face: &Face, radius: F) -> Meetings<F> {
+    fn first_meetings(&self, cubics: &Cubics<F>, face: &Face, radius: F, asked: F) -> Meetings<F> {
         let all = |x| radius.all(x);
-        let chords = cubics.chords();
+        let chords = asked.select(cubics.chords(), all(1.0));
         let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
         let mut found = Meetings::none(self.x0, unclear);
         let mut end = all(0.0);
@@ -211,7 +230,7 @@ impl<F: Eight> Paths<F> {
             let share = ends / chords;
             let to = Vectors::select(ends.simd_eq(chords), self.x1, cubics.at(share));
             let piece = Segments { from, to };
-            let open = begun.simd_lt(chords) & not(found.hits.are | unclear);
+            let open = asked & begun.simd_lt(chords) & not(found.hits.are | unclear);
             let hits = piece.first_hits(face, radius);
             let are = hits.are & open;
             if are.any() {
@@ -299,7 +318,7 @@ impl<F: Eight> Riders<F> {
         let (lying, normal) = self.seated(paths, face, acceleration);
         let lying = lying & paths.are_finite();
         if !lying.any() {
-            return Outcome { settled: 0, hit: 0, left: 0, ends: [[[0.0; LANES]; 3]; 2] };
+            return Outcome { settled: 0, hits: [0; ROUNDS], left: 0, ends: paths.ends() };
         }
         let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
         let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
@@ -309,7 +328,9 @@ impl<F: Eight> Riders<F> {
         let passes = Segments { from: along.x0, to: along.x1 }.first_hits(face, self.radius).are;
         let settled = (lying & straight & not(passes)).to_bitmask();
         let left = lying.to_bitmask() & !settled;
-        Outcome { settled, hit: settled, left, ends: [along.x1, along.v1].map(Vectors::columns) }
+        let mut hits = [0; ROUNDS];
+        hits[0] = settled;
+        Outcome { settled, hits, left, ends: along.ends() }
     }
 
     /// Who begins on the face and leaves it only to come back to it within the step; and the normals toward them.
@@ -370,33 +391,37 @@ impl<F: Eight> Riders<F> {
         ((acceleration * (all(0.5) * time * time)).masked(starts), (acceleration * time).masked(starts))
     }
 
-    /// Those who bounce off a face once and fly on till the end of a step of so long, and those who miss it.
+    /// Those who bounce off a face, come to rest on it, or miss it, and fly on till the end of a step of so long; not those who are
+    /// hit so many times.
     #[inline(always)]
-    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, step: Time) -> Outcome {
-        let cubics = paths.cubics();
+    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, step: Time, max_bounces: u32) -> Outcome {
+        let (mut onward, mut cubics) = (*paths, paths.cubics());
         let mut clear = paths.are_finite() & not(cubics.lag());
-        let meetings = paths.first_meetings(&cubics, face, self.radius);
+        let mut meetings = paths.first_meetings(&cubics, face, self.radius, clear);
+        let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);
-        let hit = meetings.hits.are & clear;
-        let misses = (clear & not(hit)).to_bitmask();
-        if !hit.any() {
-            return Outcome {
-                settled: misses,
-                hit: 0,
-                left: !misses,
-                ends: [paths.x1, paths.v1].map(Vectors::columns),
-            };
+        let (mut left, mut hits, mut rounds) = ([step; LANES], [0; ROUNDS], 1);
+        for hits in &mut hits {
+            hit = hit & clear;
+            if !hit.any() || rounds >= max_bounces {
+                break;
+            }
+            rounds += 1;
+            *hits = hit.to_bitmask();
+            let (next, is_free) = self.rebound(&onward, &cubics, &meetings, face, step.seconds(), &mut left);
+            // Who has no time left is followed by itself.
+            clear = clear & not(hit & not(is_free & next.time.simd_gt(next.time.all(0.0))));
+            onward = Paths::select(hit, next, onward);
+            cubics = onward.cubics();
+            meetings = onward.first_meetings(&cubics, face, self.radius, hit);
+            clear = clear & not(hit & meetings.unclear);
+            hit = hit & meetings.hits.are;
         }
-        let (onward, bounces) = self.rebound(paths, &cubics, &meetings, face, step);
-        let again = onward.first_meetings(&onward.cubics(), face, self.radius);
-        let bounced = (hit & bounces & not(again.hits.are | again.unclear)).to_bitmask();
-        let settled = misses | bounced;
-        let position = Vectors::select(hit, onward.x1, paths.x1);
-        let velocity = Vectors::select(hit, onward.v1, paths.v1);
-        Outcome { settled, hit: bounced, left: !settled, ends: [position, velocity].map(Vectors::columns) }
+        let settled = (clear & not(hit)).to_bitmask();
+        Outcome { settled, hits: hits.map(|hits| hits & settled), left: !settled, ends: onward.ends() }
     }
 
-    /// The ways on from hits, and whose are free and lead off the face.
+    /// The ways on from hits in steps of `dt` \[s\], of which so much is left, and whose are free.
     #[inline(always)]
     fn rebound(
         &self,
@@ -404,29 +429,60 @@ impl<F: Eight> Riders<F> {
         cubics: &Cubics<F>,
         meetings: &Meetings<F>,
         face: &Face,
-        step: Time,
+        dt: f32,
+        left: &mut [Time; LANES],
     ) -> (Paths<F>, F) {
         let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
-        let left = |s: f32| Time::from_ticks(step.ticks() - ((step.ticks() as f32 * s) as u64).min(step.ticks()));
-        let rest = like.of(s.to_array().map(|s| left(s).seconds()));
+        for (left, s) in left.iter_mut().zip(s.to_array()) {
+            let ticks = left.ticks();
+            *left = Time::from_ticks(ticks - ((ticks as f32 * s) as u64).min(ticks));
+        }
+        let rest = like.of(left.map(Time::seconds));
         let acceleration = paths.acceleration();
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
         let outgoing = incoming.simd_lt(zero).select(negated(incoming) * self.elasticity, incoming);
         let (beside, is_free) = self.set_off(paths, cubics, meetings, face, incoming);
-        let work = acceleration.dot(beside - place);
-        let onward = slowed(outgoing, work);
+        let onward = slowed(outgoing, acceleration.dot(beside - place));
         let pressing = negated(acceleration.dot(normal));
         let rests = pressing.simd_gt(zero)
-            & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING) * paths.time * pressing));
+            & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING * dt) * pressing));
+        let (outgoing, onward) = (outgoing & not(rests), onward & not(rests));
         let came = before - normal * incoming;
-        let slip = came + self.answer(came, outgoing - incoming);
-        let velocity = Vectors::splat(like, Vec3::ZERO) + slip + normal * onward;
+        let slip = Vectors::splat(like, Vec3::ZERO) + (came + self.answer(came, outgoing - incoming));
+        let velocity = slip + normal * onward;
         let x1 = beside + (velocity + acceleration * (all(0.5) * rest)) * rest;
-        let v1 = velocity + acceleration * rest;
-        (Paths { x0: beside, v0: velocity, x1, v1, time: rest }, is_free & not(rests))
+        let flying = Paths { x0: beside, v0: velocity, x1, v1: velocity + acceleration * rest, time: rest };
+        if !rests.any() {
+            return (flying, is_free);
+        }
+        let resting = self.rest(paths, meetings, beside, [came, acceleration], [incoming, pressing, rest]);
+        (Paths::select(rests, resting, flying), is_free)
+    }
+
+    /// The ways on of those who have come to rest, from beside a face that their velocities are `came` along.
+    #[inline(always)]
+    fn rest(
+        &self,
+        paths: &Paths<F>,
+        meetings: &Meetings<F>,
+        beside: Vectors<F>,
+        [came, acceleration]: [Vectors<F>; 2],
+        [incoming, pressing, rest]: [F; 3],
+    ) -> Paths<F> {
+        let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
+        let (zero, still) = (s.all(0.0), Vectors::splat(s, Vec3::ZERO));
+        let slip = came + self.answer(came, zero - incoming);
+        let (way, end) = self.slide(slip, acceleration + normal * pressing, pressing, rest);
+        // Falling onto the face anew each step, what has lain on it has not moved at all.
+        let near = s.all(LAIN) * slack;
+        let off = paths.x0 - place;
+        let has_lain = off.dot(off).simd_le(near * near) & (paths.v0.length() * (paths.time * s)).simd_le(near);
+        let stays = slip.is_zero() & end.is_zero() & has_lain;
+        let x0 = Vectors::select(stays, paths.x0 + still, beside);
+        Paths { x0, v0: still + slip + normal * zero, x1: x0 + still + way, v1: still + end, time: rest }
     }
 
     /// Places beside hits, and which of them are reached freely from as little before as that takes.

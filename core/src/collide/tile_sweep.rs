@@ -90,7 +90,7 @@ impl Kernel for Bounce<'_, '_, '_> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Outcome {
         let (riders, paths) = self.of.packet(like, self.rows, self.face);
-        riders.bounce(&paths, self.face, self.of.tile.dt)
+        riders.bounce(&paths, self.face, self.of.tile.dt, self.of.tile.scene.max_bounces)
     }
 }
 
@@ -232,11 +232,14 @@ impl TileSweep<'_, '_> {
     #[inline(always)]
     fn settle(&mut self, rows: &[usize], outcome: &Outcome) -> u32 {
         let of_all = (1 << rows.len()) - 1;
-        self.report.hits += u64::from((outcome.hit & of_all).count_ones());
+        self.report.hits += outcome.hits.iter().map(|hits| u64::from((hits & of_all).count_ones())).sum::<u64>();
         let [[x, y, z], [u, v, w]] = &outcome.ends;
-        for i in ones(outcome.settled & of_all) {
-            self.tile.position[rows[i]] = Vec3::new(x[i], y[i], z[i]);
-            self.tile.velocity[rows[i]] = Vec3::new(u[i], v[i], w[i]);
+        let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
+        for (i, &row) in rows.iter().enumerate().take(LANES) {
+            let is_settled = outcome.settled >> i & 1 != 0;
+            if let (true, Some(position), Some(velocity)) = (is_settled, position.get_mut(row), velocity.get_mut(row)) {
+                (*position, *velocity) = (Vec3::new(x[i], y[i], z[i]), Vec3::new(u[i], v[i], w[i]));
+            }
         }
         for i in ones(outcome.left & of_all) {
             self.follow(rows[i]);

@@ -35,6 +35,12 @@ pub(crate) trait Eight:
     /// The smaller of two, and the larger; either, or none, where one is no number.
     fn least(self, other: Self) -> Self;
     fn most(self, other: Self) -> Self;
+    /// Each three times, one after the other.
+    #[inline(always)]
+    fn thrice(self) -> [Self; 3] {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        [self.of([a, a, a, b, b, b, c, c]), self.of([c, d, d, d, e, e, e, f]), self.of([f, f, g, g, g, h, h, h])]
+    }
     /// A bit for each lane of this mask.
     fn to_bitmask(self) -> u32;
 
@@ -164,9 +170,19 @@ impl Eight for wide::f32x8 {
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod avx2 {
     use super::{Eight, LANES};
+    use core::arch::x86_64::{__m256, __m256i, _mm256_permutevar8x32_ps};
     use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
     use fearless_simd::x86::Avx2;
-    use fearless_simd::{Bytes, ExtractToken, Select, SimdBase, SimdFloat, SimdMask, f32x8, mask32x8, u32x8};
+    use fearless_simd::{Bytes, ExtractToken, Select, SimdBase, SimdFloat, SimdFrom, SimdInto, SimdMask};
+    use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
+
+    // Compilers make a dozen instructions of what is one.
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn permuted(avx2: Avx2, lanes: __m256, order: __m256i) -> __m256 {
+            _mm256_permutevar8x32_ps(lanes, order)
+        }
+    );
 
     #[derive(Clone, Copy)]
     pub(super) struct Wide(f32x8<Avx2>);
@@ -271,6 +287,15 @@ mod avx2 {
         #[inline(always)]
         fn most(self, other: Self) -> Self {
             Self(self.0.max(other.0))
+        }
+        #[inline(always)]
+        fn thrice(self) -> [Self; 3] {
+            let avx2 = self.0.token();
+            let order = [[0, 0, 0, 1, 1, 1, 2, 2], [2, 3, 3, 3, 4, 4, 4, 5], [5, 5, 6, 6, 6, 7, 7, 7]];
+            order.map(
+                #[inline(always)]
+                |order| Self(permuted(avx2, self.0.into(), i32x8::simd_from(avx2, order).into()).simd_into(avx2)),
+            )
         }
         #[inline(always)]
         fn to_bitmask(self) -> u32 {

@@ -66,6 +66,13 @@ impl<F: Eight> Vectors<F> {
         Self([mask.select(ax, bx), mask.select(ay, by), mask.select(az, bz)])
     }
 
+    /// Those that are zero.
+    #[inline(always)]
+    pub(crate) fn is_zero(self) -> F {
+        let ([x, y, z], zero) = (self.0, self.0[0].all(0.0));
+        x.simd_eq(zero) & y.simd_eq(zero) & z.simd_eq(zero)
+    }
+
     /// Zero where a mask does not hold.
     #[inline(always)]
     pub(crate) fn masked(self, mask: F) -> Self {
