@@ -150,7 +150,11 @@ pub(crate) fn farthest(column: &[Vec3]) -> f32 {
 /// The same of numbers.
 #[inline]
 pub(crate) fn largest_of(numbers: &[f32]) -> f32 {
-    let (blocks, rest) = if BLOCKS { numbers.as_chunks::<16>() } else { (&[][..], numbers) };
+    let farther = |most, x: &f32| max(x.abs(), most);
+    if !BLOCKS {
+        return numbers.iter().fold(0.0, farther);
+    }
+    let (blocks, rest) = numbers.as_chunks::<16>();
     let most = widest(
         #[inline(always)]
         || {
@@ -163,7 +167,7 @@ pub(crate) fn largest_of(numbers: &[f32]) -> f32 {
             core::array::from_fn::<f32, 8, _>(|i| max(most[i], most[i + 8]))
         },
     );
-    rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most))
+    rest.iter().fold(most.into_iter().fold(0.0, max), farther)
 }
 
 /// The same, and whether all numbers of it and of another column are finite for sure: in one pass, as what is not makes a sum that

@@ -20,9 +20,14 @@ impl Reaper for Lifetime {
         widest(
             #[inline(always)]
             || {
-                for (chunk, dies) in dies.chunks(CHUNK).enumerate().filter(|(_, dies)| may_end(dies, last)) {
-                    for (nth, _) in dies.iter().enumerate().filter(|&(_, &dies)| dies <= last) {
-                        verdicts.end(CHUNK * chunk + nth, Cause::Lifetime);
+                for (chunk, dies) in dies.chunks(CHUNK).enumerate() {
+                    if !may_end(dies, last) {
+                        continue;
+                    }
+                    for (nth, &dies) in dies.iter().enumerate() {
+                        if dies <= last {
+                            verdicts.end(CHUNK * chunk + nth, Cause::Lifetime);
+                        }
                     }
                 }
             },
