@@ -303,3 +303,57 @@ mod avx2 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Everything that can be done with two times eight numbers.
+    #[derive(Clone, Copy)]
+    struct Everything([[f32; LANES]; 2]);
+
+    impl Kernel for Everything {
+        type Output = ([[f32; LANES]; 20], u32);
+        #[inline(always)]
+        fn run<F: Eight>(self, like: F) -> Self::Output {
+            let [a, b] = self.0.map(|lanes| like.of(lanes));
+            let ([c, d, e], mask) = (a.thrice(), a.simd_lt(b));
+            let made = [
+                a + b,
+                a - b,
+                a * b,
+                a / b,
+                a & b,
+                a | b,
+                a ^ b,
+                a.abs(),
+                a.sqrt(),
+                negated(a),
+                not(mask).select(a, b),
+                max(a, b),
+                min(a, b),
+                like.all(1.0) & (a.simd_eq(b) | a.simd_le(b)),
+                like.all(1.0) & (a.simd_gt(b) ^ a.simd_ge(b)),
+                c,
+                d,
+                e,
+                mask.select(a, b) - like.all(0.5),
+                like,
+            ];
+            (made.map(Eight::to_array), mask.to_bitmask())
+        }
+    }
+
+    #[test]
+    fn all_registers_give_the_same_bits() {
+        let numbers = [0.0, -0.0, 1.5, -2.25, 1e-40, f32::MAX, f32::INFINITY, f32::NAN, -1e30, 0.1, 3.0];
+        for i in 0..121 {
+            let lanes = [0, 1].map(|k| core::array::from_fn(|lane| numbers[(i / [1, 11][k] + lane) % 11]));
+            let (one, other) = (run(Everything(lanes)), Everything(lanes).run(wide::f32x8::ZERO));
+            assert_eq!(one.1, other.1);
+            for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
+                assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");
+            }
+        }
+    }
+}
