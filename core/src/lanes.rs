@@ -3,7 +3,12 @@
 //! The number of lanes and the order in which they are added are part of every sum's definition: they decide how it
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
+mod eight;
+mod vectors;
+
+pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
 use glam::Vec3;
+pub(crate) use vectors::Vectors;
 use wide::{f32x4, f32x8};
 
 /// How many there are.
@@ -81,36 +86,6 @@ impl Pull {
     }
 }
 
-/// The first of two where a mask says so, else the second.
-#[inline(always)]
-pub(crate) fn select(mask: f32x8, a: f32x8, b: f32x8) -> f32x8 {
-    ((a ^ b) & mask) ^ b
-}
-
-/// The larger of two numbers, as [`crate::math::max`] has it.
-#[inline(always)]
-pub(crate) fn max(a: f32x8, b: f32x8) -> f32x8 {
-    select(a.simd_gt(b), a, b)
-}
-
-/// The smaller of two numbers, as [`crate::math::min`] has it.
-#[inline(always)]
-pub(crate) fn min(a: f32x8, b: f32x8) -> f32x8 {
-    select(a.simd_lt(b), a, b)
-}
-
-/// Numbers with their signs turned round, those of zeros as well.
-#[inline(always)]
-pub(crate) fn negated(x: f32x8) -> f32x8 {
-    x ^ f32x8::splat(-0.0)
-}
-
-/// Lanes for which a mask does not hold.
-#[inline(always)]
-pub(crate) fn not(mask: f32x8) -> f32x8 {
-    mask ^ f32x8::splat(f32::from_bits(u32::MAX))
-}
-
 /// Four vectors, coordinate by coordinate.
 #[inline(always)]
 pub(crate) fn turned(vectors: &[Vec3; 4]) -> [f32x4; 3] {
@@ -119,120 +94,4 @@ pub(crate) fn turned(vectors: &[Vec3; 4]) -> [f32x4; 3] {
     let at = |i: usize| f32x4::new(*flat[i..].first_chunk().unwrap_or(&[flat[9], flat[10], flat[11], 0.0]));
     let [x, y, z, _] = f32x4::transpose([at(0), at(3), at(6), at(9)]);
     [x, y, z]
-}
-
-/// Eight vectors side by side. Sums and products are taken in glam's order.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vectors(pub(crate) [f32x8; 3]);
-
-impl Vectors {
-    /// One in every lane.
-    #[inline(always)]
-    pub(crate) fn splat(v: Vec3) -> Self {
-        Self(splat(v))
-    }
-
-    /// Those of eight rows.
-    #[inline(always)]
-    pub(crate) fn gather(column: &[Vec3], rows: &[usize; LANES]) -> Self {
-        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for (i, &row) in rows.iter().enumerate() {
-            let v = column[row];
-            (x[i], y[i], z[i]) = (v.x, v.y, v.z);
-        }
-        Self([f32x8::new(x), f32x8::new(y), f32x8::new(z)])
-    }
-
-    /// One coordinate of all after the other.
-    #[inline(always)]
-    pub(crate) fn columns(self) -> [[f32; LANES]; 3] {
-        let [x, y, z] = self.0;
-        [x.to_array(), y.to_array(), z.to_array()]
-    }
-
-    #[inline(always)]
-    pub(crate) fn dot(self, other: Self) -> f32x8 {
-        let ([x, y, z], [a, b, c]) = (self.0, other.0);
-        (x * a) + (y * b) + (z * c)
-    }
-
-    #[inline(always)]
-    pub(crate) fn length(self) -> f32x8 {
-        sqrt(self.dot(self))
-    }
-
-    /// The magnitude of the largest coordinate.
-    #[inline(always)]
-    pub(crate) fn largest(self) -> f32x8 {
-        let [x, y, z] = self.0;
-        max(max(x.abs(), y.abs()), z.abs())
-    }
-
-    /// As [`crate::math::unit`].
-    #[inline(always)]
-    pub(crate) fn unit(self) -> Self {
-        let largest = self.largest();
-        let has_one = largest.simd_gt(f32x8::ZERO) & largest.simd_lt(f32x8::splat(f32::INFINITY));
-        let scaled = self / largest;
-        (scaled / scaled.length()).masked(has_one)
-    }
-
-    /// The first of two where a mask says so, else the second.
-    #[inline(always)]
-    pub(crate) fn select(mask: f32x8, a: Self, b: Self) -> Self {
-        let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
-        Self([select(mask, ax, bx), select(mask, ay, by), select(mask, az, bz)])
-    }
-
-    /// Zero where a mask does not hold.
-    #[inline(always)]
-    pub(crate) fn masked(self, mask: f32x8) -> Self {
-        let [x, y, z] = self.0;
-        Self([x & mask, y & mask, z & mask])
-    }
-}
-
-impl core::ops::Add for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        let ([x, y, z], [a, b, c]) = (self.0, other.0);
-        Self([x + a, y + b, z + c])
-    }
-}
-
-impl core::ops::Sub for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        let ([x, y, z], [a, b, c]) = (self.0, other.0);
-        Self([x - a, y - b, z - c])
-    }
-}
-
-impl core::ops::Mul<f32x8> for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, factor: f32x8) -> Self {
-        let [x, y, z] = self.0;
-        Self([x * factor, y * factor, z * factor])
-    }
-}
-
-impl core::ops::Div<f32x8> for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, divisor: f32x8) -> Self {
-        let [x, y, z] = self.0;
-        Self([x / divisor, y / divisor, z / divisor])
-    }
-}
-
-impl core::ops::Neg for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        let [x, y, z] = self.0;
-        Self([negated(x), negated(y), negated(z)])
-    }
 }

@@ -3,9 +3,9 @@
 //! A column of `Vec3` is a flat list of numbers with period three. Where every number is treated alike the flat list
 //! does; where each row has a factor of its own, four rows and their four factors make blocks of twelve.
 
+use crate::lanes::{Eight, Kernel, not, widest};
 use crate::math::max;
 use glam::Vec3;
-use wide::f32x4;
 
 /// Whether there may be vectors: chips without an operating system are spared the code, and work number by number.
 pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
@@ -14,17 +14,28 @@ pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
 #[inline]
 pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3]) {
     let (out, base, rate) = (flat_mut(out), flat(base), flat(rate));
-    for ((out, &base), &rate) in out.iter_mut().zip(base).zip(rate) {
-        *out = base + rate * h;
-    }
+    widest(
+        #[inline(always)]
+        || {
+            for ((out, &base), &rate) in out.iter_mut().zip(base).zip(rate) {
+                *out = base + rate * h;
+            }
+        },
+    );
 }
 
 /// `sum` += `h` × `rate`, row by row.
 #[inline]
 pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
-    for (sum, &rate) in flat_mut(sum).iter_mut().zip(flat(rate)) {
-        *sum += rate * h;
-    }
+    let (sum, rate) = (flat_mut(sum), flat(rate));
+    widest(
+        #[inline(always)]
+        || {
+            for (sum, &rate) in sum.iter_mut().zip(rate) {
+                *sum += rate * h;
+            }
+        },
+    );
 }
 
 /// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
@@ -57,52 +68,63 @@ pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f:
     }
 }
 
-/// `out` = `force`(`g`, mass, velocity, drag) over the mass, number by number. What is fixed stays so under a force beyond an f32.
-///
-/// Apart, with a reference for each column, so that compilers know that none is another, and make vectors of them.
-#[inline(never)]
-pub(crate) fn fall(
-    out: &mut [Vec3],
-    g: Vec3,
-    mass: &[f32],
-    velocity: &[Vec3],
-    drag: &[f32],
-    inverse_mass: &[f32],
-    force: impl Fn(f32x4, f32x4, f32x4, f32x4) -> f32x4,
-) {
-    let [x, y, z] = g.to_array();
-    let g = [[x, y, z, x], [y, z, x, y], [z, x, y, z]].map(f32x4::new);
-    let step = |out: &mut [Vec3; 4], v: &[Vec3; 4], m: &[f32; 4], k: &[f32; 4], inverse: &[f32; 4]| {
-        let (out, v): (&mut [[f32; 4]; 3], &[[f32; 4]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(v));
-        let (m, k, inverse) = (spread(m), spread(k), spread(inverse));
-        for i in 0..3 {
-            let moves = !inverse[i].simd_eq(f32x4::ZERO);
-            out[i] = ((force(g[i], m[i], f32x4::new(v[i]), k[i]) * inverse[i]) & moves).to_array();
+/// Rows that fall, each braked by its own drag.
+pub(crate) struct Fall<'a, const FALLS: bool, const DRAGS: bool> {
+    pub(crate) g: Vec3,
+    pub(crate) mass: &'a [f32],
+    pub(crate) velocity: &'a [Vec3],
+    pub(crate) drag: &'a [f32],
+    pub(crate) inverse_mass: &'a [f32],
+    pub(crate) acceleration: &'a mut [Vec3],
+}
+
+impl<const FALLS: bool, const DRAGS: bool> Kernel for Fall<'_, FALLS, DRAGS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) {
+        let Self { g, mass, velocity, drag, inverse_mass, acceleration } = self;
+        let [a, b, c]: [[f32; 8]; 3] = bytemuck::cast([g; 8]);
+        let g = [like.of(a), like.of(b), like.of(c)];
+        let ((out, out_rest), (v, v_rest)) = (acceleration.as_chunks_mut(), velocity.as_chunks());
+        let ((m, m_rest), (k, k_rest)) = (mass.as_chunks(), drag.as_chunks());
+        let (inverse, inverse_rest) = inverse_mass.as_chunks();
+        for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
+            Self::eight(out, g, v, [m, k, inverse]);
         }
-    };
-    let ((out, out_rest), (v, v_rest)) = (out.as_chunks_mut(), velocity.as_chunks());
-    let ((m, m_rest), (k, k_rest)) = (mass.as_chunks(), drag.as_chunks());
-    let (inverse, inverse_rest) = inverse_mass.as_chunks();
-    for (((out, v), (m, k)), inverse) in out.iter_mut().zip(v).zip(m.iter().zip(k)).zip(inverse) {
-        step(out, v, m, k, inverse);
-    }
-    if !out_rest.is_empty() {
-        let mut last = [Vec3::ZERO; 4];
-        step(&mut last, &filled(v_rest), &filled(m_rest), &filled(k_rest), &filled(inverse_rest));
-        out_rest.copy_from_slice(&last[..out_rest.len()]);
+        if !out_rest.is_empty() {
+            let mut last = [Vec3::ZERO; 8];
+            Self::eight(&mut last, g, &filled(v_rest), [&filled(m_rest), &filled(k_rest), &filled(inverse_rest)]);
+            out_rest.copy_from_slice(&last[..out_rest.len()]);
+        }
     }
 }
 
-/// Four of which the last ones are nothing.
-pub(crate) fn filled<T: Copy + Default>(rest: &[T]) -> [T; 4] {
+impl<const FALLS: bool, const DRAGS: bool> Fall<'_, FALLS, DRAGS> {
+    /// The sum of forces over the mass, for eight rows: number by number, as they follow one another. What is fixed stays so under a
+    /// force beyond an f32.
+    #[inline(always)]
+    fn eight<F: Eight>(out: &mut [Vec3; 8], g: [F; 3], v: &[Vec3; 8], factors: [&[f32; 8]; 3]) {
+        let (out, v): (&mut [[f32; 8]; 3], &[[f32; 8]; 3]) = (bytemuck::cast_mut(out), bytemuck::cast_ref(v));
+        let (like, zero) = (g[0], g[0].all(0.0));
+        let [m, k, inverse] =
+            [like.of(*factors[0]).thrice(), like.of(*factors[1]).thrice(), like.of(*factors[2]).thrice()];
+        for i in 0..3 {
+            let mut force = zero;
+            if FALLS {
+                force = force + g[i] * m[i];
+            }
+            if DRAGS {
+                force = force - like.of(v[i]) * k[i];
+            }
+            out[i] = ((force * inverse[i]) & not(inverse[i].simd_eq(zero))).to_array();
+        }
+    }
+}
+
+/// So many of which the last ones are nothing.
+pub(crate) fn filled<T: Copy + Default, const N: usize>(rest: &[T]) -> [T; N] {
     core::array::from_fn(|i| rest.get(i).copied().unwrap_or_default())
-}
-
-/// Four factors, each for the three numbers of a row, in registers.
-#[inline(always)]
-fn spread(k: &[f32; 4]) -> [f32x4; 3] {
-    let k = f32x4::new(*k).to_array();
-    [f32x4::new([k[0], k[0], k[0], k[1]]), f32x4::new([k[1], k[1], k[2], k[2]]), f32x4::new([k[2], k[3], k[3], k[3]])]
 }
 
 #[inline(always)]
@@ -122,14 +144,55 @@ fn one(total: &mut Vec3, vector: Vec3, factor: f32, f: &impl Fn(f32, f32, f32) -
 /// The largest number of a column, whatever its sign; what is no number does not count.
 #[inline]
 pub(crate) fn farthest(column: &[Vec3]) -> f32 {
-    let (blocks, rest) = if BLOCKS { flat(column).as_chunks::<8>() } else { (&[][..], flat(column)) };
-    let mut most = [0.0; 8];
-    for block in blocks {
-        for (most, x) in most.iter_mut().zip(block) {
-            *most = max(x.abs(), *most);
-        }
+    largest_of(flat(column))
+}
+
+/// The same of numbers.
+#[inline]
+pub(crate) fn largest_of(numbers: &[f32]) -> f32 {
+    let farther = |most, x: &f32| max(x.abs(), most);
+    if !BLOCKS {
+        return numbers.iter().fold(0.0, farther);
     }
-    rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most))
+    let (blocks, rest) = numbers.as_chunks::<16>();
+    let most = widest(
+        #[inline(always)]
+        || {
+            let mut most = [0.0; 16];
+            for block in blocks {
+                for (most, x) in most.iter_mut().zip(block) {
+                    *most = max(x.abs(), *most);
+                }
+            }
+            core::array::from_fn::<f32, 8, _>(|i| max(most[i], most[i + 8]))
+        },
+    );
+    rest.iter().fold(most.into_iter().fold(0.0, max), farther)
+}
+
+/// The same, and whether all numbers of it and of another column are finite for sure: in one pass, as what is not makes a sum that
+/// is not. A sum may be so without, and where there are no vectors nothing is sure.
+#[inline]
+pub(crate) fn farthest_of_finite(column: &[Vec3], other: &[Vec3]) -> (f32, bool) {
+    if !BLOCKS {
+        return (farthest(column), false);
+    }
+    let ((x, x_rest), (v, v_rest)) = (flat(column).as_chunks::<16>(), flat(other).as_chunks::<16>());
+    let (most, sum) = widest(
+        #[inline(always)]
+        || {
+            let (mut most, mut sum) = ([0.0; 16], [0.0; 16]);
+            for (x, v) in x.iter().zip(v) {
+                for i in 0..16 {
+                    most[i] = max(x[i].abs(), most[i]);
+                    sum[i] += x[i] + v[i];
+                }
+            }
+            (most, sum)
+        },
+    );
+    let farthest = x_rest.iter().fold(most.into_iter().fold(0.0, max), |most, x| max(x.abs(), most));
+    (farthest, sum.iter().chain(x_rest).chain(v_rest).fold(0.0, |nought, x| nought + x * 0.0) == 0.0)
 }
 
 /// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
@@ -156,14 +219,19 @@ mod tests {
 
     #[test]
     fn one_number_that_is_not_finite_is_seen_wherever_it_is() {
-        for n in 0..20 {
+        for n in 0..40 {
             let mut column = std::vec![Vec3::new(f32::MAX, -f32::MAX, -0.0); n];
+            let good_ones = std::vec![Vec3::new(-1.5, 0.0, 1e30); n];
+            assert_eq!(farthest_of_finite(&good_ones, &good_ones), (if n > 0 { 1e30 } else { 0.0 }, true));
             assert!(are_finite(&column));
             assert_eq!(farthest(&column), if n > 0 { f32::MAX } else { 0.0 });
             for (i, bad) in (0..3 * n).zip([f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().cycle())
             {
                 let good = core::mem::replace(&mut column[i / 3][i % 3], bad);
                 assert!(!are_finite(&column), "{bad} at {i} of {n}");
+                for (one, other) in [(&column, &good_ones), (&good_ones, &column)] {
+                    assert_eq!(farthest_of_finite(one, other), (farthest(one), false), "{bad} at {i} of {n}");
+                }
                 assert_eq!(farthest(&column) == f32::INFINITY, bad.is_infinite());
                 column[i / 3][i % 3] = good;
             }

@@ -4,6 +4,7 @@ mod event_driven;
 mod impulse;
 mod meeting;
 mod meetings;
+mod near;
 mod packet;
 mod passage;
 mod path;

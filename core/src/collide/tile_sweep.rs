@@ -1,29 +1,24 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
-use super::packet::{Outcome, Paths, Riders, near};
+use super::near::{BLOCK, Balls};
+use super::packet::{Outcome, Paths, Riders};
 use super::path::Path;
 use super::sweep::{Sweep, facing};
 use crate::constrain::{SHIFTED, TOUCHING};
-use crate::lanes::{LANES, Vectors};
+use crate::lanes::{Eight, Kernel, LANES, Vectors, run};
 use crate::material::on_surface;
 use crate::memory::{Layout, Past};
 use crate::observe::{Attention, Observer};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::rows::filled;
 use crate::shape::{Aabb, Face, Facing, Hulls, Marks};
 use crate::step::Tile;
 use crate::time::Time;
-use core::ops::Range;
 use glam::Vec3;
-use wide::f32x8;
 
 /// Whether what faces one flat wall alone is followed by code of its own: chips are spared that.
 const SHORT_WAY: bool = !cfg!(target_os = "none");
-
-/// Rows that are held against a face at once.
-const BLOCK: usize = 256;
 
 /// Everything.
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
@@ -65,6 +60,38 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
         _ => tile_sweep.go(),
     }
     tile.work = work;
+}
+
+/// Rows that may lie on a face.
+struct Lie<'t, 's, 'a> {
+    of: &'t TileSweep<'s, 'a>,
+    rows: &'t [usize],
+    face: &'t Face,
+}
+
+/// Rows that may bounce off a face.
+struct Bounce<'t, 's, 'a> {
+    of: &'t TileSweep<'s, 'a>,
+    rows: &'t [usize],
+    face: &'t Face,
+}
+
+impl Kernel for Lie<'_, '_, '_> {
+    type Output = Outcome;
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> Outcome {
+        let (riders, paths) = self.of.packet(like, self.rows, self.face);
+        riders.lie(&paths, self.face)
+    }
+}
+
+impl Kernel for Bounce<'_, '_, '_> {
+    type Output = Outcome;
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> Outcome {
+        let (riders, paths) = self.of.packet(like, self.rows, self.face);
+        riders.bounce(&paths, self.face, self.of.tile.dt, self.of.tile.scene.max_bounces)
+    }
 }
 
 impl Waiting {
@@ -122,10 +149,10 @@ impl TileSweep<'_, '_> {
         let (old, in_packets) = (self.tile.old, self.goes_in_packets());
         let mut waiting = Waiting::before(*face);
         for first in (0..old).step_by(BLOCK) {
-            let marks = self.near(first..old.min(first + BLOCK), face);
-            for (i, marks) in marks.into_iter().enumerate() {
-                for j in ones(marks.into()) {
-                    let row = first + 4 * i + j;
+            let marks = self.balls().near(first..old.min(first + BLOCK), face);
+            let words = marks.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes));
+            for (row, marks) in (first..old).step_by(u32::BITS as usize).zip(words) {
+                for row in ones(marks).map(|i| row + i).take_while(|&row| row < old) {
                     let is_fixed = self.tile.attributes.inverse_mass[row] == 0.0;
                     if in_packets && !is_fixed { self.queue(row, &mut waiting) } else { self.follow(row) }
                 }
@@ -133,6 +160,14 @@ impl TileSweep<'_, '_> {
         }
         self.go_on(waiting);
         (old..self.tile.position.len()).for_each(|row| self.follow(row));
+    }
+
+    /// All rows on their ways.
+    fn balls(&self) -> Balls<'_> {
+        let Tile { dt, attributes: ref m, ref position, ref velocity, .. } = *self.tile;
+        let ([x0, v0], rows) = (self.past.start, position.len());
+        let ends = [&x0[..rows], &v0[..rows], &**position, &**velocity];
+        Balls { ends, radius: &m.lives.radius[..rows], time: dt.seconds() }
     }
 
     /// The face that an old row is near, if that is all.
@@ -175,33 +210,11 @@ impl TileSweep<'_, '_> {
         alone && scene.max_bounces > 1 && dt > Time::ZERO
     }
 
-    /// Who of some rows may touch the face: a bit for each of four.
-    #[inline(never)]
-    fn near(&self, rows: Range<usize>, face: &Face) -> [u8; BLOCK / 4] {
-        let (mut marks, tile, time) = ([0; BLOCK / 4], &*self.tile, self.tile.dt.seconds());
-        let [start_x, start_v] = self.past.start;
-        let (x0, x0_rest) = start_x[rows.clone()].as_chunks();
-        let (v0, v0_rest) = start_v[rows.clone()].as_chunks();
-        let (x1, x1_rest) = tile.position[rows.clone()].as_chunks();
-        let (v1, v1_rest) = tile.velocity[rows.clone()].as_chunks();
-        let (radius, radius_rest) = tile.attributes.lives.radius[rows.clone()].as_chunks();
-        let columns = x0.iter().zip(v0).zip(x1.iter().zip(v1)).zip(radius);
-        for (mark, (((x0, v0), (x1, v1)), radius)) in marks.iter_mut().zip(columns) {
-            *mark = near(face, [x0, v0, x1, v1], radius, time);
-        }
-        if !x0_rest.is_empty() {
-            let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
-            let last = near(face, [&x0, &v0, &x1, &v1], &filled(radius_rest), time);
-            marks[rows.len() / 4] = last & ((1 << x0_rest.len()) - 1);
-        }
-        marks
-    }
-
     /// Lets those who lie on the face do so; the others bounce.
     #[inline(never)]
     fn lie(&mut self, rows: &[usize], Waiting { face, bouncing, .. }: &mut Waiting) {
-        let (riders, paths) = self.packet(rows, face);
-        for i in ones(self.settle(rows, &riders.lie(&paths, face))) {
+        let outcome = run(Lie { of: self, rows, face });
+        for i in ones(self.settle(rows, &outcome)) {
             if let Some(rows) = bouncing.push(rows[i]) {
                 self.bounce(&rows, face);
             }
@@ -211,19 +224,22 @@ impl TileSweep<'_, '_> {
     /// Lets those bounce off the face who do so once.
     #[inline(never)]
     fn bounce(&mut self, rows: &[usize], face: &Face) {
-        let (riders, paths) = self.packet(rows, face);
-        self.settle(rows, &riders.bounce(&paths, face, self.tile.dt));
+        let outcome = run(Bounce { of: self, rows, face });
+        self.settle(rows, &outcome);
     }
 
     /// Puts rows where they have come to, follows those who have to be, and says which are left: a bit each.
     #[inline(always)]
     fn settle(&mut self, rows: &[usize], outcome: &Outcome) -> u32 {
         let of_all = (1 << rows.len()) - 1;
-        self.report.hits += u64::from((outcome.hit & of_all).count_ones());
-        let ([x, y, z], [u, v, w]) = (outcome.position.columns(), outcome.velocity.columns());
-        for i in ones(outcome.settled & of_all) {
-            self.tile.position[rows[i]] = Vec3::new(x[i], y[i], z[i]);
-            self.tile.velocity[rows[i]] = Vec3::new(u[i], v[i], w[i]);
+        self.report.hits += outcome.hits.iter().map(|hits| u64::from((hits & of_all).count_ones())).sum::<u64>();
+        let [[x, y, z], [u, v, w]] = &outcome.ends;
+        let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
+        for (i, &row) in rows.iter().enumerate().take(LANES) {
+            let is_settled = outcome.settled >> i & 1 != 0;
+            if let (true, Some(position), Some(velocity)) = (is_settled, position.get_mut(row), velocity.get_mut(row)) {
+                (*position, *velocity) = (Vec3::new(x[i], y[i], z[i]), Vec3::new(u[i], v[i], w[i]));
+            }
         }
         for i in ones(outcome.left & of_all) {
             self.follow(rows[i]);
@@ -233,7 +249,7 @@ impl TileSweep<'_, '_> {
 
     /// Rows side by side, the first of them where there are fewer than eight.
     #[inline(always)]
-    fn packet(&self, rows: &[usize], face: &Face) -> (Riders, Paths) {
+    fn packet<F: Eight>(&self, like: F, rows: &[usize], face: &Face) -> (Riders<F>, Paths<F>) {
         let Tile { scene, attributes: ref m, .. } = *self.tile;
         let (mut all, mut radius, mut elasticity) = ([rows[0]; LANES], [0.0; LANES], [0.0; LANES]);
         let (mut at_rest, mut kinetic) = ([0.0; LANES], [0.0; LANES]);
@@ -249,12 +265,13 @@ impl TileSweep<'_, '_> {
                     (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
             }
         }
-        let (radius, elasticity) = (f32x8::new(radius), f32x8::new(elasticity));
-        let (at_rest, kinetic) = (f32x8::new(at_rest), f32x8::new(kinetic));
+        let (radius, elasticity) = (like.of(radius), like.of(elasticity));
+        let (at_rest, kinetic) = (like.of(at_rest), like.of(kinetic));
         let [start_x, start_v] = self.past.start;
-        let (x0, v0) = (Vectors::gather(start_x, &all), Vectors::gather(start_v, &all));
-        let (x1, v1) = (Vectors::gather(self.tile.position, &all), Vectors::gather(self.tile.velocity, &all));
-        let time = f32x8::splat(self.tile.dt.seconds());
+        let (x0, v0) = (Vectors::gather(like, start_x, &all), Vectors::gather(like, start_v, &all));
+        let x1 = Vectors::gather(like, self.tile.position, &all);
+        let v1 = Vectors::gather(like, self.tile.velocity, &all);
+        let time = like.all(self.tile.dt.seconds());
         (Riders { radius, elasticity, at_rest, kinetic }, Paths { x0, v0, x1, v1, time })
     }
 

@@ -1,8 +1,8 @@
 //! Forces that one pass over the columns can work out: what falls, and is braked by the air.
 
-use crate::rows::fall;
+use crate::lanes::run;
+use crate::rows::Fall;
 use glam::Vec3;
-use wide::f32x4;
 
 /// What forces come to that are no more than a steady acceleration of all and each particle's own linear drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,14 +31,12 @@ impl Steady {
         inverse_mass: &[f32],
         acceleration: &mut [Vec3],
     ) {
-        let (g, zero) = (self.acceleration.unwrap_or(Vec3::ZERO), f32x4::ZERO);
+        let g = self.acceleration.unwrap_or(Vec3::ZERO);
         match (self.acceleration.is_some(), self.drags) {
-            (false, false) => fall(acceleration, g, mass, velocity, drag, inverse_mass, |_, _, _, _| zero),
-            (true, false) => fall(acceleration, g, mass, velocity, drag, inverse_mass, |g, m, _, _| zero + g * m),
-            (false, true) => fall(acceleration, g, mass, velocity, drag, inverse_mass, |_, _, v, k| zero - v * k),
-            (true, true) => {
-                fall(acceleration, g, mass, velocity, drag, inverse_mass, |g, m, v, k| zero + g * m - v * k);
-            }
+            (false, false) => run(Fall::<false, false> { g, mass, velocity, drag, inverse_mass, acceleration }),
+            (true, false) => run(Fall::<true, false> { g, mass, velocity, drag, inverse_mass, acceleration }),
+            (false, true) => run(Fall::<false, true> { g, mass, velocity, drag, inverse_mass, acceleration }),
+            (true, true) => run(Fall::<true, true> { g, mass, velocity, drag, inverse_mass, acceleration }),
         }
     }
 }

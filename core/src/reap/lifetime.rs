@@ -2,6 +2,7 @@
 
 use super::{CHUNK, Cause, Reaper, Verdicts};
 use crate::force::State;
+use crate::lanes::widest;
 use crate::time::Time;
 use core::ops::Range;
 
@@ -15,21 +16,28 @@ pub(crate) struct Lifetime;
 impl Reaper for Lifetime {
     fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
         let last = state.time.min(BEFORE_NEVER);
-        for (chunk, dies) in state.dies[rows].chunks(CHUNK).enumerate() {
-            if !may_end(dies, last) {
-                continue;
-            }
-            for (nth, &dies) in dies.iter().enumerate() {
-                if dies <= last {
-                    verdicts.end(CHUNK * chunk + nth, Cause::Lifetime);
+        let dies = &state.dies[rows];
+        widest(
+            #[inline(always)]
+            || {
+                for (chunk, dies) in dies.chunks(CHUNK).enumerate() {
+                    if !may_end(dies, last) {
+                        continue;
+                    }
+                    for (nth, &dies) in dies.iter().enumerate() {
+                        if dies <= last {
+                            verdicts.end(CHUNK * chunk + nth, Cause::Lifetime);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
     }
 }
 
 /// Whether any of these instants may have come by `last`. The difference to the next instant has the highest bit where it is
 /// below zero, or where what dies later than in 68 years does: that has the bit itself.
+#[inline(always)]
 fn may_end(dies: &[Time], last: Time) -> bool {
     let next = last.ticks().saturating_add(1);
     let came = |any: u64, dies: &Time| any | (dies.ticks().wrapping_sub(next) & !dies.ticks());

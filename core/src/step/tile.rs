@@ -13,7 +13,7 @@ use crate::memory::Storage;
 use crate::observe::Observer;
 use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
 use crate::report::Report;
-use crate::rows::farthest;
+use crate::rows::farthest_of_finite;
 use crate::scene::Scene;
 use crate::stall;
 use crate::time::Time;
@@ -227,7 +227,10 @@ impl Tile<'_> {
         let state = self.attributes.lives.moved(self.end(), self.position, self.velocity);
         let mut verdicts = Verdicts::on(self.pending_death);
         Lifetime.judge(&state, rows.clone(), &mut verdicts);
-        Nonfinite.judge(&state, rows, &mut verdicts);
-        if stall::may_be(farthest(self.position), h) { stall::count(self.position, self.velocity, h) } else { 0 }
+        let (farthest, are_finite) = farthest_of_finite(self.position, self.velocity);
+        if !are_finite {
+            Nonfinite.judge(&state, rows, &mut verdicts);
+        }
+        if stall::may_be(farthest, h) { stall::count(self.position, self.velocity, h) } else { 0 }
     }
 }

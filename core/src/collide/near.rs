@@ -1,0 +1,175 @@
+//! Whom a flat face may touch: all rows of a tile are held against it, and most are far from it.
+
+use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
+use crate::math::max;
+use crate::rows::{farthest, filled, largest_of};
+use crate::shape::Face;
+use core::ops::Range;
+use glam::Vec3;
+use wide::f32x4;
+
+/// Rows that are held against a face at once.
+pub(super) const BLOCK: usize = 512;
+
+/// A bit for each row of a block.
+pub(super) type Marks = [u8; BLOCK / LANES];
+
+/// Balls on cubics: places and velocities at both ends, so many seconds apart.
+#[derive(Clone, Copy)]
+pub(super) struct Balls<'a> {
+    pub(super) ends: [&'a [Vec3]; 4],
+    pub(super) radius: &'a [f32],
+    pub(super) time: f32,
+}
+
+/// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far.
+struct Slab<'a, const AXIS: usize> {
+    balls: Balls<'a>,
+    sides: [f32; 2],
+}
+
+impl Balls<'_> {
+    fn rows(&self, rows: Range<usize>) -> Self {
+        let Self { ends, radius, time } = *self;
+        Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], time }
+    }
+
+    /// A third of the time, by which control points are away from the ends.
+    fn third(&self) -> f32 {
+        self.time * (1.0 / 3.0)
+    }
+
+    /// Who of no more than a block of them may touch the face, as far as boxes around their paths tell: never fewer than
+    /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
+    #[inline(never)]
+    pub(super) fn near(&self, rows: Range<usize>, face: &Face) -> Marks {
+        let balls = self.rows(rows);
+        let [point, _, unit] = face.vectors();
+        // No number of the paths is larger, of those that are finite: others are followed nowhere.
+        let [x0, v0, x1, v1] = balls.ends.map(farthest);
+        let (third, radius) = (balls.third(), largest_of(balls.radius));
+        let largest = max(x0 + third * v0, x1 + third * v1) + face.size() + radius;
+        let room = radius + largest * (128.0 * f32::EPSILON);
+        let sides = |axis: usize| [point[axis] - room, point[axis] + room];
+        match unit.abs().to_array() {
+            _ if !(largest < 1e37) => [u8::MAX; BLOCK / LANES],
+            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, sides: sides(0) }),
+            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, sides: sides(1) }),
+            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, sides: sides(2) }),
+            _ => widest(
+                #[inline(always)]
+                || balls.marks(|ends, radius| near(face, ends, radius, third)),
+            ),
+        }
+    }
+
+    /// What is told of eight after the other, side by side.
+    #[inline(always)]
+    fn marks(&self, near: impl Fn([&[Vec3; LANES]; 4], &[f32; LANES]) -> u8) -> Marks {
+        let mut marks = [0; BLOCK / LANES];
+        let [(x0, x0_rest), (v0, v0_rest), (x1, x1_rest), (v1, v1_rest)] = self.ends.map(<[Vec3]>::as_chunks);
+        let (radius, radius_rest) = self.radius.as_chunks();
+        let columns = x0.iter().zip(v0).zip(x1.iter().zip(v1)).zip(radius);
+        for (mark, (((x0, v0), (x1, v1)), radius)) in marks.iter_mut().zip(columns) {
+            *mark = near([x0, v0, x1, v1], radius);
+        }
+        if let Some(mark) = marks.get_mut(radius.len()).filter(|_| !radius_rest.is_empty()) {
+            let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
+            *mark = near([&x0, &v0, &x1, &v1], &filled(radius_rest));
+        }
+        marks
+    }
+}
+
+impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
+    type Output = Marks;
+
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> Marks {
+        let (third, [low, high]) = (like.all(self.balls.third()), self.sides.map(|side| like.all(side)));
+        self.balls.marks(
+            #[inline(always)]
+            |[x0, v0, x1, v1], _| {
+                let (x0, v0) = (coordinate::<F, AXIS>(like, x0), coordinate::<F, AXIS>(like, v0));
+                let (x1, v1) = (coordinate::<F, AXIS>(like, x1), coordinate::<F, AXIS>(like, v1));
+                let (a, b) = (x0 + v0 * third, x1 - v1 * third);
+                let (least, most) = (x0.least(x1).least(a.least(b)), x0.most(x1).most(a.most(b)));
+                let is_near = least.simd_le(high) & most.simd_ge(low);
+                let rows = const { &rows_of_bits(AXIS) };
+                rows[is_near.to_bitmask() as usize % 256]
+            },
+        )
+    }
+}
+
+/// One coordinate of eight vectors: of all their numbers, eight by eight, those in each lane that are such. The vectors are in an order
+/// that comes of it.
+#[inline(always)]
+fn coordinate<F: Eight, const AXIS: usize>(like: F, vectors: &[Vec3; LANES]) -> F {
+    let [a, b, c]: &[[f32; LANES]; 3] = bytemuck::cast_ref(vectors);
+    let [of_b, of_c] = const { [lanes_of(AXIS, 1), lanes_of(AXIS, 2)] };
+    like.of(of_c).select(like.of(*c), like.of(of_b).select(like.of(*b), like.of(*a)))
+}
+
+/// The lanes of one of three blocks of numbers that are such coordinates, as a mask.
+const fn lanes_of(axis: usize, block: usize) -> [f32; LANES] {
+    let (mut mask, mut lane) = ([0.0; LANES], 0);
+    while lane < LANES {
+        if (LANES * block + lane) % 3 == axis {
+            mask[lane] = f32::from_bits(u32::MAX);
+        }
+        lane += 1;
+    }
+    mask
+}
+
+/// The bits of eight rows in their own order, for those in the order of such coordinates.
+const fn rows_of_bits(axis: usize) -> [u8; 256] {
+    let (mut table, mut number) = ([0; 256], 0);
+    while number < 3 * LANES {
+        let (row, lane, mut bits) = (number / 3, number % LANES, 0);
+        while bits < 256 && number % 3 == axis {
+            if bits >> lane & 1 != 0 {
+                table[bits] |= 1 << row;
+            }
+            bits += 1;
+        }
+        number += 1;
+    }
+    table
+}
+
+/// The same of eight balls on paths between these places and velocities, past any face.
+#[inline(always)]
+fn near(face: &Face, [x0, v0, x1, v1]: [&[Vec3; LANES]; 4], radius: &[f32; LANES], third: f32) -> u8 {
+    let half = |i: usize| {
+        let of = |column: &[Vec3; LANES]| [column[4 * i], column[4 * i + 1], column[4 * i + 2], column[4 * i + 3]];
+        let radius = [radius[4 * i], radius[4 * i + 1], radius[4 * i + 2], radius[4 * i + 3]];
+        near_four(face, [&of(x0), &of(v0), &of(x1), &of(v1)], &radius, third)
+    };
+    half(0) | half(1) << 4
+}
+
+/// Who of balls on four paths between these places and velocities may touch a face: a bit each.
+#[inline(always)]
+fn near_four(face: &Face, [x0, v0, x1, v1]: [&[Vec3; 4]; 4], radius: &[f32; 4], third: f32) -> u8 {
+    let (x0, v0, x1, v1) = (turned(x0), turned(v0), turned(x1), turned(v1));
+    let [point, _, unit] = face.vectors();
+    let span = |axis: usize| {
+        let (a, b) = (x0[axis] + v0[axis] * third, x1[axis] - v1[axis] * third);
+        let low = x0[axis].fast_min(x1[axis]).fast_min(a.fast_min(b));
+        (low, x0[axis].fast_max(x1[axis]).fast_max(a.fast_max(b)))
+    };
+    let ((ax, bx), (ay, by), (az, bz)) = (span(0), span(1), span(2));
+    // Twice the distance of the middle, and twice how far the corners are from it.
+    let middle = (ax + bx) * unit.x + (ay + by) * unit.y + (az + bz) * unit.z - 2.0 * unit.dot(point);
+    let half = (bx - ax) * unit.x.abs() + (by - ay) * unit.y.abs() + (bz - az) * unit.z.abs();
+    let far = |low: f32x4, high: f32x4| high.fast_max(-low);
+    let largest = far(ax, bx).fast_max(far(ay, by)).fast_max(far(az, bz)) + face.size();
+    // A box around a ball reaches by less than twice the radius farther along a normal.
+    let radius = f32x4::new(*radius);
+    let room = radius + radius + (largest + radius) * (128.0 * f32::EPSILON);
+    // What is no number is near, and what is so far away that sums may not be any.
+    let is_far = middle.abs().simd_gt(half + room + room) & largest.simd_lt(f32x4::splat(1e37));
+    !(is_far.to_bitmask() as u8) & 15
+}

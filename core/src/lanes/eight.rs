@@ -1,0 +1,359 @@
+//! Eight numbers or vectors side by side, in whatever registers the machine turns out to have.
+//!
+//! What is done to them is the same operations in the same order, each correctly rounded, and so the same bits. A kernel is compiled
+//! for each kind of registers; functions that it calls have to be spread over it for that.
+
+use super::LANES;
+use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
+
+/// Eight numbers side by side. A mask has all bits of a lane set, or none.
+pub(crate) trait Eight:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+{
+    /// These, in registers as those that `self` is in.
+    fn of(self, lanes: [f32; LANES]) -> Self;
+    /// One number in all of them.
+    fn all(self, x: f32) -> Self;
+    fn to_array(self) -> [f32; LANES];
+    fn abs(self) -> Self;
+    /// Correctly rounded.
+    fn sqrt(self) -> Self;
+    fn simd_eq(self, other: Self) -> Self;
+    fn simd_lt(self, other: Self) -> Self;
+    fn simd_le(self, other: Self) -> Self;
+    fn simd_gt(self, other: Self) -> Self;
+    fn simd_ge(self, other: Self) -> Self;
+    /// The first of two where this mask says so, else the second.
+    fn select(self, a: Self, b: Self) -> Self;
+    /// The smaller of two, and the larger; either, or none, where one is no number.
+    fn least(self, other: Self) -> Self;
+    fn most(self, other: Self) -> Self;
+    /// Each three times, one after the other.
+    #[inline(always)]
+    fn thrice(self) -> [Self; 3] {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        [self.of([a, a, a, b, b, b, c, c]), self.of([c, d, d, d, e, e, e, f]), self.of([f, f, g, g, g, h, h, h])]
+    }
+    /// A bit for each lane of this mask.
+    fn to_bitmask(self) -> u32;
+
+    /// Whether this mask holds for any.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.to_bitmask() != 0
+    }
+}
+
+/// What can be done in registers of any kind.
+pub(crate) trait Kernel {
+    type Output;
+    /// Does it in such registers as `like` is in.
+    fn run<F: Eight>(self, like: F) -> Self::Output;
+}
+
+/// Runs a kernel in the widest registers that it is compiled for.
+#[inline(always)]
+pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(
+            avx2,
+            #[inline(always)]
+            || kernel.run(avx2::Wide::zero(avx2)),
+        );
+    }
+    kernel.run(wide::f32x8::ZERO)
+}
+
+/// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
+#[inline(always)]
+pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(avx2, f);
+    }
+    f()
+}
+
+/// The larger of two numbers, as [`crate::math::max`] has it.
+#[inline(always)]
+pub(crate) fn max<F: Eight>(a: F, b: F) -> F {
+    a.simd_gt(b).select(a, b)
+}
+
+/// The smaller of two numbers, as [`crate::math::min`] has it.
+#[inline(always)]
+pub(crate) fn min<F: Eight>(a: F, b: F) -> F {
+    a.simd_lt(b).select(a, b)
+}
+
+/// Numbers with their signs turned round, those of zeros as well.
+#[inline(always)]
+pub(crate) fn negated<F: Eight>(x: F) -> F {
+    x ^ x.all(-0.0)
+}
+
+/// Lanes for which a mask does not hold.
+#[inline(always)]
+pub(crate) fn not<F: Eight>(mask: F) -> F {
+    mask ^ mask.all(f32::from_bits(u32::MAX))
+}
+
+/// As many as the target has for sure: two registers, or four numbers and four, or eight.
+impl Eight for wide::f32x8 {
+    #[inline(always)]
+    fn of(self, lanes: [f32; LANES]) -> Self {
+        Self::new(lanes)
+    }
+    #[inline(always)]
+    fn all(self, x: f32) -> Self {
+        Self::splat(x)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; LANES] {
+        Self::to_array(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        super::sqrt(self)
+    }
+    #[inline(always)]
+    fn simd_eq(self, other: Self) -> Self {
+        Self::simd_eq(self, other)
+    }
+    #[inline(always)]
+    fn simd_lt(self, other: Self) -> Self {
+        Self::simd_lt(self, other)
+    }
+    #[inline(always)]
+    fn simd_le(self, other: Self) -> Self {
+        Self::simd_le(self, other)
+    }
+    #[inline(always)]
+    fn simd_gt(self, other: Self) -> Self {
+        Self::simd_gt(self, other)
+    }
+    #[inline(always)]
+    fn simd_ge(self, other: Self) -> Self {
+        Self::simd_ge(self, other)
+    }
+    #[inline(always)]
+    fn select(self, a: Self, b: Self) -> Self {
+        ((a ^ b) & self) ^ b
+    }
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.fast_min(other)
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.fast_max(other)
+    }
+    #[inline(always)]
+    fn to_bitmask(self) -> u32 {
+        Self::to_bitmask(self)
+    }
+}
+
+/// Eight in one register of an x86-64 that has them.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+mod avx2 {
+    use super::{Eight, LANES};
+    use core::arch::x86_64::{__m256, __m256i, _mm256_permutevar8x32_ps};
+    use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
+    use fearless_simd::x86::Avx2;
+    use fearless_simd::{Bytes, ExtractToken, Select, SimdBase, SimdFloat, SimdFrom, SimdInto, SimdMask};
+    use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
+
+    // Compilers make a dozen instructions of what is one.
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn permuted(avx2: Avx2, lanes: __m256, order: __m256i) -> __m256 {
+            _mm256_permutevar8x32_ps(lanes, order)
+        }
+    );
+
+    #[derive(Clone, Copy)]
+    pub(super) struct Wide(f32x8<Avx2>);
+
+    impl Wide {
+        #[inline(always)]
+        pub(super) fn zero(avx2: Avx2) -> Self {
+            Self(f32x8::splat(avx2, 0.0))
+        }
+
+        #[inline(always)]
+        fn bits(self) -> u32x8<Avx2> {
+            self.0.bitcast()
+        }
+
+        #[inline(always)]
+        fn of_mask(mask: mask32x8<Avx2>) -> Self {
+            Self(mask.to_vector().bitcast())
+        }
+
+        #[inline(always)]
+        fn mask(self) -> mask32x8<Avx2> {
+            mask32x8::from_vector(self.0.bitcast())
+        }
+    }
+
+    macro_rules! numbers {
+        ($($op:ident $name:ident)+) => {
+            $(impl $op for Wide {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    Self($op::$name(self.0, other.0))
+                }
+            })+
+        };
+    }
+    numbers!(Add add Sub sub Mul mul Div div);
+
+    macro_rules! bits {
+        ($($op:ident $name:ident)+) => {
+            $(impl $op for Wide {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    Self($op::$name(self.bits(), other.bits()).bitcast())
+                }
+            })+
+        };
+    }
+    bits!(BitAnd bitand BitOr bitor BitXor bitxor);
+
+    impl Eight for Wide {
+        #[inline(always)]
+        fn of(self, lanes: [f32; LANES]) -> Self {
+            Self(f32x8::from_slice(self.0.token(), &lanes))
+        }
+        #[inline(always)]
+        fn all(self, x: f32) -> Self {
+            Self(f32x8::splat(self.0.token(), x))
+        }
+        #[inline(always)]
+        fn to_array(self) -> [f32; LANES] {
+            self.0.into()
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(self.0.abs())
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(self.0.sqrt())
+        }
+        #[inline(always)]
+        fn simd_eq(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_eq(other.0))
+        }
+        #[inline(always)]
+        fn simd_lt(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_lt(other.0))
+        }
+        #[inline(always)]
+        fn simd_le(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_le(other.0))
+        }
+        #[inline(always)]
+        fn simd_gt(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_gt(other.0))
+        }
+        #[inline(always)]
+        fn simd_ge(self, other: Self) -> Self {
+            Self::of_mask(self.0.simd_ge(other.0))
+        }
+        #[inline(always)]
+        fn select(self, a: Self, b: Self) -> Self {
+            Self(self.mask().select(a.0, b.0))
+        }
+        #[inline(always)]
+        fn least(self, other: Self) -> Self {
+            Self(self.0.min(other.0))
+        }
+        #[inline(always)]
+        fn most(self, other: Self) -> Self {
+            Self(self.0.max(other.0))
+        }
+        #[inline(always)]
+        fn thrice(self) -> [Self; 3] {
+            let avx2 = self.0.token();
+            let order = [[0, 0, 0, 1, 1, 1, 2, 2], [2, 3, 3, 3, 4, 4, 4, 5], [5, 5, 6, 6, 6, 7, 7, 7]];
+            order.map(
+                #[inline(always)]
+                |order| Self(permuted(avx2, self.0.into(), i32x8::simd_from(avx2, order).into()).simd_into(avx2)),
+            )
+        }
+        #[inline(always)]
+        fn to_bitmask(self) -> u32 {
+            self.mask().to_bitmask() as u32
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Everything that can be done with two times eight numbers.
+    #[derive(Clone, Copy)]
+    struct Everything([[f32; LANES]; 2]);
+
+    impl Kernel for Everything {
+        type Output = ([[f32; LANES]; 20], u32);
+        #[inline(always)]
+        fn run<F: Eight>(self, like: F) -> Self::Output {
+            let [a, b] = self.0.map(|lanes| like.of(lanes));
+            let ([c, d, e], mask) = (a.thrice(), a.simd_lt(b));
+            let made = [
+                a + b,
+                a - b,
+                a * b,
+                a / b,
+                a & b,
+                a | b,
+                a ^ b,
+                a.abs(),
+                a.sqrt(),
+                negated(a),
+                not(mask).select(a, b),
+                max(a, b),
+                min(a, b),
+                like.all(1.0) & (a.simd_eq(b) | a.simd_le(b)),
+                like.all(1.0) & (a.simd_gt(b) ^ a.simd_ge(b)),
+                c,
+                d,
+                e,
+                mask.select(a, b) - like.all(0.5),
+                like,
+            ];
+            (made.map(Eight::to_array), mask.to_bitmask())
+        }
+    }
+
+    #[test]
+    fn all_registers_give_the_same_bits() {
+        let numbers = [0.0, -0.0, 1.5, -2.25, 1e-40, f32::MAX, f32::INFINITY, f32::NAN, -1e30, 0.1, 3.0];
+        for i in 0..121 {
+            let lanes = [0, 1].map(|k| core::array::from_fn(|lane| numbers[(i / [1, 11][k] + lane) % 11]));
+            let (one, other) = (run(Everything(lanes)), Everything(lanes).run(wide::f32x8::ZERO));
+            assert_eq!(one.1, other.1);
+            for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
+                assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");
+            }
+        }
+    }
+}

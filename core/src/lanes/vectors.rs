@@ -1,0 +1,127 @@
+//! Eight vectors side by side.
+
+use super::{Eight, LANES, max, negated};
+use glam::Vec3;
+
+/// Eight vectors side by side. Sums and products are taken in glam's order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vectors<F>(pub(crate) [F; 3]);
+
+impl<F: Eight> Vectors<F> {
+    /// One in every lane, as many as there are of others.
+    #[inline(always)]
+    pub(crate) fn splat(like: F, v: Vec3) -> Self {
+        Self([like.all(v.x), like.all(v.y), like.all(v.z)])
+    }
+
+    /// Those of eight rows.
+    #[inline(always)]
+    pub(crate) fn gather(like: F, column: &[Vec3], rows: &[usize; LANES]) -> Self {
+        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (i, &row) in rows.iter().enumerate() {
+            let v = column[row];
+            (x[i], y[i], z[i]) = (v.x, v.y, v.z);
+        }
+        Self([like.of(x), like.of(y), like.of(z)])
+    }
+
+    /// One coordinate of all after the other.
+    #[inline(always)]
+    pub(crate) fn columns(self) -> [[f32; LANES]; 3] {
+        let [x, y, z] = self.0;
+        [x.to_array(), y.to_array(), z.to_array()]
+    }
+
+    #[inline(always)]
+    pub(crate) fn dot(self, other: Self) -> F {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        (x * a) + (y * b) + (z * c)
+    }
+
+    #[inline(always)]
+    pub(crate) fn length(self) -> F {
+        self.dot(self).sqrt()
+    }
+
+    /// The magnitude of the largest coordinate.
+    #[inline(always)]
+    pub(crate) fn largest(self) -> F {
+        let [x, y, z] = self.0;
+        max(max(x.abs(), y.abs()), z.abs())
+    }
+
+    /// As [`crate::math::unit`].
+    #[inline(always)]
+    pub(crate) fn unit(self) -> Self {
+        let largest = self.largest();
+        let has_one = largest.simd_gt(largest.all(0.0)) & largest.simd_lt(largest.all(f32::INFINITY));
+        let scaled = self / largest;
+        (scaled / scaled.length()).masked(has_one)
+    }
+
+    /// The first of two where a mask says so, else the second.
+    #[inline(always)]
+    pub(crate) fn select(mask: F, a: Self, b: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
+        Self([mask.select(ax, bx), mask.select(ay, by), mask.select(az, bz)])
+    }
+
+    /// Those that are zero.
+    #[inline(always)]
+    pub(crate) fn is_zero(self) -> F {
+        let ([x, y, z], zero) = (self.0, self.0[0].all(0.0));
+        x.simd_eq(zero) & y.simd_eq(zero) & z.simd_eq(zero)
+    }
+
+    /// Zero where a mask does not hold.
+    #[inline(always)]
+    pub(crate) fn masked(self, mask: F) -> Self {
+        let [x, y, z] = self.0;
+        Self([x & mask, y & mask, z & mask])
+    }
+}
+
+impl<F: Eight> core::ops::Add for Vectors<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([x + a, y + b, z + c])
+    }
+}
+
+impl<F: Eight> core::ops::Sub for Vectors<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([x - a, y - b, z - c])
+    }
+}
+
+impl<F: Eight> core::ops::Mul<F> for Vectors<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: F) -> Self {
+        let [x, y, z] = self.0;
+        Self([x * factor, y * factor, z * factor])
+    }
+}
+
+impl<F: Eight> core::ops::Div<F> for Vectors<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, divisor: F) -> Self {
+        let [x, y, z] = self.0;
+        Self([x / divisor, y / divisor, z / divisor])
+    }
+}
+
+impl<F: Eight> core::ops::Neg for Vectors<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        let [x, y, z] = self.0;
+        Self([negated(x), negated(y), negated(z)])
+    }
+}
