@@ -1,6 +1,6 @@
 //! Who is near whom in a cloud of points, by each of the structures: the same answers, at different costs.
 //!
-//! `cargo run --release -p pointmass --example neighbours`
+//! `cargo run --release -p pointmass --example point_cloud`
 
 use pointmass::Vec3;
 use pointmass::index::{Neighbour, SpatialIndex, Structure};
