@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(SceneFile::former_names(&new), [""; 0]);
         let remarks = SceneFile::former_names(&old);
         assert_eq!(remarks.len(), FORMER.len());
-        assert!(remarks.contains(&"2:41: `resting` is called `static` now".to_string()), "{remarks:?}");
+        assert!(remarks.contains(&"2:50: `resting` is called `static` now".to_string()), "{remarks:?}");
         assert_eq!(SceneFile::former_names(r#"{"about": "variance"}"#), [""; 0]);
     }
 
