@@ -1,4 +1,4 @@
-//! What particles look like: the same to whatever draws them.
+//! The looks of particles: the same to whatever draws them.
 
 use crate::force::State;
 use crate::material::{Age, Life, Property, Varying, life_of};

@@ -1,4 +1,4 @@
-//! What particles and surfaces are made of: how they feel to what touches them, and how they look and what they are over their lives.
+//! Materials of particles and surfaces: their feel to what touches them, and the looks and properties of particles over their lives.
 
 use crate::force::Friction;
 use crate::math::{max, sqrt};
@@ -60,11 +60,11 @@ pub struct Material<'a> {
     pub size: f32,
     /// How they are drawn, from 0, a lit ball, to 1, a glow.
     pub glow: f32,
-    /// What becomes of them over their lives.
+    /// Their lives, as curves.
     pub life: Life<'a>,
 }
 
-/// What becomes of particles over their lives. What is none stays as it is.
+/// The life of particles: a property without a curve stays as it is.
 ///
 /// Physics takes drag and mass as they are in the middle of each step, and buoyancy whenever a method asks for the forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -146,13 +146,13 @@ pub trait MaterialList: Sync {
         self.get(number).map(|material| material.contact).unwrap_or_default()
     }
 
-    /// What a step calls for their lives; nothing, where it is known that there are none.
+    /// The functions that a step calls for their lives; none, where it is known that there are no lives.
     fn code(&self) -> Option<MaterialCode> {
         Some(MaterialCode::ALL)
     }
 }
 
-/// What lives of materials call for in a step: functions, so that a program which has none does not carry them about.
+/// The functions that lives call for in a step, so that a program without lives does not carry them about.
 #[derive(Clone, Copy, Debug)]
 pub struct MaterialCode {
     /// Words that are kept of each particle.

@@ -1,4 +1,4 @@
-//! What forces have to find in the state.
+//! The needs of forces: all that they have to find in the state.
 
 use super::State;
 use crate::index::{BarnesHut, Found, IndexChoice, Search, find};
@@ -12,7 +12,7 @@ pub struct BuildTrees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
 #[derive(Clone, Copy, Debug)]
 pub struct Listing(pub(crate) fn(Search<'_>, &State<'_>, Then<'_>) -> Found);
 
-/// What is done with a state in which all is found.
+/// The continuation with a state in which all is found.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(&State<'_>);
 
 impl BuildTrees {
@@ -46,7 +46,7 @@ fn look_up(search: Search<'_>, state: &State<'_>, then: Then<'_>) -> Found {
     found
 }
 
-/// What forces have to find in the state, beyond the particles.
+/// The needs of a force: all that it has to find in the state, beyond the particles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
     /// [`State::mass_tree`](super::State::mass_tree), and what makes it.
@@ -55,7 +55,7 @@ pub struct Needs {
     pub charge_tree: Option<BuildTrees>,
     /// The radius within which [`State::near`](super::State::near) is asked for neighbours \[m\]; zero: it is not.
     pub reach: f32,
-    /// What finds them: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
+    /// The finder: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
     pub lists: Option<Listing>,
     /// To change columns of a user's own, by [`Force::write`](super::Force::write); else a force is not asked to.
     pub write: bool,
@@ -68,7 +68,7 @@ impl Needs {
         Self { reach: max(reach, 0.0), lists: Some(Listing::KEPT), ..Self::default() }
     }
 
-    /// What two forces need.
+    /// The needs of two forces.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {

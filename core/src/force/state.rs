@@ -33,7 +33,7 @@ pub struct State<'a> {
     pub dies: &'a [Time],
     /// The slots they hold; see [`id`](State::id).
     pub slot: &'a [u32],
-    /// What their random numbers are drawn by; see [`word`](State::word).
+    /// The keys by which their random numbers are drawn; see [`word`](State::word).
     pub key: &'a [u32],
     /// Their colours, without what materials make of them.
     pub color: &'a [Color],
