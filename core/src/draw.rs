@@ -38,7 +38,7 @@ const FADING: f32 = 0.2;
 /// system.start(&scene, 1)?;
 /// system.step(&scene, Time::from_seconds(1.8));
 /// let look = draw::appearance(&system.state(&scene), 0).expect("it lives");
-/// assert_eq!((look.diameter, look.color[3]), (1.0, 128)); // Half of its last fifth is over.
+/// assert_eq!((look.diameter, look.color[3]), (1.0, 127)); // Half of its last fifth is over.
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 #[must_use]

@@ -17,7 +17,7 @@ use glam::Vec3;
 ///
 /// impl Observer for Registrar {
 ///     fn died(&mut self, _: &LifeEvent, cause: Cause) {
-///         self.0 += u32::from(cause == Cause::Age);
+///         self.0 += u32::from(cause == Cause::Lifetime);
 ///     }
 /// }
 ///

@@ -8,6 +8,7 @@ use crate::time::Time;
 
 impl Workspace<'_> {
     /// Gives all what they have in the middle of a step, of which the newborn see a part.
+    #[inline(never)]
     pub(super) fn age(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2]) {
         let Some(code) = scene.materials.code().filter(|code| (code.kept)(scene.materials) > 0) else { return };
         let (len, capacity) = (self.len(), self.capacity());

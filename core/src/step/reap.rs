@@ -29,6 +29,7 @@ impl Workspace<'_> {
     }
 
     /// Lets the scene's reapers choose.
+    #[inline(never)]
     fn judge_all(&mut self, scene: &Scene<'_>, code: ReaperCode) {
         let (time, len, capacity) = (self.status.time, self.len(), self.capacity());
         let layout = Layout::of(scene.plan(), capacity);

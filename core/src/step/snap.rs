@@ -7,6 +7,7 @@ use crate::scene::Scene;
 
 impl Workspace<'_> {
     /// Breaks the springs that are stretched too far, and says whether there is any that can break.
+    #[inline(never)]
     pub(super) fn snap(&mut self, scene: &Scene<'_>, code: SpringCode, report: &mut Report) -> bool {
         let incident = core::mem::take(&mut self.memory.incident);
         let broken = (code.snap)(&self.state(scene), incident);

@@ -120,6 +120,7 @@ impl Moved<'_> {
     }
 
     /// Lends the constraints what they move and the memory that they work in.
+    #[inline(never)]
     fn ask(&mut self, code: ConstraintCode, moment: Moment, substep: Substep) {
         let scene = self.scene;
         let Attributes { lives, inverse_mass, elasticity } = *self.attributes;

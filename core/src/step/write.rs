@@ -11,6 +11,7 @@ use crate::time::Time;
 
 impl Workspace<'_> {
     /// Lets forces write, at a step's end.
+    #[inline(never)]
     pub(super) fn write(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
         let (len, capacity) = (self.len(), self.capacity());
         let layout = Layout::of(scene.plan(), capacity);
@@ -41,6 +42,7 @@ impl Workspace<'_> {
     }
 
     /// Lets whoever looks on write.
+    #[inline(never)]
     pub(super) fn let_write(&mut self, scene: &Scene<'_>, observer: &mut dyn Observer) {
         let (len, capacity) = (self.len(), self.capacity());
         let kept = core::mem::take(&mut self.memory.kept);
