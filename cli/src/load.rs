@@ -58,7 +58,7 @@ pub fn scene(path: &Path) -> Outcome<SceneFile> {
 /// The same, which may pass over commands that are `unknown` in `.scn`.
 ///
 /// # Errors
-/// As of [`scene`].
+/// As of [`scene()`].
 pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
     let scene::Reading { scene, warnings, remarks } = read(path, unknown)?;
     warn(&[warnings, remarks].concat());
@@ -68,7 +68,7 @@ pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
 /// The same for those who only translate it, without remarks on what it says.
 ///
 /// # Errors
-/// As of [`scene`].
+/// As of [`scene()`].
 pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
     let scene::Reading { scene, warnings, .. } = read(path, unknown)?;
     warn(&warnings);
