@@ -86,7 +86,7 @@ pub(crate) fn check(args: &Check) -> Outcome {
     })
 }
 
-/// What is drawn.
+/// The oscillations that pictures show.
 fn scenery(study: &Study, spectrum: Option<Spectrum>, method: Method) -> Scenery {
     let modes = spectrum.map_or(Vec::new(), |spectrum| spectrum.modes);
     let parts = study.dragged.iter().chain(&study.touching).map(|part| part.mode);

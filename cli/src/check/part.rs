@@ -12,7 +12,7 @@ pub(crate) struct Part {
     /// Its number among all springs, if it is one.
     #[serde(skip)]
     pub(crate) spring: Option<usize>,
-    /// What it is.
+    /// Its properties, in words.
     pub(crate) about: String,
     /// Its oscillation, were it alone.
     pub(crate) mode: Mode,

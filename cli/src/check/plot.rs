@@ -12,7 +12,7 @@ use pointmass::stability::{Limit, Mode, Scheme};
 /// Width and height of each chart, in pixels.
 const SIZE: (u32, u32) = (640, 560);
 
-/// What is drawn: oscillations, stepped by a method in steps of `dt` \[s\].
+/// The content of pictures: oscillations, stepped by a method in steps of `dt` \[s\].
 pub(crate) struct Scenery {
     pub(crate) modes: Vec<Mode>,
     pub(crate) method: Method,
@@ -41,7 +41,7 @@ fn border(coefficients: &[f64]) -> Vec<(f64, f64)> {
     (0..=degree * POINTS).map(point).collect()
 }
 
-/// What methods do to a linear system, by the first that does it, and the look of its line.
+/// The effect of methods on a linear system, by the first that does it, and the look of its line.
 fn schemes() -> Vec<(Scheme, Method, usize)> {
     let mut schemes: Vec<(Scheme, Method, usize)> = Vec::new();
     for (&method, look) in Method::ALL.iter().zip(1..) {

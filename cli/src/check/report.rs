@@ -11,7 +11,7 @@ use crate::report::words::{counted, thousands};
 use pointmass::stability::Limit;
 use std::fmt::Write;
 
-/// What the figures mean.
+/// The meaning of the figures.
 const NOTES: [&str; 5] = [
     "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
     "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
@@ -45,7 +45,7 @@ pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report)
     Ok(())
 }
 
-/// What bounds the steps of every method; that of contacts only where there are some.
+/// The bounds on the steps of every method; that of contacts only where there are some.
 fn steps(study: &Study) -> Table {
     let stands = || study.methods.iter();
     let mut table = Table::default();
@@ -81,7 +81,7 @@ pub(crate) fn sheet(study: &Study) -> Table {
     table
 }
 
-/// What there is to know beside the table, each with its name.
+/// All there is to know beside the table, each with its name.
 fn facts(study: &Study) -> Vec<(&'static str, String)> {
     let Study { particles, free, springs, emitters, dt, integrator, .. } = study;
     let mut facts = vec![
@@ -146,7 +146,7 @@ fn at_rest(stand: &Stand) -> String {
     if stand.estimated { format!("about {}", limit(stand.at_rest)) } else { limit(stand.at_rest) }
 }
 
-/// What becomes of the step.
+/// The verdict on the step.
 fn verdict(stand: &Stand) -> String {
     let grows = stand.growth_across > 0.0;
     let across = || format!("up to e-fold in {}", time(1.0 / stand.growth_across));
