@@ -109,7 +109,7 @@ fn balls(model: &Model) -> Vec<Ball> {
     start.chain(births).collect()
 }
 
-fn widest<M>(emitter: &Emitter<M>) -> f32 {
+fn widest<S, M>(emitter: &Emitter<S, M>) -> f32 {
     emitter.radius.mean + emitter.radius.half_width.abs()
 }
 

@@ -5,12 +5,14 @@
 //! position-based dynamics with one iteration for each of many small steps (Macklin, Müller and Chentanez, "XPBD",
 //! MIG 2016; Macklin et al., "Small Steps in Physics Simulation", SCA 2019).
 
+mod attach;
 mod bodies;
 mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
 
+pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
 pub(crate) use bodies::{SHIFTED, TOUCHING};
 pub use contacts::Contacts;
