@@ -16,6 +16,7 @@ extern crate std;
 
 mod cloth;
 mod collide;
+mod composed;
 pub mod constrain;
 mod curve;
 mod custom;
@@ -35,6 +36,7 @@ pub mod math;
 mod measure;
 mod memory;
 pub mod motion;
+mod named;
 mod observe;
 mod particles;
 pub mod rays;
