@@ -1,10 +1,10 @@
 //! `pointmass render`: steps a scene and draws it.
 
-use crate::draw::{Renderer, Sink};
+use crate::draw::{Moving, Renderer, Sink, Stage};
 use crate::formats::{PictureFormat, named};
 use crate::outcome::{Failure, Outcome};
 use crate::progress::Progress;
-use crate::stage::{Cast, moves, stage};
+use crate::stage::{Cast, Seen, moves, pictures, stage};
 use crate::world::{Settings, World};
 use pointmass::Time;
 use std::path::PathBuf;
@@ -40,8 +40,10 @@ pub(crate) fn render(args: &Render) -> Outcome {
 
     world.warn_of_steps(frame_time / substeps as f64, world.duration);
 
+    let pictures = pictures(&world.file, &args.world.scene)?;
     let renderer = |world: &World| {
         let stage = stage(&world.file, &world.model, args.show_sources, world.system.time());
+        let stage = Stage { pictures: pictures.clone(), ..stage };
         Renderer::new(&stage, args.size.0, args.size.1)
     };
     // What stands still is brought before the lens but once.
@@ -57,13 +59,14 @@ pub(crate) fn render(args: &Render) -> Outcome {
             }
         }
         // Every picture remembers where things were in the one before, drawn or not.
-        let dots = cast.dots(&world.system, &world.model.scene());
+        let Seen { dots, billboards } = cast.see(&world.system, &world.model.scene());
         if frame == frames || !sink.keeps_only_last() {
             if moves {
                 seen = renderer(&world);
             }
-            sink.push(&seen.frame(&dots, &Cast::segments(&world.system, &world.model.scene())))
-                .map_err(Failure::new)?;
+            let segments = Cast::segments(&world.system, &world.model.scene());
+            let moving = Moving { dots: &dots, billboards: &billboards, segments: &segments };
+            sink.push(&seen.frame(&moving)).map_err(Failure::new)?;
         }
     }
     progress.finish();

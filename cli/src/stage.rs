@@ -1,13 +1,16 @@
 //! A scene as the renderer sees it: scenery, and what moves.
 
-use crate::draw::{self, Dot, Line, Piece, Segment, Stage, Surface, shapes};
+use crate::draw::{self, Billboard, Dot, Flipbook, Line, Piece, Segment, Stage, Surface, shapes};
+use crate::outcome::{Failure, Outcome};
 use glam::Vec3;
-use pointmass::draw::{Appearance, appearance};
+use pointmass::draw::{Appearance, Sprite, View, appearance, sprite};
+use pointmass::material::Blend;
 use pointmass::motion::Script;
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
 use pointmass::{Heap, Scene, System, Time};
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The scenery as it stands at an instant, and sources and sinks if they are to be seen.
@@ -47,6 +50,13 @@ pub(crate) struct Cast {
     before: HashMap<u32, Vec3>,
     /// The diameter of points whose material has none \[m\].
     size: f32,
+    view: View,
+}
+
+/// The particles in a frame: those that have a picture, and those that have none.
+pub(crate) struct Seen {
+    pub(crate) dots: Vec<Dot>,
+    pub(crate) billboards: Vec<Billboard>,
 }
 
 impl Cast {
@@ -55,15 +65,19 @@ impl Cast {
         let bounds = bounds(file, model);
         let camera = camera(file.camera.as_ref(), bounds);
         let width = 2.0 * (bounds.center() - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
-        Self { before: HashMap::new(), size: DOT * width }
+        Self { before: HashMap::new(), size: DOT * width, view: View { eye: camera.eye, up: camera.up } }
     }
 
     /// The particles as they are now.
-    pub(crate) fn dots(&mut self, system: &System<Heap>, scene: &Scene<'_>) -> Vec<Dot> {
+    pub(crate) fn see(&mut self, system: &System<Heap>, scene: &Scene<'_>) -> Seen {
         let (particles, state) = (system.particles(), system.state(scene));
         let mut now = HashMap::with_capacity(particles.serial.len());
-        let mut dots = Vec::with_capacity(particles.serial.len());
+        let (mut dots, mut billboards) = (Vec::new(), Vec::new());
         for (row, (&position, &serial)) in particles.position.iter().zip(particles.serial).enumerate() {
+            if let Some(sprite) = sprite(&state, row, &self.view) {
+                billboards.push(billboard(&sprite));
+                continue;
+            }
             let Some(Appearance { diameter, scale, solid, color, glow, .. }) = appearance(&state, row) else {
                 continue;
             };
@@ -77,7 +91,7 @@ impl Cast {
             now.insert(serial, position);
         }
         self.before = now;
-        dots
+        Seen { dots, billboards }
     }
 
     /// The springs as they are now.
@@ -86,6 +100,31 @@ impl Cast {
         let position = system.particles().position;
         springs.ends().map(|[a, b]| Segment { a: position[a], b: position[b], color: [170, 170, 180, 255] }).collect()
     }
+}
+
+fn billboard(sprite: &Sprite) -> Billboard {
+    let Sprite { center, right, up, color, material, frame, blend } = *sprite;
+    Billboard { center, right, up, color, picture: usize::from(material), frame, blend }
+}
+
+/// The pictures of particles, by the numbers of their materials; `path` is the scene's.
+pub(crate) fn pictures(file: &SceneFile, path: &Path) -> Outcome<Arc<[Flipbook]>> {
+    let picture = |(i, material): (usize, &Material)| {
+        let Some(sprite) = &material.sprite else { return Ok(Flipbook::default()) };
+        if let Some(book) = Flipbook::named(&sprite.picture) {
+            return Ok(book);
+        }
+        let from = path.parent().unwrap_or(Path::new("")).join(&sprite.picture);
+        let refuse = |why: String| Failure::new(format!("{}: materials[{i}].sprite.picture: {why}", from.display()));
+        let picture = image::open(&from).map_err(|error| refuse(error.to_string()))?.into_rgba8();
+        let [columns, rows] = sprite.grid;
+        if picture.width() < columns.into() || picture.height() < rows.into() {
+            let (width, height) = picture.dimensions();
+            return Err(refuse(format!("has {width} x {height} pixels, too few for {columns} x {rows} frames")));
+        }
+        Ok(Flipbook::new(&picture, sprite.grid, sprite.blend == Blend::Premultiplied))
+    };
+    file.materials.iter().enumerate().map(picture).collect()
 }
 
 /// Whether some of the scenery moves.

@@ -152,7 +152,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    const fn still(value: f32) -> Self {
+    pub(crate) const fn still(value: f32) -> Self {
         Self { from: value, powers: [0.0; 3], share: 0.0, width: 1.0 }
     }
 

@@ -1,7 +1,11 @@
 //! The looks of particles: the same to whatever draws them.
 
+mod sprite;
+
+pub use sprite::{Sprite, View, back_to_front, sprite, sprites};
+
 use crate::force::State;
-use crate::material::{Age, Life, Property, Varying, life_of};
+use crate::material::{Age, Life, Property, SpriteMaterial, Varying, life_of};
 use crate::math::{max, min};
 use crate::particles::{Color, WHITE};
 use crate::time::Time;
@@ -21,6 +25,8 @@ pub struct Appearance {
     pub glow: f32,
     /// The angle by which its picture is turned anticlockwise \[rad\].
     pub rotation: f32,
+    /// The frame of its picture's flipbook, from 0.
+    pub frame: u16,
 }
 
 /// The share of a life in which those fade of whose opacity nothing is said.
@@ -65,12 +71,24 @@ pub fn appearance(state: &State<'_>, row: usize) -> Option<Appearance> {
         color: [tinted(red, 1), tinted(green, 2), tinted(blue, 3), faded(alpha, opacity)],
         glow: value(life.glow, Property::Glow).unwrap_or(own.glow),
         rotation: value(life.rotation, Property::Rotation).unwrap_or(0.0),
+        frame: own.sprite.map_or(0, |sprite| frame(&sprite, age)),
     })
 }
 
 /// The opacity at an age of those who die of it.
 fn fading(dies: Time, age: Age) -> f32 {
     if dies == Time::NEVER { 1.0 } else { min((1.0 - age.life) * (1.0 / FADING), 1.0) }
+}
+
+/// The frame of a flipbook at an age.
+fn frame(sprite: &SpriteMaterial, age: Age) -> u16 {
+    let count = sprite.frames.max(1);
+    if sprite.rate > 0.0 {
+        // The casts round down and saturate.
+        ((age.seconds * sprite.rate) as u32 % u32::from(count)) as u16
+    } else {
+        ((age.life * f32::from(count)) as u16).min(count - 1)
+    }
 }
 
 /// A channel times a factor, rounded.

@@ -60,8 +60,53 @@ pub struct Material<'a> {
     pub size: f32,
     /// How they are drawn, from 0, a lit ball, to 1, a glow.
     pub glow: f32,
+    /// The picture they are drawn with; none: a ball or a glow.
+    pub sprite: Option<SpriteMaterial>,
     /// Their lives, as curves.
     pub life: Life<'a>,
+}
+
+/// How particles are drawn with a picture: a flipbook of one frame or several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpriteMaterial {
+    /// Frames that the picture has, at least 1.
+    pub frames: u16,
+    /// Frames a second of a particle's age, again from the first after the last; zero: all of them once over its life.
+    pub rate: f32,
+    /// How it is laid over what is behind it.
+    pub blend: Blend,
+    /// The way it faces.
+    pub facing: Facing,
+}
+
+/// How a picture is laid over what is behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Blend {
+    /// It covers by its opacity, the farthest first.
+    #[default]
+    Alpha,
+    /// The same, its colours having been multiplied by the opacity before: what has light and no opacity adds light.
+    Premultiplied,
+    /// Its light is added, in any order.
+    Additive,
+    /// It covers altogether where its opacity is a half or more, and nothing elsewhere.
+    Opaque,
+}
+
+/// The way a picture faces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Facing {
+    /// Toward the eye.
+    #[default]
+    Camera,
+    /// Toward the eye as far as it can while its top points along the velocity.
+    Velocity,
+    /// A way of its own: it turns by its rotation about an axis that is random and stays as it is, as a leaf tumbles.
+    Free,
 }
 
 /// The life of particles: a property without a curve stays as it is.
@@ -99,6 +144,9 @@ pub(crate) enum Property {
     Drag,
     Mass,
     Buoyancy,
+    /// The axis of what faces a way of its own, by two words.
+    AxisHeight,
+    AxisAngle,
 }
 
 impl Property {
@@ -122,7 +170,7 @@ impl<'a> Material<'a> {
             mass: None,
             buoyancy: None,
         };
-        Self { contact, size: 0.0, glow: 0.0, life }
+        Self { contact, size: 0.0, glow: 0.0, sprite: None, life }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Materials over life: what physics makes of them, against closed forms; how particles look, whatever the steps; scene files.
 
-use pointmass::draw::{Appearance, appearance};
-use pointmass::material::{Curve, Life, Over, Varying};
+use pointmass::draw::{Appearance, Sprite, View, appearance, sprites};
+use pointmass::material::{Blend, Curve, Facing, Life, Over, SpriteMaterial, Varying};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::{
     ContactMaterial, Drag, Emitter, Gravity, Ledger, Material, Method, Particle, QuadraticDrag, Scene, Time, Varied,
@@ -219,8 +219,15 @@ fn looks_follow_their_curves_and_nothing_else() {
         assert_eq!(seen.color, [150, 50, 10, 255]);
         assert!((seen.glow - 0.5).abs() < 1e-6 && seen.rotation.abs() < 1e-6, "{seen:?}");
         let seen = look(&Scene { materials: &of_its_own, ..scene }, 1.0, steps).expect("it lives");
-        let as_it_is =
-            Appearance { diameter: 1.0, scale: 1.0, solid: true, color: [200, 100, 40, 255], glow: 0.7, rotation: 0.0 };
+        let as_it_is = Appearance {
+            diameter: 1.0,
+            scale: 1.0,
+            solid: true,
+            color: [200, 100, 40, 255],
+            glow: 0.7,
+            rotation: 0.0,
+            frame: 0,
+        };
         assert_eq!(seen, as_it_is);
     }
 }
@@ -288,4 +295,53 @@ fn files_say_lives_in_three_ways_and_what_is_wrong_with_them_is_told() {
         let error = file(life).expect_err(life).to_string();
         assert!(error.contains(told), "{life}: {error}");
     }
+}
+
+#[test]
+fn a_flipbook_shows_the_frame_of_its_rate_or_all_over_its_life() {
+    let frames = |frames, rate| SpriteMaterial { frames, rate, blend: Blend::Alpha, facing: Facing::Camera };
+    for (sprite, over) in
+        [(frames(6, 7.5), false), (frames(12, 0.0), true), (frames(1, 100.0), false), (frames(0, 0.0), true)]
+    {
+        let materials = [Material { size: 0.1, sprite: Some(sprite), ..Material::of(ContactMaterial::default()) }];
+        let start = [Particle { lifetime: 4.0, material: Some(0), ..Particle::REST }];
+        let scene = Scene { start: &start, materials: &materials, ..Scene::EMPTY };
+        for at in [0.0f32, 0.1, 0.25, 0.75, 1.875, 2.5, 3.3, 3.99] {
+            let count = f32::from(sprite.frames.max(1));
+            let exact = if over { (at / 4.0 * count).floor() } else { (at * sprite.rate).floor() % count };
+            assert_eq!(look(&scene, at, 3).map(|look| f32::from(look.frame)), Some(exact), "{sprite:?} at {at}");
+        }
+    }
+}
+
+#[test]
+fn only_who_has_a_picture_and_can_be_seen_is_in_the_list_and_what_finds_no_room_is_counted() {
+    let sprite = SpriteMaterial { frames: 1, rate: 0.0, blend: Blend::Additive, facing: Facing::Velocity };
+    let plain = Material { size: 0.1, ..Material::of(ContactMaterial::default()) };
+    let materials = [plain, Material { sprite: Some(sprite), ..plain }];
+    let start: Vec<_> = (0..60u16)
+        .map(|i| Particle {
+            position: Vec3::new(f32::from(i), 0.0, 0.0),
+            velocity: Vec3::new(0.0, 1.0, f32::from(i) * 0.1),
+            material: (i % 3 > 0).then_some(i % 3 - 1),
+            color: Some([200, 100, 50, if i % 5 == 0 { 0 } else { 255 }]),
+            ..Particle::REST
+        })
+        .collect();
+    let scene = Scene { start: &start, materials: &materials, ..Scene::EMPTY };
+    let system = started(&scene, start.len(), 1);
+    let view = View { eye: Vec3::new(5.0, 3.0, 20.0), up: Vec3::Y };
+    let mut list = [Sprite::NONE; 100];
+    let (count, left_out) = sprites(&system.state(&scene), &view, &mut list);
+    assert_eq!((count, left_out), (16, 0));
+    for sprite in &list[..count] {
+        let row = sprite.center.x as usize;
+        assert!(row % 3 == 2 && row % 5 > 0 && sprite.material == 1 && sprite.blend == Blend::Additive);
+        // Its top is along the velocity as it is seen, and it faces the eye as far as it can.
+        let toward = (view.eye - sprite.center).normalize();
+        let seen = start[row].velocity.reject_from(toward).normalize();
+        assert!((sprite.up.normalize() - seen).length() < 1e-5 && (sprite.up.length() - 0.05).abs() < 1e-6);
+        assert!(sprite.right.cross(sprite.up).normalize().dot(toward) > 1.0 - 1e-5);
+    }
+    assert_eq!(sprites(&system.state(&scene), &view, &mut list[..7]), (7, 9));
 }

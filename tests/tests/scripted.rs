@@ -2,7 +2,7 @@
 
 use pointmass::emit::Emit;
 use pointmass::force::Friction;
-use pointmass::motion::{Key, Motion, Script};
+use pointmass::motion::{Frame, Key, Motion, Script};
 use pointmass::shape::{Aabb, Cuboid, Line, Moving};
 use pointmass::{
     Attach, ContactMaterial, Distance, Emitter, Gravity, Method, Particle, Scene, Spread, Spring, Time, Varied, Vec3,
@@ -166,11 +166,25 @@ fn births_lie_where_the_emitter_is_at_their_instants_and_take_its_velocity_along
 }
 
 #[test]
-fn scenery_by_keys_does_what_the_same_drift_does() {
+fn scenery_by_keys_does_what_a_script_of_ones_own_does() {
     let slab = || Cuboid { min: Vec3::new(-1.0, -0.2, -1.0), max: Vec3::new(1.0, 0.0, 1.0) };
     let bounds = Aabb { min: slab().min, max: slab().max };
     let rise = Vec3::new(0.25, 0.5, 0.0);
     let keys = [Key::default(), Key { time: 4.0, place: rise * 4.0, rotation: Vec3::ZERO }];
+    /// From rest to rest by a cubic.
+    struct Lift(Vec3);
+    impl Script for Lift {
+        fn frame(&self, at: Time) -> Frame {
+            let s = (at.seconds() * 0.25).min(1.0);
+            Frame {
+                place: self.0 * (s * s * (3.0 - 2.0 * s)),
+                velocity: self.0 * (6.0 * s * (1.0 - s) * 0.25),
+                acceleration: self.0 * ((6.0 - 12.0 * s) * 0.0625),
+                bend: 6.0 * 0.0625 * self.0.length(),
+                ..Frame::STILL
+            }
+        }
+    }
     let start: Vec<Particle> = [0.0f32, 0.05]
         .into_iter()
         .map(|radius| Particle { position: Vec3::new(0.1, 1.0, -0.2), radius, elasticity: 0.8, ..Particle::REST })
@@ -178,8 +192,8 @@ fn scenery_by_keys_does_what_the_same_drift_does() {
     let materials = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
     for method in Method::ALL {
         let by_keys = Moving::new(slab(), &bounds, Motion::with_keys(keys, 0.0));
-        let by_drift = Moving::new(slab(), &bounds, Motion { drift: rise, ..Motion::STILL });
-        let ends = [&by_keys as &dyn pointmass::shape::Collider, &by_drift].map(|colliders| {
+        let by_script = Moving::new(slab(), &bounds, Lift(rise * 4.0));
+        let ends = [&by_keys as &dyn pointmass::shape::Collider, &by_script].map(|colliders| {
             let scene = Scene {
                 start: &start,
                 forces: &Gravity::EARTH,

@@ -20,12 +20,40 @@ pub(super) struct Canvas<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Pixel {
     color: Vec3,
-    light: Vec3,
+    light: Light,
+}
+
+/// Light in whole numbers of 2⁻²⁰, so that sums of it do not depend on the order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Light([u32; 3]);
+
+impl Light {
+    const ONE: f32 = 1_048_576.0;
+
+    /// Casts send what is below zero, or not a number, to zero; sums stop at 4095.
+    fn add(&mut self, light: Vec3) {
+        for (sum, more) in self.0.iter_mut().zip((light * Self::ONE + 0.5).to_array()) {
+            *sum = sum.saturating_add(more as u32);
+        }
+    }
+
+    fn get(self) -> Vec3 {
+        Vec3::from(self.0.map(|sum| sum as f32)) * (1.0 / Self::ONE)
+    }
+
+    /// What is left of it behind something of an opacity.
+    fn behind(&mut self, opacity: f32) {
+        if self.0 != [0; 3] {
+            let left = self.get() * (1.0 - opacity);
+            self.0 = [0; 3];
+            self.add(left);
+        }
+    }
 }
 
 impl<'a> Canvas<'a> {
     pub(super) fn new(backdrop: &'a Backdrop, width: usize, height: usize) -> Self {
-        let blank = |&color: &Vec3| Pixel { color, light: Vec3::ZERO };
+        let blank = |&color: &Vec3| Pixel { color, light: Light::default() };
         let pixels = backdrop.colors.iter().map(blank).collect();
         Self { width, height, depths: &backdrop.depths, pixels }
     }
@@ -51,7 +79,19 @@ impl<'a> Canvas<'a> {
     pub(super) fn cover(&mut self, pixel: usize, color: Vec3, opacity: f32) {
         let pixel = &mut self.pixels[pixel];
         pixel.color = pixel.color.lerp(color, opacity);
-        pixel.light *= 1.0 - opacity;
+        pixel.light.behind(opacity);
+    }
+
+    /// Lays over a pixel what has been multiplied by its opacity.
+    pub(super) fn over(&mut self, pixel: usize, color: Vec3, opacity: f32) {
+        let pixel = &mut self.pixels[pixel];
+        pixel.color = pixel.color * (1.0 - opacity) + color;
+        pixel.light.behind(opacity);
+    }
+
+    /// Adds light to a pixel, to the same sum in any order.
+    pub(super) fn add(&mut self, pixel: usize, light: Vec3) {
+        self.pixels[pixel].light.add(light);
     }
 
     /// Sheds light on a pixel. What is bright already cannot show light; there the same amount of
@@ -60,7 +100,7 @@ impl<'a> Canvas<'a> {
         let pixel = &mut self.pixels[pixel];
         let bright = (luminance(pixel.color) * strength).min(1.0);
         pixel.color = pixel.color.lerp(color, bright);
-        pixel.light += strength * color;
+        pixel.light.add(strength * color);
     }
 
     /// Lets a surface return some more or less of the light that falls on it.
@@ -74,7 +114,7 @@ impl<'a> Canvas<'a> {
         for y in 0..self.height {
             let shine = bloom.row(y);
             for (x, pixel) in self.pixels[y * self.width..][..self.width].iter().enumerate() {
-                let light = pixel.light + shine.as_ref().map_or(Vec3::ZERO, |shine| shine(x));
+                let light = pixel.light.get() + shine.as_ref().map_or(Vec3::ZERO, |shine| shine(x));
                 bytes.extend(codec.encode(expose(pixel.color, light), grain(x, y)));
             }
         }

@@ -4,7 +4,6 @@ use super::brush::Stroke;
 use super::camera::Lens;
 use super::canvas::Canvas;
 use super::rays::{Hit, Rays};
-use super::sprite::Sprite;
 use glam::{Mat2, Vec2, Vec3};
 
 /// How high above the ground a dot still has a shadow, in radii.
@@ -22,20 +21,31 @@ const LIGHT_WIDTH: f32 = 2.2;
 /// How much light a glowing dot sheds on the ground.
 const LIGHT: f32 = 0.5;
 
-/// Paints what a dot does to the ground under it.
-pub(super) fn paint(sprite: &Sprite, rays: &Rays, up: Vec3, lens: &Lens, canvas: &mut Canvas) {
-    let reach = HEIGHT * sprite.reach;
-    // A dot on the ground may well be a little under it.
-    let from = sprite.place + sprite.reach * up;
-    let Some(hit) = rays.first(from, -up, reach) else { return };
-    let height = (hit.distance / sprite.reach - 1.0).max(0.0);
-    let strength = 1.0 - hit.distance / reach;
-    let strength = strength * strength * sprite.opacity;
-    let ground = from - hit.distance * up;
-    let width = sprite.reach * (WIDTH + WIDENING * height);
+/// Something above the ground.
+pub(super) struct Caster {
+    /// Its middle, in view coordinates, and half its size in the world.
+    pub(super) place: Vec3,
+    pub(super) reach: f32,
+    pub(super) opacity: f32,
+    /// The share of it that is light.
+    pub(super) glow: f32,
+    pub(super) color: Vec3,
+}
 
-    let shadow = DARKNESS * strength * (1.0 - sprite.glow);
-    let light = LIGHT * strength * sprite.glow;
+/// Paints what something does to the ground under it.
+pub(super) fn paint(caster: &Caster, rays: &Rays, up: Vec3, lens: &Lens, canvas: &mut Canvas) {
+    let reach = HEIGHT * caster.reach;
+    // A dot on the ground may well be a little under it.
+    let from = caster.place + caster.reach * up;
+    let Some(hit) = rays.first(from, -up, reach) else { return };
+    let height = (hit.distance / caster.reach - 1.0).max(0.0);
+    let strength = 1.0 - hit.distance / reach;
+    let strength = strength * strength * caster.opacity;
+    let ground = from - hit.distance * up;
+    let width = caster.reach * (WIDTH + WIDENING * height);
+
+    let shadow = DARKNESS * strength * (1.0 - caster.glow);
+    let light = LIGHT * strength * caster.glow;
     if shadow > 0.02 {
         let Some(spot) = Spot::new(ground, &hit, width, lens) else { return };
         spot.each_pixel(canvas, |canvas, pixel, share| {
@@ -45,7 +55,7 @@ pub(super) fn paint(sprite: &Sprite, rays: &Rays, up: Vec3, lens: &Lens, canvas:
     if light > 0.02 {
         let Some(spot) = Spot::new(ground, &hit, LIGHT_WIDTH * width, lens) else { return };
         spot.each_pixel(canvas, |canvas, pixel, share| {
-            canvas.tint(pixel, 1.0 + light * share * sprite.color);
+            canvas.tint(pixel, 1.0 + light * share * caster.color);
         });
     }
 }

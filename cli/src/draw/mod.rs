@@ -5,8 +5,8 @@
 //! 1. Describe the unmoving part of the scene as a [`Stage`]: a [`Camera`], some [`Light`]s, and
 //!    [`Piece`]s made of [`Surface`]s ([`shapes`] makes the usual ones).
 //! 2. Hand it to [`Renderer::new`], which draws it once, carefully, with antialiasing and shadows.
-//! 3. For every frame call [`Renderer::frame`] with the moving [`Dot`]s and [`Segment`]s, and give
-//!    the picture to a [`Sink`], which writes a GIF, a PNG or a numbered sequence.
+//! 3. For every frame call [`Renderer::frame`] with what moves ([`Moving`]), and give the
+//!    picture to a [`Sink`], which writes a GIF, a PNG or a numbered sequence.
 //!
 //! Colours are written as people write them in scene files and see them on a screen (sRGB, 0 to 1
 //! or 0 to 255). They are decoded on the way in, and all arithmetic happens in linear light.
@@ -15,6 +15,7 @@
 //! Anything with a coordinate that is not finite is left out of the picture.
 
 mod backdrop;
+mod billboard;
 mod bloom;
 mod brush;
 mod camera;
@@ -24,6 +25,7 @@ mod color;
 mod contact;
 mod lamp;
 mod model;
+mod picture;
 mod raster;
 mod rays;
 mod render;
@@ -39,7 +41,8 @@ mod surface;
 mod tests;
 
 pub use camera::Camera;
+pub use picture::Flipbook;
 pub use render::Renderer;
 pub use sink::Sink;
-pub use stage::{Dot, Light, Line, Material, Piece, Segment, Stage};
+pub use stage::{Billboard, Dot, Light, Line, Material, Moving, Piece, Segment, Stage};
 pub use surface::Surface;

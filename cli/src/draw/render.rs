@@ -1,11 +1,13 @@
 //! The renderer: the backdrop once, then the moving things for each frame.
 
 use super::backdrop::Backdrop;
+use super::billboard::Placed;
 use super::bloom::Bloom;
 use super::camera::Lens;
 use super::canvas::Canvas;
 use super::clip::Frustum;
 use super::color::Codec;
+use super::contact::{self, Caster};
 use super::lamp::Lamp;
 use super::model::Model;
 use super::rays::Rays;
@@ -13,9 +15,11 @@ use super::segments::Thread;
 use super::shade::Shader;
 use super::sky::Sky;
 use super::sprite::Sprite;
-use super::{Dot, Segment, Stage, contact};
+use super::{Flipbook, Moving, Stage};
 use glam::Vec3;
 use image::RgbImage;
+use pointmass::material::Blend;
+use std::sync::Arc;
 
 /// Draws pictures of one stage.
 #[derive(Debug)]
@@ -28,11 +32,13 @@ pub struct Renderer {
     backdrop: Backdrop,
     /// The direction of the world's +y, in view coordinates.
     up: Vec3,
+    pictures: Arc<[Flipbook]>,
 }
 
 /// Something to paint, at its depth.
-enum Mover {
+enum Mover<'a> {
     Sprite(Sprite),
+    Billboard(Placed<'a>),
     Thread(Thread),
 }
 
@@ -46,24 +52,24 @@ impl Renderer {
         let up = lens.turn.y_axis;
         let sky = Sky::new(stage.background, lens.height);
         let backdrop = Backdrop::new(&lens, &model, &Shader { sky, lamps: &lamps, rays: &rays, up });
-        Self { lens, frustum: Frustum::new(&lens), codec: Codec::new(), lamps, rays, backdrop, up }
+        let pictures = stage.pictures.clone();
+        Self { lens, frustum: Frustum::new(&lens), codec: Codec::new(), lamps, rays, backdrop, up, pictures }
     }
 
     /// Draws a frame.
-    pub fn frame(&self, dots: &[Dot], segments: &[Segment]) -> RgbImage {
+    pub fn frame(&self, moving: &Moving<'_>) -> RgbImage {
         let (width, height) = (self.lens.width, self.lens.height);
         let mut canvas = Canvas::new(&self.backdrop, width, height);
         let mut bloom = Bloom::new(width, height);
 
-        let movers = self.back_to_front(dots, segments);
-        for mover in &movers {
-            if let Mover::Sprite(sprite) = mover {
-                contact::paint(sprite, &self.rays, self.up, &self.lens, &mut canvas);
-            }
+        let movers = self.back_to_front(moving);
+        for caster in movers.iter().filter_map(Mover::caster) {
+            contact::paint(&caster, &self.rays, self.up, &self.lens, &mut canvas);
         }
         for mover in &movers {
             match mover {
                 Mover::Sprite(sprite) => sprite.paint(&mut canvas, &mut bloom, &self.lamps),
+                Mover::Billboard(board) => board.paint(&mut canvas),
                 Mover::Thread(thread) => thread.paint(&mut canvas),
             }
         }
@@ -72,22 +78,43 @@ impl Renderer {
     }
 
     /// What can be seen of the moving things, the farthest first.
-    fn back_to_front(&self, dots: &[Dot], segments: &[Segment]) -> Vec<Mover> {
-        let Self { lens, frustum, codec, .. } = self;
-        let sprites = dots.iter().filter_map(|dot| Sprite::new(dot, lens, frustum, codec));
-        let threads = segments.iter().filter_map(|line| Thread::new(line, lens, frustum, codec));
-        let mut movers: Vec<_> = threads.map(Mover::Thread).chain(sprites.map(Mover::Sprite)).collect();
+    fn back_to_front(&self, moving: &Moving<'_>) -> Vec<Mover<'_>> {
+        let Self { lens, frustum, codec, pictures, .. } = self;
+        let sprites = moving.dots.iter().filter_map(|dot| Sprite::new(dot, lens, frustum, codec));
+        let boards = moving.billboards.iter().filter_map(|board| Placed::new(board, pictures, lens, codec));
+        let threads = moving.segments.iter().filter_map(|line| Thread::new(line, lens, frustum, codec));
+        let threads = threads.map(Mover::Thread);
+        let mut movers: Vec<_> =
+            threads.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect();
         // Stable, so that things at one depth keep their order and pictures do not flicker.
         movers.sort_by(|a, b| b.depth().total_cmp(&a.depth()));
         movers
     }
 }
 
-impl Mover {
+impl Mover<'_> {
     fn depth(&self) -> f32 {
         match self {
             Self::Sprite(sprite) => sprite.depth,
+            Self::Billboard(board) => board.depth,
             Self::Thread(thread) => thread.depth,
+        }
+    }
+
+    /// What it does to the ground under it: lines nothing.
+    fn caster(&self) -> Option<Caster> {
+        match self {
+            Self::Sprite(sprite) => {
+                let Sprite { place, reach, opacity, glow, color, .. } = *sprite;
+                Some(Caster { place, reach, opacity, glow, color })
+            }
+            Self::Billboard(board) => {
+                let glow = f32::from(u8::from(board.blend == Blend::Additive));
+                // A picture covers about half of its square.
+                let Placed { place, reach, opacity, color, .. } = *board;
+                Some(Caster { place, reach, opacity: 0.5 * opacity, glow, color })
+            }
+            Self::Thread(_) => None,
         }
     }
 }

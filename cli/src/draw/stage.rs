@@ -1,7 +1,9 @@
 //! What there is to draw, in plain types.
 
-use super::{Camera, Surface};
+use super::{Camera, Flipbook, Surface};
 use glam::Vec3;
+use pointmass::material::Blend;
+use std::sync::Arc;
 
 /// Everything that stands still during a rendering.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +20,8 @@ pub struct Stage {
     pub pieces: Vec<Piece>,
     /// The thin things.
     pub lines: Vec<Line>,
+    /// The pictures of billboards.
+    pub pictures: Arc<[Flipbook]>,
 }
 
 /// A surface and what it is made of.
@@ -127,6 +131,36 @@ pub struct Dot {
     pub glow: f32,
     /// Whether it is a ball of that very size, which lies on what it touches; others may be half in it.
     pub solid: bool,
+}
+
+/// A moving picture that stands in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Billboard {
+    /// Its middle.
+    pub center: Vec3,
+    /// The way from there to the middle of its right side.
+    pub right: Vec3,
+    /// The way from there to the middle of its top.
+    pub up: Vec3,
+    /// Red, green, blue (sRGB) and opacity, by which its picture is multiplied.
+    pub color: [u8; 4],
+    /// Its picture's number on the stage.
+    pub picture: usize,
+    /// The frame of that.
+    pub frame: u16,
+    /// How it is laid over what is behind it.
+    pub blend: Blend,
+}
+
+/// All that moves, in a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Moving<'a> {
+    /// Particles as balls and glows.
+    pub dots: &'a [Dot],
+    /// Particles as pictures.
+    pub billboards: &'a [Billboard],
+    /// What joins them.
+    pub segments: &'a [Segment],
 }
 
 /// A moving line, such as a spring.

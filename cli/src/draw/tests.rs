@@ -3,6 +3,7 @@
 use super::*;
 use glam::Vec3;
 use image::RgbImage;
+use pointmass::material::Blend;
 
 const WIDTH: u32 = 160;
 const HEIGHT: u32 = 120;
@@ -27,7 +28,7 @@ fn dot(position: Vec3, [red, green, blue]: [u8; 3]) -> Dot {
 }
 
 fn frame(stage: &Stage, dots: &[Dot], segments: &[Segment]) -> RgbImage {
-    Renderer::new(stage, WIDTH, HEIGHT).frame(dots, segments)
+    Renderer::new(stage, WIDTH, HEIGHT).frame(&Moving { dots, segments, ..Moving::default() })
 }
 
 fn middle(image: &RgbImage) -> [u8; 3] {
@@ -187,7 +188,110 @@ fn pictures_repeat_to_the_byte_and_have_any_size() {
     let dots = [Dot { glow: 0.7, ..dot(Vec3::NEG_Z, [200, 100, 50]) }];
     assert_eq!(frame(&stage, &dots, &[]), frame(&stage, &dots, &[]));
     for (width, height) in [(0, 0), (0, 5), (5, 0), (1, 1), (3, 500), (500, 3)] {
-        let image = Renderer::new(&stage, width, height).frame(&dots, &[]);
+        let image = Renderer::new(&stage, width, height).frame(&Moving { dots: &dots, ..Moving::default() });
         assert_eq!(image.dimensions(), (width, height));
     }
+}
+
+/// A stage whose only picture is one colour all over.
+fn plain(color: [u8; 4]) -> Stage {
+    let picture = image::RgbaImage::from_pixel(8, 8, image::Rgba(color));
+    Stage { pictures: [Flipbook::new(&picture, [1, 1], false)].into(), ..stage(vec![]) }
+}
+
+fn board(center: Vec3, half: f32, color: [u8; 4], blend: Blend) -> Billboard {
+    Billboard { center, right: Vec3::X * half, up: Vec3::Y * half, color, picture: 0, frame: 0, blend }
+}
+
+fn boards(stage: &Stage, billboards: &[Billboard]) -> RgbImage {
+    Renderer::new(stage, WIDTH, HEIGHT).frame(&Moving { billboards, ..Moving::default() })
+}
+
+/// From a byte of a picture to linear light.
+fn linear(byte: u8) -> f64 {
+    f64::from(color::decode(Vec3::splat(f32::from(byte) / 255.0)).x)
+}
+
+/// The opposite.
+fn encoded(light: f64) -> f64 {
+    255.0 * if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[test]
+fn billboards_cover_what_geometry_has_them_cover() {
+    let stage = plain([255; 4]);
+    let (focal, empty) = (0.5 * f64::from(WIDTH) / f64::from(stage.camera.xfov.tan()), boards(&stage, &[]));
+    for (place, half, turn) in
+        [(Vec3::NEG_Z * 4.0, 0.3, 0.0), (Vec3::new(0.2, -0.3, -5.0), 0.4, 0.6), (Vec3::new(-0.4, 0.1, -3.0), 0.15, 2.0)]
+    {
+        for blend in [Blend::Alpha, Blend::Premultiplied, Blend::Opaque] {
+            let turned = glam::Mat3::from_rotation_z(turn);
+            let one = Billboard {
+                right: turned * Vec3::X * half,
+                up: turned * Vec3::Y * half,
+                ..board(place, half, [255, 0, 0, 255], blend)
+            };
+            let image = boards(&stage, &[one]);
+            let share = |(pixel, behind): (&image::Rgb<u8>, &image::Rgb<u8>)| {
+                let (seen, behind) = (linear(pixel[0]), linear(behind[0]));
+                (seen - behind) / (1.0 - behind)
+            };
+            let seen: f64 = image.pixels().zip(empty.pixels()).map(share).sum();
+            let exact = (2.0 * f64::from(half) * focal / f64::from(-place.z)).powi(2);
+            assert!((seen / exact - 1.0).abs() < 0.01, "{place} {blend:?}: {seen} of {exact} pixels");
+        }
+    }
+}
+
+#[test]
+fn a_thousand_layers_of_alpha_are_their_exact_composite() {
+    let stage = Stage { background: Vec3::new(0.0, 0.0, 0.5), ..plain([255, 255, 255, 255]) };
+    for opacity in [1u8, 3, 40] {
+        let layers: Vec<_> = (0..1000)
+            .map(|i| board(Vec3::NEG_Z * (9.0 - 0.005 * i as f32), 2.0, [255, 0, 0, opacity], Blend::Alpha))
+            .collect();
+        let empty = middle(&boards(&stage, &[]));
+        let [red, _, blue] = middle(&boards(&stage, &layers));
+        let left = (1.0 - f64::from(opacity) / 255.0).powi(1000);
+        let exact = [1.0 - left * (1.0 - linear(empty[0])), left * linear(empty[2])].map(encoded);
+        for (byte, exact) in [red, blue].into_iter().zip(exact) {
+            assert!((f64::from(byte) - exact).abs() <= 1.0, "{opacity}: {byte}, not {exact}");
+        }
+    }
+}
+
+#[test]
+fn light_adds_up_to_the_same_in_any_order() {
+    let stage = plain([255, 255, 255, 200]);
+    // All of one depth, so that the order in which they come is the order in which they are painted.
+    let mut lights: Vec<_> = (0..500u32)
+        .map(|i| {
+            let place = Vec3::new((i % 7) as f32 * 0.03, (i % 11) as f32 * 0.02, -3.0);
+            board(
+                place,
+                0.05 + (i % 13) as f32 * 0.01,
+                [(i % 256) as u8, 30, (i * 7 % 256) as u8, (i % 90) as u8],
+                Blend::Additive,
+            )
+        })
+        .collect();
+    let first = boards(&stage, &lights);
+    lights.reverse();
+    assert_eq!(boards(&stage, &lights), first);
+    lights.sort_by_key(|light| light.color);
+    assert_eq!(boards(&stage, &lights), first);
+    assert!(middle(&first)[0] > 50);
+}
+
+#[test]
+fn billboards_are_soft_where_they_stand_in_a_wall() {
+    let wall = wall(3.0, glowing(Vec3::ZERO, 1.0));
+    let stage = Stage { pieces: vec![wall], ..plain([255; 4]) };
+    let seen = |distance: f32| {
+        let half = 0.2;
+        linear(middle(&boards(&stage, &[board(Vec3::NEG_Z * distance, half, [255, 0, 0, 255], Blend::Alpha)]))[0])
+    };
+    let all: Vec<f64> = (0..=40).map(|i| seen(2.5 + 0.025 * i as f32)).collect();
+    assert!(all[0] > 0.99 && all[40] < 0.01 && (all[20] - 0.5).abs() < 0.05, "{all:?}");
+    assert!(all.windows(2).all(|two| two[1] <= two[0] + 0.01 && two[0] - two[1] < 0.1), "{all:?}");
 }

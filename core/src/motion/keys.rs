@@ -13,7 +13,8 @@ use alloc::vec::Vec;
 /// An instant of a scripted motion: where something is then, and how it is turned.
 ///
 /// Between two keys each number goes along a cubic that passes neither of them (Steffen, "A simple method for monotonic interpolation
-/// in one dimension", A&A 239, 1990), so that velocities have no jumps. Before the first and after the last it stands still.
+/// in one dimension", A&A 239, 1990). Before the first and after the last key it stands still. Velocities have no jumps: it starts and
+/// stops softly, and where the last key lies at the end of a period, goes on as it began.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -118,15 +119,13 @@ pub(super) fn led(free: &Frame, keys: &[Key], period: f32, at: Time) -> Frame {
     let next = keys.partition_point(|key| Time::from_seconds(key.time) <= at);
     let since = next.checked_sub(1).map_or(0.0, |from| (at - Time::from_seconds(keys[from].time)).seconds());
     // A cubic between two keys hangs on one more on either side.
-    let first = next.saturating_sub(2);
-    let near = &keys[first..keys.len().min(next + 2)];
-    let mut numbers = [[0.0; 7]; 4];
-    for (numbers, key) in numbers.iter_mut().zip(near) {
-        let (Vec3 { x, y, z }, turned) = (key.place, key.rotation);
-        *numbers = [key.time, x, y, z, turned.x, turned.y, turned.z];
-    }
-    let curve = Curve { keys: &numbers[..near.len()], over: Over::Seconds, smooth: true };
-    let piece = |number| curve.piece(number, next - first, since);
+    let numbers: [_; 4] = core::array::from_fn(|place| numbers(keys, period, next + place));
+    let curve = Curve { keys: &numbers, over: Over::Seconds, smooth: true };
+    let piece = |number| match next {
+        0 => Piece::still(numbers[2][number]),
+        _ if next == keys.len() => Piece::still(numbers[1][number]),
+        _ => curve.piece(number, 2, since),
+    };
     let [place, angles] = [1, 4].map(|number| Led::of([number, number + 1, number + 2].map(piece)));
     let turning = Turning::of(&angles);
     let spin = turning.turn * free.spin;
@@ -139,6 +138,29 @@ pub(super) fn led(free: &Frame, keys: &[Key], period: f32, at: Time) -> Frame {
         spin: turning.spin + spin,
         spin_up: turning.spin_up + turning.spin.cross(spin),
         bend: free.bend + place.most,
+    }
+}
+
+/// The numbers of the key two before the `number`-th, and of those that there would be beyond the ends: what stands still before the
+/// first and after the last, or what goes on as it began.
+fn numbers(keys: &[Key], period: f32, number: usize) -> [f32; 7] {
+    let row = |key: &Key| {
+        let (Vec3 { x, y, z }, turned) = (key.place, key.rotation);
+        [key.time, x, y, z, turned.x, turned.y, turned.z]
+    };
+    let (first, last) = (row(&keys[0]), row(&keys[keys.len() - 1]));
+    let goes_on = period > 0.0 && last[0] - first[0] >= period;
+    // What it gains in each round.
+    let moved = |numbers: [f32; 7], rounds: f32| core::array::from_fn(|i| numbers[i] + rounds * (last[i] - first[i]));
+    let later = |numbers: [f32; 7], by: f32| {
+        [numbers[0] + by, numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6]]
+    };
+    match number.checked_sub(2) {
+        Some(number) if number < keys.len() => row(&keys[number]),
+        Some(number) if goes_on => moved(row(&keys[(number + 1) % keys.len()]), 1.0),
+        Some(_) => later(last, 1.0),
+        None if goes_on => moved(row(&keys[keys.len() - 2]), -1.0),
+        None => later(first, -1.0),
     }
 }
 
@@ -236,6 +258,31 @@ mod tests {
                 assert_eq!(motion.frame(late), motion.frame(Time::from_seconds(at)), "{round} rounds later");
             }
         }
+    }
+
+    #[test]
+    fn velocities_have_no_jumps_at_keys_nor_where_a_period_begins_again() {
+        let around =
+            [0.0, 0.75, 1.5, 3.0].map(|time| Key { time, rotation: Vec3::Y * (TAU * time / 3.0), ..Key::default() });
+        let swings = [(0.0, 1.0), (1.0, 2.0), (2.0, -1.0), (3.0, 1.0)];
+        let swings = swings.map(|(time, x)| Key { time, place: Vec3::X * x, ..Key::default() });
+        for (keys, period) in [(KEYS, 0.0), (KEYS, 2.75), (KEYS, 2.5), (around, 3.0), (swings, 3.0), (swings, 0.0)] {
+            let motion = Motion::with_keys(keys, period);
+            let h = Time::from_ticks(1 << 14);
+            for at in keys.iter().map(|key| key.time).chain([period]).filter(|&at| at > 0.0) {
+                // Where it is put back at a period's end, it may start anew.
+                if at == period && keys[0].place != keys[3].place {
+                    continue;
+                }
+                let at = Time::from_seconds(at);
+                let [before, after] = [at - h, at + h].map(|at| motion.frame(at));
+                assert!(length(before.velocity - after.velocity) < 1e-2, "{at:?} of {period}");
+                assert!(length(before.spin - after.spin) < 1e-2, "{at:?} of {period}");
+            }
+        }
+        // Evenly spread keys of a whole turn turn evenly.
+        let frame = Motion::with_keys(around, 3.0).frame(Time::from_seconds(2.9));
+        assert!((frame.spin.y - TAU / 3.0).abs() < 1e-4, "{}", frame.spin);
     }
 
     #[test]

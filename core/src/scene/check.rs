@@ -318,6 +318,9 @@ impl SceneFile {
                 let message = format!("{meant}, not {number}");
                 return Err(SceneError::value(format!("materials[{i}].contact.{name}"), message));
             }
+            if let Some(sprite) = &m.sprite {
+                sprite.check(&format!("materials[{i}].sprite"))?;
+            }
             m.life.check(&format!("materials[{i}].life"))?;
         }
         for (i, light) in self.lights.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::SceneError;
 use super::numbers::finite;
-use crate::material::{self, ContactMaterial, Curve, Life, MaterialList, Over, Varying};
+use crate::material::{self, Blend, ContactMaterial, Curve, Facing, Life, MaterialList, Over, SpriteMaterial, Varying};
 use crate::particles::Color;
 use alloc::format;
 use alloc::string::String;
@@ -34,6 +34,9 @@ pub struct Material {
     pub size: f32,
     /// How particles are drawn, from 0, a lit ball, to 1, a glow.
     pub glow: f32,
+    /// The picture particles are drawn with; without one they are balls or glows.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub sprite: Option<Sprite>,
     /// How it feels to what touches it.
     #[cfg_attr(feature = "serde", serde(alias = "grip", skip_serializing_if = "ContactMaterial::is_plain"))]
     pub contact: ContactMaterial,
@@ -55,9 +58,63 @@ impl Default for Material {
             texture: None,
             size: 0.0,
             glow: 0.0,
+            sprite: None,
             contact: ContactMaterial::default(),
             life: LifeBuf::default(),
         }
+    }
+}
+
+/// The picture that particles are drawn with.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sprite {
+    /// One of "puff", "flame", "spark", "leaf", "petal", "drop", "snowflake", "ring", or a .png, relative to the scene's file.
+    pub picture: String,
+    /// The columns and rows of frames that the picture is a flipbook of, read line by line.
+    #[cfg_attr(feature = "serde", serde(default = "single"))]
+    pub grid: [u8; 2],
+    /// Frames a second of a particle's age, again from the first after the last; zero: all of them once over its life.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub rate: f32,
+    /// How it is laid over what is behind it.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub blend: Blend,
+    /// The way it faces.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub facing: Facing,
+}
+
+#[cfg(feature = "serde")]
+fn single() -> [u8; 2] {
+    [1, 1]
+}
+
+impl Sprite {
+    /// The pictures that need no file.
+    pub const PICTURES: [&'static str; 8] = ["puff", "flame", "spark", "leaf", "petal", "drop", "snowflake", "ring"];
+
+    fn lend(&self) -> SpriteMaterial {
+        let [columns, rows] = self.grid.map(u16::from);
+        SpriteMaterial { frames: (columns * rows).max(1), rate: self.rate, blend: self.blend, facing: self.facing }
+    }
+
+    /// Whether it can be used; `at` is where it stands.
+    pub(super) fn check(&self, at: &str) -> Result<(), SceneError> {
+        let is_file = self.picture.len() > 4 && self.picture.to_ascii_lowercase().ends_with(".png");
+        if !is_file && !Self::PICTURES.contains(&&*self.picture) {
+            let message = format!("'{}' is none: one of {}, or a .png", self.picture, Self::PICTURES.join(", "));
+            return Err(SceneError::value(format!("{at}.picture"), message));
+        }
+        if self.grid.contains(&0) || !is_file && self.grid != [1, 1] {
+            let message = "has to be columns and rows of a .png, each at least 1";
+            return Err(SceneError::value(format!("{at}.grid"), message));
+        }
+        if !(0.0..f32::INFINITY).contains(&self.rate) {
+            return Err(SceneError::value(format!("{at}.rate"), "must not be below zero, in frames a second"));
+        }
+        Ok(())
     }
 }
 
@@ -247,8 +304,9 @@ impl MaterialList for Vec<Material> {
         self.len()
     }
     fn get(&self, number: usize) -> Option<material::Material<'_>> {
-        let Material { contact, size, glow, life, .. } = self.as_slice().get(number)?;
-        Some(material::Material { contact: *contact, size: *size, glow: *glow, life: life.lend() })
+        let Material { contact, size, glow, sprite, life, .. } = self.as_slice().get(number)?;
+        let sprite = sprite.as_ref().map(Sprite::lend);
+        Some(material::Material { contact: *contact, size: *size, glow: *glow, sprite, life: life.lend() })
     }
     fn contact(&self, number: usize) -> ContactMaterial {
         self.as_slice().get(number).map(|material| material.contact).unwrap_or_default()

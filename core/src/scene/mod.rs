@@ -43,7 +43,7 @@ pub use error::SceneError;
 pub use file::{Camera, Group, Item, Light, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
-pub use material::{CurveBuf, LifeBuf, Material, Sides, VaryingBuf};
+pub use material::{CurveBuf, LifeBuf, Material, Sides, Sprite, VaryingBuf};
 #[cfg(feature = "alloc")]
 pub use model::{Forces, Model, Solid};
 #[cfg(feature = "alloc")]

@@ -133,6 +133,9 @@ impl Writer {
         if material.size != 0.0 || material.glow != 0.0 {
             self.warn("materials: .scn has neither size nor glow of particles; they are left out");
         }
+        if material.sprite.is_some() {
+            self.warn("materials: .scn has no sprites; they are left out");
+        }
         if !material.life.is_plain() {
             self.warn("materials: .scn has no lives of particles; they are left out");
         }

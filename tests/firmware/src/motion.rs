@@ -3,12 +3,12 @@
 //! A charged sheet on springs, one that swings and some that break, and a balloon, moved through every force by every
 //! method; then the same once more of a material that changes over their lives, and how they look.
 
-use pointmass::draw::appearance;
+use pointmass::draw::{Sprite, View, appearance, back_to_front, sprites};
 use pointmass::force::{
-    Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, Viscosity, Vortex, Wind,
+    Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, State, Viscosity, Vortex, Wind,
 };
 use pointmass::index::InGrid;
-use pointmass::material::{Curve, Life, Over, Varying};
+use pointmass::material::{Blend, Curve, Facing, Life, Over, SpriteMaterial, Varying};
 use pointmass::{
     ClothSprings, ContactMaterial, Drag, Fnv, Force, Gravity, Inline, Material, Method, Midpoint, Particle, Scene,
     Sheet, Spring, SpringParams, System, Time, Vec3,
@@ -45,7 +45,12 @@ const fn plain(keys: &'static [[f32; 2]], smooth: bool) -> Option<Varying<'stati
     Some(Varying { from: curve(keys, smooth), to: None })
 }
 
-/// A material of which everything changes.
+/// A material of which everything changes, drawn with a flipbook that faces so.
+const fn aging(facing: Facing) -> Material<'static> {
+    let sprite = SpriteMaterial { frames: 6, rate: 7.5, blend: Blend::Alpha, facing };
+    Material { size: 0.1, sprite: Some(sprite), ..AGING }
+}
+
 const AGING: Material<'static> = Material {
     life: Life {
         size: plain(&[[0.0, 0.1], [0.2, 1.0], [0.7, 0.6]], true),
@@ -110,9 +115,9 @@ fn grow_old(
     system: &mut System<Inline<PARTICLES, 0, SPRINGS, COLUMNS, KEPT>>,
 ) -> u64 {
     for (number, particle) in start.iter_mut().enumerate() {
-        (particle.material, particle.lifetime) = (Some(0), 1.5 + 0.125 * (number % 5) as f32);
+        (particle.material, particle.lifetime) = (Some(number as u16 % 3), 1.5 + 0.125 * (number % 5) as f32);
     }
-    let (forces, materials) = (&forces(), &[AGING]);
+    let (forces, materials) = (&forces(), &[Facing::Free, Facing::Velocity, Facing::Camera].map(aging));
     let base = Scene { start, forces, integrator: &Midpoint, index: &InGrid, materials, ..Scene::EMPTY };
     let scene = Scene { springs: &springs, ..base };
     let mut hash = Fnv::new();
@@ -124,10 +129,25 @@ fn grow_old(
                 [look.diameter, look.scale, look.glow, look.rotation].into_iter().for_each(|x| hash.float(x));
                 hash.bytes(&look.color);
             }
+            hash_sprites(&state, &mut hash);
         }
     }
     hash.long(system.hash());
     hash.finish()
+}
+
+/// The list of sprites, the farthest first.
+fn hash_sprites(state: &State<'_>, hash: &mut Fnv) {
+    let view = View { eye: Vec3::new(1.0, 2.0, 3.0), up: Vec3::Y };
+    let (mut drawn, mut order, mut scratch) = ([Sprite::NONE; PARTICLES], [0; PARTICLES], [0; PARTICLES]);
+    let (count, left_out) = sprites(state, &view, &mut drawn);
+    hash.long(left_out as u64);
+    for &index in back_to_front(&drawn[..count], &view, &mut order, &mut scratch) {
+        let Sprite { center, right, up, color, frame, .. } = drawn[index as usize];
+        [center, right, up].into_iter().flat_map(|v| v.to_array()).for_each(|x| hash.float(x));
+        hash.bytes(&color);
+        hash.long(frame.into());
+    }
 }
 
 fn forces() -> impl Force {
