@@ -1,5 +1,5 @@
-//! What is near among 100,000 points, uniform in a unit cube: each structure, and with the feature `peers` each of the
-//! other libraries, with a radius that has 30 neighbours.
+//! Queries for the near among 100,000 points, uniform in a unit cube: each structure, and with the feature `peers` each
+//! of the other libraries, with a radius that has 30 neighbours.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

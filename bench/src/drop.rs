@@ -79,7 +79,7 @@ impl Drop {
         [ContactMaterial { elasticity: None, friction: Some(friction) }]
     }
 
-    /// What one ball loses in falling from its height to the floor, on average \[J\].
+    /// The energy that one ball loses in falling from its height to the floor, on average \[J\].
     #[must_use]
     pub fn energy(&self) -> f64 {
         let height: f64 = self.positions.iter().map(|x| f64::from(x.y)).sum::<f64>() / self.positions.len() as f64;

@@ -1,4 +1,4 @@
-//! What the benches measure with: systems of a given size, and a hand-written loop to hold them against.
+//! Means of the benches to measure with: systems of a given size, and a hand-written loop to hold them against.
 
 pub mod drop;
 

@@ -1,4 +1,4 @@
-//! Who is near whom in a cloud of points, by each of the structures: the same answers, at different costs.
+//! Neighbours in a cloud of points, by each of the structures: the same answers, at different costs.
 //!
 //! `cargo run --release -p pointmass --example point_cloud`
 

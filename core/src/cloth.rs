@@ -5,7 +5,7 @@ use crate::math::length;
 use crate::particles::Particle;
 use glam::Vec3;
 
-/// What one kind of a mesh's springs is like.
+/// The stiffness and damping of one kind of a mesh's springs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -52,7 +52,7 @@ pub struct Sheet {
     /// From there to the next corner, along which numbers grow first, and to that on the other side \[m\].
     #[cfg_attr(feature = "schema", schemars(with = "[[f32; 3]; 2]"))]
     pub sides: [Vec3; 2],
-    /// How many cells there are along each.
+    /// The number of cells along each.
     pub cells: [u32; 2],
 }
 

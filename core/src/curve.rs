@@ -16,8 +16,8 @@ pub enum Over {
 
 /// A curve through keys. Each is an instant, then its values: one of a plain curve, three of a colour.
 ///
-/// Before the first key and after the last it stays as it is there; of keys at one instant the last counts from it on. Keys are in
-/// the order of their instants; without any a curve is 1. The cost is a search among them.
+/// It is constant up to the first key and from the last key on; of keys at one instant the last counts from it on. Keys
+/// are in the order of their instants; without any a curve is 1. The cost is a search among them.
 ///
 /// ```
 /// use pointmass::material::{Curve, Over};
@@ -31,8 +31,8 @@ pub struct Curve<'a, const N: usize = 2> {
     pub keys: &'a [[f32; N]],
     /// The measure of the instants.
     pub over: Over,
-    /// Whether it goes from key to key along cubics instead of straight: through all keys, nowhere beyond two that follow each other
-    /// (Steffen, "A simple method for monotonic interpolation in one dimension", A&A 239, 1990).
+    /// True if it goes from key to key along cubics instead of straight: through all keys, nowhere beyond two that
+    /// follow each other (Steffen, "A simple method for monotonic interpolation in one dimension", A&A 239, 1990).
     pub smooth: bool,
 }
 
@@ -145,7 +145,7 @@ impl<'a, const N: usize> Curve<'a, N> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     from: f32,
-    /// What the share, its square and its cube are multiplied by.
+    /// The factors of the share, its square and its cube.
     powers: [f32; 3],
     share: f32,
     width: f32,
@@ -239,7 +239,7 @@ mod tests {
             assert!(i < 2 || (slope - before.1).abs() < 0.5, "{t}: {} to {slope}", before.1);
             before = (value, slope);
         }
-        // What is a parabola between its ends is met between the keys as well.
+        // Keys on a parabola have the parabola between them as well.
         let parabola: [[f32; 2]; 9] = core::array::from_fn(|i| [i as f32, (i * i) as f32]);
         for t in [1.5f32, 3.25, 6.75] {
             assert!((curve(&parabola, true).at(t) - t * t).abs() < 0.02, "{t}");

@@ -35,13 +35,14 @@ pub trait CustomList: Sync {
     /// One of them.
     fn get(&self, number: usize) -> Option<Custom<'_>>;
 
-    /// What a step calls for them; nothing, where it is known that there never are any.
+    /// The function that a step calls for them; none, where it is known that there never are any.
     fn code(&self) -> Option<CustomCode> {
         Some(CustomCode::ALL)
     }
 }
 
-/// What columns of a user's own call for in a step: a function, so that a program which has none does not carry it about.
+/// The function that columns of a user's own call for in a step. A program without such columns does not carry it
+/// about.
 #[derive(Clone, Copy, Debug)]
 pub struct CustomCode {
     /// Gives rows from one on what they begin with.

@@ -1,4 +1,4 @@
-//! What happened in a step, one record each, for whoever wants to hear, count or draw it.
+//! Records of what happened in a step, one each, for whoever wants to hear, count or draw it.
 
 use crate::observe::{Attention, Impact, LifeEvent, Observer};
 use crate::particles::Id;
@@ -15,15 +15,15 @@ pub struct Event {
     pub id: Option<Id>,
     /// Where its middle was \[m\].
     pub place: Vec3,
-    /// Of a hit the normal of what was hit, toward the particle; else zero.
+    /// The normal of what was hit, toward the particle; zero for events other than hits.
     pub normal: Vec3,
-    /// Of a hit the speed at which the two came together; else its own \[m/s\].
+    /// The speed at which the two came together in a hit; else its own \[m/s\].
     pub speed: f32,
     /// When; of a death the end of its last step.
     pub time: Time,
 }
 
-/// What an event is.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EventKind {
     /// A particle hit a collider.
@@ -41,8 +41,8 @@ pub enum EventKind {
 
 /// Records of a step in memory that its owner lends: watch with it by [`System::step_observed`](crate::System), read, clear.
 ///
-/// What finds no room is counted, never overwritten. Contacts held by position are recorded where they begin, faster than what
-/// rests meets in a step; those by force are no hits, and there are no records of them.
+/// Events that find no room are counted; nothing is overwritten. Contacts held by position are recorded where they
+/// begin, faster than what rests meets in a step; those by force are no hits, and there are no records of them.
 ///
 /// ```
 /// use pointmass::shape::Plane;
@@ -71,7 +71,7 @@ pub struct Events<'a> {
 }
 
 impl Event {
-    /// What empty memory is filled with.
+    /// The event that empty memory is filled with.
     pub const NOTHING: Self =
         Self { kind: EventKind::Hit, id: None, place: Vec3::ZERO, normal: Vec3::ZERO, speed: 0.0, time: Time::ZERO };
 }
@@ -88,7 +88,7 @@ impl<'a> Events<'a> {
         &self.room[..self.len]
     }
 
-    /// How many found no room.
+    /// The number of events that found no room.
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.lost

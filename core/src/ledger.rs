@@ -11,7 +11,7 @@ use std::vec::Vec;
 
 /// Keeps account of a system's energy while it is watched: hand it to [`System::step_observed`].
 ///
-/// What comes and goes by a cause is booked under it; what is left is the remainder, the error of the method and of
+/// Energy that comes and goes by a cause is booked under it; the rest is the remainder, the error of the method and of
 /// rounding. The work of a force is its power integrated over the step by Simpson's rule along the cubic through both
 /// ends, which is of order 4: where steps are so long that this errs, the remainder shows it. Every step costs about
 /// three evaluations of all energies and powers.
@@ -42,7 +42,7 @@ pub struct Ledger<'a> {
     /// The old, as they were when last seen on their way through the step, and the power of each force then.
     from: Snapshot,
     powers: Vec<Entry>,
-    /// What hits have taken since the last phase, friction, and the work of scenery that moves.
+    /// The energy that hits and friction have taken since the last phase, and the work of scenery that moves.
     struck: [f64; 3],
 }
 
@@ -69,8 +69,8 @@ pub struct Books {
     /// Lost by dry friction on colliders and, by [`Impulse`](crate::Impulse), of particles on each other: in hits and while
     /// they slide.
     pub friction: f64,
-    /// What constraints have taken and given, contacts by position among them: restitution, friction, and what they store while
-    /// they give way.
+    /// Taken and given by constraints, contacts by position among them: restitution, friction, and what they store
+    /// while they give way.
     pub constraints: f64,
     /// The work of scenery that moves on what it hits, lifts and drags along.
     pub scenery: f64,
@@ -149,13 +149,13 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// What has been booked so far.
+    /// The books so far.
     #[must_use]
     pub fn books(&self) -> &Books {
         &self.books
     }
 
-    /// What the energy has changed by since the last look. While a particle is beyond all numbers it is not looked at: that
+    /// The change of the energy since the last look. While a particle is beyond all numbers it is not looked at: that
     /// goes at the end of the step, and takes its energy with it.
     fn change(&mut self, state: &State<'_>) -> f64 {
         let now = energy(&self.scene, state);
@@ -305,13 +305,13 @@ impl Observer for Ledger<'_> {
         self.strike([restitution, friction, whole - restitution - friction]);
     }
 
-    /// What forces do not account for: along the surface friction, and in the world the surface's work as well.
+    /// Books what forces do not account for: along the surface friction, and in the world the surface's work as well.
     fn slid(&mut self, slide: &Sliding) {
         let mass = f64::from(slide.mass);
         let gained =
             |[pull, way, first, last]: [Vec3; 4]| mass * (0.5 * (square(last) - square(first)) - dot(pull, way));
         let friction = gained(slide.along);
-        // What it falls through to touch is given back, and was lost in the hit.
+        // The energy of its fall until it touches is given back: it was lost in the hit.
         let raised = -mass * dot(slide.world[0], slide.raised);
         self.strike([raised, friction, gained(slide.world) - friction]);
     }

@@ -25,13 +25,13 @@ pub struct ContactMaterial {
 }
 
 impl ContactMaterial {
-    /// Whether it says nothing.
+    /// Tells whether it says nothing.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether its numbers can be used: an elasticity from 0 to 1, coefficients of friction from 0 on.
+    /// Tells whether its numbers can be used: an elasticity from 0 to 1, coefficients of friction from 0 on.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.fault().is_none()
@@ -175,7 +175,7 @@ impl<'a> Material<'a> {
 }
 
 impl Life<'_> {
-    /// Whether drag or mass change.
+    /// Tells whether drag or mass change.
     fn ages(&self) -> bool {
         self.drag.is_some() || self.mass.is_some()
     }
@@ -183,7 +183,7 @@ impl Life<'_> {
 
 /// The materials of a scene, by their numbers. A slice of [`Material`]s, or of [`ContactMaterial`]s alone, is one.
 pub trait MaterialList: Sync {
-    /// How many there are.
+    /// The number of materials.
     fn count(&self) -> usize;
 
     /// One of them.
@@ -207,7 +207,7 @@ pub struct MaterialCode {
     pub(crate) kept: fn(&dyn MaterialList) -> usize,
     /// Sets drags and masses.
     pub(crate) age: fn(&dyn MaterialList, Ageing<'_>),
-    /// Whether anything floats.
+    /// Tells whether anything floats.
     pub(crate) floats: fn(&dyn MaterialList) -> bool,
     /// Takes from the weights of rows, under this gravity, what carries them.
     pub(crate) carry: fn(&dyn MaterialList, &Floating<'_>, Range<usize>, Vec3, &mut [Vec3]),
@@ -275,7 +275,7 @@ fn age(list: &dyn MaterialList, rows: Ageing<'_>) {
         if let Some(curve) = life.mass {
             let factor = curve.value(1, now, Property::Mass.between(key[row]));
             mass[row] = remembered(&mut own_mass[row], mass[row]) * if factor > 0.0 { factor } else { 1.0 };
-            // What is fixed stays so.
+            // A fixed particle stays so.
             if inverse_mass[row] != 0.0 {
                 inverse_mass[row] = 1.0 / mass[row];
             }
@@ -377,7 +377,7 @@ lists! {
     [] alloc::vec::Vec<ContactMaterial>;
 }
 
-/// What two things that touch do to each other.
+/// The elasticity and friction between two things that touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Mixed {
     pub(crate) elasticity: f32,
@@ -404,7 +404,7 @@ pub(crate) fn on_surface(
 /// Two particles with their elasticities and materials.
 pub(crate) fn of_two(materials: &dyn MaterialList, elasticity: [f32; 2], material: [Option<u16>; 2]) -> Mixed {
     let [a, b] = elasticity;
-    // Of two that are alike just theirs, to the bit. What is no number bounces nobody.
+    // Two that are alike keep just theirs, to the bit. An elasticity that is no number bounces nobody.
     let elasticity = if a == b { a } else { sqrt(max(a * b, 0.0)) };
     Mixed { elasticity, friction: friction(of(materials, material[0]), of(materials, material[1])) }
 }

@@ -40,7 +40,7 @@ pub(crate) fn minus(a: Vec3, b: Vec3) -> Vec3 {
     a - b
 }
 
-/// Whether all coordinates of a vector are zero.
+/// Tells whether all coordinates of a vector are zero.
 #[cfg_attr(target_os = "none", inline(never))]
 #[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]
@@ -56,7 +56,7 @@ pub fn length(v: Vec3) -> f32 {
     sqrt(dot(v, v))
 }
 
-/// What of a vector lies along a surface.
+/// The part of a vector that lies along a surface.
 #[cfg_attr(target_os = "none", inline(never))]
 #[cfg_attr(not(target_os = "none"), inline(always))]
 #[must_use]

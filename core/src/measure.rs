@@ -5,7 +5,7 @@ use crate::memory::Storage;
 use crate::scene::Scene;
 use crate::system::System;
 
-/// What a system amounts to, all its particles taken together.
+/// The energy and momentum of a system, all its particles taken together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Measures {
@@ -23,7 +23,7 @@ pub struct Measures {
 pub struct Energy {
     /// Σ m v² / 2.
     pub kinetic: f64,
-    /// Of all forces that have one, and of the springs.
+    /// The potential energy of all forces that have one, and of the springs.
     pub potential: f64,
 }
 

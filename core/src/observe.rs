@@ -35,8 +35,9 @@ pub trait Observer {
         let _ = (phase, state);
     }
 
-    /// What it wants to know of. A step in which no particle looks at another and nobody watches the phases takes them through all
-    /// of these a few at a time; and many at once, if nothing is to be told and the program has threads. To the same bits.
+    /// Tells what it wants to know of. A step in which no particle looks at another and nobody watches the phases takes
+    /// them through all of these a few at a time; and many at once, if nothing is to be told and the program has
+    /// threads. To the same bits.
     fn attention(&self) -> Attention {
         Attention::Phases
     }
@@ -85,12 +86,12 @@ impl Observer for () {
     }
 }
 
-/// What an observer wants to know of: each of these is more than the one before.
+/// The parts of a step that an observer wants to know of: each of these is more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Attention {
     /// Nothing at all.
     Nothing,
-    /// What happens to particles: all but [`Observer::after`].
+    /// The events of particles: all but [`Observer::after`].
     Events,
     /// The state after each phase as well.
     Phases,
@@ -155,7 +156,8 @@ pub struct Sliding {
     pub mass: f32,
     /// How far it has been set off from where it touched \[m\].
     pub raised: Vec3,
-    /// What forces give it \[m/s²\], how far it goes \[m\], and its velocities at the beginning and the end \[m/s\].
+    /// Its acceleration by forces \[m/s²\], the way it goes \[m\], and its velocities at the beginning and the end
+    /// \[m/s\].
     pub world: [Vec3; 4],
     /// The same along the surface, as seen from there.
     pub along: [Vec3; 4],

@@ -1,4 +1,4 @@
-//! What a particle is, and what it is called.
+//! A particle, and the id by which it is called.
 
 use crate::rows::are_finite;
 use glam::Vec3;
@@ -58,7 +58,8 @@ impl Particle {
         color: None,
     };
 
-    /// Whether every number of it can be used: finite, the radius not below zero, the mass above zero (or fixed and not below zero).
+    /// Tells whether every number of it can be used: finite, the radius not below zero, the mass above zero (or fixed
+    /// and not below zero).
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let finite = are_finite(&[self.position, self.velocity])
@@ -76,7 +77,7 @@ impl Default for Particle {
     }
 }
 
-/// What a particle is called for as long as it lives; never given again within 2³² births.
+/// The name of a particle as long as it lives; never given again within 2³² births.
 ///
 /// Ids order by slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -86,7 +87,8 @@ pub struct Id {
 }
 
 impl Id {
-    /// How many particles the system had taken in before it: unique over a run (of up to 2³² births), 0 for the first.
+    /// The number of particles that the system had taken in before it: unique over a run (of up to 2³² births), 0 for
+    /// the first.
     #[must_use]
     pub const fn serial(self) -> u32 {
         self.serial

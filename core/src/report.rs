@@ -1,9 +1,9 @@
-//! What a step did, counted: nothing that is bounded is bounded silently.
+//! Counts of what a step did: nothing that is bounded is bounded silently.
 
 use crate::math::max;
 use crate::reap::Cause;
 
-/// What happened in a step, or in all of them so far.
+/// Counts of what happened in a step, or in all of them so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Report {
@@ -23,11 +23,11 @@ pub struct Report {
     pub broken: u64,
     /// Times that a bound cut work short.
     pub caps: Caps,
-    /// What the integrator did.
+    /// The work of the integrator.
     pub effort: Effort,
 }
 
-/// What an integrator did. It is no part of the system's hash.
+/// The work of an integrator. It is no part of the system's hash.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Effort {
@@ -88,7 +88,7 @@ impl Effort {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Died {
-    /// Of age.
+    /// By age.
     pub lifetime: u64,
     /// By touching a sink.
     pub sink: u64,

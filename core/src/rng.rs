@@ -1,8 +1,8 @@
 //! Randomness as a function: a newborn's numbers are drawn from (seed, emitter, serial), never from a sequence.
 //!
-//! What happens elsewhere, in whatever order or on whatever thread, therefore never changes a particle. The
-//! generator is Threefry-2x32-20 (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011), which
-//! passes BigCrush and needs nothing but 32-bit additions, rotations and exclusive ors.
+//! Events elsewhere, in whatever order or on whatever thread, therefore never change a particle. The generator is
+//! Threefry-2x32-20 (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011), which passes BigCrush and
+//! needs nothing but 32-bit additions, rotations and exclusive ors.
 
 /// The random numbers of one newborn, each addressed by its place.
 #[derive(Clone, Copy, Debug)]

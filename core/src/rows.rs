@@ -7,7 +7,7 @@ use crate::lanes::{Eight, Kernel, not, widest};
 use crate::math::max;
 use glam::Vec3;
 
-/// Whether there may be vectors: chips without an operating system are spared the code, and work number by number.
+/// True if there may be vectors: chips without an operating system are spared the code, and work number by number.
 pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
 
 /// `out` = `base` + `h` × `rate`, row by row.
@@ -195,7 +195,8 @@ pub(crate) fn farthest_of_finite(column: &[Vec3], other: &[Vec3]) -> (f32, bool)
     (farthest, sum.iter().chain(x_rest).chain(v_rest).fold(0.0, |nought, x| nought + x * 0.0) == 0.0)
 }
 
-/// Whether every number is finite. The exponent of those that are not is all ones, so that one more carries into the sign.
+/// Tells whether every number is finite. The exponent of those that are not is all ones, so that one more carries into
+/// the sign.
 #[cfg_attr(target_os = "none", inline(never))]
 #[cfg_attr(not(target_os = "none"), inline)]
 pub(crate) fn are_finite(column: &[Vec3]) -> bool {

@@ -33,7 +33,7 @@ pub enum Limit {
     Unconditional,
 }
 
-/// What a method does to a linear system y' = A y in a step h.
+/// The effect of a method on a linear system y' = A y in a step h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scheme {
     /// y becomes R(hA) y, R being the polynomial with these coefficients, that of the power 0 first: explicit Runge-Kutta.
@@ -47,7 +47,7 @@ pub enum Scheme {
 }
 
 impl Method {
-    /// What it does to a linear system; of a method that chooses its own steps, what each of those does.
+    /// Its effect on a linear system; for a method that chooses its own steps, the effect of each of those.
     #[must_use]
     pub const fn scheme(self) -> Scheme {
         match self {
@@ -226,7 +226,7 @@ impl Limit {
         }
     }
 
-    /// Whether it admits a step \[s\].
+    /// Tells whether it admits a step \[s\].
     #[must_use]
     pub fn admits(self, step: f64) -> bool {
         match self {
@@ -237,7 +237,7 @@ impl Limit {
     }
 }
 
-/// What bounds the modes of a scene's springs whichever way they are turned: sums at each free particle, no eigenvalues.
+/// Bounds on the modes of a scene's springs, whichever way they are turned: sums at each free particle, no eigenvalues.
 ///
 /// In coordinates scaled by the roots of the masses, the matrix of the stiffnesses has at particle i the row sum
 /// Σ k (1/mᵢ + 1/√(mᵢ mⱼ)) over its springs at most, a fixed end counting as 1/mⱼ = 0, and no eigenvalue is larger than the
@@ -285,7 +285,7 @@ impl Poses {
             nodes[a].add(spring, first + across);
             nodes[b].add(spring, second + across);
         }
-        // What is fixed has no row.
+        // A fixed particle has no row.
         let free = nodes.into_iter().zip(particles).filter(|(_, particle)| !particle.fixed);
         Self { nodes: free.map(|(node, _)| node).collect() }
     }
@@ -318,7 +318,7 @@ impl Poses {
 impl Node {
     fn add(&mut self, spring: &Spring, inverse: f64) {
         let (ks, kd) = (f64::from(spring.ks), f64::from(spring.kd));
-        // What pushes away or adds energy bounds nothing, whatever else is there.
+        // A spring that pushes away or adds energy bounds nothing, whatever else is there.
         self.stiffness += if ks >= 0.0 { ks * inverse } else { f64::NAN };
         self.damping += if kd >= 0.0 { kd * inverse } else { f64::NAN };
         if ks != 0.0 || kd != 0.0 {

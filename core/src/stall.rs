@@ -11,17 +11,17 @@ const SHARE: f32 = 1.0 / 4096.0;
 /// Rows that are looked at together.
 const BLOCK: usize = 16;
 
-/// Whether any may, of particles none of whose coordinates is beyond `farthest` \[m\]: what moves at a speed that counts goes
-/// less than half the distance of two numbers, at most 2^-24 of the coordinate, in no step that is longer than
-/// that share of it at `SHARE`, and shorter than that at `NOTABLE`. Room of a factor of two is for rounding.
+/// Tells whether any particle may stall, if no coordinate is beyond `farthest` \[m\]: one that moves at a speed that
+/// counts goes less than half the distance of two numbers, at most 2^-24 of the coordinate, in no step that is longer
+/// than that share of it at `SHARE`, and shorter than that at `NOTABLE`. Room of a factor of two is for rounding.
 pub(crate) fn may_be(farthest: f32, h: f32) -> bool {
     const LEAST: f32 = 2.0 / (SHARE * 16_777_216.0);
     const FARTHEST: f32 = 0.5 * NOTABLE * 16_777_216.0;
     !(h > LEAST && farthest < FARTHEST * h)
 }
 
-/// How many of these particles stall in steps of `h` \[s\]: one of their coordinates would move at a notable speed and stays
-/// where it is, as the step's way is less than half the distance of two numbers there.
+/// Counts those of these particles that stall in steps of `h` \[s\]: one of their coordinates would move at a notable
+/// speed and stays where it is, as the step's way is less than half the distance of two numbers there.
 pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
     let mut stalled = 0;
     for (x, v) in position.chunks(BLOCK).zip(velocity.chunks(BLOCK)) {
@@ -33,16 +33,16 @@ pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
     stalled
 }
 
-/// Whether any of a block may stall: hardly ever does one, so whole blocks are passed by, in a loop that compilers make vectors
-/// of. Where there are none the loop is of no use.
+/// Tells whether any of a block may stall: hardly ever does one, so whole blocks are passed by, in a loop that
+/// compilers make vectors of. Where there are none the loop is of no use.
 #[inline(always)]
 fn may_hold_one(x: &[Vec3], v: &[Vec3], h: f32) -> bool {
     let any = |any: u32, (&x, &v): (&f32, &f32)| any | u32::from(may_be_swallowed(x, v, h));
     cfg!(target_os = "none") || flat(x).iter().zip(flat(v)).fold(0, any) > 0
 }
 
-/// Whether a coordinate moves, at a speed that counts, and is where it was after a step: without shortcuts, so that the loop
-/// has no branches.
+/// Tells whether a coordinate moves, at a speed that counts, and is where it was after a step: without shortcuts, so
+/// that the loop has no branches.
 #[inline(always)]
 fn may_be_swallowed(x: f32, v: f32, h: f32) -> bool {
     (x + v * h == x) & (v.abs() > min(x.abs() * SHARE, NOTABLE))
@@ -87,7 +87,7 @@ mod tests {
         }
     }
 
-    /// What is passed by unseen does not stall, up to the very edges of what is.
+    /// A particle that is passed by unseen does not stall, up to the very edges of what is passed by.
     #[test]
     fn nobody_stalls_where_nobody_may() {
         let (mut seen, mut passed) = (0, 0);

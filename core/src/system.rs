@@ -34,7 +34,7 @@ impl<B> System<B> {
         self.status.len
     }
 
-    /// Whether no particle is alive.
+    /// Tells whether no particle is alive.
     pub const fn is_empty(&self) -> bool {
         self.status.len == 0
     }
@@ -49,7 +49,7 @@ impl<B> System<B> {
         self.status.seed
     }
 
-    /// What happened since `start`.
+    /// The report of what happened since `start`.
     pub const fn totals(&self) -> &Report {
         &self.status.totals
     }
@@ -139,7 +139,7 @@ impl<B: Storage> System<B> {
         Some(Id { slot: *columns.slot.get(row)?, serial: *columns.serial.get(row)? })
     }
 
-    /// How many particles fit.
+    /// The number of particles that fit.
     pub fn capacity(&self) -> usize {
         self.memory.columns().capacity()
     }

@@ -44,7 +44,7 @@ impl Time {
     pub const fn frame(n: u64, per_second: u32) -> Self {
         let rate = if per_second == 0 { 1 } else { per_second as u64 };
         let number = ((n as u128) << 32) + rate as u128 / 2;
-        // Of a number that is as much as so many times 2⁶⁴ the quotient is beyond the last instant.
+        // A number of as much as `rate` times 2⁶⁴ has its quotient beyond the last instant.
         Self(if number >> 64 >= rate as u128 { u64::MAX } else { divide(number, rate).0 })
     }
 

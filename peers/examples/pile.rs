@@ -57,7 +57,7 @@ fn places(n: usize) -> Vec<[f32; 3]> {
     (0..n).map(place).collect()
 }
 
-/// What a piece of work takes \[ms\].
+/// The time that a piece of work takes \[ms\].
 fn timed(work: impl FnOnce()) -> f64 {
     let begun = Instant::now();
     work();

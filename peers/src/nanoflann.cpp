@@ -49,8 +49,8 @@ struct Index {
     }
 };
 
-// What a search by radius gives its points to. The library takes what is nearer than `worstDist`, so that is the next
-// number above the square of the radius.
+// The receiver of the points that a search by radius finds. The library takes what is nearer than `worstDist`, so that
+// is the next number above the square of the radius.
 template <class Take> struct Within {
     using DistanceType = float;
     float beyond;

@@ -5,7 +5,7 @@ use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBo
 /// Gravity \[m/s²\], along −y: what pointmass means by it.
 pub const GRAVITY: f32 = 9.80665;
 
-/// What is dropped, and into what: a box whose floor is at y = 0, open at the top.
+/// The balls that are dropped, and the box that they fall into: its floor is at y = 0, and it is open at the top.
 #[derive(Clone, Debug)]
 pub struct Drop {
     /// Where the balls' centres start \[m\], at rest.
@@ -22,11 +22,12 @@ pub struct Drop {
     pub half_width: f32,
     /// The step \[s\].
     pub dt: f32,
-    /// What rapier calls so \[m\]: 2 % of it is how far ahead it looks for contacts, and three times it a second is how fast it
-    /// parts what overlaps at the most. Its default of 1 is made for things of a metre: with balls of centimetres every ball has
-    /// dozens of contacts to be looked at. Less is faster and leaves deeper overlaps.
+    /// The length that rapier calls so \[m\]: 2 % of it is how far ahead it looks for contacts, and three times it a
+    /// second is how fast it parts what overlaps at the most. Its default of 1 is made for things of a metre: with
+    /// balls of centimetres every ball has dozens of contacts to be looked at. Less is faster and leaves deeper
+    /// overlaps.
     pub length_unit: f32,
-    /// Whether balls may turn; particles of pointmass have no orientation.
+    /// True if balls may turn; particles of pointmass have no orientation.
     pub turns: bool,
 }
 
@@ -67,7 +68,7 @@ impl Pile {
         self.world.step();
     }
 
-    /// Of all balls \[J\], their turning included.
+    /// The kinetic energy of all balls \[J\], their turning included.
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
         self.balls.iter().map(|&ball| f64::from(self.world.bodies[ball].kinetic_energy())).sum()

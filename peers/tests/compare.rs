@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::process::Command;
 
-/// What `pointmass-peers compare` says with these arguments, and the figures it writes.
+/// Returns what `pointmass-peers compare` says with these arguments, and the figures it writes.
 #[track_caller]
 fn compare(args: &str) -> (String, Value) {
     let folder = tempfile::tempdir().expect("a folder");

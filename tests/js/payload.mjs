@@ -1,4 +1,4 @@
-// What is run in every JavaScript engine: computes only, so that a page can import it as well as Node.
+// The part that is run in every JavaScript engine: computes only, so that a page can import it as well as Node.
 // `pointmass` is the package, initialised; `scenes` the texts of the hash scenes by name.
 export function run(pointmass, scenes) {
   const { World, Files, version } = pointmass;

@@ -1,4 +1,4 @@
-//! What the suites share: random numbers that owe nothing to the engine's, statistics, and runs.
+//! Parts that the suites share: random numbers that owe nothing to the engine's, statistics, and runs.
 
 pub mod busy;
 pub mod emitting;

@@ -6,7 +6,7 @@ use pointmass::{Mat3, Vec3};
 /// A closed mesh: each edge belongs to two triangles.
 #[derive(Clone, Debug)]
 pub struct Closed {
-    /// What it was made from.
+    /// The name of what it was made from.
     pub name: &'static str,
     /// Corners \[m\].
     pub vertices: Vec<Vec3>,

@@ -126,7 +126,7 @@ impl Oracle {
         self.sites().map(|(row, _)| row)
     }
 
-    /// How many rows there are, finite or not.
+    /// The number of rows, finite or not.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows.len()

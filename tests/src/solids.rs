@@ -7,7 +7,7 @@ use pointmass::{Mat3, Vec3};
 
 /// A closed convex solid.
 pub struct Solid {
-    /// What to call it in a report.
+    /// Its name in a report.
     pub name: String,
     /// Its surface.
     pub collider: Box<dyn Collider>,

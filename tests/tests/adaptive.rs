@@ -9,7 +9,7 @@ use pointmass::{
 };
 use pointmass_tests::{Law, follow, run, started};
 
-/// What one step of `dt` takes.
+/// Takes one step of `dt`; returns its report, and the system after it.
 fn one_step(scene: &Scene<'_>, dt: f64) -> (Report, System<Heap>) {
     let mut system = started(scene, 2, 0);
     let report = system.step(scene, Time::from_seconds_f64(dt));

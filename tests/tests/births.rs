@@ -1,4 +1,4 @@
-//! What births bring with them, how they fly, and how long they live.
+//! Births: what they bring with them, how they fly, and how long they live.
 
 use pointmass::emit::Burst;
 use pointmass::shape::{Disc, Line};

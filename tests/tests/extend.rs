@@ -305,7 +305,7 @@ fn a_collider() {
     assert_eq!((system.len(), system.totals().died.sink), (0, 5));
 }
 
-/// Who is above 1.5 m goes, and who was taken in as the first of seven.
+/// Takes those who are above 1.5 m, and those who were taken in as the first of seven.
 struct Doom;
 
 impl Reaper for Doom {
@@ -319,7 +319,7 @@ impl Reaper for Doom {
     }
 }
 
-/// Who has lived for as many tenths of a second as its own random word says goes of age.
+/// Takes those who have lived for as many tenths of a second as their own random word says, as of age.
 struct Tenths;
 
 impl Reaper for Tenths {
@@ -529,7 +529,7 @@ fn an_index() {
     }
 }
 
-/// What is told of a step.
+/// A record of what is told of a step.
 #[derive(Default)]
 struct Diary {
     phases: Vec<Phase>,

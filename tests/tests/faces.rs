@@ -147,7 +147,7 @@ fn the_short_way_has_the_bits_of_the_long_one() {
     assert!(scenes == 54 && hits > 30_000, "{hits}");
 }
 
-/// What a sink takes is taken wherever it is, over a ground as elsewhere.
+/// A sink takes what touches it wherever that is, over a ground as elsewhere.
 #[test]
 fn sinks_beside_a_face_take_who_touches_them() {
     let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -168,7 +168,7 @@ fn sinks_beside_a_face_take_who_touches_them() {
     assert!(systems[0].totals().died.sink > 0);
 }
 
-/// What is near one face of many things goes the short way, too.
+/// A path near one face of many things goes the short way, too.
 #[test]
 fn a_floor_among_other_things_has_the_same_bits() {
     let mut random = Random::new(77);

@@ -1,4 +1,4 @@
-//! What the firmware runs, on the host: the same hashes on every target.
+//! The programs that the firmware runs, on the host: the same hashes on every target.
 
 #[path = "../firmware/src/contacts.rs"]
 mod contacts;

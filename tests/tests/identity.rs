@@ -119,7 +119,7 @@ fn what_is_not_a_number_is_not_passed_on_by_springs() {
     not_passed_on(&[Spring::new([0, 1], 1.0, 1.0).damped(1.0)], &());
 }
 
-/// Of two sound particles and one that is not, the sound survive a step.
+/// Checks that two sound particles survive a step beside one that is not.
 fn not_passed_on(springs: &[Spring], forces: &dyn Force) {
     for x in [f32::NAN, f32::INFINITY] {
         let at = |x: f32| Particle { position: Vec3::X * x, ..Particle::REST };
@@ -245,7 +245,7 @@ fn the_hash_sees_every_column() {
         let (hash, done) = hash(Some(tamper));
         assert!(done && hash != plain, "{column}");
     }
-    // What is no part of the state is not seen.
+    // Changes of what is no part of the state are not seen.
     assert_eq!(hash(Some(|m| m.work.fill(Vec3::NAN))).0, plain);
     assert_eq!(hash(Some(|m| m.position[29] = if m.position.len() == 30 { m.position[29] } else { Vec3::X })).0, plain);
 }

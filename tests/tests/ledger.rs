@@ -249,7 +249,7 @@ fn what_scenery_lifts_and_drags_along_has_its_line() {
             ..Scene::EMPTY
         };
         let (books, share) = books(&scene, 1, 1.0 / 60.0);
-        // What it brings to rest at once is lost in the hit: half of what that takes.
+        // The energy of what it brings to rest at once is lost in the hit: half of what that takes.
         let sum = books.scenery + books.restitution + books.friction;
         assert!((books.friction - lost).abs() < 0.01 * gained, "{books:?}");
         let hit = if drift.y > 0.0 { -4.0 } else { 0.0 };

@@ -32,7 +32,7 @@ fn after(scene: &Scene<'_>, steps: u32) -> (Vec3, Vec3) {
     (system.particles().position[0], system.particles().velocity[0])
 }
 
-/// What a curve from 1 at birth to `last` at death comes to over the first half of a life of 4 s, summed over time.
+/// The sum over time, over the first half of a life of 4 s, of a curve from 1 at birth to `last` at death.
 fn half_of(last: f32) -> f32 {
     2.0 * (1.0 + 0.25 * (last - 1.0))
 }
@@ -81,7 +81,7 @@ fn what_loses_mass_falls_alike_and_is_braked_harder() {
         let speed = after(&scene, 480).1.x;
         assert!((speed - expected).abs() < 2e-3, "{}: {speed}, not {expected}", method.name());
     }
-    // What is fixed stays so.
+    // A fixed particle stays so.
     let scene = Scene {
         start: &[Particle { fixed: true, ..start[0] }],
         forces: &Gravity::EARTH,

@@ -11,7 +11,7 @@ use pointmass::{
 use pointmass_tests::emitting::{cuts, living, play, varied};
 use pointmass_tests::{CHI_99, Form, chi_squared, chi_squared_100, often, point, run, started};
 
-/// Who died, when and why.
+/// The deaths: who, when and why.
 #[derive(Default)]
 struct Deaths(Vec<(Id, Time, Cause)>);
 
@@ -35,7 +35,7 @@ fn shares(rate: f64, ends: &[f64]) -> Vec<f64> {
     before.zip(ends.iter().map(left).chain([0.0])).map(|(a, b)| a - b).collect()
 }
 
-/// How many die in each of the steps that end at `ends`; the last lives beyond.
+/// Counts those who die in each of the steps that end at `ends`; the last number is of those who live beyond.
 fn counts(scene: &Scene<'_>, capacity: usize, seed: u64, ends: &[f64]) -> Vec<u32> {
     let mut system = started(scene, capacity, seed);
     let mut step = |&end: &f64| system.step(scene, Time::from_seconds_f64(end) - system.time()).died.chance as u32;
@@ -123,7 +123,7 @@ fn what_is_put_in_by_hand_has_a_chance_of_its_own() {
         living(&system)
     };
     let slow = left(24);
-    // Of three times 200 there are e⁻¹, e⁻² and e⁻³ left, 110 in all, within four standard deviations; and ten newborn.
+    // There are e⁻¹, e⁻² and e⁻³ left of three times 200, 110 in all, within four standard deviations; and ten newborn.
     assert!((75..165).contains(&slow.len()), "{}", slow.len());
     assert!([60, 144].iter().all(|&fps| left(fps) == slow));
 }

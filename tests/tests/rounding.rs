@@ -4,7 +4,7 @@ use pointmass::shape::Plane;
 use pointmass::{Contacts, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{run, started};
 
-/// How many of `n` steps of `h` \[s\] rounding swallows of a particle that begins so.
+/// Counts the steps, of `n` of `h` \[s\], that rounding swallows of a particle that begins so.
 fn stalled(start: Particle, method: Method, h: f64, n: u32) -> u64 {
     let start = [start];
     let scene = Scene { start: &start, integrator: &method, ..Scene::EMPTY };

@@ -50,7 +50,7 @@ fn critical_damping_does_not_overshoot() {
                 let p = system.particles();
                 shortest = shortest.min((p.position[1] - p.position[0]).length());
             }
-            // What rounding may leave; the overshoot itself would be e^(−4π/3) = 1.5 % of 0.5 m.
+            // The bound is for rounding; the overshoot itself would be e^(−4π/3) = 1.5 % of 0.5 m.
             assert_eq!(shortest < 1.0 - 1e-5, overshoots, "{share} of critical, fixed {fixed}: {shortest}");
         }
     }

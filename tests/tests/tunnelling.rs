@@ -259,7 +259,7 @@ fn what_a_sink_takes_has_touched_it_and_nothing_passes() {
 
 #[test]
 fn surfaces_take_what_crosses_them_too() {
-    // Of open surfaces: a disc and a sheet take exactly what crosses them, by where a line in f64 crosses.
+    // Two open surfaces, a disc and a sheet, take exactly what crosses them, by where a line in f64 crosses.
     let disc = Disc { center: Vec3::new(0.2, 0.5, -0.1), normal: Vec3::new(1.0, 2.0, -3.0), radius: 1.0 };
     let plane = (f64s(disc.center), f64s(disc.normal));
     let mut random = Random::new(25);

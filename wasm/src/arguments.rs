@@ -1,4 +1,4 @@
-//! What JavaScript passes, checked: it may be anything.
+//! Arguments that JavaScript passes, checked: they may be anything.
 
 use crate::files::{Files, long};
 use js_sys::{BigInt, JSON, JsString};
@@ -47,7 +47,7 @@ pub(crate) fn files(files: &JsValue) -> Result<Files, JsError> {
     copy.ok_or_else(|| JsError::new("files have to be Files of this package that have not been freed"))
 }
 
-/// How many particles may live at once, if it is said.
+/// The number of particles that may live at once, if it is said.
 ///
 /// # Errors
 /// If it is no whole number, or too large.
@@ -94,7 +94,7 @@ pub(crate) fn seconds(what: &str, seconds: f64) -> Result<Time, JsError> {
     Err(JsError::new(&format!("{what} has to be given a finite number of seconds, zero or more, not {seconds}")))
 }
 
-/// What may stand for a whole number.
+/// A value where a whole number is expected.
 enum Whole {
     Absent,
     Number(f64),

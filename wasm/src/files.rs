@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 
-/// What a scene refers to by name: meshes, and texts it includes. Fill it before loading the scene.
+/// The files that a scene refers to by name: meshes, and texts it includes. Fill it before loading the scene.
 #[wasm_bindgen]
 #[derive(Clone, Debug, Default)]
 pub struct Files {
@@ -90,7 +90,7 @@ impl Files {
 }
 
 impl Files {
-    /// How many vertices and triangles a mesh has; none, if it is not there.
+    /// The number of vertices and triangles of a mesh, added; none, if it is not there.
     pub(crate) fn corners(&self, name: &str) -> usize {
         self.meshes.get(name).map_or(0, |mesh| mesh.vertices().len() + mesh.triangles().len())
     }

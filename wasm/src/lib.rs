@@ -130,7 +130,7 @@ impl World {
         self.system.len() as u32
     }
 
-    /// How many particles may live at once.
+    /// The number of particles that may live at once.
     #[wasm_bindgen(getter)]
     #[must_use]
     pub fn capacity(&self) -> u32 {
@@ -180,9 +180,9 @@ impl World {
         Uint8Array::from(colors.as_flattened())
     }
 
-    /// What else the living look like now, four numbers a particle: the diameter \[m\], zero for points, which take what suits the
-    /// picture; the factor that is in it, for points; from 0, a lit ball, to 1, a glow; and the angle by which a picture of it is
-    /// turned anticlockwise \[rad\]. A copy.
+    /// The rest of how the living look now, four numbers a particle: the diameter \[m\], zero for points, which take
+    /// what suits the picture; the factor that is in it, for points; from 0, a lit ball, to 1, a glow; and the angle by
+    /// which a picture of it is turned anticlockwise \[rad\]. A copy.
     #[must_use]
     pub fn looks(&self) -> Float32Array {
         let looks: Vec<_> = self.appearances(|look| [look.diameter, look.scale, look.glow, look.rotation]);
@@ -201,13 +201,13 @@ impl World {
         format!("{:016x}", self.system.hash())
     }
 
-    /// What happened since the beginning, as JSON: counters of births, deaths, hits and bounds met.
+    /// The report of what happened since the beginning, as JSON: counters of births, deaths, hits and bounds met.
     #[must_use]
     pub fn report(&self) -> String {
         serde_json::to_string(self.system.totals()).unwrap_or_default()
     }
 
-    /// What reading the scene gave cause to remark on.
+    /// The remarks that reading the scene gave cause to.
     #[wasm_bindgen(getter)]
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {

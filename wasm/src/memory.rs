@@ -1,4 +1,4 @@
-//! What must not run out: WebAssembly cannot go on after an allocation that fails, so room is made sure of before.
+//! Memory must not run out: WebAssembly cannot go on after an allocation that fails, so room is made sure of before.
 
 use crate::files::Files;
 use pointmass::scene::{Form, SceneFile};

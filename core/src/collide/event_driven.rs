@@ -16,8 +16,9 @@ use crate::shape::Segment;
 use crate::time::Time;
 use glam::Vec3;
 
-/// How many others a particle may find near it in one step, each time that it looks what comes next, for every bounce that the
-/// scene allows it: some hundred times what a heap takes. After as many again nobody is looked for where it waits.
+/// The number of others that a particle may find near it in one step, each time that it looks what comes next, for
+/// every bounce that the scene allows it: some hundred times what a heap takes. After as many again nobody is looked
+/// for where it waits.
 const FOUND_A_BOUNCE: u32 = 1 << 11;
 
 /// A step whose meetings are worked through one after the other.
@@ -104,7 +105,7 @@ impl EventDriven<'_> {
         }
     }
 
-    /// Whether a particle's present path leads where the index is not asked to look for it.
+    /// Tells whether a particle's present path leads where the index is not asked to look for it.
     fn strays(&self, row: usize) -> bool {
         let path = self.path(row);
         let (hull, home) = (path.hull(0.0), self.home[row]);
@@ -145,8 +146,8 @@ impl EventDriven<'_> {
             // As an index defines who is near, whether there is one or not.
             let offset = home[other] - middle;
             found += u32::from(offset.dot(offset) <= reach * reach);
-            // Of several at one instant a wall comes first, then the lowest row: whatever order they are looked at in. Nobody
-            // is met before the path begins.
+            // A wall comes first of several at one instant, then the lowest row: whatever order they are looked at in.
+            // Nobody is met before the path begins.
             if next.until <= event.since && (next.partner == WALL || next.partner <= other as u32) {
                 return;
             }
@@ -178,7 +179,7 @@ impl EventDriven<'_> {
         let (own, its) = (self.events.event(row), self.events.event(other));
         let reach = self.radius[row] + self.radius[other];
         let yielding = self.inverse_mass[row] + self.inverse_mass[other];
-        // What has no size or no mass that an answer could be reckoned with meets nobody.
+        // A particle without a size or a mass that an answer could be reckoned with meets nobody.
         let is_sound = |x: f32| x > 0.0 && x < f32::INFINITY;
         if other == row || its.partner == GONE || !is_sound(reach) || !is_sound(yielding) {
             return (NEVER, false);
@@ -194,7 +195,7 @@ impl EventDriven<'_> {
         first_touch(&path.seen_from(its), reach, self.slack(row, other))
     }
 
-    /// What rounding may do to the distance of two particles.
+    /// The error that rounding may make in the distance of two particles.
     fn slack(&self, row: usize, other: usize) -> f32 {
         let size = max(largest(self.starts[0][row]), largest(self.starts[0][other]));
         4.0 * f32::EPSILON * (size + self.radius[row] + self.radius[other])
@@ -370,7 +371,7 @@ impl EventDriven<'_> {
     }
 }
 
-/// What is left of a path from an instant on.
+/// The rest of a path from an instant on.
 fn from_on(path: &Path, instant: Time) -> Path {
     let [start, end] = path.during;
     if instant <= start || end <= start {

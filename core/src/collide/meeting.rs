@@ -8,11 +8,11 @@ use crate::math::{clamp, high, length, low, max, sqrt, unit};
 use crate::observe::Sliding;
 use glam::Vec3;
 
-/// How many times the instant of a touch is looked for on the path, as that of a hit.
+/// The largest number of times that the instant of a touch is looked for on the path, as that of a hit.
 const MAX_LOOKS: u32 = 16;
 
-/// After which fraction of a path, of one ball as seen from the other, they come within `reach`, the sum of their radii; and
-/// whether it is so curved that it would take more chords than there are.
+/// The fraction of a path, of one ball as seen from the other, after which they come within `reach`, the sum of their
+/// radii; and whether it is so curved that it would take more chords than there are.
 ///
 /// Balls that overlap already meet at once if they come closer still. What stays within `slack` of a touch is none.
 pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, bool) {
@@ -94,7 +94,7 @@ pub(super) struct Touch {
     /// Zero for what is fixed; not both.
     pub(super) inverse_mass: [f32; 2],
     pub(super) mixed: Mixed,
-    /// What rounding may do to their distance \[m\].
+    /// The error that rounding may make in their distance \[m\].
     pub(super) slack: f32,
 }
 
@@ -105,9 +105,9 @@ impl Touch {
         if normal == Vec3::ZERO { -unit(velocity[0] - velocity[1]) } else { normal }
     }
 
-    /// What it does to both: the impulse turns the approach round and scales it by the elasticity, and brakes the slip by
-    /// Coulomb's law, as if the balls could not spin. What would bounce for less than a part of the step stays in touch for the
-    /// `rest` of it: presses on as one, and slides along or stays like what rests on a surface.
+    /// The answer of both: the impulse turns the approach round and scales it by the elasticity, and brakes the slip by
+    /// Coulomb's law, as if the balls could not spin. Balls that would bounce for less than a part of the step stay in
+    /// touch for the `rest` of it: they press on as one, and slide along or stay like what rests on a surface.
     ///
     /// Both get the same impulse, so that momentum is what it was, but for the rounding of two sums.
     pub(super) fn answer(&self, dt: f32, rest: f32) -> Answer {
@@ -138,7 +138,8 @@ impl Touch {
         let slip = came + braked;
         let drive = acceleration + n * pressing;
         let (mut way, end) = Slide { velocity: slip, drive, pressing, friction }.after(rest);
-        // What falls through the rounding of a touch goes along it meanwhile, which friction would have kept it from.
+        // A ball that falls through the rounding of a touch goes along it meanwhile, which friction would have kept it
+        // from.
         let fell = -incoming / pressing;
         let stays = slip == Vec3::ZERO && end == Vec3::ZERO;
         if stays && incoming < 0.0 && -incoming * fell < 16.0 * self.slack {
@@ -155,7 +156,7 @@ impl Touch {
     }
 }
 
-/// What becomes of two balls that have touched.
+/// The motion of two balls once they have touched.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     /// Their velocities right after it \[m/s\].

@@ -3,7 +3,7 @@
 use super::impulse;
 use super::passage::Passage;
 
-/// What particles that have a radius do where their paths meet.
+/// The answer of particles that have a radius where their paths meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Meetings {
     /// They pass through each other, or are kept apart by a force ([`Penalty`](crate::Penalty)) or a constraint
@@ -24,7 +24,7 @@ pub enum Meetings {
 /// Whichever index the scene has, the answer is the same to the bit.
 #[derive(Clone, Copy)]
 pub struct Impulse {
-    /// What does it: a function, so that a program which does not name it does not carry it about.
+    /// The function that does it. A program that does not name it does not carry it about.
     follow: fn(Passage<'_, '_>),
 }
 
@@ -44,7 +44,7 @@ impl Meetings {
     /// By impulses, in the order of time.
     pub const IMPULSE: Self = Self::Impulse(Impulse { follow: impulse::follow });
 
-    /// Whether all pass through each other.
+    /// Tells whether all pass through each other.
     pub(crate) fn is_through(&self) -> bool {
         matches!(self, Self::Through)
     }

@@ -9,7 +9,7 @@ use glam::Vec3;
 /// How far the chords along which hits are found may stray from a path \[m\], unless that takes more than `MAX_CHORDS`.
 pub(crate) const CHORD_ERROR: f32 = 1e-4;
 
-/// How many chords a path is followed along at the most.
+/// The largest number of chords that a path is followed along.
 pub(crate) const MAX_CHORDS: u32 = 8;
 
 /// The cubic along which a particle moves: positions and velocities at both ends.
@@ -27,7 +27,7 @@ pub(super) struct Path {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cubic {
     pub(super) start: Vec3,
-    /// Of the first power and on \[m\].
+    /// The coefficients of the first power and on \[m\].
     pub(super) coefficients: [Vec3; 3],
 }
 
@@ -40,7 +40,7 @@ impl Cubic {
         along(self.start, along(c1, along(c2, c3, s), s), s)
     }
 
-    /// How many chords stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
+    /// The number of chords that stay within `CHORD_ERROR` of it: a chord strays by at most |x''| / 8.
     pub(super) fn chords(&self) -> u32 {
         let [_, c2, c3] = self.coefficients;
         let end = along(c2, c3, 3.0);
@@ -70,7 +70,7 @@ impl Path {
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        // What is not finite makes a sum that is not; a sum may be so without. Chips are spared the sum.
+        // A term that is not finite makes a sum that is not; a sum may be so without one. Chips are spared the sum.
         let sum_is_finite = || (self.x0 + self.v0 + self.x1 + self.v1).is_finite();
         !cfg!(target_os = "none") && sum_is_finite() || are_finite(&[self.x0, self.v0, self.x1, self.v1])
     }
@@ -139,7 +139,7 @@ impl Path {
         Self { x0, v0, x1, v1, during }
     }
 
-    /// Whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
+    /// Tells whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
     pub(super) fn lags(&self) -> bool {
         let bend = minus(self.v1, self.v0) * (0.5 * self.duration());
         dot(self.excess(), bend) < -0.5 * dot(bend, bend)
@@ -164,7 +164,7 @@ impl Path {
         if duration > 0.0 { minus(self.v1, self.v0) / duration } else { Vec3::ZERO }
     }
 
-    /// How many chords stay within `CHORD_ERROR` of it.
+    /// The number of chords that stay within `CHORD_ERROR` of it.
     pub(super) fn chords(&self) -> u32 {
         self.cubic().chords()
     }

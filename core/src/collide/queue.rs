@@ -1,6 +1,6 @@
-//! Who is next: the particles in order of what happens to them first.
+//! The particles in order of what happens to them first, so that the next one is known.
 
-/// What a particle remembers while the meetings of a step are worked through. Instants are counted from the step's
+/// The notes on a particle while the meetings of a step are worked through. Instants are counted from the step's
 /// beginning in units that the step's length decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -9,7 +9,7 @@ pub(super) struct NextEvent {
     pub(super) since: u32,
     /// When something happens to it next; [`NEVER`].
     pub(super) until: u32,
-    /// What that is: another's row, [`WALL`], or one of the other marks.
+    /// The partner in that: another's row, [`WALL`], or one of the other marks.
     pub(super) partner: u32,
     /// How much had happened to that other when this was foreseen.
     pub(super) partner_turns: u32,
@@ -21,17 +21,17 @@ pub(super) struct NextEvent {
     pub(super) row: u32,
     /// Not zero: it has met as much as it may, and waits where it is for the step's end.
     pub(super) waits: u32,
-    /// How many others it has found near it.
+    /// The number of others that it has found near it.
     pub(super) found: u32,
 }
 
-/// Of an instant: nothing will happen.
+/// The mark of an instant at which nothing will happen.
 pub(super) const NEVER: u32 = u32::MAX;
-/// Of a partner: a collider or a sink.
+/// The mark of a partner that is a collider or a sink.
 pub(super) const WALL: u32 = u32::MAX;
-/// Of a partner: nobody.
+/// The mark of no partner.
 pub(super) const NOBODY: u32 = u32::MAX - 1;
-/// Of a partner: it is no longer, or never was, to be reckoned with.
+/// The mark of a partner that is no longer, or never was, to be reckoned with.
 pub(super) const GONE: u32 = u32::MAX - 2;
 
 /// A binary heap of rows in the particles' own events: every row has a place, and moves when its instant changes. Of

@@ -9,9 +9,9 @@ use glam::Vec3;
 pub(super) struct Slide {
     /// Its velocity along the surface \[m/s\].
     pub(super) velocity: Vec3,
-    /// What drives it along the surface \[m/s²\].
+    /// The acceleration that drives it along the surface \[m/s²\].
     pub(super) drive: Vec3,
-    /// What presses it onto the surface \[m/s²\].
+    /// The acceleration that presses it onto the surface \[m/s²\].
     pub(super) pressing: f32,
     pub(super) friction: Friction,
 }
@@ -30,7 +30,7 @@ impl Slide {
         if self.friction.kinetic > 0.0 && braking * time > speed {
             let until = speed / braking;
             let way = math::along(self.velocity, acceleration, 0.5 * until) * until;
-            // What is left beside the old direction is what the drive has turned it to: friction takes that up anew.
+            // The rest beside the old direction is what the drive has turned it to: friction takes that up anew.
             let (rest, velocity) = self.starting(time - until);
             return (way + rest, velocity);
         }

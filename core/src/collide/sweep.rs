@@ -13,14 +13,14 @@ use crate::shape::{Aabb, Collider, Contact, Facing, Hit, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
-/// How many times a point beside a hit is sought farther back.
+/// The largest number of times that a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;
 
 /// How far what rests may be from its surface \[slacks\]: it is set off by two, and from corners by more.
 pub(super) const LAIN: f32 = 8.0;
 
-/// How many times the instant of a hit is looked for on the path. Newton's method takes three to six; halving, where it
-/// fails, comes within 10 µs of a step of a second.
+/// The largest number of times that the instant of a hit is looked for on the path. Newton's method takes three to six;
+/// halving, where it fails, comes within 10 µs of a step of a second.
 pub(super) const MAX_LOOKS: u32 = 16;
 
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
@@ -42,14 +42,14 @@ pub(super) struct Meeting {
     chord: Segment,
     begun: f32,
     hit: Hit,
-    /// What it meets removes it.
+    /// True if what it meets removes it.
     pub(super) is_sink: bool,
 }
 
-/// What it takes to follow one particle past walls of a kind: any, or one that is known, for which the same is shorter.
+/// The means to follow one particle past walls of a kind: any, or one that is known, for which the same is shorter.
 pub(super) struct Sweep<'a, C: ?Sized = dyn Collider + 'a> {
     pub(super) scene: &'a Scene<'a>,
-    /// What it may run into, and what removes it, if anything does.
+    /// The walls that it may run into, and the sinks that remove it, if there are any.
     pub(super) walls: &'a C,
     pub(super) sinks: Option<&'a dyn Collider>,
     pub(super) id: Id,
@@ -93,7 +93,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         Some(self.follow(path))
     }
 
-    /// Whether a path inside a box may meet anything.
+    /// Tells whether a path inside a box may meet anything.
     fn may_touch(&self, hull: &Aabb) -> bool {
         self.walls.may_touch(hull) || self.sinks.is_some_and(|sinks| sinks.may_touch(hull))
     }
@@ -200,7 +200,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         })
     }
 
-    /// What a straight piece first meets, and whether that is a sink, which wins over a collider in the same place.
+    /// The first hit of a straight piece, and whether that is a sink's, which wins over a collider's in the same place.
     fn first_hit(&self, piece: &Segment) -> Option<(Hit, bool)> {
         let (wall, sink) = (self.walls.first_hit(piece), self.sinks.and_then(|sinks| sinks.first_hit(piece)));
         match (wall, sink) {
@@ -257,7 +257,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let pressing = -dot(drive, normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
-        // What bounces slips along the place that it touches; what rests goes as one with the surface.
+        // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
         let whole = match &ride {
             Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
             _ => Vec3::ZERO,
@@ -277,7 +277,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
         let stays = is_zero(slip) && is_zero(end);
         let onward = if let Some(ride) = ride {
-            // What falls from where it was set off to goes along the surface meanwhile, which friction would have kept it from.
+            // A particle that falls from where it was set off to goes along the surface meanwhile, which friction would
+            // have kept it from.
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
             let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
@@ -352,8 +353,8 @@ pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f
     }
 }
 
-/// Whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface. Falling
-/// onto it anew each step, it has not moved at all; else it would creep.
+/// Tells whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface.
+/// Falling onto it anew each step, it has not moved at all; else it would creep.
 fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
     let near = LAIN * meeting.hit.slack;
@@ -361,7 +362,7 @@ fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     dot(off, off) <= near * near && length(minus(path.v0, surface)) * elapsed <= near
 }
 
-/// Whether a path begins within rounding of the surface that it hits, and hardly leaves it before.
+/// Tells whether a path begins within rounding of the surface that it hits, and hardly leaves it before.
 fn has_touched(path: &Path, meeting: &Meeting) -> bool {
     let Hit { normal, velocity: surface, slack, .. } = meeting.hit;
     let elapsed = path.duration() * meeting.time;

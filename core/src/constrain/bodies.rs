@@ -37,7 +37,7 @@ impl Substep {
         (self.during[1] - self.during[0]).seconds()
     }
 
-    /// Whether it is the last of its step.
+    /// Tells whether it is the last of its step.
     #[must_use]
     pub fn is_last(&self) -> bool {
         self.number + 1 == self.count
@@ -69,11 +69,11 @@ pub struct Bodies<'a> {
     pub substep: Substep,
     /// The scene's colliders.
     pub colliders: &'a dyn Collider,
-    /// What they and the colliders are made of, by numbers.
+    /// The materials of them and of the colliders, by numbers.
     pub materials: &'a dyn MaterialList,
-    /// Who is near whom.
+    /// The neighbours of each.
     pub near: Near<'a>,
-    /// What happened in the step.
+    /// The report on the step, to count in.
     pub report: &'a mut Report,
     pub(crate) slot: &'a [u32],
     pub(crate) serial: &'a [u32],
@@ -85,19 +85,19 @@ pub struct Bodies<'a> {
 }
 
 impl Bodies<'_> {
-    /// How many there are.
+    /// The number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.position.len()
     }
 
-    /// Whether there is none.
+    /// Tells whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
     }
 
-    /// What the particle in a row is called.
+    /// The id of the particle in a row.
     #[must_use]
     pub fn id(&self, row: usize) -> Option<Id> {
         Some(Id { slot: *self.slot.get(row)?, serial: *self.serial.get(row)? })
@@ -172,9 +172,9 @@ impl Near<'_> {
 pub struct Share<'a> {
     /// The words that it keeps from step to step.
     pub kept: Kept<'a>,
-    /// What it keeps through the step: at the first sub-step it holds anything.
+    /// The words that it keeps through the step: at the first sub-step they hold anything.
     pub step: &'a mut [u32],
-    /// What it works with while it is called.
+    /// The words that it works with while it is called.
     pub scratch: &'a mut [u32],
     /// Particles there is room for.
     pub capacity: usize,

@@ -28,7 +28,7 @@ pub struct Distance {
     /// β: the force against being stretched, for the speed of that \[N s/m\].
     #[cfg_attr(feature = "serde", serde(default))]
     pub damping: f32,
-    /// Whether it only pulls, as a string does.
+    /// True if it only pulls, as a string does.
     #[cfg_attr(feature = "serde", serde(default))]
     pub tether: bool,
 }

@@ -16,7 +16,7 @@ pub enum ConstraintKind {
 }
 
 impl ConstraintKind {
-    /// What it is.
+    /// The constraint of that kind.
     fn get(&self) -> &dyn Constraint {
         match self {
             Self::Distance(distance) => distance,

@@ -1,4 +1,4 @@
-//! What binds particles together and keeps them apart: the trait, one file a constraint.
+//! Constraints that bind particles together and keep them apart: the trait, one file a constraint.
 //!
 //! A step is cut into sub-steps ([`Scene::substeps`](crate::Scene::substeps)). In each the method moves everything by the
 //! forces, then constraints move positions to where they are met, by few at a time, with velocities following: extended
@@ -59,12 +59,12 @@ pub trait Constraint: Sync {
         Demand::NONE
     }
 
-    /// Whether it constrains nothing: a scene of such constraints keeps no memory for them.
+    /// Tells whether it constrains nothing: a scene of such constraints keeps no memory for them.
     fn is_empty(&self) -> bool {
         false
     }
 
-    /// What a step calls to have it met; nothing, where it is known that it constrains nothing.
+    /// The function that a step calls to have it met; none, where it is known that it constrains nothing.
     fn code(&self) -> Option<ConstraintCode> {
         Some(ConstraintCode::ALL)
     }
@@ -84,7 +84,7 @@ pub trait Constraint: Sync {
     }
 }
 
-/// What constraints call for in a step: a function, so that a program which has none does not carry it about.
+/// The function that constraints call for in a step. A program without constraints does not carry it about.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintCode(pub(crate) fn(&dyn Constraint, Moment, &mut Bodies<'_>, &mut Share<'_>));
 
@@ -93,12 +93,12 @@ impl ConstraintCode {
     pub const ALL: Self = Self(constrain);
 }
 
-/// What constraints are asked for in a sub-step.
+/// The phases of a sub-step in which constraints are called.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moment {
-    /// What they do before the method moves everything.
+    /// The one before the method moves everything.
     Before,
-    /// What they do then.
+    /// The one after that.
     After,
 }
 
@@ -143,7 +143,7 @@ impl<T: Constraint + ?Sized> Constraint for &T {
     }
 }
 
-/// What has parts does what they do, each in its own share of the memory.
+/// The methods of a constraint that has parts: it does what they do, each in its own share of the memory.
 macro_rules! all_of {
     ($this:ident => $parts:expr) => {
         fn demand(&self) -> Demand {

@@ -24,7 +24,8 @@ pub struct Coulomb {
     /// The opening angle θ, as of [`MutualGravity`](super::MutualGravity). Where charges of both signs are mixed, the sums
     /// are small beside their terms, and errors grow beside them.
     pub theta: f32,
-    /// Whether a far group acts by its dipole and quadrupole as well; without, one of no charge in all does nothing.
+    /// True if a far group acts by its dipole and quadrupole as well; without these, a group of no charge in all does
+    /// nothing.
     pub quadrupole: bool,
 }
 

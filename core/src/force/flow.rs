@@ -153,7 +153,7 @@ impl<T: Flow> Flow for [T] {
     }
 }
 
-/// What is a list is the sum of the list.
+/// Makes a list of flows a flow: their sum.
 macro_rules! lists {
     ($($(#[$meta:meta])* [$($parameter:tt)*] $list:ty;)+) => {$(
         $(#[$meta])*

@@ -10,10 +10,11 @@ use glam::Vec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Friction {
-    /// What is at rest stays so up to this share of the pressing force: the static coefficient.
+    /// The static coefficient: the share of the pressing force up to which a particle at rest stays so.
     #[cfg_attr(feature = "serde", serde(rename = "static", alias = "resting"))]
     pub static_: f32,
-    /// What slides is held by this share of it: the dynamic coefficient, usually the smaller one.
+    /// The dynamic coefficient, usually the smaller one: the share of the pressing force that holds a particle which
+    /// slides.
     #[cfg_attr(feature = "serde", serde(alias = "sliding"))]
     pub kinetic: f32,
 }

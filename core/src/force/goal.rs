@@ -75,7 +75,7 @@ impl<M> Goal<M> {
         Some(Lead { stiffness: 6.0 / (left * left), damping: 4.0 / left })
     }
 
-    /// Whether it leads the particle in a row.
+    /// Tells whether it leads the particle in a row.
     fn leads(&self, state: &State<'_>, row: usize) -> bool {
         self.material.is_none_or(|number| state.material.get(row) == Some(&number.saturating_add(1)))
     }

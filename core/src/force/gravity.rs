@@ -55,7 +55,7 @@ impl Force for Gravity {
         -state.position.iter().zip(state.mass).map(|(x, &m)| f64::from(m) * height(x)).sum::<f64>()
     }
 
-    /// What carries those that are buoyant.
+    /// The power \[W\] of what carries those that are buoyant.
     #[cfg(feature = "std")]
     fn power(&self, state: &State<'_>) -> f64 {
         let work = |(row, v): (usize, &Vec3)| {

@@ -29,7 +29,7 @@ const PLACES: usize = if cfg!(feature = "std") { 32 } else { 2 };
 
 /// Visits the rows with Σ w d⃗ / (d² + `square`)^{3/2} over all others, summed pair by pair.
 ///
-/// What is not finite is left out: it would spoil all others in one step.
+/// Rows that are not finite are left out: they would spoil all others in one step.
 pub(super) fn direct(
     position: &[Vec3],
     weight: &[f32],

@@ -1,4 +1,4 @@
-//! What pulls and pushes particles: one file a force.
+//! Forces that pull and push particles: one file a force.
 
 mod all_pairs;
 mod charge;
@@ -89,19 +89,20 @@ pub trait Force: Sync {
     /// Rows are independent of each other, so that any division of the work gives the same bits.
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]);
 
-    /// What it has to find in the state.
+    /// The parts of the state that it has to find there.
     fn needs(&self) -> Needs {
         Needs::default()
     }
 
-    /// Whether the force on a particle depends on nothing but its own row and the time. A step then takes a few rows at a time
-    /// through all its phases, while they are in the cache; the state has no other rows in it.
+    /// Tells whether the force on a particle depends on nothing but its own row and the time. A step then takes a few
+    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it.
     fn is_local(&self) -> bool {
         false
     }
 
-    /// What it comes to, if that is no more than a steady acceleration and each particle's own drag: a step then works it out in one
-    /// pass over the columns, to the bits of `add_to`. Chips without an operating system do not ask.
+    /// The force as a steady acceleration and each particle's own drag, if it comes to no more than that: a step then
+    /// works it out in one pass over the columns, to the bits of `add_to`. Chips without an operating system do not
+    /// ask.
     fn steady(&self) -> Option<Steady> {
         None
     }
@@ -144,7 +145,7 @@ pub trait Force: Sync {
         0.0
     }
 
-    /// What it is called in reports.
+    /// Its name in reports.
     #[cfg(feature = "std")]
     fn name(&self) -> &'static str {
         "force"
@@ -194,7 +195,7 @@ impl Force for () {
     fn account(&self, _: &State<'_>, _: &mut dyn FnMut(Entry)) {}
 }
 
-/// What has parts is their sum.
+/// The methods of a force that has parts and is their sum.
 macro_rules! sum_of {
     ($this:ident => $parts:expr) => {
         fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
@@ -270,7 +271,7 @@ macro_rules! sum_of {
     };
 }
 
-/// What stands for another force is that force.
+/// The methods of a force that stands for another force.
 macro_rules! same_as {
     ($this:ident => $force:expr) => {
         fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {

@@ -23,7 +23,7 @@ pub struct MutualGravity {
     /// The opening angle θ: a group acts as one if it is smaller than θ times its distance. Zero: all pairs, exactly;
     /// 0.5 errs by about a thousandth. Fewer than 128 particles are always summed pair by pair.
     pub theta: f32,
-    /// Whether such a group acts by its quadrupole as well, which makes the error several times smaller.
+    /// True if such a group acts by its quadrupole as well, which makes the error several times smaller.
     pub quadrupole: bool,
 }
 

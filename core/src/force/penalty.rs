@@ -61,7 +61,7 @@ impl Penalty {
         if !(overlap > 0.0) {
             return None;
         }
-        // Of two in one place the one with the higher row goes up.
+        // The one with the higher row goes up if two are in one place.
         let upward = if row > other { Vec3::Y } else { Vec3::NEG_Y };
         let normal = if distance > 0.0 { d / distance } else { upward };
         let (a, b) = (state.mass[row], state.mass[other]);
@@ -82,7 +82,7 @@ impl Penalty {
         if !(speed > 0.0 && self.friction.kinetic > 0.0) {
             return (push, Vec3::ZERO);
         }
-        // What slips slowly meets a dashpot across instead, so that friction never drives.
+        // A slow slip meets a dashpot across instead, so that friction never drives.
         (push, slip * (-min(self.friction.kinetic * push / speed, touch.critical)))
     }
 }

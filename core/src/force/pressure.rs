@@ -24,7 +24,7 @@ pub struct Pressure<T> {
     pub outside: f32,
 }
 
-/// What the mesh is like now.
+/// The measures of the mesh as it is now.
 struct Inside {
     /// The middle of its triangles: places are taken from here, so that far from the origin nothing is lost.
     #[cfg(feature = "std")]
@@ -34,7 +34,7 @@ struct Inside {
 }
 
 impl<T: AsRef<[[u32; 3]]>> Pressure<T> {
-    /// Of the triangles whose corners all live, in their order: the rows and places of the corners.
+    /// The rows and places of the corners of each triangle whose corners all live, in the order of the triangles.
     fn living<'a>(&'a self, state: &'a State<'_>) -> impl Iterator<Item = ([usize; 3], [Vec3; 3])> + 'a {
         self.triangles.as_ref().iter().filter_map(|corners| {
             let [a, b, c] = corners.map(|corner| state.springs.row(corner));
@@ -94,8 +94,8 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Force for Pressure<T> {
         }
     }
 
-    /// What the gas resists being pressed with: −n R T / V² times how much the volume changes. That triangles turn is left
-    /// out, since it may drive apart what is displaced.
+    /// The resistance of the gas to being pressed: −n R T / V² times how much the volume changes. The turning of
+    /// triangles is left out, since it may drive apart what is displaced.
     fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let Some(inside) = self.inside(state) else { return };
         let mut grown = 0.0;

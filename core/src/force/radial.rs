@@ -47,14 +47,14 @@ pub trait RadialLaw: Sync {
         0.0
     }
 
-    /// What it is called in reports.
+    /// Its name in reports.
     #[cfg(feature = "std")]
     fn name(&self) -> &'static str {
         "neighbours"
     }
 }
 
-/// What two particles are, apart from where.
+/// The masses and charges of two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Their masses \[kg\].
@@ -73,7 +73,7 @@ pub struct Run<'a> {
     pub others: &'a [u32],
     /// Distances squared \[m²\], and zeros up to the next multiple of eight; zero for what coincides and is left out.
     pub square: &'a [f32; RUN],
-    /// What they are.
+    /// The state of all particles.
     pub state: &'a State<'a>,
 }
 
@@ -129,8 +129,8 @@ struct PairStiffness {
 }
 
 impl<L: RadialLaw> Radial<L> {
-    /// What some neighbours do to a row, in lanes. Those that coincide with it, and what is not finite, are left out, so that
-    /// it harms nobody else.
+    /// Sums what some neighbours do to a row, in lanes. Those that coincide with it, and those that are not finite, are
+    /// left out, so that they harm nobody else.
     #[inline]
     fn sum(&self, state: &State<'_>, row: usize, nearby: &Nearby) -> Vec3 {
         let ([x, y, z], square, mut pull) = (nearby.toward(), nearby.square(), [0.0; RUN]);
@@ -319,12 +319,12 @@ pub struct PowerLaw {
     pub softening: f32,
     /// Beyond this distance nothing acts \[m\].
     pub reach: f32,
-    /// What the weights w are.
+    /// The quantities that the weights w are.
     #[cfg_attr(feature = "serde", serde(default))]
     pub weight: Weight,
 }
 
-/// What a force between two particles is proportional to.
+/// The quantity that a force between two particles is proportional to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -16,7 +16,7 @@ use glam::Vec3;
 pub struct Relaxation<N = &'static str> {
     /// The column's name.
     pub column: N,
-    /// What it comes to, c∞.
+    /// The value that it comes to, c∞.
     pub toward: f32,
     /// How fast, λ \[1/s\]; zero or more.
     pub rate: f32,

@@ -23,7 +23,7 @@ pub struct Spring {
     /// Damping kd \[N s/m\].
     #[cfg_attr(feature = "serde", serde(default))]
     pub kd: f32,
-    /// What changes its rest length over time, as a muscle does.
+    /// The drive that changes its rest length over time, as a muscle does.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub drive: Option<Drive>,
     /// It breaks, for ever, where a step ends with it so many times as long as at rest.
@@ -80,7 +80,7 @@ impl Spring {
         })
     }
 
-    /// Whether it holds, as number `number` of the scene's list, but is stretched beyond what it bears.
+    /// Tells whether it holds, as number `number` of the scene's list, but is stretched beyond what it bears.
     fn is_overstretched(&self, number: usize, table: &Springs<'_>, state: &State<'_>) -> bool {
         let Some(ratio) = self.breaks_at else { return false };
         let rows = table.row(self.ends[0]).zip(table.row(self.ends[1])).filter(|_| !table.is_broken(number));
@@ -117,7 +117,7 @@ struct PairStiffness {
 /// Marks a broken spring in the lists of its ends.
 const BROKEN: u32 = 1 << 31;
 
-/// Whether an entry in a list of springs is that of a broken one.
+/// Tells whether an entry in a list of springs is that of a broken one.
 pub(crate) const fn is_broken(entry: u32) -> bool {
     entry & BROKEN != 0
 }
@@ -134,7 +134,7 @@ pub trait SpringList: Sync {
     /// All of them.
     fn list(&self) -> &[Spring];
 
-    /// What they call for in a step.
+    /// The functions that they call for in a step.
     fn code(&self) -> Option<SpringCode> {
         Some(SpringCode::ALL)
     }
@@ -183,14 +183,14 @@ impl SpringList for alloc::vec::Vec<Spring> {
     }
 }
 
-/// What springs call for in a step: functions, so that a program which has none does not carry them about.
+/// The functions that springs call for in a step. A program without springs does not carry them about.
 #[derive(Clone, Copy, Debug)]
 pub struct SpringCode {
     /// Their sum, as a force.
     pub(crate) force: for<'s> fn(&'s Springs<'s>) -> &'s dyn Force,
     /// Sorts them by their ends at the start, and counts those that lack one.
     pub(crate) sort: fn(&[Spring], &mut [u32], &mut [u32], u32) -> u64,
-    /// How many hold the particle in a row.
+    /// Counts those that hold the particle in a row.
     pub(crate) held_by: fn(&Springs<'_>, usize) -> u64,
     /// Breaks those that are stretched too far, and says how many if any can: of the state, and the springs by their ends.
     pub(crate) snap: fn(&State<'_>, &mut [u32]) -> Option<u64>,
@@ -208,7 +208,7 @@ pub struct Springs<'a> {
     /// The springs of the scene.
     pub springs: &'a [Spring],
     pub(crate) code: Option<SpringCode>,
-    /// How many particles the scene starts with.
+    /// The number of particles that the scene starts with.
     pub(crate) start: u32,
     pub(crate) serial: &'a [u32],
     pub(crate) row_of: &'a [u32],
@@ -257,7 +257,7 @@ impl<'a> Springs<'a> {
         (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
     }
 
-    /// Whether the spring of this number in the scene's list is broken.
+    /// Tells whether the spring of this number in the scene's list is broken.
     #[must_use]
     pub fn is_broken(&self, number: usize) -> bool {
         let Some(spring) = self.springs.get(number) else { return false };
@@ -285,7 +285,7 @@ impl<'a> Springs<'a> {
         self.code.map(|code| (code.force)(self))
     }
 
-    /// How many springs hold the particle in `row`.
+    /// Counts the springs that hold the particle in `row`.
     fn held_by(&self, row: usize) -> u64 {
         let other_row = |(_, other)| self.row(other).filter(|&other| other != row);
         self.at(row).filter_map(other_row).count() as u64
@@ -342,7 +342,7 @@ impl Force for Springs<'_> {
         self.held().map(stored).sum()
     }
 
-    /// What damping takes, and what drives give.
+    /// The power \[W\] that damping takes and drives give.
     #[cfg(feature = "std")]
     fn power(&self, state: &State<'_>) -> f64 {
         self.damping(state) + self.driving(state)

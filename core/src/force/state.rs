@@ -115,7 +115,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// What they are besides places and velocities, some rows of it.
+    /// The attributes of some rows, without places and velocities.
     pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
         Self {
             position: &[],
@@ -136,7 +136,8 @@ impl<'a> State<'a> {
         }
     }
 
-    /// How many particles lie within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking at all.
+    /// Counts the particles within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking
+    /// at all.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
         self.near.count_within(place, radius)

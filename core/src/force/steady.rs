@@ -4,12 +4,12 @@ use crate::lanes::run;
 use crate::rows::Fall;
 use glam::Vec3;
 
-/// What forces come to that are no more than a steady acceleration of all and each particle's own linear drag.
+/// The sum of forces that are no more than a steady acceleration of all and each particle's own linear drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Steady {
     /// The acceleration of all \[m/s²\].
     pub acceleration: Option<Vec3>,
-    /// Whether each is braked by its own coefficient.
+    /// True if each is braked by its own coefficient.
     pub drags: bool,
 }
 

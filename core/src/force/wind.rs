@@ -68,7 +68,7 @@ impl<F: Flow> Force for Wind<F> {
         }
     }
 
-    /// What air gives to those who go with it, less what it takes from others.
+    /// The power \[W\] that air gives to those who go with it, less what it takes from others.
     #[cfg(feature = "std")]
     fn power(&self, state: &State<'_>) -> f64 {
         let mut sum = 0.0;

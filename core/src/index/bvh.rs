@@ -34,7 +34,8 @@ impl Bin {
         Self { low, high, len: self.len + other.len }
     }
 
-    /// What a query pays for it, but for a factor: how likely it meets the box, times what it finds there.
+    /// The cost of a query, but for a factor: how likely it meets the box, times the number of points that it finds
+    /// there.
     fn cost(&self) -> f32 {
         if self.len == 0 {
             return 0.0;
@@ -77,7 +78,8 @@ impl Split for Areas {
     }
 }
 
-/// Before which bin to cut. The first and the last bin hold points, so neither part is empty.
+/// Returns the number of the bin before which a cut is cheapest. The first and the last bin hold points, so neither
+/// part is empty.
 fn cheapest(bins: &[Bin; BINS]) -> usize {
     let mut above = [Bin::EMPTY; BINS + 1];
     for i in (0..BINS).rev() {
@@ -87,7 +89,7 @@ fn cheapest(bins: &[Bin; BINS]) -> usize {
     for cut in 1..BINS {
         below = below.with(bins[cut - 1]);
         let cost = below.cost() + above[cut].cost();
-        // Of equal ones the middle: points on a line have no surface anywhere.
+        // The middle one of equal cuts is taken: points on a line have no surface anywhere.
         if cost < least || (cost == least && cut.abs_diff(BINS / 2) < best.abs_diff(BINS / 2)) {
             (best, least) = (cut, cost);
         }

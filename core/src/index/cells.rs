@@ -1,4 +1,4 @@
-//! What the grids share: their memory, and points sorted by cell.
+//! The parts that both grids share: their memory, and points sorted by cell.
 
 use super::domain::Domain;
 use super::sorted::{LANES, Sorted};

@@ -24,7 +24,7 @@ pub(super) enum Image {
     Itself,
     /// The points moved by so much.
     Moved(Vec3),
-    /// Of each point the image that is nearest, in a domain of these sides: each side of the difference is taken into
+    /// The nearest image of each point, in a domain of these sides: each side of the difference is taken into
     /// (-side/2, side/2].
     Nearest(Vec3),
 }
@@ -48,7 +48,7 @@ impl Domain {
         Self { low, sides, scale: 1.0 }
     }
 
-    /// Whether it is all of space.
+    /// Tells whether it is all of space.
     pub(super) fn is_open(&self) -> bool {
         self.sides == Vec3::ZERO
     }
@@ -127,7 +127,7 @@ impl Domain {
         for code in 0..27 {
             let signs = [code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1];
             if (0..3).all(|axis| across(axis, signs[axis])) {
-                // What is met beyond the upper face is a point near the lower one, moved up by a side.
+                // A point met beyond the upper face is one near the lower face, moved up by a side.
                 let side = |axis: usize| signs[axis] as f32 * sides[axis];
                 visit(Image::Moved(Vec3::new(side(0), side(1), side(2))));
             }

@@ -20,7 +20,7 @@ impl<'m> Frames<'m> {
         Self { axes: bytemuck::cast_slice_mut(axes), len: 0, slack: 0.0 }
     }
 
-    /// How many there are.
+    /// The number of frames.
     pub(super) fn len(&self) -> usize {
         self.len
     }

@@ -182,7 +182,7 @@ impl SpatialIndex for Grid<'_> {
         let nodes = self.layout.count();
         let fullest = self.starts.get(..nodes + 1).map_or(0, |s| s.windows(2).map(|c| c[1] - c[0]).max().unwrap_or(0));
         let stats = self.sorted.stats();
-        // Of the words to sort in, one a point goes unused.
+        // One of the words that each point has to be sorted in goes unused.
         let bytes = stats.bytes - 8 * stats.points + 4 * nodes;
         Stats { nodes, fullest: fullest as usize, crowded: self.enlarged, bytes, ..stats }
     }

@@ -197,7 +197,7 @@ impl SpatialIndex for Hash<'_> {
         let counts =
             self.starts.get(..self.buckets.len + 1).unwrap_or_default().windows(2).map(|pair| pair[1] - pair[0]);
         let stats = self.sorted.stats();
-        // Of the words to sort in, two a point go unused.
+        // Two of the words that each point has to be sorted in go unused.
         let bytes = stats.bytes - 8 * stats.points + 4 * self.buckets.len;
         Stats { nodes: self.buckets.len, fullest: counts.max().unwrap_or(0) as usize, bytes, ..stats }
     }

@@ -18,7 +18,7 @@ pub(crate) enum Found {
     AllPairs,
 }
 
-/// What neighbours are looked up of, and by what.
+/// The means by which neighbours are looked up, and the distance within which they are.
 pub(crate) struct Search<'a> {
     pub(crate) index: &'a dyn IndexChoice,
     /// The index's memory, and that of lists, where there is some.
@@ -27,7 +27,7 @@ pub(crate) struct Search<'a> {
     pub(crate) reach: f32,
 }
 
-/// What is done with neighbours.
+/// The work to be done with neighbours once they can be looked up.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(Neighbours<'_>, Found);
 
 /// Calls `then` with the neighbours of points, in lists if they last and there is room for them.

@@ -24,7 +24,7 @@ const PAUSE: u32 = 16;
 /// Within what the squares of coordinates and of radii are numbers \[m\].
 const TAME: Range<f32> = 1e-15..1e15;
 
-/// What is known of the lists in a system's memory.
+/// The facts known of the lists in a system's memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Listed {
     /// Points that they are of.
@@ -32,7 +32,7 @@ pub(crate) struct Listed {
     /// The radius that they are good for, and how far anybody may go meanwhile \[m\].
     reach: f32,
     max_travel: f32,
-    /// How many had come and gone before them.
+    /// The number of particles that had come and gone when they were made.
     changes: u32,
     /// Words that were lent for them: others are not theirs.
     words: usize,
@@ -45,7 +45,7 @@ pub(crate) struct Listed {
 pub(crate) struct ListMemory<'a> {
     words: &'a mut [u32],
     listed: &'a mut Listed,
-    /// How many particles have come and gone.
+    /// The number of particles that have come and gone.
     changes: u32,
     /// How long a step is \[s\].
     step: f32,
@@ -78,7 +78,7 @@ impl Listed {
 }
 
 impl Lists<'_> {
-    /// Whether they hold all within so far.
+    /// Tells whether they hold all neighbours within this distance.
     pub(super) fn reaches(&self, reach: f32) -> bool {
         reach <= self.reach
     }

@@ -96,14 +96,14 @@ pub trait SpatialIndex: Sync {
     /// As `build`.
     fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall>;
 
-    /// What has been built.
+    /// Tells how large the structure has become.
     fn stats(&self) -> Stats;
 
     /// The rows of all points in the structure's order: near in space is near in this list. Work in this order is kind
     /// to caches.
     fn order(&self) -> &[u32];
 
-    /// How many points lie within `radius` of `center`.
+    /// Counts the points within `radius` of `center`.
     fn count(&self, center: Vec3, radius: f32) -> Cost;
 
     /// Visits all rows within `radius` of `center`, in runs.
@@ -138,7 +138,7 @@ pub trait SpatialIndex: Sync {
     fn all_nearest(&self, radius: f32, found: &mut [Neighbour], visit: &mut dyn FnMut(u32, &[Neighbour])) -> Cost;
 }
 
-/// What a query took: the same on every machine.
+/// The work that a query took: the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Nodes or rows of cells that were looked at.
@@ -157,7 +157,7 @@ impl core::ops::AddAssign for Cost {
     }
 }
 
-/// What an index has been built to.
+/// The size of an index that has been built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Points in it.

@@ -9,19 +9,19 @@ use core::ops::Range;
 use glam::Vec3;
 use wide::f32x8;
 
-/// How many points share one way through the structure at most.
+/// The largest number of points that share one way through the structure.
 pub(super) const GROUP: usize = 64;
-/// How many runs they remember; if there are more, each point goes its own way.
+/// The largest number of runs that they remember; if there are more, each point goes its own way.
 const RUNS: usize = 128;
 
-/// What is near a group of points.
+/// The runs near a group of points.
 pub(super) struct Near {
     pub(super) group: Range<usize>,
     /// The square within which all is known; negative if nothing is.
     pub(super) square: f32,
     len: usize,
     pub(super) full: bool,
-    /// Whether all runs have one image and one frame.
+    /// True if all runs have one image and one frame.
     alike: bool,
     /// The frame of the group, and its points in it.
     home: u32,

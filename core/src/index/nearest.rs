@@ -123,7 +123,7 @@ impl<'a> Nearest<'a> {
         heap[at] = Neighbour::of_key(new);
     }
 
-    /// How many there are, now sorted, with distances in the place of squares.
+    /// Sorts those found, puts distances in the place of squares, and returns their number.
     pub(super) fn finish(self, length: impl Fn(f32) -> f32) -> usize {
         let sorted = self.found.len() <= FEW;
         let found = &mut self.found[..self.len];

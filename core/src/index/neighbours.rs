@@ -1,4 +1,4 @@
-//! Who is near whom: from lists that last for a while, from an index, or by looking at all; to the same bits.
+//! Neighbours of particles: from lists that last for a while, from an index, or by looking at all; to the same bits.
 
 use super::SpatialIndex;
 use super::lists::Lists;
@@ -9,7 +9,7 @@ use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
 
-/// How many a row may have that are sorted on the stack.
+/// The largest number of a row's neighbours that are sorted on the stack.
 const MOST: usize = if cfg!(target_os = "none") { 64 } else { 512 };
 
 /// Some points, and who of them is near whom.
@@ -22,7 +22,7 @@ pub struct Neighbours<'a> {
     source: Source<'a>,
 }
 
-/// What finds them.
+/// The means by which neighbours are found.
 #[derive(Clone, Copy)]
 enum Source<'a> {
     All,
@@ -66,7 +66,7 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// How many points lie within `radius` \[m\] of a place, whoever lies there included.
+    /// Counts the points within `radius` \[m\] of a place, whoever lies there included.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
         match self.source {
@@ -75,7 +75,7 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// Whether any division of the rows costs as much as all of them together.
+    /// Tells whether all parts of the rows together cost no more than all rows at once, however they are divided.
     #[cfg(feature = "rayon")]
     pub(crate) fn can_be_divided(&self) -> bool {
         !matches!(self.source, Source::Index(_))
@@ -101,7 +101,7 @@ impl<'a> Neighbours<'a> {
                     .map(|four| array::from_fn(|k| four.get(k).map_or(NOBODY, |&other| self.entry(other))));
                 runs.visit(self.at(row), others, f32::INFINITY, visit);
             }
-            // Of so many there are a good part of all points.
+            // Neighbours too many for that are a good part of all points.
             Some(row) => self.by_all(row, reach, &mut *visit),
             None => {}
         };
@@ -146,7 +146,7 @@ impl fmt::Debug for Neighbours<'_> {
     }
 }
 
-/// How many of these points lie within `radius` \[m\] of a place.
+/// Counts those of these points that lie within `radius` \[m\] of a place.
 pub(crate) fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
     let square = radius * radius;
     let is_near = |&&point: &&Vec3| {

@@ -9,7 +9,7 @@ use core::ops::Range;
 use glam::Vec3;
 use wide::f32x8;
 
-/// How many may be near a group.
+/// The largest number of points near a group.
 const MOST: usize = 1024;
 /// Bits of a digit by which they are sorted.
 const DIGIT: usize = 8;
@@ -23,7 +23,7 @@ struct Crowd {
     x: [[f32; MOST]; 3],
     /// Where in this order the points of the group are.
     own: [usize; GROUP],
-    /// Who of them is near one of the group.
+    /// The neighbours of one point of the group, by their numbers in this order, then by their slots.
     found: [u32; MOST + LANES],
 }
 
@@ -196,7 +196,7 @@ static HITS: [[u32; LANES]; 256] = {
     all
 };
 
-/// How many of eight lanes are hits.
+/// The number of hits among eight lanes, by their bits.
 static COUNTS: [u8; 256] = {
     let mut all = [0; 256];
     let mut hits = 0;

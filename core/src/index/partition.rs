@@ -1,4 +1,4 @@
-//! What a structure says, for the queries: where points may be.
+//! The answer that each structure gives to the queries: where points may be.
 
 use super::Cost;
 use super::domain::Image;
@@ -10,9 +10,9 @@ use glam::Vec3;
 
 /// Space divided: what a structure adds to what all share.
 pub(super) trait Partition {
-    /// Whether the boxes of runs are worth a look for each point.
+    /// True if the boxes of runs are worth a look for each point.
     const BOXED: bool = true;
-    /// Whether boxes may be turned.
+    /// True if boxes may be turned.
     const TURNS: bool = false;
 
     fn sorted(&self) -> &Sorted<'_>;

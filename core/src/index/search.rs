@@ -16,7 +16,7 @@ use glam::Vec3;
 pub(super) struct Reach {
     radius: f32,
     pub(super) square: f32,
-    /// Whether points could be met in two images: then all of them are looked at, each in its nearest image.
+    /// True if points could be met in two images: then all of them are looked at, each in its nearest image.
     wraps: bool,
 }
 
@@ -26,15 +26,15 @@ impl Reach {
     }
 }
 
-/// Whether squares of distances from here may be beyond an `f32`: then all points are looked at. No point of an index
-/// is so far out itself.
+/// Tells whether squares of distances from here may be beyond an `f32`: then all points are looked at. No point of an
+/// index is so far out itself.
 fn is_far(center: Vec3) -> bool {
     !(math::largest(center) < FAR)
 }
 
-/// What is done at each point on the way through all.
+/// A task at each point on the way through all.
 trait Sweep {
-    /// Whether only runs that go on behind a slot are of interest to it.
+    /// True if only runs that go on behind a slot are of interest to it.
     const FORWARD: bool = false;
     fn begin(&mut self, slot: usize);
     /// Looks at the slots of a run; returns how many distances that took.
@@ -326,7 +326,7 @@ impl<const BOTH: bool> Sweep for Lists<'_, BOTH> {
     }
 }
 
-/// What of a run lies before and behind some slots.
+/// The parts of a run that lie before and behind some slots.
 #[inline(always)]
 fn without(run: Range<usize>, slots: &Range<usize>) -> [Range<usize>; 2] {
     [run.start..run.end.min(slots.start).max(run.start), run.start.max(slots.end).min(run.end)..run.end]

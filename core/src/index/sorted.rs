@@ -59,7 +59,7 @@ impl<'m> Sorted<'m> {
         (Self { columns, work, len: 0, rows: 0, low: Vec3::ZERO, high: Vec3::ZERO, domain }, rest)
     }
 
-    /// How many points fit.
+    /// The number of points that fit.
     pub(super) fn capacity(&self) -> usize {
         self.work.len().saturating_sub(LANES) / 4
     }
@@ -318,7 +318,7 @@ const FIRST: [f32x8; LANES + 1] = {
     ]
 };
 
-/// How many points were found, lane by lane.
+/// The number of points found, lane by lane.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Counter(i32x8);
 

@@ -14,9 +14,9 @@ pub trait Split: Default + Sync {
     const LEAF: usize;
     /// Bytes of nodes for every point; the leaves become larger if that is not enough.
     const BYTES: usize;
-    /// Whether boxes may be turned against the axes.
+    /// True if boxes may be turned against the axes.
     const TURNS: bool = false;
-    /// What is handed down from node to node.
+    /// The value handed down from node to node.
     type Cell: Copy;
 
     /// The root's.

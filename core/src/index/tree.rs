@@ -1,4 +1,5 @@
-//! What the trees share: nodes in one flat list, each with the box around its points, and the way through them.
+//! The parts that all trees share: nodes in one flat list, each with the box around its points, and the way through
+//! them.
 //!
 //! Nodes come in the order of a walk that goes down first, and each knows where to go on if its points are of no
 //! interest, so that a walk needs neither pointers nor a stack. The trees differ in how they split, and only there.

@@ -20,7 +20,8 @@ pub struct Adaptive<I> {
     pub tolerance: f32,
     /// The smallest step of h, at least a tick of time: it is taken whatever its error, and counted.
     pub smallest: Time,
-    /// How many steps of h may be tried in one step of the system. The rest is taken at once then, and counted.
+    /// The largest number of steps of h that may be tried in one step of the system. The rest is taken at once then,
+    /// and counted.
     pub attempts: u32,
 }
 
@@ -106,7 +107,7 @@ impl<I: Integrator> Adaptive<I> {
         if error < f32::INFINITY {
             return error;
         }
-        // What is beyond all numbers from the beginning is so whatever the step, and counts for nothing.
+        // A particle that is beyond all numbers from the beginning is so whatever the step, and counts for nothing.
         world.accelerations(now, from[0], from[1], half[0]);
         apart(&|row| [&from[0][row], &from[1][row], &half[0][row]].iter().all(|v| v.is_finite()))
     }

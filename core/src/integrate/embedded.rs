@@ -17,7 +17,8 @@ pub struct Embedded {
     pub tolerance: f32,
     /// The smallest step, at least a tick of time: it is taken whatever its error, and counted.
     pub smallest: Time,
-    /// How many steps may be tried in one step of the system. The rest is taken at once then, and counted.
+    /// The largest number of steps that may be tried in one step of the system. The rest is taken at once then, and
+    /// counted.
     pub attempts: u32,
 }
 
@@ -115,7 +116,7 @@ impl Stages<'_> {
             // The largest coordinate may overlook one that is not a number.
             let finite = ex.is_finite() && ev.is_finite();
             let gap = if finite { hh * max(largest(ex), largest(ev)) } else { f32::INFINITY };
-            // What is beyond all numbers from the beginning is so whatever the step.
+            // A particle that is beyond all numbers from the beginning is so whatever the step.
             let sound = x0[i].is_finite() && v0[i].is_finite() && a1[i].is_finite();
             if sound && !(gap <= most) {
                 most = gap;

@@ -132,7 +132,7 @@ impl Solver<'_> {
         for ((correction, inverse), &w) in
             self.correction.iter_mut().zip(&*self.inverse_diagonal).zip(system.inverse_mass)
         {
-            // What was kept out of the system because it is not finite goes at the end of the step.
+            // A particle kept out of the system because it is not finite goes at the end of the step.
             if *inverse == Vec3::ZERO && w != 0.0 {
                 *correction = Vec3::NAN;
             } else if scale < 1.0 {

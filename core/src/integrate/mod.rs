@@ -106,12 +106,12 @@ pub trait Integrator: Sync {
     /// Vectors it needs to work with for each particle.
     fn columns(&self) -> usize;
 
-    /// Whether it needs `Motion::start`, the state at the step's beginning.
+    /// Tells whether it needs `Motion::start`, the state at the step's beginning.
     fn needs_start(&self) -> bool {
         false
     }
 
-    /// Whether it moves each particle by what is in its own row, so that rows may be moved a few at a time.
+    /// Tells whether it moves each particle by what is in its own row, so that rows may be moved a few at a time.
     fn is_local(&self) -> bool {
         false
     }
@@ -120,7 +120,7 @@ pub trait Integrator: Sync {
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics);
 }
 
-/// What an integrator moves. All slices are equally long.
+/// The state that an integrator moves. All slices are equally long.
 #[derive(Debug)]
 pub struct Motion<'a> {
     /// Positions \[m\].
@@ -134,7 +134,7 @@ pub struct Motion<'a> {
     /// The step that a method which chooses its own would begin with; zero: it has to find one. The system keeps it from
     /// step to step, and drops it where something was hit, was born or died.
     pub hint: &'a mut Time,
-    /// What the method counts.
+    /// The counters of the method.
     pub effort: &'a mut Effort,
 }
 

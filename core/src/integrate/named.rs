@@ -58,7 +58,7 @@ methods! {
     Implicit = "implicit", Implicit::USUAL;
 }
 
-/// What methods that choose their own steps, and those that solve for the step's end, are set to.
+/// The settings of methods that choose their own steps, and of those that solve for the step's end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -108,7 +108,7 @@ pub struct Tuned {
 }
 
 impl Tuned {
-    /// What `then` makes of the integrator.
+    /// Hands the integrator to `then`, and returns what that makes of it.
     fn with<R>(&self, then: impl FnOnce(&dyn Integrator) -> R) -> R {
         let Tuning { tolerance, smallest, attempts, inner, newton, iterations, residual } = self.tuning;
         let smallest = Time::from_seconds(smallest);
@@ -147,7 +147,7 @@ impl From<Method> for Tuned {
 }
 
 impl Method {
-    /// Whether it divides a step as it sees fit.
+    /// Tells whether it divides a step as it sees fit.
     #[must_use]
     pub const fn chooses_steps(self) -> bool {
         matches!(self, Self::Adaptive | Self::Embedded)

@@ -1,4 +1,4 @@
-//! What a scene's step asks for in memory, and where each part of it lies. Nothing else knows.
+//! The memory that a scene's step asks for, and where each part of it lies. Nothing else knows.
 
 use glam::Vec3;
 
@@ -39,17 +39,17 @@ impl Words {
     }
 }
 
-/// What a part of a scene asks for, to work with.
+/// The memory that a part of a scene asks for, to work with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
     /// The words that it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
     /// the particles, and is in the system's hash.
     pub kept: Words,
-    /// What it keeps through a step; at the step's beginning it holds anything.
+    /// The words that it keeps through a step; at the step's beginning they hold anything.
     pub step: Words,
-    /// What it works with while it is called.
+    /// The words that it works with while it is called.
     pub scratch: Words,
-    /// Whether it asks who is near.
+    /// True if it asks who is near.
     pub finds_near: bool,
 }
 
@@ -57,7 +57,7 @@ impl Demand {
     /// Nothing.
     pub const NONE: Self = Self { kept: Words::NONE, step: Words::NONE, scratch: Words::NONE, finds_near: false };
 
-    /// What two ask for.
+    /// The demand of two parts together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -69,17 +69,17 @@ impl Demand {
     }
 }
 
-/// What a whole scene's step asks for.
+/// The memory that a whole scene's step asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Plan {
     /// Columns of a user's own.
     pub(crate) custom: usize,
     /// Words a particle for what materials change.
     pub(crate) ageing: usize,
-    /// Whether anybody asks for places and velocities at the step's beginning, and at each sub-step's.
+    /// True if anybody asks for places and velocities at the step's beginning, and likewise at each sub-step's.
     pub(crate) start: bool,
     pub(crate) before: bool,
-    /// Whether there are constraints, and what they ask for.
+    /// True if there are constraints, and their demand.
     pub(crate) constrained: bool,
     pub(crate) constraints: Demand,
     /// Vectors a particle for trees of masses and charges, for the index of forces, and for the method.
@@ -90,7 +90,7 @@ pub(crate) struct Plan {
     pub(crate) index: usize,
     /// Vectors a particle for meetings, when all have been moved.
     pub(crate) meetings: usize,
-    /// Whether births or deaths depend on who is near.
+    /// True if births or deaths depend on who is near.
     pub(crate) crowd: bool,
 }
 
@@ -101,7 +101,7 @@ impl Plan {
         words.div_ceil(3 * capacity.max(1))
     }
 
-    /// What is kept from step to step: columns of a user's own, what materials change, and what constraints keep.
+    /// The words kept from step to step: columns of a user's own, what materials change, and what constraints keep.
     pub(crate) fn kept(&self) -> Words {
         Words { per_row: self.custom + self.ageing, fixed: 0 }.and(self.constraints.kept)
     }
@@ -112,14 +112,14 @@ impl Plan {
         per_row.saturating_add(fixed.div_ceil(capacity.max(1)))
     }
 
-    /// What lasts through the step.
+    /// The words that last through the step.
     fn lasting(&self) -> Words {
         let states = Words::columns(2 * usize::from(self.start) + 2 * usize::from(self.before));
         let marks = Words { per_row: usize::from(self.constrained), fixed: 0 };
         states.and(marks).and(self.constraints.step)
     }
 
-    /// What its phases need in turn.
+    /// The words that its phases need in turn.
     fn passing(&self) -> Words {
         let moving = self.method.saturating_add(self.trees).saturating_add(self.near);
         let index = if self.constraints.finds_near { self.index } else { 0 };
@@ -143,9 +143,9 @@ pub(crate) struct Shares<'m> {
     pub(crate) start: [&'m mut [Vec3]; 2],
     /// The same at the sub-step's beginning.
     pub(crate) before: [&'m mut [Vec3]; 2],
-    /// What constraints have done to each particle.
+    /// A mark for each particle of what constraints have done to it.
     pub(crate) marks: &'m mut [u32],
-    /// What constraints keep through the step.
+    /// The words that constraints keep through the step.
     pub(crate) step: &'m mut [u32],
     /// For whatever is at work.
     pub(crate) scratch: Scratch<'m>,
@@ -156,9 +156,10 @@ pub(crate) struct Shares<'m> {
 /// The words that constraints keep from step to step.
 #[derive(Debug, Default)]
 pub struct Kept<'m> {
-    /// Of each particle: one column of [`Share::capacity`](crate::constrain::Share::capacity) words behind the other, by row.
+    /// The words of each particle: one column of [`Share::capacity`](crate::constrain::Share::capacity) words behind
+    /// the other, by row.
     pub rows: &'m mut [u32],
-    /// Besides.
+    /// The other words.
     pub fixed: &'m mut [u32],
 }
 
@@ -176,11 +177,11 @@ pub(crate) struct Scratch<'m> {
     layout: Layout,
 }
 
-/// What a step remembers of its beginning, for reading.
+/// The parts of its beginning that a step remembers, for reading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Past<'m> {
     pub(crate) start: [&'m [Vec3]; 2],
-    /// What constraints have done to each particle; empty without any.
+    /// A mark for each particle of what constraints have done to it; empty without any.
     pub(crate) marks: &'m [u32],
 }
 
@@ -210,8 +211,8 @@ impl Layout {
         }
     }
 
-    /// Before anything has been moved, or when all has been done: for a copy of the places of `len` particles, and for an index
-    /// of them, no more than they call for: more would make another structure.
+    /// Memory for a copy of the places of `len` particles and for an index of them, before anything has been moved or
+    /// when all has been done: no more than they call for, since more would make another structure.
     pub(crate) fn crowd<'m>(&self, work: &'m mut [Vec3], len: usize) -> (&'m mut [Vec3], &'m mut [u32]) {
         let (places, rest) = work.split_at_mut(len.min(work.len()));
         let words = bytemuck::cast_slice_mut(rest);
@@ -243,7 +244,7 @@ impl Layout {
         work.split_at_mut(work.len() / len.max(1) * rows)
     }
 
-    /// What is remembered of a step's beginning.
+    /// The memory of a step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
         let pair = if self.plan.start { self.capacity } else { 0 };
         let (start, rest) = work.split_at(2 * pair);

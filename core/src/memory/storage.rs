@@ -64,7 +64,7 @@ macro_rules! storage {
         }
 
         impl Columns<'_> {
-            /// How many particles fit.
+            /// The number of particles that fit.
             #[must_use]
             #[inline(never)]
             pub fn capacity(&self) -> usize {
@@ -73,7 +73,7 @@ macro_rules! storage {
         }
 
         impl Slices<'_> {
-            /// How many particles fit.
+            /// The number of particles that fit.
             #[inline(never)]
             pub(crate) fn capacity(&self) -> usize {
                 [$(self.$p.len()),+].into_iter().fold(usize::MAX, usize::min)
@@ -260,9 +260,9 @@ storage! {
         material: u16 = 0,
         /// Why it will be removed at the end of this step, by row.
         pending_death: PendingDeath = PendingDeath::Lives,
-        /// How many particles came into the system before it, by row.
+        /// The number of particles that came into the system before it, by row.
         serial: u32 = 0,
-        /// What its random numbers are drawn by as long as it lives, by row.
+        /// The key by which its random numbers are drawn as long as it lives, by row.
         key: u32 = 0,
         /// The slot it holds, by row.
         slot: u32 = 0,
@@ -272,7 +272,7 @@ storage! {
         last_spring: u32 = 0,
     }
     emitter {
-        /// What each emitter has done so far.
+        /// The state of each emitter: its births so far.
         emitter_states: EmitterState = EmitterState::NEW,
     }
     spring {
@@ -280,8 +280,8 @@ storage! {
         incident: u32 = 0,
     }
     kept {
-        /// What is kept of particles beside all that: columns of a user's own, then what constraints keep of each, then what
-        /// else they keep, one behind the other.
+        /// The words kept of particles beside all that: columns of a user's own, then those that constraints keep of
+        /// each, then the other words that constraints keep, one behind the other.
         kept: u32 = 0,
     }
     work {

@@ -32,7 +32,7 @@ pub(super) fn build<'m, P: Pieces + ?Sized, S: Split>(
     if words < needed || len > MOST {
         return Err(TooSmall { words, needed });
     }
-    // What planes cut needs room for copies: half of what is not needed at least.
+    // Pieces that planes cut need room for copies: half of the words beyond the least that is needed.
     let spare = if S::CUTS { (words - needed) / 2 / ENTRY } else { 0 };
     let room = len + spare.min(2 * len);
     let (front, back) = memory.split_at_mut(words - ENTRY * room);
@@ -103,7 +103,7 @@ impl<S: Split> Tree<'_, '_, S> {
         while let Some(job) = waiting.pop() {
             self.promised -= units(job.range.len());
             if S::CUTS {
-                // What was copied for those before is done with.
+                // The copies made for earlier parts are no longer needed.
                 self.entries.len = job.range.end;
             }
             self.header.depth = self.header.depth.max(job.level as u32);
@@ -141,7 +141,8 @@ impl<S: Split> Tree<'_, '_, S> {
         true
     }
 
-    /// Whether pieces are listed with their own boxes, as leaves of the size of a node: what is cut has another box there.
+    /// Tells whether pieces are listed with their own boxes, as leaves of the size of a node: a piece that is cut has
+    /// another box there.
     fn boxes(&self) -> bool {
         !S::CUTS && self.leaf == WIDE
     }

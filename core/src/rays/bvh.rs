@@ -76,7 +76,8 @@ pub(super) fn cut<C: Clone>(
     if middle == range.start || middle == range.end { None } else { halves(middle, hulls) }
 }
 
-/// Before which bin to cut, and the hulls of both sides. The first and the last bin hold something.
+/// Returns the number of the bin before which a cut is cheapest, and the hulls of both sides. The first and the last
+/// bin hold something.
 fn cheapest(bins: &[(Hull, usize); BINS], scale: f32) -> (usize, [Hull; 2]) {
     let mut above = [(Hull::EMPTY, 0); BINS + 1];
     for i in (0..BINS).rev() {
@@ -88,7 +89,7 @@ fn cheapest(bins: &[(Hull, usize); BINS], scale: f32) -> (usize, [Hull; 2]) {
         below = below.join(bins[cut - 1].0);
         count += bins[cut - 1].1;
         let cost = below.area(scale) * count as f32 + above[cut].0.area(scale) * above[cut].1 as f32;
-        // Of equal ones the middle: what lies on a line has no surface anywhere.
+        // The middle one of equal cuts is taken: pieces on a line have no surface anywhere.
         if cost < best.0 || (cost == best.0 && cut.abs_diff(BINS / 2) < best.1.abs_diff(BINS / 2)) {
             best = (cost, cut, [below, above[cut].0]);
         }

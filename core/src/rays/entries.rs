@@ -90,7 +90,7 @@ pub(super) fn area(bounds: &Aabb, scale: f32) -> f32 {
 #[derive(Debug)]
 pub(super) struct Entries<'m> {
     all: &'m mut [Entry],
-    /// How many are in use; what is cut puts its copies there.
+    /// The number of entries in use; copies of pieces that are cut go behind them.
     pub(super) len: usize,
 }
 
@@ -135,7 +135,7 @@ impl<'m> Entries<'m> {
         range.start + n
     }
 
-    /// How many of some lie below a plane across an axis at least in part, and how many above.
+    /// Counts the entries that lie below a plane across an axis at least in part, and those above.
     pub(super) fn sides(&self, range: Range<usize>, axis: usize, plane: f32) -> [usize; 2] {
         let entries = &self.all[range];
         let below = entries.iter().filter(|entry| entry.low[axis] < plane).count();
@@ -169,7 +169,7 @@ impl<'m> Entries<'m> {
     }
 }
 
-/// Whether something of it is above a plane, or it lies in it.
+/// Tells whether a part of it is above a plane, or all of it lies in the plane.
 #[inline(always)]
 fn is_above(entry: &Entry, axis: usize, plane: f32) -> bool {
     entry.high[axis] > plane || !(entry.low[axis] < plane)

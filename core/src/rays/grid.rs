@@ -40,7 +40,7 @@ impl Frame {
     fn new(bounds: &Aabb, side: f32) -> Self {
         let extent = bounds.max - bounds.min;
         let count = |extent: f32| ((extent / side) as u32).min(LONGEST as u32 - 1) + 1;
-        // What is longer than a number can say is one cell.
+        // A box longer than any number is one cell.
         let cells = if extent.is_finite() { extent.to_array().map(count) } else { [1; 3] };
         let off = 4.0 * f32::EPSILON * max(largest(bounds.min), largest(bounds.max)) + side * (1.0 / 64.0);
         Self { cells, low: bounds.min.to_array(), side, inverse: 1.0 / side, off, spare: [0; 7] }
@@ -108,7 +108,7 @@ impl<'w> Grid<'w> {
     }
 }
 
-/// Whether the words after a sound header are a grid whose every number leads somewhere.
+/// Tells whether the words after a sound header are a grid whose every number leads somewhere.
 pub(super) fn is_sound(words: &[u32]) -> bool {
     let (Some(header), Some(grid)) = (Header::of(words), Grid::of(words)) else {
         return false;

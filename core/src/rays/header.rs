@@ -10,7 +10,7 @@ pub(super) const UNIT: usize = 8;
 /// "ray1", the version of the layout.
 const MAGIC: u32 = 0x7261_7931;
 
-/// What is in it; numbers are words, so that it can lie in flash.
+/// The description of an index; all numbers are words, so that it can lie in flash.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Header {
@@ -25,9 +25,9 @@ pub(super) struct Header {
     pub(super) depth: u32,
     pub(super) fullest: u32,
     pub(super) crowded: u32,
-    /// Of the pieces' boxes.
+    /// The hash of the pieces' boxes.
     pub(super) boxes: u32,
-    /// Of all words but this one.
+    /// The hash of all words but this one.
     pub(super) sum: u32,
     spare: [u32; 4],
 }
@@ -37,7 +37,7 @@ impl Header {
         Self { magic: MAGIC, structure: structure as u32, words: HEADER as u32, ..Self::default() }
     }
 
-    /// Of these words, if there are enough for one.
+    /// The header at the beginning of these words, if there are enough for one.
     pub(super) fn of(words: &[u32]) -> Option<&Self> {
         words.first_chunk::<HEADER>().map(bytemuck::cast_ref)
     }
@@ -58,7 +58,7 @@ impl Header {
         words
     }
 
-    /// Whether all words are those that were written.
+    /// Tells whether all words are those that were written.
     pub(super) fn is_whole(&self, words: &[u32]) -> bool {
         self.words as usize == words.len() && words.get(HEADER..).is_some_and(|rest| sum(self, rest) == self.sum)
     }
@@ -79,7 +79,7 @@ fn mix(hash: u32, word: u32) -> u32 {
 
 const START: u32 = 0x811C_9DC5;
 
-/// Of a header without its sum, and what follows: eight hashes side by side, then one of those.
+/// The hash of a header without its sum, and of the words that follow: eight hashes side by side, then one of those.
 fn sum(header: &Header, rest: &[u32]) -> u32 {
     let head: [u32; HEADER] = bytemuck::cast(Header { sum: 0, ..*header });
     let mut lanes = [START; UNIT];

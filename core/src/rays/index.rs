@@ -8,7 +8,7 @@ use super::{Cost, Pieces, Stats, Structure, grid, tree};
 use crate::shape::{Aabb, Hit, Segment};
 use glam::Vec3;
 
-/// What a structure sorted into words, ready to be asked. Copying it copies a reference.
+/// The words into which a structure sorted pieces, ready to be asked. Copying it copies a reference.
 ///
 /// It answers for the pieces it was built from; asked with another number of pieces it looks at each of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,13 +69,13 @@ impl<'w> Index<'w> {
         Header::of(self.words).and_then(Header::structure).unwrap_or(Structure::Brute)
     }
 
-    /// What has been built.
+    /// Tells how large the structure has become.
     #[must_use]
     pub fn stats(&self) -> Stats {
         Header::of(self.words).map_or(Stats::default(), Header::stats)
     }
 
-    /// Whether it was built from pieces with these boxes. Looks at each of them once.
+    /// Tells whether it was built from pieces with these boxes. Looks at each of them once.
     #[must_use]
     pub fn is_of<P: Pieces + ?Sized>(&self, pieces: &P) -> bool {
         Header::of(self.words)

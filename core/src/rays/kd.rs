@@ -11,7 +11,7 @@ pub(super) struct Cheapest;
 
 /// Places along an axis, and one more.
 const BINS: usize = 16;
-/// What a cut has to bring a part's cost down to.
+/// The share of a part's cost that a cut must not exceed.
 const GAIN: f32 = 0.9;
 
 impl Split for Cheapest {

@@ -1,4 +1,4 @@
-//! What a path meets first: one search, six ways to organise what stands in the way, the same answers from all.
+//! First hits of a path: one search, six ways to organise the pieces that stand in the way, the same answers from all.
 //!
 //! [`Pieces`] are things with boxes: the triangles of a mesh, the solids of a scene. A [`Structure`] sorts them once into
 //! a slice of words that the caller lends; an [`Index`] reads such words, wherever they lie: on the heap, on the stack, or
@@ -55,7 +55,7 @@ pub use pieces::{Pieces, Solids};
 pub(crate) use probe::{Best, Probe};
 pub use structure::{Structure, UnknownStructure};
 
-/// What a query took: the same on every machine.
+/// The work that a query took: the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Nodes or cells that were looked at.
@@ -71,7 +71,7 @@ impl core::ops::AddAssign for Cost {
     }
 }
 
-/// What has been built.
+/// The size of a structure that has been built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Pieces in it.

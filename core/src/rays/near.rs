@@ -3,14 +3,14 @@
 use super::{Cost, Pieces};
 use crate::shape::Aabb;
 
-/// How many are gathered at a time; where there are more, the structure is asked again.
+/// The largest number of pieces gathered at a time; where there are more, the structure is asked again.
 const AT_ONCE: usize = 64;
 
 /// The lowest numbers from some number on, each once.
 pub(super) struct Gathered {
     from: usize,
     numbers: heapless::Vec<u32, AT_ONCE>,
-    /// Whether there are higher numbers, too.
+    /// True if there are higher numbers, too.
     more: bool,
     pub(super) cost: Cost,
 }
@@ -50,7 +50,7 @@ pub(super) fn in_order(mut gather: impl FnMut(&mut Gathered), visit: &mut dyn Fn
     found.cost
 }
 
-/// Whether two boxes share a point. One that is not finite shares none.
+/// Tells whether two boxes share a point. One that is not finite shares none.
 #[inline(always)]
 pub(super) fn meets(a: &Aabb, b: &Aabb) -> bool {
     a.min.is_finite() && a.max.is_finite() && a.min.cmple(b.max).all() && b.min.cmple(a.max).all()

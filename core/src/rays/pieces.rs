@@ -1,4 +1,4 @@
-//! What can stand in the way, by numbers.
+//! Pieces that can stand in the way, by numbers.
 
 use crate::math::{largest, max};
 use crate::shape::{Aabb, Collider, Hit, Segment, Surface};
@@ -7,7 +7,7 @@ use crate::shape::{Aabb, Collider, Hit, Segment, Surface};
 ///
 /// All answers have to be pure functions of what is asked; numbers from `count` on are never asked for.
 pub trait Pieces: Sync {
-    /// How many there are.
+    /// The number of pieces.
     fn count(&self) -> usize;
 
     /// The box around one \[m\]; nothing hits a piece whose box is not finite.

@@ -15,7 +15,7 @@ pub(crate) struct Probe<'s> {
     /// Where it comes from, moved against the room around boxes: for the plane it meets first, and for the other.
     near_from: [f32; 3],
     far_from: [f32; 3],
-    /// Whether it runs down an axis: then the upper plane comes first.
+    /// True if it runs down an axis: then the upper plane comes first.
     pub(super) down: [bool; 3],
     /// How far from a box it is still inside \[m\], and how much of that is for rounding.
     room: f32,

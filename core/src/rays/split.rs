@@ -11,7 +11,7 @@ pub(super) struct Part<C> {
     pub(super) range: Range<usize>,
     /// The box around them.
     pub(super) hull: Hull,
-    /// What the structure hands down.
+    /// The value that the structure hands down.
     pub(super) cell: C,
     /// How often it has been cut on the way from its node.
     pub(super) cuts: u32,
@@ -19,13 +19,13 @@ pub(super) struct Part<C> {
 
 /// How a tree cuts a part in two.
 pub(super) trait Split {
-    /// Whether planes cut pieces, which are then listed on both sides.
+    /// True if planes cut pieces, which are then listed on both sides.
     const CUTS: bool;
     /// Pieces in a leaf, at most: those that are not cut are as many as a node has lanes for.
     const LEAF: usize = super::tree::WIDE;
     /// The structure's rule wants so many cuts from a node to its child; zero: whatever gives the smallest boxes.
     const ROUNDS: u32 = 0;
-    /// What is handed down from part to part.
+    /// The value handed down from part to part.
     type Cell: Clone;
 
     /// That of all pieces.

@@ -1,4 +1,4 @@
-//! What the trees share: nodes of eight children each, with their boxes side by side.
+//! The parts that all trees share: nodes of eight children each, with their boxes side by side.
 //!
 //! A child is a node, a piece with its own box, or a run of pieces by their numbers. Nodes come in the order in which a walk
 //! that takes the last child first meets them, so that one pass can tell that they are a tree.
@@ -33,12 +33,12 @@ pub(super) type Unit = [u32; UNIT];
 pub(super) const NODE: usize = size_of::<Node>() / 4;
 pub(super) const NODE_UNITS: usize = NODE / UNIT;
 
-/// What follows the header.
+/// The words that follow the header.
 fn body(words: &[u32]) -> &[Unit] {
     words.get(HEADER..).unwrap_or_default().as_chunks().0
 }
 
-/// What a child's word says: its kind in two bits, and a number.
+/// The kinds of a child's word, in two bits before a number.
 pub(super) const RUN: u32 = 1 << 30;
 pub(super) const PIECE: u32 = 2 << 30;
 pub(super) const NOTHING: u32 = 3 << 30;
@@ -107,7 +107,7 @@ fn run(body: &[Unit], unit: u32) -> impl Iterator<Item = usize> + '_ {
     words.take_while(move |&&word| core::mem::replace(&mut more, word & LAST == 0)).map(|&word| (word & !LAST) as usize)
 }
 
-/// Whether the words after a sound header are a tree whose every number leads somewhere.
+/// Tells whether the words after a sound header are a tree whose every number leads somewhere.
 pub(super) fn is_sound(words: &[u32]) -> bool {
     let (Some(header), body) = (Header::of(words), body(words)) else {
         return false;

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Cause {
-    /// Of age.
+    /// By age.
     Lifetime,
     /// By a rule of the program's own.
     Other,
@@ -18,7 +18,7 @@ pub enum Cause {
     Nonfinite,
 }
 
-/// What becomes of a particle at the end of the step.
+/// The fate of a particle at the end of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PendingDeath {
     /// It lives on.

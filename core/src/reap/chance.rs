@@ -76,7 +76,7 @@ impl Glance {
         Self { pace: rate * (1.0 / (256.0 * core::f32::consts::LN_2)) }
     }
 
-    /// Whether who has this word is sure to live at this age.
+    /// Tells whether the particle that has this word is sure to live at this age.
     #[inline(always)]
     fn spares(self, word: u32, age: Time) -> bool {
         let bits = (word as f32 + 0.5).to_bits() as i32 as f32;
@@ -101,7 +101,7 @@ mod tests {
                 // Small and large words as well as those between.
                 let word = if i % 2 == 0 { a >> (b % 32) } else { !(a >> (b % 32)) };
                 let span = chance.span(word).ticks();
-                // Who outlives time itself never has to.
+                // A particle that outlives time itself never has to go.
                 let ages = [span, span.saturating_add(1), span.saturating_add(span >> 20), u64::MAX];
                 for age in ages.into_iter().filter(|_| span < u64::MAX) {
                     assert!(!glance.spares(word, Time::from_ticks(age)), "{rate} {word} {age}");

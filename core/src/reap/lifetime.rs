@@ -35,8 +35,8 @@ impl Reaper for Lifetime {
     }
 }
 
-/// Whether any of these instants may have come by `last`. The difference to the next instant has the highest bit where it is
-/// below zero, or where what dies later than in 68 years does: that has the bit itself.
+/// Tells whether any of these instants may have come by `last`. The difference to the next instant has the highest bit
+/// where it is below zero, or where what dies later than in 68 years does: that has the bit itself.
 #[inline(always)]
 fn may_end(dies: &[Time], last: Time) -> bool {
     let next = last.ticks().saturating_add(1);

@@ -70,18 +70,18 @@ pub trait Reaper: Sync {
         0.0
     }
 
-    /// Whether it takes nobody, whatever the state: no row is looked at then.
+    /// Tells whether it takes nobody, whatever the state: no row is looked at then.
     fn is_empty(&self) -> bool {
         false
     }
 
-    /// What a step calls to have all judged; nothing, where it is known that nobody ever is.
+    /// The function that a step calls to have all judged; none, where it is known that nobody ever is.
     fn code(&self) -> Option<ReaperCode> {
         Some(ReaperCode::ALL)
     }
 }
 
-/// What reapers call for in a step: a function, so that a program which has none does not carry it about.
+/// The function that reapers call for in a step. A program without reapers does not carry it about.
 #[derive(Clone, Copy, Debug)]
 pub struct ReaperCode(pub(crate) fn(&dyn Reaper, Judged<'_>));
 
@@ -93,9 +93,9 @@ impl ReaperCode {
 /// All rows, as they are to be judged.
 pub(crate) struct Judged<'a> {
     pub(crate) state: State<'a>,
-    /// What has become of them so far.
+    /// The fates of all so far.
     pub(crate) pending_deaths: &'a mut [PendingDeath],
-    /// What finds who is near, and memory for it.
+    /// The index by which to find who is near, and memory for it.
     pub(crate) index: &'a dyn IndexChoice,
     pub(crate) words: &'a mut [u32],
     /// Room for the places of those who live.
@@ -118,7 +118,7 @@ fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
     });
 }
 
-/// What reapers say of the rows they are asked about.
+/// The verdicts of reapers on the rows they are asked about.
 #[derive(Debug)]
 pub struct Verdicts<'a> {
     pending_deaths: &'a mut [PendingDeath],
@@ -158,7 +158,7 @@ impl Reaper for () {
     }
 }
 
-/// What has parts is any of them.
+/// The methods of a reaper that has parts: it takes whomever one of them takes.
 macro_rules! any_of {
     ($this:ident => $parts:expr) => {
         fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
@@ -182,7 +182,7 @@ macro_rules! any_of {
     };
 }
 
-/// What stands for another reaper is that reaper.
+/// The methods of a reaper that stands for another reaper.
 macro_rules! same_as {
     ($this:ident => $reaper:expr) => {
         fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {

@@ -1,4 +1,4 @@
-//! What a declared scene may say: every number finite, every reference to something that is there.
+//! Checks of a declared scene: every number is finite, every reference is to something that is there.
 
 use super::check_force::check_force;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
@@ -12,10 +12,10 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
 
-/// How many births a second there may be: rates are kept as fixed-point numbers.
+/// The largest number of births a second: rates are kept as fixed-point numbers.
 const MAX_RATE: f32 = 4e9;
 
-/// How many materials there may be: particles keep their number plus one in 16 bits.
+/// The largest number of materials: particles keep their number plus one in 16 bits.
 pub(super) const MAX_MATERIALS: usize = u16::MAX as usize;
 
 /// How deep groups may stand in each other.
@@ -92,7 +92,7 @@ impl SceneFile {
                 ReaperKind::Dense(dense) => zero_or_more(&format!("reapers[{i}].radius"), dense.radius)?,
             }
         }
-        // How many particles cloths bring is known when their meshes have been read.
+        // The number of particles that cloths bring is known when their meshes have been read.
         if self.cloths.is_empty() {
             self.check_corners(self.particles.len())?;
         }

@@ -1,4 +1,4 @@
-//! What a declared scene may say of its forces.
+//! Checks of a declared scene's forces.
 
 use super::numbers::{Checked, above_zero, check_direction, finite, zero_or_more};
 use super::{SceneError, SceneFile};
@@ -33,7 +33,7 @@ impl SceneFile {
     }
 }
 
-/// What recordings call the engine's own attributes.
+/// The names in recordings of the engine's own attributes.
 const OWN: [&str; 19] = [
     "step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age", "radius", "species", "pos", "velo", "red",
     "green", "blue", "alpha",

@@ -1,16 +1,16 @@
-//! What is wrong with a scene.
+//! Errors in scenes.
 
 use alloc::format;
 use alloc::string::{String, ToString};
 
-/// What is wrong with a scene, where, and what was expected: one line.
+/// An error in a scene: what is wrong, where, and what was expected, in one line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     /// The file's name.
     pub file: String,
     /// Where: `line:column`, or the path of a value such as `particles[3].mass`; empty if the whole file is meant.
     pub place: String,
-    /// What is wrong.
+    /// The message: what is wrong.
     pub message: String,
 }
 

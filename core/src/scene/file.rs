@@ -24,7 +24,7 @@ pub struct SceneFile {
     /// Where the schema of this format lies, for editors.
     #[cfg_attr(feature = "serde", serde(rename = "$schema", skip_serializing_if = "Option::is_none"))]
     pub schema: Option<String>,
-    /// What it shows, for people.
+    /// A description of what it shows, for people.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "String::is_empty"))]
     pub about: String,
     /// How it is run unless the command line says otherwise.
@@ -38,31 +38,31 @@ pub struct SceneFile {
     /// Sheets and meshes of springs, whose particles and springs follow those above.
     #[cfg_attr(feature = "serde", serde(alias = "fabrics", skip_serializing_if = "Vec::is_empty"))]
     pub cloths: Vec<Cloth>,
-    /// What brings further particles into the world.
+    /// Emitters, which bring further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub emitters: Vec<Emitter<Shape<String>, Option<MotionBuf>>>,
-    /// What acts on all of them, in this order.
+    /// The forces on all of them, in this order.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub forces: Vec<ForceKind>,
     /// How those that have a radius answer each other's touch; without it they pass through each other.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub contacts: Option<Response>,
-    /// What binds them, in this order, before contacts by position.
+    /// Constraints that bind them, in this order, before contacts by position.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub constraints: Vec<ConstraintKind>,
-    /// What pulls them, after the forces, and removes those that touch it.
+    /// Sinks, which pull them, after the forces, and remove those that touch them.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub sinks: Vec<Sink<String>>,
-    /// What leads them to places of surfaces by a given time.
+    /// Goals, which lead them to places of surfaces by a given time.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub goals: Vec<Goal<String>>,
-    /// What else they die of, beside age and sinks.
+    /// Reapers: the other rules by which they die, beside age and sinks.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub reapers: Vec<ReaperKind>,
-    /// What each particle has beside the engine's own attributes: numbers with names.
+    /// The numbers with names that each particle has beside the engine's own attributes.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub custom: Vec<CustomBuf>,
-    /// What they bounce off and what is drawn.
+    /// The things that they bounce off and that are drawn.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub scenery: Vec<Item>,
     /// Transforms that parts of the scenery share.
@@ -97,7 +97,7 @@ pub struct Run {
     pub substeps: u32,
     /// The method.
     pub integrator: Method,
-    /// What adaptive and implicit methods are set to.
+    /// The settings of adaptive and implicit methods.
     pub tuning: Tuning,
     /// How forces find the neighbours of a particle.
     pub index: Structure,
@@ -117,7 +117,7 @@ pub struct Run {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Item {
-    /// What it looks like.
+    /// Its shape.
     pub shape: Shape<String>,
     /// Its material; without one, that of its group or the next group around with one.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]

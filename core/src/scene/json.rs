@@ -48,7 +48,7 @@ impl SceneFile {
     }
 }
 
-/// What was called otherwise once, and what it is called now.
+/// Former names, each with the present one.
 const FORMER: [(&str, &str); 7] = [
     ("variance", "half_width"),
     ("color_variance", "color_half_width"),

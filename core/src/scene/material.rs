@@ -40,7 +40,7 @@ pub struct Material {
     /// How it feels to what touches it.
     #[cfg_attr(feature = "serde", serde(alias = "grip", skip_serializing_if = "ContactMaterial::is_plain"))]
     pub contact: ContactMaterial,
-    /// What becomes of particles of it over their lives.
+    /// The changes that its particles undergo over their lives.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "LifeBuf::is_plain"))]
     pub life: LifeBuf,
 }
@@ -118,7 +118,8 @@ impl Sprite {
     }
 }
 
-/// What becomes of particles over their lives: see [`Life`]. A key is an instant and a value, or for colours three.
+/// The changes that particles undergo over their lives: see [`Life`]. A key is an instant and a value, or for colours
+/// three.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -179,12 +180,12 @@ pub struct CurveBuf<K> {
     /// The measure of the instants: shares of the life, or seconds.
     #[cfg_attr(feature = "serde", serde(default))]
     pub over: Over,
-    /// Whether it goes from key to key along cubics that overshoot nothing, instead of straight.
+    /// True if it goes from key to key along cubics that overshoot nothing, instead of straight.
     #[cfg_attr(feature = "serde", serde(default))]
     pub smooth: bool,
 }
 
-/// What each particle has its own place between.
+/// Two curves between which each particle has its own place.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -210,7 +211,7 @@ impl<const N: usize> VaryingBuf<[f32; N]> {
 }
 
 impl LifeBuf {
-    /// Whether nothing becomes of them.
+    /// Tells whether there are no changes at all.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
@@ -232,7 +233,7 @@ impl LifeBuf {
         }
     }
 
-    /// Whether its curves can be used; `at` is where they stand.
+    /// Checks that its curves can be used; `at` is where they stand.
     pub(super) fn check(&self, at: &str) -> Result<(), SceneError> {
         const ANY: f32 = f32::MAX;
         let life = self.lend();
@@ -258,7 +259,7 @@ fn check_varying<const N: usize>(at: &str, curve: Option<Varying<'_, N>>, range:
     to.map_or(Ok(()), |to| check_curve(at, to, range))
 }
 
-/// Whether keys are there, in order, and within a range.
+/// Checks that keys are there, in order, and within a range.
 fn check_curve<const N: usize>(at: &str, curve: Curve<'_, N>, [least, most]: [f32; 2]) -> Result<(), SceneError> {
     let refuse = |message| Err(SceneError::value(at, message));
     if curve.keys.is_empty() {

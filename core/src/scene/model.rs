@@ -28,32 +28,32 @@ use glam::Vec3;
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
 
-/// What a scene file means, owned: lend it to a system with [`Model::scene`].
+/// A scene file made ready to run, owned: lend it to a system with [`Model::scene`].
 #[derive(Clone, Debug)]
 pub struct Model {
     /// The particles it begins with.
     pub particles: Vec<Particle>,
     /// Springs between them.
     pub springs: Vec<Spring>,
-    /// What brings further particles into the world.
+    /// Emitters, which bring further particles into the world.
     pub emitters: Vec<Emitter<Shape<Arc<MeshBuf>>, Option<MotionBuf>>>,
-    /// What acts on them, in this order.
+    /// The forces on them, in this order.
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
-    /// What binds them: constraints, then contacts by position.
+    /// The constraints that bind them, then contacts by position.
     pub constraints: (Vec<ConstraintKind>, Option<Contacts>),
     /// Parts that each step is cut into.
     pub substeps: u32,
-    /// What they bounce off.
+    /// The things that they bounce off.
     pub colliders: Scenery<Moving<Placed<Shape<Arc<MeshBuf>>>, MotionBuf>>,
-    /// What else they die of, beside age and sinks.
+    /// The other rules by which they die, beside age and sinks.
     pub reapers: Vec<ReaperKind>,
-    /// What each particle has beside the engine's own attributes.
+    /// The numbers that each particle has beside the engine's own attributes.
     pub custom: Vec<CustomBuf>,
-    /// What particles and surfaces are made of, by numbers.
+    /// The materials of particles and surfaces, by numbers.
     pub materials: Vec<Material>,
-    /// What is drawn.
+    /// The solids that are drawn.
     pub scenery: Vec<Solid>,
     /// How often a particle may bounce in one step.
     pub max_bounces: u32,
@@ -163,7 +163,7 @@ impl Model {
         })
     }
 
-    /// Whether particles may have a radius: some of those it begins with, or some that are born.
+    /// Tells whether particles may have a radius: some of those it begins with, or some that are born.
     #[must_use]
     pub fn has_balls(&self) -> bool {
         widest(&self.particles, &self.emitters) > 0.0
@@ -248,7 +248,7 @@ impl Meshes<'_> {
     }
 }
 
-/// What a scene's own particles and its cloths come to.
+/// A scene's own particles, springs and forces, with those of its cloths.
 struct Start {
     particles: Vec<Particle>,
     springs: Vec<Spring>,

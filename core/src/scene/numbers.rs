@@ -1,4 +1,4 @@
-//! What numbers in files have to be, and the errors that say so.
+//! Checks of numbers in files, and the errors that tell what they have to be.
 
 use super::SceneError;
 use crate::math::unit;
@@ -16,7 +16,7 @@ pub(super) fn finite(at: &str, numbers: &[f32]) -> Checked {
     }
 }
 
-/// What springs break at.
+/// Checks the ratio of lengths at which a spring breaks.
 pub(super) fn check_breaking(at: &str, ratio: Option<f32>) -> Checked {
     let Some(ratio) = ratio else { return Ok(()) };
     finite(at, &[ratio])?;

@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 
 /// How deep files may include each other.
 const MAX_INCLUDE_DEPTH: usize = 64;
-/// How many includes a scene may have in all: two files that each include the next twice grow without measure.
+/// The largest number of includes of a scene in all: two files that each include the next twice grow without measure.
 const MAX_INCLUDES: usize = 4096;
 
 /// Where scenes and meshes come from; errors are one line of text that names the file.
@@ -30,7 +30,7 @@ pub trait Files {
     /// If it cannot be read or is no mesh.
     fn mesh(&mut self, path: &str) -> Result<MeshBuf, String>;
 
-    /// Whether there is such a file.
+    /// Tells whether there is such a file.
     fn exists(&mut self, path: &str) -> bool;
 
     /// The name of a file that differs from this in capitals alone, where there is one.
@@ -43,11 +43,11 @@ pub trait Files {
 /// A scene that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// What it says.
+    /// The scene as the files tell it.
     pub scene: SceneFile,
-    /// What is not as it was written, or not there.
+    /// Warnings of things that are not as they were written, or not there.
     pub warnings: Vec<String>,
-    /// What can be run but is hardly meant: what [`SceneFile::remarks`] finds, with line and column.
+    /// Remarks on what can be run but is hardly meant: what [`SceneFile::remarks`] finds, with line and column.
     pub remarks: Vec<String>,
 }
 
@@ -153,7 +153,7 @@ struct Reader<'a> {
     includes: usize,
 }
 
-/// What the commands of one file refer to.
+/// The things that the commands of one file refer to.
 struct Scope<'a> {
     /// The file, as messages name it.
     path: &'a str,

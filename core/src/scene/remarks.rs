@@ -1,4 +1,4 @@
-//! What a declared scene can say, but hardly means.
+//! Remarks on a declared scene: things that it can say, but hardly means.
 
 use super::Response;
 use super::SceneFile;
@@ -16,7 +16,7 @@ const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
 pub(super) const MOST: usize = 1000;
 
 impl SceneFile {
-    /// What it says that can be run but is hardly meant, each by its path in the file; the first thousand.
+    /// Remarks on what can be run but is hardly meant, each by its path in the file; the first thousand.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
@@ -24,7 +24,7 @@ impl SceneFile {
             let told = remark.filter(|_| remarks.len() < MOST);
             remarks.extend(told.map(|text| format!("{at}: {text}")));
         };
-        // What is fixed hits nothing.
+        // A fixed particle hits nothing.
         for (i, particle) in self.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed) {
             add(format_args!("particles[{i}].elasticity"), odd_elasticity(Varied::exactly(particle.elasticity)));
         }
@@ -55,9 +55,9 @@ impl SceneFile {
     }
 }
 
-/// What is odd about a share of the speed that hits leave.
+/// A remark on an odd share of the speed that hits leave.
 pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<String> {
-    /// What sums of decimals may be off by.
+    /// The error that sums of decimals may have.
     const ROUNDING: f32 = 1e-6;
     let (least, most) = (mean - half_width.abs(), mean + half_width.abs());
     if most > 1.0 + ROUNDING {
@@ -66,13 +66,13 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
     (least < -ROUNDING).then(|| format!("{least} is below 0, which no hit can leave of a speed"))
 }
 
-/// What is odd about the angle within which births leave. The lecture's recipe takes the sine of any.
+/// A remark on an odd angle within which births leave. The lecture's recipe takes the sine of any.
 fn odd_spread(spread: Spread) -> Option<String> {
     let Spread::Uniform(cutoff) = spread else { return None };
     (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
 }
 
-/// What is odd about the ends of a spring.
+/// A remark on odd ends of a spring.
 pub(super) fn odd_ends([a, b]: [i64; 2]) -> Option<String> {
     (a == b).then(|| format!("the spring joins particle {a} to itself, so it does nothing"))
 }

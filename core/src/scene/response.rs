@@ -63,7 +63,7 @@ impl Response {
             .find(|response| response.name() == name)
     }
 
-    /// What is wrong with its settings: which, and what they have to be.
+    /// The first of its settings that is wrong, and what that has to be.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
@@ -92,7 +92,7 @@ impl Response {
         }
     }
 
-    /// What holds them apart by position, if that is how they answer.
+    /// The contacts that hold them apart by position, if that is how they answer.
     #[must_use]
     pub fn contacts(&self) -> Option<Contacts> {
         match *self {
@@ -119,7 +119,7 @@ impl Response {
         }
     }
 
-    /// What they do where their paths meet.
+    /// The answer of balls whose paths meet.
     #[must_use]
     pub fn meetings(&self) -> Meetings {
         match self {

@@ -13,7 +13,7 @@ use crate::particles::Particle;
 use crate::reap::Reaper;
 use crate::shape::Collider;
 
-/// What the world does: immutable while it runs. Lists are closed under composition, so each field is one thing.
+/// The rules of a world: immutable while it runs. Lists are closed under composition, so each field is one thing.
 ///
 /// ```
 /// use pointmass::{Drag, Gravity, Scene};
@@ -25,25 +25,25 @@ pub struct Scene<'a> {
     pub start: &'a [Particle],
     /// Springs between them.
     pub springs: &'a dyn SpringList,
-    /// What brings further particles into the world.
+    /// Emitters, which bring further particles into the world.
     pub emitters: &'a dyn Emit,
-    /// What acts on particles, springs aside.
+    /// The forces on particles, springs aside.
     pub forces: &'a dyn Force,
-    /// What they bounce off.
+    /// The things that they bounce off.
     pub colliders: &'a dyn Collider,
-    /// What they vanish at.
+    /// The things that they vanish at.
     pub sinks: &'a dyn Collider,
-    /// What else they die of, beside age and sinks.
+    /// The other rules by which they die, beside age and sinks.
     pub reapers: &'a dyn Reaper,
-    /// What each particle has beside the engine's own attributes: numbers with names.
+    /// The numbers with names that each particle has beside the engine's own attributes.
     pub custom: &'a dyn CustomList,
-    /// What particles and surfaces are made of, by numbers; beyond them all nothing rubs or changes.
+    /// The materials of particles and surfaces, by numbers; beyond them all nothing rubs or changes.
     pub materials: &'a dyn MaterialList,
-    /// What binds them together and keeps them apart.
+    /// The constraints that bind them together and keep them apart.
     pub constraints: &'a dyn Constraint,
     /// Parts that a step is cut into for the method and the constraints, 1 to 1000: the finer, the stiffer are constraints.
     pub substeps: u32,
-    /// What those that have a radius do where they meet.
+    /// The answer of those that have a radius where they meet.
     pub meetings: Meetings,
     /// How often a particle may bounce in one step before it waits at the surface for its end, which is counted in
     /// `caps.bounces`: by default 8 times. By [`Impulse`](crate::Impulse) it may meet others and colliders four times as often.
@@ -102,7 +102,7 @@ impl Scene<'_> {
         self.plan().kept_columns(self.start.len())
     }
 
-    /// What a step works with. Asked for in many places: apart, it is in a chip's flash once.
+    /// The memory that a step works with. Asked for in many places: apart, it is in a chip's flash once.
     #[inline(never)]
     pub(crate) fn plan(&self) -> Plan {
         let needs = self.forces.needs();
@@ -141,7 +141,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether paths are to be followed through space.
+    /// Tells whether paths are to be followed through space.
     pub(crate) fn is_swept(&self) -> bool {
         !(self.colliders.is_empty() && self.sinks.is_empty() && self.meetings.is_through())
     }
@@ -150,7 +150,7 @@ impl Scene<'_> {
         self.integrator.needs_start() || self.is_swept()
     }
 
-    /// Whether a step can be made in memory of size `have`: all but the particles must fit.
+    /// Tells whether a step can be made in memory of size `have`: all but the particles must fit.
     pub(crate) fn fits(&self, have: Size) -> bool {
         let need = self.size();
         let pairs = [[need.emitters, have.emitters], [need.springs, have.springs], [need.columns, have.columns]];
@@ -161,9 +161,9 @@ impl Scene<'_> {
 /// A scene needs more memory than the system has, particles aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsufficientMemory {
-    /// What the scene needs.
+    /// The memory that the scene needs.
     pub need: Size,
-    /// What there is.
+    /// The memory that there is.
     pub have: Size,
 }
 

@@ -362,7 +362,7 @@ impl Writer {
     }
 }
 
-/// Whether a name is a word of `.scn`: not empty, without blanks, no comment.
+/// Tells whether a name is a word of `.scn`: not empty, without blanks, no comment.
 fn is_word(name: &str) -> bool {
     !name.is_empty() && !name.contains(char::is_whitespace) && !name.starts_with('#')
 }

@@ -35,7 +35,7 @@ impl Aabb {
         Self { min: self.min - room, max: self.max + room }
     }
 
-    /// Whether the two share a point, rounding errors of a few units in the last place allowed for.
+    /// Tells whether the two share a point, rounding errors of a few units in the last place allowed for.
     #[inline]
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {

@@ -8,7 +8,7 @@ use super::{Contact, Hit, Segment};
 use crate::math::{clamp, dot, length, max, sqrt, unit};
 use glam::Vec3;
 
-/// How many times Newton's method looks again.
+/// The largest number of times that Newton's method looks again.
 ///
 /// Each time the product of the distance that is left and the speed of approach falls to a quarter or less (both are
 /// parts of what they were, and the parts sum to one at the most). So at the end the ball is within 2⁻²⁴ of its first
@@ -48,7 +48,8 @@ pub(super) fn approach(set: &impl Filled, segment: &Segment, slack: f32) -> Opti
     None
 }
 
-/// What a ball outside leans on: the nearest place of a set, if it is within reach. A centre in the set has no side.
+/// Visits the nearest place of a set, on which a ball outside leans, if it is within reach. A centre in the set has no
+/// side.
 pub(super) fn lean_on(set: &impl Filled, center: Vec3, reach: [f32; 2], visit: &mut dyn FnMut(&Contact)) {
     let gap = set.gap(center);
     lean(center, gap, unit(gap), reach, visit);

@@ -1,4 +1,4 @@
-//! What a moving point can run into, one by one or in lists.
+//! Things that a moving point can run into, one by one or in lists.
 
 use super::{Aabb, Affine, Facing, Hulls, Marks};
 use crate::math::{along, high, largest, low, max, minus};
@@ -53,7 +53,8 @@ pub trait Collider: Sync {
     /// outside, an open surface to the side that its normal points to. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
     fn first_hit(&self, segment: &Segment) -> Option<Hit>;
 
-    /// Whether a path inside `bounds` might meet it. May say yes too often, never no wrongly: it spares the search.
+    /// Tells whether a path inside `bounds` might meet it. May say yes too often, never no wrongly: it spares the
+    /// search.
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let _ = bounds;
         true
@@ -68,8 +69,9 @@ pub trait Collider: Sync {
         }
     }
 
-    /// What of it a path inside `bounds` can meet: where that is one flat face, it is followed there the short way, to the same
-    /// bits. By default anything, unless the path may not touch it at all. Chips without an operating system do not ask.
+    /// The part of it that a path inside `bounds` can meet: where that is one flat face, the path is followed there the
+    /// short way, to the same bits. By default anything, unless the path may not touch it at all. Chips without an
+    /// operating system do not ask.
     fn facing(&self, bounds: &Aabb) -> Facing {
         if self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
     }
@@ -93,7 +95,7 @@ pub trait Collider: Sync {
         None
     }
 
-    /// Whether it is known that nothing can ever hit it.
+    /// Tells whether it is known that nothing can ever hit it.
     fn is_empty(&self) -> bool {
         false
     }

@@ -7,7 +7,8 @@ use glam::Vec3;
 
 /// A closed convex solid.
 pub(super) trait Convex {
-    /// Whether `point` lies strictly inside; a pure function of the point, so that two paths that share an end agree.
+    /// Tells whether `point` lies strictly inside; a pure function of the point, so that two paths that share an end
+    /// agree.
     fn contains(&self, point: Vec3) -> bool;
 
     /// Where the line `from` + t × `step` runs inside, if anywhere; `step` is not zero.
@@ -31,7 +32,7 @@ impl Span {
     pub(super) const ALL: Self =
         Self { enter: f32::NEG_INFINITY, leave: f32::INFINITY, enter_normal: Vec3::ZERO, leave_normal: Vec3::ZERO };
 
-    /// What two spans share, if anything.
+    /// The part that two spans share, if any.
     pub(super) fn and(self, other: Self) -> Option<Self> {
         let (enter, enter_normal) =
             if other.enter > self.enter { (other.enter, other.enter_normal) } else { (self.enter, self.enter_normal) };
@@ -102,7 +103,7 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
 pub(super) fn ball_first_hit(solid: &impl Hollow, segment: &Segment) -> Option<Hit> {
     let center = first_hit(solid, segment);
     let slack = segment.slack(solid.reach());
-    // What is smaller than rounding is a point.
+    // A ball smaller than rounding is a point.
     if !(segment.radius > slack) {
         return center;
     }
@@ -114,7 +115,7 @@ pub(super) fn ball_first_hit(solid: &impl Hollow, segment: &Segment) -> Option<H
     earlier(ball, center)
 }
 
-/// What a ball leans on, of a hollow solid.
+/// Visits the places of a hollow solid that a ball leans on.
 pub(super) fn ball_contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
     if solid.contains(center) {
         solid.walls(center, &mut |normal, distance| {

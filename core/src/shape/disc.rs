@@ -66,7 +66,7 @@ impl Collider for Disc {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(largest(self.center) + self.radius);
         let center = self.crossed(segment);
-        // What is smaller than rounding is a point.
+        // A ball smaller than rounding is a point.
         if segment.radius > slack { earlier(approach(self, segment, slack), center) } else { center }
     }
 

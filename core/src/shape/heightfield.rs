@@ -82,13 +82,13 @@ impl<'a> HeightField<'a> {
         Ok(field)
     }
 
-    /// How many words `with_sums` needs.
+    /// The number of words that `with_sums` needs.
     #[must_use]
     pub fn cell_count(&self) -> usize {
         self.count() / 2
     }
 
-    /// How many pairs `with_blocks` needs.
+    /// The number of pairs that `with_blocks` needs.
     #[must_use]
     pub fn block_count(&self) -> usize {
         let [across, along] = self.blocks_across();
@@ -180,7 +180,7 @@ impl<'a> HeightField<'a> {
         (0..rows - 1).flat_map(move |j| (0..columns - 1).map(move |i| (i, j)))
     }
 
-    /// Of the scaled field.
+    /// The area of a cell of the scaled field.
     fn cell_area(&self, column: usize, row: usize) -> f32 {
         self.halves(column, row).iter().sum()
     }
@@ -208,7 +208,7 @@ impl<'a> HeightField<'a> {
         if last < 0.0 { 0..0 } else { first.min(count)..(last as usize).saturating_add(1).min(count) }
     }
 
-    /// Whether a cell reaches into a span of heights.
+    /// Tells whether a cell reaches into a span of heights.
     fn is_within(&self, column: usize, row: usize, [low, high]: [f32; 2]) -> bool {
         let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.vertex(column + i, row + j).y);
         corners.iter().any(|&y| y >= low) && corners.iter().any(|&y| y <= high)
@@ -270,7 +270,7 @@ impl Surface for HeightField<'_> {
         for (i, j) in (first..self.cell_count()).map(|cell| (cell % across, cell / across)) {
             let weight = self.weight(i, j);
             if target < sum + weight {
-                // What is left of the number says which half.
+                // The rest of the number says which half.
                 let [a, b] = self.triangles(i, j);
                 let [first, second] = self.halves(i, j);
                 let rest = (target - sum) as f32 / weight as f32 * (first + second);

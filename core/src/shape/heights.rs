@@ -28,7 +28,7 @@ pub struct Heights {
     pub origin: Vec3,
     /// How far apart neighbouring columns are in x, and rows in z \[m\].
     pub spacing: f32,
-    /// How many heights a row has.
+    /// The number of heights in a row.
     pub columns: u32,
     /// Heights over the origin, row by row \[m\].
     pub heights: Vec<f32>,

@@ -52,8 +52,8 @@ impl Collider for Line {
         Aabb { min: min - TOUCH, max: max + TOUCH }.overlaps(bounds)
     }
 
-    /// Of a point the nearest approach, if it comes within 10 µm (or a few units in the last place, where those are
-    /// more); of a ball larger than that where it first touches.
+    /// Finds the nearest approach of a point, if it comes within 10 µm (or a few units in the last place, where those
+    /// are more); for a ball larger than that, the place where it first touches.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(crate::math::largest(self.from));
         let touch = max(TOUCH, slack);

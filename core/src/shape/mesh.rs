@@ -244,8 +244,8 @@ impl Pieces for Mesh<'_> {
 }
 
 impl Collider for Mesh<'_> {
-    /// Of hits at one time that of the lower triangle. Watertight: an edge shared by two triangles is judged by the same
-    /// arithmetic for both.
+    /// Finds the first hit; of hits at one time, that of the lower triangle. Watertight: an edge shared by two
+    /// triangles is judged by the same arithmetic for both.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         self.index.first_hit(self, segment)
     }
@@ -354,7 +354,7 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BadMesh> {
     }
 }
 
-/// Of a triangle's area in that of the largest; 2³⁶, so that 2²⁸ triangles cannot overflow the sum.
+/// The area of the largest triangle in running sums; 2³⁶, so that 2²⁸ triangles cannot overflow the sum.
 const UNIT: f32 = 68_719_476_736.0;
 
 /// Fills in running sums of areas; where all are zero every triangle counts alike.

@@ -71,7 +71,7 @@ pub trait Surface {
     /// The smallest axis-aligned box around it.
     fn bounds(&self) -> Aabb;
 
-    /// Whether a point lies inside what it encloses; open surfaces enclose nothing.
+    /// Tells whether a point lies inside the space that it encloses; open surfaces enclose nothing.
     fn is_inside(&self, point: Vec3) -> bool {
         let _ = point;
         false
@@ -181,8 +181,8 @@ impl<M: Mapped> Mapped for Shape<M> {
 }
 
 impl<M> Shape<M> {
-    /// Whether balls meet it as it is where `map` puts it. Squashed spheres and circles, and cylinders and cones with
-    /// bases that are not round, they meet as their centres alone would.
+    /// Tells whether balls meet it as it is where `map` puts it. Squashed spheres and circles, and cylinders and cones
+    /// with bases that are not round, they meet as their centres alone would.
     #[must_use]
     pub fn meets_balls(&self, map: &Affine) -> bool {
         match self {

@@ -97,12 +97,12 @@ fn mesh(
     Ok(Shape::Mesh(Arc::new(mesh.organised(index))))
 }
 
-/// Whether it turns left into right.
+/// Tells whether it turns left into right.
 fn mirrors(map: &Affine) -> bool {
     map.linear.determinant() < 0.0
 }
 
-/// Whether boxes along the axes stay so.
+/// Tells whether boxes along the axes stay so.
 fn keeps_axes(map: &Affine) -> bool {
     let m = map.linear;
     [m.x_axis, m.y_axis, m.z_axis].iter().all(|column| column.to_array().iter().filter(|&&x| x != 0.0).count() == 1)

@@ -146,7 +146,7 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
 }
 
 impl<C: Mapped, M: Script> Mapped for Moving<C, M> {
-    /// Of what stands still.
+    /// Answers only where it stands still.
     fn image(&self, map: &Affine, bounds: &Aabb, visit: &mut dyn FnMut(u32, &dyn Collider)) {
         if self.motion.is_none() {
             self.collider.image(map, bounds, visit);

@@ -18,7 +18,7 @@ pub struct Affine {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<C> {
     collider: C,
-    /// Of the collider as it stands in the world.
+    /// The box around the collider as it stands in the world.
     bounds: Aabb,
     /// To the world and back; none, if it stands where it is.
     maps: Option<(Affine, Affine)>,
@@ -66,12 +66,12 @@ impl Affine {
         Some(Self { linear, shift: -(linear * self.shift) })
     }
 
-    /// Whether all shapes stay what they are, in another size perhaps.
+    /// Tells whether all shapes stay what they are, perhaps in another size.
     pub(super) fn keeps_shapes(&self) -> bool {
         self.scale().is_some()
     }
 
-    /// Whether what is round about the y axis and upright stays so.
+    /// Tells whether shapes that are round about the y axis and upright stay so.
     pub(super) fn keeps_bases(&self) -> bool {
         self.stretch().is_some_and(|(scale, _)| is_even(scale.x, scale.z))
     }
@@ -119,7 +119,7 @@ fn carried(to_world: &Affine, velocity: Vec3) -> Vec3 {
     if velocity == Vec3::ZERO { velocity } else { to_world.linear * velocity }
 }
 
-/// Whether two lengths are one.
+/// Tells whether two lengths are one.
 fn is_even(a: f32, b: f32) -> bool {
     (a - b).abs() <= EVEN * max(a, b)
 }
@@ -129,7 +129,7 @@ impl<C: Surface> Placed<C> {
     #[must_use]
     pub fn new(collider: C, to_world: Affine) -> Option<Self> {
         let bounds = to_world.bounds(&collider.bounds());
-        // What cancels on the way there and back is rounding that the coordinates themselves do not show.
+        // Terms that cancel on the way there and back leave rounding that the coordinates themselves do not show.
         let reach = high(collider.bounds().min.abs(), collider.bounds().max.abs());
         let room = (to_world.linear.abs() * reach + to_world.shift.abs()) * (16.0 * f32::EPSILON);
         let bounds = Aabb { min: bounds.min - room, max: bounds.max + room };
@@ -164,7 +164,7 @@ impl<C: Mapped> Collider for Placed<C> {
         self.hit_in(maps, segment, segment.radius / scale, segment.radius * error)
     }
 
-    /// Of a collider under a map that does not keep shapes, its image.
+    /// Visits the contacts of a collider; under a map that does not keep shapes, those of its image.
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let Some((to_world, to_local)) = &self.maps else {
             let mut made = |contact: &Contact| visit(&Contact { material: self.material, ..*contact });

@@ -41,7 +41,7 @@ impl Surface for Plane {
 impl Collider for Plane {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let side = |point: Vec3| dot(self.normal, point - self.point);
-        // What is smaller than rounding is a point. The normal is brought to unit length only for who meets it.
+        // A ball smaller than rounding is a point. The normal is brought to unit length only for who meets it.
         // Chips are spared the code for who does not.
         let is_point = !cfg!(target_os = "none") && !(segment.radius > segment.slack(largest(self.point)));
         if is_point && crossing(self.normal, side(segment.from), side(segment.to)).is_none() {
@@ -58,7 +58,7 @@ impl Collider for Plane {
         let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
         let distance = dot(self.normal, middle - self.point).abs();
         let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
-        // Of what is endless the distance is no number.
+        // The distance of an endless box is no number.
         !(distance > dot(self.normal.abs(), half + room))
     }
 
@@ -92,7 +92,7 @@ impl Collider for Face {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(self.size());
         let center = passed(self, segment, slack);
-        // What is smaller than rounding is a point.
+        // A ball smaller than rounding is a point.
         let hit = if segment.radius > slack { earlier(touched(self, segment, slack), center) } else { center };
         hit.map(|hit| Hit { material: self.material(), ..hit })
     }
@@ -136,7 +136,7 @@ fn passed(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
 /// from. A point on the plane is on the side its normal points to: it can leave that way freely, and lie there.
 #[inline]
 pub(super) fn crossing(normal: Vec3, before: f32, after: f32) -> Option<(f32, Vec3)> {
-    // Of distances that are not finite the share is no number, which clamps to zero.
+    // The share is no number where distances are not finite, and clamps to zero.
     let time = clamp(before / (before - after), 0.0, 1.0);
     if before >= 0.0 && after <= 0.0 && before > after {
         Some((time, normal))

@@ -1,4 +1,4 @@
-//! What the surfaces of revolution about the y axis share.
+//! Functions that the surfaces of revolution about the y axis share.
 
 use crate::math::{clamp, sqrt};
 use glam::{Vec2, Vec3};

@@ -1,4 +1,4 @@
-//! What every shape has to do, whichever it is.
+//! Properties of every shape, whichever it is.
 
 use super::*;
 use crate::rng::Stream;

@@ -21,7 +21,7 @@ pub struct Triangle {
 
 impl Surface for Triangle {
     fn area(&self) -> f32 {
-        // Of one about as large as one, so that no product is beyond an `f32`.
+        // The triangle is scaled to about one, so that no product is beyond an `f32`.
         let scale = power_to_one(size(self));
         let [a, b, c] = self.corners.map(|corner| corner * scale);
         0.5 * length((b - a).cross(c - a)) / scale / scale
@@ -166,7 +166,7 @@ const LARGE: f32 = 1e6;
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 const UNDERFLOW: f32 = 8.0 * f32::MIN_POSITIVE;
 
-/// How many times the usual slack the place of a hit may be wrong by, before it is computed without error.
+/// The multiple of the usual slack beyond which a hit's place, if it may be so wrong, is computed without error.
 const ROUGH: f32 = 4.0;
 
 /// On which sides of a triangle's plane the ends of a path lie: the products of its normal with the ways there.
@@ -199,14 +199,14 @@ impl Sides {
         Self { normal: lattice.direction(normal), before, after, doubt: 0.0, far: 0.0 }
     }
 
-    /// Whether the signs of both are right.
+    /// Tells whether the signs of both are surely right.
     #[inline(always)]
     fn is_sure(&self) -> bool {
         min(self.before.abs(), self.after.abs()) > self.doubt
     }
 
-    /// Whether both ends surely lie on one side, whatever the scale: products beyond an `f32` make the doubt infinite, and
-    /// of ends that are no farther than this what underflows is covered by it.
+    /// Tells whether both ends surely lie on one side, whatever the scale: products beyond an `f32` make the doubt
+    /// infinite, and it covers what underflows for ends that are no farther than this.
     #[inline(always)]
     fn is_sure_miss(&self) -> bool {
         self.is_sure() && (self.before > 0.0) == (self.after > 0.0) && self.far < LARGE
@@ -301,7 +301,7 @@ impl Triangle {
         Some(Hit::new(time, unit(normal), max(error, slack)))
     }
 
-    /// Whether the line through a segment passes inside, edges included.
+    /// Tells whether the line through a segment passes inside, edges included.
     ///
     /// The corners are shorn along the line into a plane, where an edge function is a difference of two products
     /// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).

@@ -12,7 +12,7 @@ use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
 
-/// What particles are besides places and velocities: one entry a row.
+/// The attributes of particles besides places and velocities: one entry a row.
 #[derive(Clone, Copy)]
 pub(crate) struct Attributes<'a> {
     /// All that forces see of them.
@@ -49,7 +49,7 @@ pub(crate) struct Field<'a> {
     pub(super) attributes: &'a Attributes<'a>,
     /// Columns of a user's own.
     pub(super) custom: CustomColumns<'a>,
-    /// What the forces need to find, and memory for it.
+    /// The parts of the state that the forces need to find there, and memory for them.
     pub(super) needs: Needs,
     pub(super) tree: &'a mut [u32],
     pub(super) near: &'a mut [u32],
@@ -143,7 +143,7 @@ impl Dynamics for Field<'_> {
 #[inline(never)]
 fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
     each_row_with(forces, Vec3::ZERO, inverse_mass, |force, _, inverse| {
-        // What is fixed stays so under a force that is beyond an f32.
+        // A fixed particle stays so under a force that is beyond an f32.
         if inverse == 0.0 { 0.0 } else { force * inverse }
     });
 }
@@ -161,7 +161,8 @@ fn add_up(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut
     forces.add_to(state, rows, total);
 }
 
-/// Whether a part of the rows costs as much as it is a part: trees divide themselves, and an index would be asked for all.
+/// Tells whether a part of the rows costs no more than its share: trees divide themselves, and an index would be asked
+/// for all.
 #[cfg(feature = "rayon")]
 fn can_be_divided(state: &State<'_>) -> bool {
     state.near.can_be_divided() && state.mass_tree.is_none() && state.charge_tree.is_none()

@@ -23,7 +23,7 @@ use crate::scene::Scene;
 use crate::time::Time;
 use tile::TILE;
 
-/// Whether there may be a cache that a few rows fit into: chips without an operating system are spared the code.
+/// True if there may be a cache that a few rows fit into: chips without an operating system are spared the code.
 const TILED: bool = !cfg!(target_os = "none");
 
 impl Workspace<'_> {

@@ -42,8 +42,8 @@ impl Workspace<'_> {
         m.serial[row] = serial;
         m.key[row] = key;
         m.position[row] = particle.position;
-        // Who has a number that cannot be used is taken out at the step's end, whichever it is. Any lifetime can be: one
-        // that is no number or beyond all is for ever.
+        // A particle with a number that cannot be used is taken out at the step's end, whichever number it is. Any
+        // lifetime can be used: one that is no number or beyond all is for ever.
         let is_sound = Particle { lifetime: 0.0, ..*particle }.is_sound();
         let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
         m.velocity[row] = if is_sound { velocity } else { Vec3::NAN };

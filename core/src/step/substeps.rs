@@ -23,11 +23,11 @@ pub(crate) struct Moved<'a> {
     /// Places and velocities at the step's beginning, and at the sub-step's; empty where nobody asks.
     pub(super) start: [&'a [Vec3]; 2],
     pub(super) before: [&'a mut [Vec3]; 2],
-    /// What constraints do to each, and what they keep through the step.
+    /// A mark for each of what constraints do to it, and the words that they keep through the step.
     pub(super) marks: &'a mut [u32],
     pub(super) lasting: &'a mut [u32],
     pub(super) lists: ListMemory<'a>,
-    /// What is kept from step to step, for writing where there are constraints.
+    /// The words kept from step to step, for writing where there are constraints.
     pub(super) kept: &'a mut [u32],
     pub(super) scratch: Scratch<'a>,
     pub(super) capacity: usize,
@@ -35,13 +35,13 @@ pub(crate) struct Moved<'a> {
     pub(super) observer: &'a mut dyn Observer,
 }
 
-/// What goes on from step to step beside the particles, in tiles nothing.
+/// The memory that goes on from step to step beside the particles, in tiles nothing.
 pub(super) struct Carried<'a> {
-    /// What is kept of particles, for constraints to change.
+    /// The words kept of particles, for constraints to change.
     pub(super) kept: &'a mut [u32],
     /// The step that a method which chooses its own goes on with.
     pub(super) hint: &'a mut Time,
-    /// What is known of lists of neighbours, and how many particles have come and gone.
+    /// The facts known of lists of neighbours, and the number of particles that have come and gone.
     pub(super) listed: &'a mut Listed,
     pub(super) changes: u32,
 }

@@ -35,7 +35,7 @@ pub(crate) struct Tile<'a> {
     pub(crate) dt: Time,
     /// The number of the first row.
     pub(crate) first: usize,
-    /// How many of the rows there were before the step; those behind are newborn.
+    /// The number of rows that there were before the step; those behind are newborn.
     pub(crate) old: usize,
     pub(crate) position: &'a mut [Vec3],
     pub(crate) velocity: &'a mut [Vec3],
@@ -47,7 +47,8 @@ pub(crate) struct Tile<'a> {
 }
 
 impl Scene<'_> {
-    /// Whether a step takes each row through all its phases without a look at the others, so that rows can go a few at a time.
+    /// Tells whether a step takes each row through all its phases without a look at the others, so that rows can go a
+    /// few at a time.
     pub(super) fn is_local(&self) -> bool {
         let Self { springs, forces, constraints, meetings, integrator, .. } = self;
         let apart = springs.list().is_empty() && constraints.is_empty() && meetings.is_through();

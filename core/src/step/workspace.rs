@@ -31,14 +31,14 @@ pub(crate) struct Status {
     pub(crate) start: u32,
     /// Particles put in without an emitter so far, those that found no room included.
     pub(crate) given: u32,
-    /// Whether a scene has had reapers, so that keys decide what becomes of particles.
+    /// True if a scene has had reapers, so that keys decide what becomes of particles.
     pub(crate) is_reaped: bool,
     /// Emitters that the scene had then.
     pub(crate) emitters: usize,
     /// Lists of neighbours, and how many particles have come and gone, which ends them.
     pub(crate) listed: Listed,
     pub(crate) changes: u32,
-    /// What the scene keeps of particles.
+    /// The words that the scene keeps of particles.
     pub(crate) kept: Words,
     pub(crate) time: Time,
     /// The step that an integrator which chooses its own goes on with.
@@ -101,7 +101,7 @@ impl Workspace<'_> {
         self.status.start = self.status.taken;
         self.give_custom(scene, 0);
         self.memory.last_spring.fill(0);
-        // What lies beyond the lists counts in the fingerprint: an earlier scene's broken springs must not.
+        // Entries beyond the lists count in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);
         if let Some(code) = scene.springs.code() {
             let (last, incident) = (&mut *self.memory.last_spring, &mut *self.memory.incident);

@@ -1,4 +1,4 @@
-//! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
+//! Contacts that every target computes alike: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! Balls of many sizes, one of them pinned, fall through each other's way into a room, rub and bounce: by each response,
 //! with an index and without.

@@ -1,4 +1,4 @@
-//! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
+//! Answers of indices that every target computes alike: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! Every index over 256 points, a few of them equal and one not finite: built, asked everything, refitted to where the
 //! points have moved, asked again, and once more in a box whose opposite faces are one. Then the sums of Barnes and Hut
@@ -16,7 +16,7 @@ const POINTS: usize = 256;
 const RADII: [f32; 3] = [0.1, 0.45, f32::INFINITY];
 const CENTERS: [Vec3; 4] = [Vec3::ZERO, Vec3::new(0.49, -0.2, 0.1), Vec3::new(3.0, -4.0, 0.0), Vec3::NAN];
 
-/// What counts as far in the sums, and how it acts.
+/// The rules by which nodes count as far in the sums, and the ways in which they act.
 const LAWS: [Opening; 4] = [
     Opening { theta: 0.0, softening: 0.05, quadrupole: false },
     Opening { theta: 0.5, softening: 0.01, quadrupole: false },
@@ -146,7 +146,7 @@ fn ask(index: &dyn SpatialIndex, counts: &mut [u32], log: &mut Log) {
     }
 }
 
-/// What was said.
+/// A log of what was said.
 struct Log {
     /// A sum, which does not depend on the order.
     answers: u64,

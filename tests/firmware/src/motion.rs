@@ -1,4 +1,4 @@
-//! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
+//! Motion that every target computes alike: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! A charged sheet on springs, one that swings and some that break, and a balloon, moved through every force by every
 //! method; then the same once more of a material that changes over their lives, and how they look.
@@ -34,7 +34,7 @@ const FACES: [[u32; 3]; 8] = {
 const PARTICLES: usize = WOVEN.0 + CORNERS.len();
 const SPRINGS: usize = WOVEN.1 + EDGES.len();
 const COLUMNS: usize = 24;
-/// What materials change.
+/// The columns that materials change.
 const KEPT: usize = 2;
 
 const fn curve(keys: &'static [[f32; 2]], smooth: bool) -> Curve<'static> {

@@ -1,4 +1,4 @@
-//! What every target computes: the firmware here, the host in `tests/tests/hashes.rs`.
+//! Scenes that every target computes alike: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! Ten seconds of the hash scenes at 60 steps a second by rk4, in static memory, from the very files that the command
 //! line and the npm package run.

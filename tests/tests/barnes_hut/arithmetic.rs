@@ -113,7 +113,7 @@ fn a_softening_may_be_far_larger_or_smaller_than_the_world() {
         for theta in [0.0, 0.5] {
             for quadrupole in BOTH {
                 let off = charges.off(law(theta, softening, quadrupole), 5);
-                // What is far softer than the world is wide may vanish.
+                // Sums that are far softer than the world is wide may vanish.
                 let most = if softening > length * 1e10 { 1.0 } else { 1e-2 };
                 assert!(off.share <= most, "{length:e}, {softening:e}, {theta}, {quadrupole}: {off:?}");
             }
@@ -123,7 +123,7 @@ fn a_softening_may_be_far_larger_or_smaller_than_the_world() {
 
 #[test]
 fn places_near_the_origin_are_like_others() {
-    // What lanes without a point hold must not come near any place.
+    // The values that lanes without a point hold must not come near any place.
     for near in [0.0, 1e-45, 1e-38, 1e-30, 1e-20, 1e-16, 1e-10] {
         for n in [2, 3, 9, 40, 200] {
             let mut charges = Charges::masses(Spread::Sphere, n, 2);

@@ -77,7 +77,7 @@ fn building_anew_forgets_what_was_there() {
         collect(&tree, law, 0..sums.len(), &mut sums);
         let all_bits = |sums: &[Option<Vec3>]| sums.iter().map(|sum| sum.map(bits)).collect::<Vec<_>>();
         assert_eq!(all_bits(&sums), all_bits(&charges.sums(law)));
-        // What does not fit leaves nothing behind.
+        // Points that do not fit leave nothing behind.
         let error = tree.build(&[Vec3::ONE; 2000], &[]).expect_err("there is no room");
         assert!(error.points == 2000 && (900..2000).contains(&error.room), "{error}");
         assert_eq!(collect(&tree, law, 0..2000, &mut vec![None; 2000]).found, 0);

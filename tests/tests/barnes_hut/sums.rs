@@ -58,7 +58,7 @@ fn the_errors_of_masses() {
         errors("Plummer", &charges, softening, &plummer, |off| off.rms);
     }
     let volume = [[8e-4, 1e-4], [3e-3, 8e-4], [1e-2, 3e-3]];
-    // What is flat or thin has moments of the same sign everywhere, and those of a lattice's cubes almost vanish.
+    // A flat or thin spread has moments of the same sign everywhere, and those of a lattice's cubes almost vanish.
     let surface = [[6e-3, 1.5e-4], [2e-2, 1.2e-3], [5e-2, 4e-3]];
     let line = [[3e-2, 1.2e-3], [9e-2, 9e-3], [2e-1, 4e-2]];
     let lattice = [[2.5e-3, 3e-4], [7e-3, 2.5e-3], [3e-2, 2e-2]];

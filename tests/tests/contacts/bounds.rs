@@ -1,4 +1,4 @@
-//! What bounds the work of meetings, and says so.
+//! Bounds on the work of meetings, which the report tells of.
 
 use pointmass::index::{IndexChoice, Structure};
 use pointmass::shape::{Cuboid, Plane};

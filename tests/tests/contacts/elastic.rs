@@ -19,7 +19,7 @@ fn check(name: &str, start: &[Particle], gravity: f64) {
     let forces = Gravity { acceleration: Vec3::NEG_Y * gravity as f32 };
     for (rate, share) in [(60.0, 1e-4), (7.0, 1e-3)] {
         for method in [Method::Midpoint, Method::Verlet, Method::Rk4] {
-            // Of three, the lowest may come to rest on the floor for a seventh of a second while the others press on it.
+            // The lowest of three may come to rest on the floor for a seventh of a second while the others press on it.
             if start.len() == 3 && rate < 60.0 {
                 continue;
             }

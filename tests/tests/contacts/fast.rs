@@ -35,7 +35,7 @@ fn pair(random: &mut Random, dt: f64) -> ([Particle; 2], f64) {
     ([first, second], if apart { dot(nearest, nearest).sqrt() } else { f64::NAN })
 }
 
-/// How many of so many pairs met; none that should have passed, and all that should not.
+/// Counts how many of so many pairs met, and checks that none did that should have passed, and all that should not.
 fn none_passes(touching: Scene<'_>, slack: f64, count: usize) -> usize {
     let mut random = Random::new(41);
     let dt = Time::frame(1, 60);

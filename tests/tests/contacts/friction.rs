@@ -8,7 +8,7 @@ use pointmass_tests::{G, f64s, gap, run, started};
 /// Steps a second, sub-steps of each.
 const STEPS: [(u32, u32); 6] = [(24, 1), (60, 2), (60, 12), (240, 3), (24, 50), (240, 50)];
 
-/// What happens on a surface, if at all on one, under one coefficient of friction for all.
+/// A setting for particles: on a surface or on none, under one coefficient of friction for all.
 struct Stage {
     mu: f32,
     gravity: Vec3,
@@ -112,7 +112,7 @@ fn a_hit_takes_as_much_of_the_slip_as_its_impulse_allows() {
             });
         }
     }
-    // What is slow enough comes to rest along the surface, and no more.
+    // A ball that is slow enough comes to rest along the surface, and no more.
     let start = [Particle { elasticity: 0.5, ..ball(Vec3::Y * 0.42, Vec3::new(1.0, -3.0, 0.0)) }];
     Stage { mu: 0.3, gravity: Vec3::ZERO, plane: Some(Vec3::Y), seconds: 1 }.each(&start, |_, v, case| {
         assert!(v[0].x.abs() < 1e-6 && (v[0].y - 1.5).abs() < 1e-5, "{case}: {}", v[0]);

@@ -1,4 +1,4 @@
-//! What holds for every meeting of hard balls: momentum, Coulomb's law, walls, and the same bits whatever the index.
+//! Laws of every meeting of hard balls: momentum, Coulomb's law, walls, and the same bits whatever the index.
 
 use pointmass::emit::Burst;
 use pointmass::force::Friction;

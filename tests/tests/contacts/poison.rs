@@ -188,7 +188,7 @@ fn balls_stay_above_an_outsider_s_floor() {
         };
         let mut system = started(&scene, 27, 1);
         run(&mut system, &scene, 1.0 / 240.0, 240);
-        // What only sweeps keeps half of a ball that contacts have moved from passing.
+        // The sweep keeps only half of a ball that contacts have moved from passing.
         let lowest = system.particles().position.iter().map(|x| x.y).fold(f32::INFINITY, f32::min);
         let bound = if let Response::Position(_) = response { 0.099 } else { 0.199 };
         assert!(lowest > bound, "{}: {lowest}", response.name());

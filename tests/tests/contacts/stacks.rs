@@ -63,7 +63,7 @@ fn a_stack_slides_as_far_as_one_ball() {
         for (speed, friction) in [(3.0, 0.3), (2.0, 0.5)] {
             for method in Method::ALL {
                 for steps in STEPS {
-                    // What follows sub-steps only slowly, being heavy or high, gets there with more of them.
+                    // A stack that follows sub-steps only slowly, being heavy or high, gets there with more of them.
                     let bound = if steps.1 >= 12 { 0.2 * bound } else { bound };
                     for way in (Stack { masses, speed, friction }).ways(*method, steps) {
                         assert!((way - 1.0).abs() < bound, "{masses:?}, {friction}, {method}, {steps:?}: {way}");

@@ -12,7 +12,7 @@ use pointmass::{
 };
 use pointmass_tests::{point, run, started};
 
-/// What is warm rises, and cools down by 2 degrees a second. Neighbours within a metre count each other.
+/// Smoke that rises where it is warm, and cools down by 2 degrees a second. Neighbours within a metre count each other.
 struct Smoke;
 
 impl Force for Smoke {
@@ -35,7 +35,7 @@ impl Force for Smoke {
     }
 }
 
-/// What is cold is gone.
+/// Takes those that are cold.
 struct Cold;
 
 impl Reaper for Cold {
@@ -118,7 +118,7 @@ fn a_user_column() {
             let age = (now - p.born[row]).seconds();
             assert!((steps - (age * 60.0 + 0.5)).abs() < 0.51, "{steps} steps in {age} s");
             assert!((heat - (given - 2.0 * steps / 60.0)).abs() < 1e-4, "{heat} of {given}");
-            // What is warm has risen.
+            // Those that are warm have risen.
             assert!((given < 1.0) == (p.velocity[row].y <= 0.05) || age < 0.2, "{} {given}", p.velocity[row]);
         }
         assert!(system.totals().died.other > 5 && system.totals().died.chance > 3 && system.len() > 5);

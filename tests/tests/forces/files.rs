@@ -95,7 +95,7 @@ fn what_cannot_be_is_refused_by_its_path() {
         let more = force.replacen("\": {\"", "\": {\"more\": 1, \"", 1);
         assert!(file(&format!("[{more}]")).is_err_and(|error| error.contains("more")), "{more}");
     }
-    // What JSON cannot say, a program can.
+    // A program can say what JSON cannot.
     let mut scene = file(&format!("[{atoms}]")).expect("it is well-formed");
     for wrong in [f32::NAN, f32::INFINITY] {
         if let ForceKind::LennardJones(law) = &mut scene.forces[0] {

@@ -68,8 +68,8 @@ fn history(scene: &Scene<'_>, columns: usize, h: f64) -> (Vec<u64>, Effort) {
     (hashes.collect(), system.totals().effort)
 }
 
-/// Whether neighbours are looked for among all, streamed from any index, or kept in lists is the same to the bit: by all methods,
-/// at slow and fast steps, while some are born and die, in threads too.
+/// Runs are the same to the bit whether neighbours are looked for among all, streamed from any index, or kept in lists:
+/// by all methods, at slow and fast steps, while some are born and die, in threads too.
 #[test]
 fn however_neighbours_are_found_runs_are_the_same() {
     let start = cloud(320);

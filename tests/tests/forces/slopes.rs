@@ -111,7 +111,7 @@ fn jacobians_are_the_slopes_of_their_forces() {
     let wind = Wind { field: Uniform { velocity: Vec3::X * 3.0 }, coefficient: None };
     let blown = Wind { field: wind.field, coefficient: Some(2.5) };
     let viscous = Viscosity { coefficient: 2.0, reach: 0.9 };
-    // Of a stretched pair nothing is left out, as long as it is not about to break.
+    // Nothing is left out of a stretched pair, as long as it is not about to break.
     let pair = [0.0, 0.34].map(|x| Particle { position: Vec3::new(x, 0.5 * x, x), ..Particle::REST });
     let atoms = Radial(LennardJones { epsilon: 1.0, sigma: 0.44, cutoff: 2.0 });
     let rising = Radial(PowerLaw { strength: 2.0, exponent: 0, softening: 0.7, reach: 5.0, weight: Weight::Mass });
@@ -173,7 +173,7 @@ fn jacobians_are_symmetric_and_drive_nothing_apart() {
     let viscous = Viscosity { coefficient: 2.0, reach: 0.9 };
     let mut driven = start.clone();
     driven[3].drag = -2.0;
-    // What drives by its sign alone is left out.
+    // A force that drives by its sign alone is left out.
     let vacuum = Pressure { amount: -40.0, ..gas };
     let stirred = Viscosity { coefficient: -2.0, reach: 0.9 };
     let all: [&dyn Force; 13] = [

@@ -114,7 +114,7 @@ fn curl_noise_neither_gathers_nor_spreads() {
         divergence += (x[0] + y[1] + z[2]).powi(2);
         size += [x, y, z].as_flattened().iter().map(|x| x * x).sum::<f64>();
     }
-    // What is left is rounding, 2 m/s × 6e-8 × 1024, and h² of the third derivatives.
+    // The rest is rounding, 2 m/s × 6e-8 × 1024, and h² of the third derivatives.
     let share = (divergence / size).sqrt();
     assert!(share < 3e-4, "{share}");
 }

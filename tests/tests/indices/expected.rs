@@ -1,4 +1,4 @@
-//! What an index has to answer, and whether it does.
+//! The answers that an index has to give, and checks that it does.
 
 use super::INF;
 use core::fmt::Display;
@@ -8,10 +8,10 @@ use pointmass_tests::Random;
 use pointmass_tests::fields::used;
 use pointmass_tests::points::{Oracle, extent};
 
-/// How many of the nearest are asked for.
+/// The numbers of nearest points that are asked for.
 const SOME: [usize; 3] = [0, 1, 8];
 
-/// What an index of some points has to answer.
+/// The answers that an index of some points has to give.
 pub(crate) struct Expected<'a> {
     oracle: &'a Oracle,
     radius: f32,

@@ -67,7 +67,7 @@ proptest! {
         }
     }
 
-    /// What is found does not depend on the rows that points are in.
+    /// The points found do not depend on the rows that points are in.
     #[test]
     fn rows_may_be_in_any_order(set in sets(150), radius in radii(), reach in reaches()) {
         let points = set.points();
@@ -106,7 +106,7 @@ fn pairs_and_gaps(structure: Structure, points: &[Vec3], reach: f32, radius: f32
     (pairs, gaps)
 }
 
-/// What may happen to points between two looks.
+/// A change that may happen to points between two looks.
 #[derive(Clone, Copy, Debug)]
 enum Move {
     Nothing,

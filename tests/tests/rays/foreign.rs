@@ -112,7 +112,7 @@ fn structures_look_at_little_and_say_so() {
             let (hit, took) = index.first_hit_counted(&view, path);
             assert_eq!(hit, index.first_hit(&view, path));
             cost += took;
-            // Who is out of the way is not asked; who is in several cells perhaps several times.
+            // A piece out of the way is not asked; one in several cells perhaps several times.
             let bounds = path.bounds();
             asked += (0..n).filter(|&piece| view.box_of(piece).overlaps(&bounds)).count() as u64;
         }

@@ -5,7 +5,7 @@ use pointmass::shape::{Collider, Cuboid, MeshBuf, Placed, Plane};
 use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Vec3};
 use pointmass_tests::{G, run, started};
 
-/// What lies on the floor is of material 0.
+/// The material of what lies on the floor, number 0.
 fn materials(mu: f32) -> [ContactMaterial; 1] {
     [ContactMaterial { elasticity: Some(0.0), friction: Some(Friction { static_: mu, kinetic: mu }) }]
 }

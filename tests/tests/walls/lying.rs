@@ -1,4 +1,4 @@
-//! What lies on a surface goes on along it: over edges, into walls and sinks, down slopes, by every method.
+//! Particles that lie on a surface go on along it: over edges, into walls and sinks, down slopes, by every method.
 
 use pointmass::force::Friction;
 use pointmass::shape::{Collider, Cuboid, Plane, Sphere};
@@ -91,7 +91,8 @@ fn a_sink_in_the_floor_takes_it() {
         let drain = Cuboid { min: home + Vec3::new(1.0, -1.0, -1.0), max: home + Vec3::new(2.0, 0.0, 1.0) };
         let ball = Sphere { center: home + Vec3::new(1.5, 0.3, 0.0), radius: 0.3 };
         let start = Particle { position: home + Vec3::Y * radius, velocity: Vec3::X, radius, ..Particle::REST };
-        // What lies beside the plane by rounding may pass over a sink that is flush with it, but not by what stands on it.
+        // A particle that lies beside the plane by rounding may pass over a sink that is flush with it, but not by what
+        // stands on it.
         let sinks = (drain, ball);
         assert!(after(start, [&floor, &sinks], &[], method, [h, 0.7]).is_some(), "{method} {h}");
         assert!(after(start, [&floor, &sinks], &[], method, [h, 1.8]).is_none(), "{method} {h}");
@@ -114,7 +115,7 @@ fn slopes_brake_it_by_coulomb_s_law() {
         let rate = if angle.tan() > 0.4 { pull } else { 0.0 };
         let along = f64::from((x - start.position).dot(down));
         let off = (along - rate * 0.75 * 0.75 / 2.0).abs() + (f64::from(v.dot(down)) - rate * 0.75).abs();
-        // What the first step does of itself depends on the method.
+        // The way and the speed of the first step itself depend on the method.
         assert!(off < 1e-3 + 2e-3 * along + 2.0 * rate * h * h, "{method} {h} {angle}: {off} of {along}");
         assert!((x - start.position).dot(normal).abs() < room(home), "{method} {h}: {x}");
         if rate == 0.0 {

@@ -1,4 +1,4 @@
-//! What moving walls do to what they meet.
+//! Effects of moving walls on what they meet.
 
 use super::tunnels::told;
 use pointmass::force::Friction;

@@ -8,7 +8,7 @@ use pointmass_tests::surfaces::to_triangle;
 use pointmass_tests::{Random, f64s};
 use robust::{Coord3D, orient3d};
 
-/// How many flights a mesh sees at once.
+/// The number of flights that a mesh sees at once.
 const FLEET: usize = 250;
 
 fn coord(v: Vec3) -> Coord3D<f64> {
@@ -16,8 +16,8 @@ fn coord(v: Vec3) -> Coord3D<f64> {
     Coord3D { x, y, z }
 }
 
-/// Whether a point lies inside, by how often a way out crosses the surface, without any rounding; nothing, if it lies on
-/// the surface.
+/// Tells whether a point lies inside, by how often a way out crosses the surface, without any rounding; nothing, if it
+/// lies on the surface.
 fn is_inside(mesh: &Closed, point: Vec3, random: &mut Random) -> Option<bool> {
     let (low, high) = bounds(mesh);
     if point.cmplt(low).any() || point.cmpgt(high).any() {
@@ -80,7 +80,7 @@ fn flight(mesh: &Closed, random: &mut Random) -> Particle {
         let steps = [64.0, 64.0, 30.0, 1e4][random.word() as usize % 4];
         let velocity = (target + way * over - from) * steps;
         let radius = if random.unit() < 0.7 { 0.0 } else { mesh.size * random.magnitude(1e-5, 0.1) };
-        // What begins on the surface may leave it to the side of the normal, wherever that points.
+        // A flight that begins on the surface may leave it to the side of the normal, wherever that points.
         if is_inside(mesh, from, random) == Some(false) {
             return Particle { position: from, velocity, radius, elasticity: random.unit(), ..Particle::REST };
         }
@@ -164,7 +164,7 @@ fn hits_on_needles_lie_on_the_surface_within_their_slack_whatever_the_order_of_c
     assert!(met > 30_000, "{met}");
 }
 
-/// Whether a path meets a triangle, without any rounding.
+/// Tells whether a path meets a triangle, without any rounding.
 fn is_met(corners: [Vec3; 3], segment: &Segment) -> bool {
     let ([a, b, c], [from, to]) = (corners.map(coord), [segment.from, segment.to].map(coord));
     // Shewchuk's sign is that of what lies below.

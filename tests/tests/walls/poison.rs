@@ -1,4 +1,4 @@
-//! What cannot be used harms nobody: no panic, and rows that are no numbers are taken out and counted.
+//! Numbers that cannot be used harm nobody: no panic, and rows that are no numbers are taken out and counted.
 
 use pointmass::motion::{Key, Motion};
 use pointmass::shape::{

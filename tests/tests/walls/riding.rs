@@ -1,4 +1,4 @@
-//! What rests on scenery that moves goes where that takes it, for as long as friction can hold it.
+//! Particles that rest on scenery that moves go where that takes them, for as long as friction can hold them.
 
 use pointmass::force::Friction;
 use pointmass::motion::Motion;

@@ -7,7 +7,7 @@ use pointmass_tests::solids::below;
 use pointmass_tests::surfaces::{Vec, cross, dot, minus, plus};
 use pointmass_tests::{Random, f64s, icosahedron, often};
 
-/// How many flights go together.
+/// The number of flights that go together.
 const FLEET: usize = 2000;
 
 /// Sends `n` flights through steps of a 60th of a second each, and hands each one's start and end to `judge`.
@@ -48,7 +48,7 @@ fn flight(random: &mut Random, thick: f32) -> Particle {
     Particle { position, velocity, radius, elasticity: random.unit(), ..Particle::REST }
 }
 
-/// What flights have to fear at a wall: that they end nearer to it than their radius.
+/// Checks that no flight ends nearer to a wall than its radius.
 fn hold_wall(name: &str, collider: &dyn Collider, thick: f64, seed: u64) {
     let mut random = Random::new(seed);
     let (mut tunnels, mut came, mut worst) = (0, 0, 0.0f64);
@@ -182,7 +182,7 @@ fn no_flight_leaves_or_enters_a_rotating_box() {
                     let x = plus(f64s(particle.position), minus(f64s(end), f64s(particle.position)), s);
                     depth(told(&motion, x, Time::from_ticks(t)))
                 };
-                // Of an arc its chords miss what is less.
+                // The chords of an arc may miss anything less.
                 tunnels += u32::from((0..=64).map(path).fold(f64::NEG_INFINITY, f64::max) > 0.5);
             }
         };
@@ -195,7 +195,7 @@ fn no_flight_leaves_or_enters_a_rotating_box() {
 
 #[test]
 fn however_long_a_wall_has_turned_it_stops_what_comes() {
-    // After eleven days at 60 turns a second the pose is as exact as at first.
+    // The pose after eleven days at 60 turns a second is as exact as at first.
     let wall = Cuboid { min: Vec3::new(-5e-4, -1.0, -1.0), max: Vec3::new(5e-4, 1.0, 1.0) };
     let motion = Motion { axis: Vec3::Y, spin: 60.0, ..Motion::STILL };
     let collider = Moving::new(wall, &Aabb { min: wall.min, max: wall.max }, motion);

@@ -14,7 +14,8 @@ const PAIRS: usize = 8;
 const FACES: usize = 3;
 /// How much farther apart than a touch two may be and still be listed, as a share of the smaller radius.
 const MARGIN: f32 = 0.1;
-/// What is kept through the step: for each particle a velocity, a drift, two loads, pairs and faces, and how long the lists are.
+/// The words kept through the step: for each particle a velocity, a drift, two loads, pairs and faces, and how long the
+/// lists are.
 pub(super) const KEPT: Words =
     Words { per_row: 4 * 3 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Lists>() / 4 };
 const PAIR_WORDS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>()) * 3;
@@ -35,7 +36,7 @@ pub(super) struct Pair {
 pub(super) struct Face {
     pub(super) row: u32,
     pub(super) normal: Vec3,
-    /// Of its plane from the origin along the normal at the sub-step's end \[m\].
+    /// The distance of its plane from the origin, along the normal, at the sub-step's end \[m\].
     pub(super) offset: f32,
     /// How it moves the particle then \[m/s\].
     pub(super) velocity: Vec3,
@@ -51,15 +52,15 @@ pub(super) struct Lists {
     pub(super) faces: u32,
     /// The sub-step before which they have to be made anew.
     pub(super) until: u32,
-    /// Whether somebody is so fast that two could pass each other within a sub-step; 1: yes, as below.
+    /// 1 if somebody is so fast that two could pass each other within a sub-step, else 0; likewise the next three.
     pub(super) fast: u32,
-    /// Whether a face moves: then faces are listed anew for every sub-step.
+    /// 1 if a face moves: then faces are listed anew for every sub-step.
     pub(super) moving: u32,
-    /// Whether pairs are in their order from the ground up.
+    /// 1 if pairs are in their order from the ground up.
     pub(super) sorted: u32,
-    /// Whether any of them has friction.
+    /// 1 if any of them has friction.
     pub(super) rough: u32,
-    /// What the sub-step has given all on average \[m/s\].
+    /// The mean change of all velocities in the sub-step \[m/s\].
     pub(super) driven: Vec3,
 }
 
@@ -68,7 +69,7 @@ pub(super) struct Kept<'a> {
     /// Velocities when the method has moved all.
     pub(super) pushed: &'a mut [Vec3],
     pub(super) drift: &'a mut [Vec3],
-    /// What carries each, and what it should carry beyond that.
+    /// The pushes that carry each particle, summed, and what it should carry beyond them.
     pub(super) borne: &'a mut [Vec3],
     pub(super) owed: &'a mut [Vec3],
     pub(super) pairs: &'a mut [Pair],
@@ -172,7 +173,7 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
         if bodies.inverse_mass[row] == 0.0 || !(radius > 0.0) || !center.is_finite() {
             continue;
         }
-        // What comes from farther is met on its way.
+        // A face from farther away is met on the particle's way.
         let reach = radius + min(length(bodies.velocity[row]) * seconds, 0.5 * radius) + MARGIN * radius;
         let own = bodies.material[row].checked_sub(1);
         let elasticity = bodies.elasticity[row];

@@ -19,12 +19,13 @@ use lists::{KEPT, Kept};
 /// et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020). A softness in m/N is the same
 /// however many sub-steps there are.
 ///
-/// Of two that rest on each other the lower one gives way less (Macklin et al., "Unified Particle Physics for Real-Time
-/// Applications", SIGGRAPH 2014, section 5.3), so that overlap hardly grows with the height of a heap; momentum is exact for all
-/// that meet faster than gravity makes them in a step, and where nothing drives them. In a heap a contact therefore presses by
-/// less than the weight above it; friction counts in what is missing, so that a stack slides as far as one ball does and what
-/// can rest on others comes to stand still (six on each other, or steps of 1/24 s, ask for 12 sub-steps). Balls do not spin.
-/// Hits and contacts of this kind are counted in every sub-step, and [`Observer`](crate::Observer)s are not told of them.
+/// The lower one of two that rest on each other gives way less (Macklin et al., "Unified Particle Physics for Real-Time
+/// Applications", SIGGRAPH 2014, section 5.3), so that overlap hardly grows with the height of a heap; momentum is
+/// exact for all that meet faster than gravity makes them in a step, and where nothing drives them. In a heap a contact
+/// therefore presses by less than the weight above it; friction counts in what is missing, so that a stack slides as
+/// far as one ball does and what can rest on others comes to stand still (six on each other, or steps of 1/24 s, ask
+/// for 12 sub-steps). Balls do not spin. Hits and contacts of this kind are counted in every sub-step, and
+/// [`Observer`](crate::Observer)s are not told of them.
 ///
 /// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
 /// (`caps.contacts`), bits do not depend on it.

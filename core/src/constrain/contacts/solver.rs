@@ -23,7 +23,7 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
         *drift = bodies.position[row] - x[row] - (v[row] + bodies.velocity[row]) * (0.5 * h);
     }
     let driven = bodies.velocity.iter().zip(v).map(|(now, before)| *now - *before);
-    // What is no longer finite must not reach the others before it is taken out.
+    // A particle that is no longer finite must not reach the others before it is taken out.
     kept.lists.driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces {
@@ -75,7 +75,7 @@ fn report(bodies: &mut Bodies<'_>, kept: &Kept<'_>) {
     }
 }
 
-/// What a particle has met.
+/// A particle that has met another, or a collider.
 struct Met {
     row: usize,
     other: Option<Id>,
@@ -102,10 +102,10 @@ impl Met {
 
 /// One pass over the contacts of a sub-step.
 struct Pass<'a> {
-    /// Before the sub-step.
+    /// Places and velocities before the sub-step.
     x0: &'a [Vec3],
     v0: &'a [Vec3],
-    /// As the integrator left it.
+    /// Velocities as the integrator left them.
     pushed: &'a [Vec3],
     /// How far positions are from where the mean of the velocities before and now leads \[m\]: by half of what forces do in
     /// the sub-step with methods of first order, hardly with others. Contacts take out what lies in their way.
@@ -127,7 +127,7 @@ struct Pass<'a> {
     /// Compliance over h².
     softness: f32,
     long: f32,
-    /// Whether somebody is so fast that two could pass each other.
+    /// True if somebody is so fast that two could pass each other.
     fast: bool,
 }
 
@@ -176,7 +176,7 @@ impl<'a> Pass<'a> {
         let slack = self.slack(a, reach);
         let (normal, overlap) = if square < (reach + slack) * (reach + slack) {
             let distance = sqrt(square);
-            // Of two in one place the one with the higher row goes up.
+            // The one with the higher row goes up if two are in one place.
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
             (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance)
         } else if self.fast && square > 0.0 {
@@ -186,7 +186,7 @@ impl<'a> Pass<'a> {
             return;
         };
         let closing = max((self.velocity[b] - self.velocity[a]).dot(normal), 0.0);
-        // Who touches by rounding alone does so only to press.
+        // Two that touch by rounding alone do so only to press.
         if !(overlap > 0.0 || overlap > -slack && closing > 0.0) {
             return;
         }
@@ -244,7 +244,7 @@ impl<'a> Pass<'a> {
         self.owed[lower] -= up * (missing * self.inverse_mass[lower] / (wa + wb));
     }
 
-    /// How many times what its contacts feel weighs on a particle besides.
+    /// The weight on a particle beyond what its contacts feel, as a multiple of that.
     fn burden(&self, row: usize) -> f32 {
         let borne = self.borne[row];
         let square = borne.dot(borne);

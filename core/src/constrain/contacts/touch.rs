@@ -5,7 +5,7 @@ use crate::material::Mixed;
 use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
 
-/// What two that touch do to each other in a sub-step.
+/// The effect that two in touch have on each other in a sub-step.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Touch {
@@ -25,7 +25,7 @@ impl Touch {
         Self { pressed: -1.0, held: 0.0, carried: 0.0, elasticity, static_, kinetic }
     }
 
-    /// Whether the two touch in this sub-step.
+    /// Tells whether the two touch in this sub-step.
     pub(super) fn is_on(&self) -> bool {
         self.pressed >= 0.0
     }
@@ -39,7 +39,7 @@ impl Touch {
         self.static_ + self.kinetic > 0.0
     }
 
-    /// Whether the two touch in this sub-step, and not smoothly.
+    /// Tells whether the two touch in this sub-step, and not smoothly.
     pub(super) fn rubs(&self) -> bool {
         self.is_on() && self.has_friction()
     }
@@ -71,7 +71,7 @@ impl Touch {
         change
     }
 
-    /// What friction takes of a slip \[m/s\]: all that it can by what presses, which counts `weight` times.
+    /// The part of a slip that friction takes \[m/s\]: all that it can by what presses, which counts `weight` times.
     pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
         let speed = length(slip);
         let left = |share: f32| max(share * self.load() * weight - self.held, 0.0);

@@ -1,4 +1,4 @@
-//! What far nodes do to a group, as one polynomial of the place in it.
+//! The pull of far nodes on a group, as one polynomial of the place in it.
 
 use crate::index::region::Region;
 use crate::lanes::{self, splat};

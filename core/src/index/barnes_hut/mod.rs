@@ -34,7 +34,7 @@ pub struct BarnesHut<'m> {
     moments: &'m mut [Moments],
     /// The weights are divided by this power of two, so that their moments are within an `f32`.
     unit: f32,
-    /// Whether there are weights of both signs, and so dipoles.
+    /// True if there are weights of both signs, and so dipoles.
     signed: bool,
 }
 
@@ -131,7 +131,7 @@ impl<'m> BarnesHut<'m> {
         Ok(())
     }
 
-    /// What has been built.
+    /// Tells how large the tree has become.
     #[must_use]
     pub fn stats(&self) -> Stats {
         let stats = self.tree.stats();

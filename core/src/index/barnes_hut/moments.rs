@@ -1,19 +1,19 @@
-//! What nodes act by: moments of their weights.
+//! Moments of the weights in a node, by which it acts.
 
 use glam::Vec3;
 
-/// What counts as far, and how far groups act.
+/// The rule by which nodes count as far, and the way in which far nodes act.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
     /// A node acts as one if its longest side is less than this times its distance.
     pub theta: f32,
     /// Softening length s \[m\].
     pub softening: f32,
-    /// Whether nodes act by their dipole and quadrupole as well; else by their weight alone.
+    /// True if nodes act by their dipole and quadrupole as well; else they act by their weight alone.
     pub quadrupole: bool,
 }
 
-/// Of a node's weights: about their centre c, with d⃗ = x⃗ − c⃗.
+/// The moments of a node's weights about their centre c, with d⃗ = x⃗ − c⃗.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Moments {

@@ -21,7 +21,7 @@ struct Level {
     nodes: Range<usize>,
     /// Where the nodes that it leaves begin.
     first: usize,
-    /// What is far acts by a series.
+    /// The series by which far nodes act in it.
     series: Series,
 }
 
@@ -49,7 +49,7 @@ impl Path {
         self.levels.last().map_or(0, |level| level.nodes.start)
     }
 
-    /// What acts there by a series.
+    /// The series by which far nodes act in the box last gone into.
     pub(super) fn series(&self) -> &Series {
         self.levels.last().map_or(&Series::NONE, |level| &level.series)
     }
@@ -71,7 +71,7 @@ impl Path {
         self.left.push(node as u32).is_ok()
     }
 
-    /// Whether there is no room for another box.
+    /// Tells whether there is no room for another box.
     pub(super) fn is_full(&self) -> bool {
         self.levels.is_full()
     }

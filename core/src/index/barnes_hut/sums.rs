@@ -32,9 +32,9 @@ pub(super) struct Law {
     /// The scale of the tree against the points.
     pub(super) scale: f32,
     pub(super) quadrupole: bool,
-    /// Whether nodes have dipoles about their centres.
+    /// True if nodes have dipoles about their centres.
     signed: bool,
-    /// Whether softening keeps third powers of all distances within an `f32`.
+    /// True if softening keeps third powers of all distances within an `f32`.
     soft: bool,
 }
 

@@ -7,7 +7,7 @@ use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
 
-/// What a node is to some points.
+/// The way in which a node acts on some points.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Seen {
     /// Too near to act as one.
@@ -42,7 +42,7 @@ impl Target {
         Self { region, slots, side, wide, theta_squared }
     }
 
-    /// What a node with these moments and slots is to them.
+    /// Tells how a node with these moments and slots acts on them.
     #[inline(always)]
     pub(super) fn sees(&self, moments: &Moments, slots: impl FnOnce() -> Range<usize>) -> Seen {
         let Moments { center, side, .. } = moments;

@@ -36,7 +36,7 @@ pub enum Command<'a> {
     Scenery(Scenery<'a>),
     /// `begin`: a material and a matrix of four rows.
     Begin {
-        /// Of what stands inside and says −1.
+        /// The material of everything inside that says −1.
         material: Index,
         /// Rows of the matrix; the shift stands in the last column.
         matrix: [[f32; 4]; 4],

@@ -9,7 +9,7 @@ pub struct Place {
     pub column: u32,
 }
 
-/// What is wrong with a `.scn` text, and where.
+/// An error in a `.scn` text, and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScnError<'a> {
     /// Where the offending word begins.
@@ -18,11 +18,11 @@ pub struct ScnError<'a> {
     pub command: &'a str,
     /// The offending word; empty at the end of the text.
     pub word: &'a str,
-    /// What is wrong with it.
+    /// The problem with it.
     pub problem: Problem,
 }
 
-/// What is wrong with a word.
+/// A problem with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Problem {
     /// It is no command.
