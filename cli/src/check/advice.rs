@@ -17,7 +17,7 @@ const PULL: f64 = 10.0;
 pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
     let mut advice = Vec::new();
-    match stand.every_pose.and(stand.drag).and(stand.contact) {
+    match stand.every_pose.and(stand.drag).and(stand.contact).and(stand.goal) {
         _ if stand.chooses_steps => advice.push(format!("{} chooses its own steps", stand.method)),
         limit if limit.admits(check.dt) => advice.push(fine(check, limit)),
         Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
@@ -40,7 +40,7 @@ fn fine(check: &Study, limit: Limit) -> String {
                 false => text,
             }
         }
-        _ => format!("neither springs nor drag nor contacts limit the step of {method}: {step} or any other"),
+        _ => format!("neither springs nor drag nor contacts nor goals limit the step of {method}: {step} or any other"),
     }
 }
 
@@ -51,6 +51,12 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
         match stand.at_rest.and(stand.drag).admits(check.dt) {
             true if !stand.contact.admits(check.dt) => {
                 format!("steps of {step} by {} are too long for contacts by force: hits add energy", stand.method)
+            }
+            true if stand.every_pose.admits(check.dt) => {
+                format!(
+                    "steps of {step} by {} are too long for goals: whoever they hold swings ever wider",
+                    stand.method
+                )
             }
             true => format!("steps of {step} by {} are not stable in every pose: they may explode", stand.method),
             false => format!("steps of {step} by {} explode", stand.method),

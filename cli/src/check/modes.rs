@@ -38,9 +38,9 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of a scene's start; `drag` says whether linear drag acts. None if no spring holds what can move.
-    pub(crate) fn of(particles: &[Particle], springs: &[Spring], drag: bool) -> Option<Self> {
-        let net = Net::of(particles, springs, drag);
+    /// That of a scene's start, in which drag acts. None if no spring holds what can move.
+    pub(crate) fn of(particles: &[Particle], springs: &[Spring]) -> Option<Self> {
+        let net = Net::of(particles, springs);
         if net.bars.is_empty() {
             return None;
         }
