@@ -100,20 +100,19 @@ impl Body {
         if self.ages { text + " over its life" } else { text }
     }
 
-    /// It as a particle of its least (0) or greatest (1) mass and drag, though never braked more than it is.
-    fn extreme(&self, [mass, drag]: [usize; 2]) -> Particle {
-        let (mass, drag) = (self.mass[mass], self.drag[drag].min(self.rate() * self.mass[mass]));
-        Particle { mass: mass as f32, drag: drag as f32, ..self.particle }
+    /// It as a particle of its least mass and of its least (0) or greatest (1) drag, though never braked more than it is.
+    fn lightest(&self, drag: usize) -> Particle {
+        let drag = self.drag[drag].min(self.rate() * self.mass[0]);
+        Particle { mass: self.mass[0] as f32, drag: drag as f32, ..self.particle }
     }
 }
 
-/// The same particles at the corners of what their lives allow, the lightest and most braked first: each with what brakes it
-/// for its drag. One corner, if nothing changes.
+/// The same particles at their lightest, most and least braked, each with what brakes it for its drag; once, if that is the
+/// same. Whatever is heavier stands longer steps.
 pub(crate) fn extremes(bodies: &[Body]) -> Vec<Vec<Particle>> {
-    let corner = |which: [usize; 2]| bodies.iter().map(|body| body.extreme(which)).collect();
-    let mut corners: Vec<Vec<Particle>> = [[0, 1], [0, 0], [1, 0], [1, 1]].map(corner).into();
-    corners.dedup();
-    corners
+    let mut extremes: Vec<Vec<_>> = [1, 0].map(|drag| bodies.iter().map(|body| body.lightest(drag)).collect()).into();
+    extremes.dedup();
+    extremes
 }
 
 /// What air does to a particle: so many times its own coefficient of drag, and a coefficient for all \[kg/s\].

@@ -21,7 +21,7 @@ const NOTES: [&str; 7] = [
     "Contact: hits of balls that push each other apart give back no more energy than they take, however the steps fall \
      within them, nor does a ball grow restless among as many of its size as can touch it.",
     "Goal: whoever is held by goals, with its springs and drag, in every pose.",
-    "Whose drag or mass changes over its life is taken at its lightest and heaviest, most and least braked.",
+    "Particles whose drag or mass changes over their lives are taken at their lightest, most and least braked.",
     "Taut springs pull across themselves as well, and their damping does not act there: explicit Euler and the midpoint \
      method make that grow at any step, however slowly.",
 ];

@@ -3,7 +3,7 @@
 use super::bounds::Bounds;
 use super::modes::{How, Spectrum};
 use pointmass::scene::{Model, SceneFile};
-use pointmass::stability::Limit;
+use pointmass::stability::{Limit, Mode};
 use pointmass::{Drag, ForceKind, Heap, Method, Particle, Spring, System, Time, Vec3};
 
 /// Particles and springs without gravity, made ready.
@@ -133,10 +133,10 @@ fn a_frame_in_space() {
 
 /// The bound of a scene is the engine's: nothing grows a little below it, and something beyond it by such a factor.
 #[track_caller]
-fn bounds(scene: &str, beyond: f64) {
+fn bounds(scene: &str, methods: &[Method], beyond: f64) {
     let file = SceneFile::from_json("a.json", scene).expect("a scene");
     let model = Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene");
-    for method in ALL {
+    for &method in methods {
         let Limit::Step(step) = Bounds::of(&model).largest_step(method) else { panic!("{method}: no step") };
         assert!(!grows(&model, method, 0.98 * step), "{method} grows at 0.98 of {step}: {scene}");
         assert!(grows(&model, method, beyond * step), "{method} does not grow at {beyond} of {step}: {scene}");
@@ -154,18 +154,36 @@ fn drag_and_mass_over_a_life() {
     // The second is braked more at birth.
     let two =
         r#""particles": [{"velocity": [1, 0, 0], "drag": 2, "material": 1}, {"velocity": [1, 0, 0], "drag": 15}]"#;
-    bounds(&scene(both, two, r#"{"drag": {}}"#), 1.02);
+    bounds(&scene(both, two, r#"{"drag": {}}"#), &ALL, 1.02);
     // A wind's own coefficient has the mass alone to change.
-    bounds(&scene(both, two, r#"{"wind": {"field": [], "coefficient": 9}}"#), 1.02);
+    bounds(&scene(both, two, r#"{"wind": {"field": [], "coefficient": 9}}"#), &ALL, 1.02);
     let born = r#""emitters": [{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "burst": {"count": 90, "at": 0}, "speed": 1,
         "drag": 3, "mass": {"mean": 2, "half_width": 0.01}, "material": 1}]"#;
     let sides = r#"{"drag": {"between": [{"keys": [[0, 2]]}, {"keys": [[0, 9]]}]}}"#;
-    bounds(&scene(sides, born, r#"{"drag": {}}"#), 1.06);
+    bounds(&scene(sides, born, r#"{"drag": {}}"#), &ALL, 1.06);
     let hung = r#""particles": [{"fixed": true}, {"position": [1, 0, 0], "material": 1}],
         "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 100, "kd": 4}]"#;
-    bounds(&scene(r#"{"mass": {"keys": [[0, 1], [0.1, 0.25]], "over": "seconds"}}"#, hung, ""), 1.02);
+    bounds(&scene(r#"{"mass": {"keys": [[0, 1], [0.1, 0.25]], "over": "seconds"}}"#, hung, ""), &ALL, 1.02);
     // It grows heavy, and what is heavy grows slowly.
-    bounds(&scene(r#"{"mass": {"keys": [[20, 1], [30, 4]], "over": "seconds"}}"#, hung, ""), 1.1);
+    bounds(&scene(r#"{"mass": {"keys": [[20, 1], [30, 4]], "over": "seconds"}}"#, hung, ""), &ALL, 1.1);
+    // What damps a spring ceases to.
+    let loose = hung.replace("\"kd\": 4", "\"kd\": 0").replace("\"material\": 1", "\"material\": 1, \"drag\": 20");
+    let fades = r#"{"drag": {"keys": [[0, 1], [0.1, 0.2]], "over": "seconds"}}"#;
+    bounds(&scene(fades, &loose, r#"{"drag": {}}"#), &[Method::Euler], 1.06);
+}
+
+#[test]
+fn what_is_heavier_stands_longer_steps() {
+    for method in ALL {
+        for (k, c) in (0..40).flat_map(|i| (0..40).map(move |j| (f64::from(i), 0.2 * f64::from(j)))) {
+            let step = |inverse: f64| Mode { omega2: k * inverse, damping: c * inverse }.largest_step(method);
+            let Limit::Step(light) = step(1.0) else { continue };
+            assert!(
+                [0.9, 0.5, 0.1, 0.01].iter().all(|&inverse| step(inverse).admits(light * (1.0 - 1e-9))),
+                "{method}: {k} {c}"
+            );
+        }
+    }
 }
 
 #[test]
@@ -180,9 +198,9 @@ fn goals_hold_as_springs_do() {
         format!(r#"{{"shape": {place}, "arrive": 0, "settle": {settle}{more}}}"#)
     };
     let [soft, hard] = [goal(0.1, ""), goal(0.03, "")];
-    bounds(&scene(&soft, ""), 1.02);
-    bounds(&scene(&format!("{soft}, {hard}, {soft}"), ""), 1.02);
-    bounds(&scene(&soft, r#", "forces": [{"drag": {}}]"#), 1.02);
+    bounds(&scene(&soft, ""), &ALL, 1.02);
+    bounds(&scene(&format!("{soft}, {hard}, {soft}"), ""), &ALL, 1.02);
+    bounds(&scene(&soft, r#", "forces": [{"drag": {}}]"#), &ALL, 1.02);
     let spring = r#", "forces": [{"drag": {}}], "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 200}]"#;
     let file = SceneFile::from_json("a.json", &scene(&soft, spring)).expect("a scene");
     let model = Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene");
