@@ -4,13 +4,12 @@ use super::chart::charts;
 use super::study::{Case, Contestant, Crossover, Study, Subject, names, series, workloads};
 use super::workload::Workload;
 use super::{rays, stopwatch, verify};
-use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::{counted, digits, ratio, thousands};
 
 /// Tells all of it: at a terminal what to use comes last, where one looks first.
-pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outcome {
+pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
     if report.is_page() {
         summary(study, report);
         advice(study, report);
@@ -28,7 +27,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
         }
         growth(study, of, &cases, report);
         crossovers(study, of, report);
-        report.charts(&charts.iter().filter(|chart| chart.of == of).collect::<Vec<_>>())?;
+        report.charts(&charts.iter().filter(|chart| chart.of == of).collect::<Vec<_>>());
         if let Some(largest) = cases.last().filter(|_| report.is_page() && !detail) {
             details(largest, report);
         }
@@ -38,7 +37,6 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
     } else {
         advice(study, report);
     }
-    Ok(())
 }
 
 fn summary(study: &Study, report: &mut dyn Report) {

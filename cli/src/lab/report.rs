@@ -3,7 +3,6 @@
 use super::chart::charts;
 use super::remark::step;
 use super::study::{Case, Point, Row, Steps, Study};
-use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::short;
@@ -41,7 +40,7 @@ const CHARTS: [(&str, &str); 4] = [
 ];
 
 /// Tells all of it.
-pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outcome {
+pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
     if report.is_page() {
         report.paragraph("every figure is the same on each run");
     }
@@ -55,7 +54,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
         energies(case, report);
         by_tolerance(case, report);
         report.items(&case.notes.iter().map(|note| ("note", note.as_str())).collect::<Vec<_>>());
-        report.charts(&charts.iter().filter(|chart| chart.of == case.problem).collect::<Vec<_>>())?;
+        report.charts(&charts.iter().filter(|chart| chart.of == case.problem).collect::<Vec<_>>());
     }
     report.heading(2, "How to read it");
     let has_own = study.cases.iter().flat_map(|case| &case.rows).any(|row| row.steps == Steps::Own);
@@ -65,7 +64,6 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
         report.heading(2, "What is to be seen");
         report.items(&CHARTS);
     }
-    Ok(())
 }
 
 /// An error in so few letters.

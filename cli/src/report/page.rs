@@ -4,7 +4,6 @@ use super::Report;
 use super::origin::Origin;
 use super::plot::Chart;
 use super::table::{Cell, Column, Table};
-use crate::outcome::Outcome;
 
 /// How pages look, by day and by night; charts keep their colours' hues and change light for dark.
 const STYLE: &str = "\
@@ -52,7 +51,7 @@ fn sentence(words: &str) -> String {
 
 impl Page {
     /// What is told, under a title and what made it.
-    pub(crate) fn told(title: &str, origin: &Origin, tell: impl FnOnce(&mut dyn Report) -> Outcome) -> Outcome<String> {
+    pub(crate) fn told(title: &str, origin: &Origin, tell: impl FnOnce(&mut dyn Report)) -> String {
         let mut page = Self("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">".into());
         page.add("<meta name=\"viewport\" content=\"width=device-width\">");
         page.add(&format!("<title>{title}</title>\n<style>\n{STYLE}\n</style></head>\n<body>\n<h1>{title}</h1>\n"));
@@ -60,9 +59,9 @@ impl Page {
         let told = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.os);
         page.facts(&[("Program", format!("pointmass {version}, {}", machine.build)), ("Machine", told)]);
         page.add(&format!("<dl><dt>Command</dt><dd><code>{}</code></dd></dl>\n", escape(command)));
-        tell(&mut page)?;
+        tell(&mut page);
         page.add("</body></html>\n");
-        Ok(page.0)
+        page.0
     }
 
     fn add(&mut self, html: &str) {
@@ -104,13 +103,12 @@ impl Report for Page {
         self.add(&html(table));
     }
 
-    fn charts(&mut self, charts: &[&Chart<'_>]) -> Outcome {
+    fn charts(&mut self, charts: &[&Chart<'_>]) {
         self.add("<div class=\"charts\">\n");
         for chart in charts {
-            self.add(&chart.svg()?);
+            self.add(&chart.svg());
         }
         self.add("</div>\n");
-        Ok(())
     }
 }
 
