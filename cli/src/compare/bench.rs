@@ -167,7 +167,7 @@ impl<'a> Bench<'a> {
         // Who does the most; the first of these.
         let leader = own.min_by_key(|(_, share)| std::cmp::Reverse(share.queries.len()));
         match leader.filter(|_| n > EXHAUSTIVE) {
-            None => Ok((Expected::exhaustive(question, &self.queries), self.queries.clone())),
+            None => Ok((Expected::exhaustive(question, &self.queries, 0..n), self.queries.clone())),
             Some((entrant, share)) => {
                 let name = entrant.name().to_string();
                 let mut contender = entrant.enter(n, &mut self.memory);

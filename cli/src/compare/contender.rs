@@ -46,6 +46,21 @@ pub(crate) enum Answer {
     Total(u64),
 }
 
+impl Answer {
+    /// Of some rows alone, where there are rows; of each, so many nearest.
+    pub(crate) fn of(&self, rows: &[usize], k: usize) -> Self {
+        match self {
+            Self::Counts(counts) => Self::Counts(rows.iter().filter_map(|&row| counts.get(row).copied()).collect()),
+            Self::Links(links) => Self::Links(rows.iter().filter_map(|&row| links.get(row).copied()).collect()),
+            Self::Distances(distances) => {
+                let of_row = |&row: &usize| distances.get(row * k..(row + 1) * k).unwrap_or_default();
+                Self::Distances(rows.iter().flat_map(of_row).copied().collect())
+            }
+            Self::Total(total) => Self::Total(*total),
+        }
+    }
+}
+
 /// A fingerprint of two rows, in either order (the finaliser of SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
 pub(crate) fn link(a: u32, b: u32) -> u64 {
     let mut x = (u64::from(a.min(b)) << 32 | u64::from(a.max(b))).wrapping_add(0x9e37_79b9_7f4a_7c15);

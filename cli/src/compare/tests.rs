@@ -68,7 +68,7 @@ fn caught(about: Workload, exact: bool, exhaustive: bool) -> Option<String> {
     let question = Question { points: &points, moved: &moved, radius: 0.1, k: 5 };
     let [mut one, mut other] = [(); 2].map(|()| vec![0; Structure::Grid.words(400)]);
     let expected = if exhaustive {
-        Expected::exhaustive(&question, &ASKED)
+        Expected::exhaustive(&question, &ASKED, 0..points.len())
     } else {
         let mut leader = Own::new(Structure::Grid, 400, &mut one);
         Expected::by(&mut leader, "grid", &question, &ASKED, 1).expect("the leader is right")
@@ -123,7 +123,7 @@ fn every_structure_passes_on_every_distribution_small_and_far() {
         let radius = super::radius::radius_for(&points, 12.0, &mut memory).expect("there is a radius");
         let moved = moved(&points, radius, 1);
         let question = Question { points: &points, moved: &moved, radius, k: 7 };
-        let expected = Expected::exhaustive(&question, &ASKED);
+        let expected = Expected::exhaustive(&question, &ASKED, 0..points.len());
         for &structure in Structure::ALL {
             memory.resize(memory.len().max(structure.words(points.len())), 0);
             let mut own = Own::new(structure, points.len(), &mut memory);
