@@ -66,7 +66,6 @@ pub(crate) fn render(args: &Render) -> Outcome {
                 .map_err(Failure::new)?;
         }
     }
-    progress.finish();
     sink.finish().map_err(Failure::new)
 }
 

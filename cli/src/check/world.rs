@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::net::wide;
-use nalgebra::Vector3;
+use crate::stall::gravity;
 use pointmass::scene::Model;
 use pointmass::stability::longest_followed_step;
 use pointmass::{Force, ForceKind, Sink};
@@ -61,11 +61,7 @@ pub(crate) fn not_judged(model: &Model) -> Vec<&'static str> {
 
 /// None where nothing is hit or nothing falls.
 pub(crate) fn followed(model: &Model) -> Option<Followed> {
-    let gravity = model.forces.0.iter().filter_map(|force| match force {
-        ForceKind::Gravity(gravity) => Some(gravity.acceleration),
-        _ => None,
-    });
-    let acceleration = gravity.fold(Vector3::zeros(), |sum, g| sum + wide(g)).norm();
+    let acceleration = wide(gravity(model)).norm();
     let is_hit = !model.colliders.is_empty() || !model.forces.1.is_empty();
     let (step, max_bounces) = (longest_followed_step(acceleration), model.max_bounces);
     (is_hit && acceleration > 0.0).then_some(Followed { acceleration, step, max_bounces })

@@ -19,7 +19,6 @@ use pointmass::rng::Stream;
 /// What all cases share.
 pub(crate) struct Bench<'a> {
     args: &'a Compare,
-    seed: u64,
     queries: Vec<Workload>,
     entrants: &'a mut [Entrant],
     /// Lent to one structure after the other.
@@ -48,12 +47,7 @@ impl<'a> Bench<'a> {
     pub(crate) fn new(args: &'a Compare, queries: Vec<Workload>, entrants: &'a mut [Entrant], points: usize) -> Self {
         let ahead = points as u64 * entrants.len() as u64 * (VERIFICATION + ROUNDS);
         let gauge = Gauge::new(ahead);
-        Self { args, seed: args.seed(), queries, entrants, memory: Vec::new(), gauge }
-    }
-
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.gauge.finish();
+        Self { args, queries, entrants, memory: Vec::new(), gauge }
     }
 
     /// Verifies and measures everybody on so many of the source's points.
@@ -68,7 +62,7 @@ impl<'a> Bench<'a> {
             Some(radius) => radius,
             None => radius_for(&points, self.args.neighbours(), &mut self.memory)?,
         };
-        let moved = moved(&points, radius, self.seed);
+        let moved = moved(&points, radius, self.args.seed());
         let question = Question { points: &points, moved: &moved, radius, k: self.args.k() };
         let shares = self.shares(&question)?;
         let (expected, verified) = self.verify(&question, &shares)?;
@@ -97,7 +91,7 @@ impl<'a> Bench<'a> {
     /// What everybody does, leaving out what would take too long.
     fn shares(&mut self, question: &Question<'_>) -> Outcome<Vec<Share>> {
         let n = question.points.len();
-        let rows = sample(n, TRIED, self.seed);
+        let rows = sample(n, TRIED, self.args.seed());
         // What is within a radius costs about the same, however it is told.
         let mut efforts = Vec::new();
         for entrant in self.entrants.iter_mut() {
@@ -171,7 +165,7 @@ impl<'a> Bench<'a> {
             Some((entrant, share)) => {
                 let name = entrant.name().to_string();
                 let mut contender = entrant.enter(n, &mut self.memory);
-                let expected = Expected::by(contender.as_mut(), &name, question, &share.queries, self.seed)?;
+                let expected = Expected::by(contender.as_mut(), &name, question, &share.queries, self.args.seed())?;
                 Ok((expected, share.queries.clone()))
             }
         }

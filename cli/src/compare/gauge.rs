@@ -17,11 +17,6 @@ impl Gauge {
         Self { progress: Progress::of_work(ahead), ahead, title: String::new() }
     }
 
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.progress.finish();
-    }
-
     /// A case begins, of which so much was expected.
     pub(crate) fn begin(&mut self, title: String, expected: u64) {
         self.title = title;

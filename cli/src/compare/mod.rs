@@ -93,7 +93,6 @@ fn of_points(args: &Compare, peers: Vec<Box<dyn Peer>>) -> Outcome<Vec<Case>> {
             cases.push(bench.case(source, n)?);
         }
     }
-    bench.finish();
     Ok(cases)
 }
 

@@ -78,7 +78,6 @@ fn from_scene(scene: &std::path::Path, args: &Compare, seed: u64) -> Outcome<Sou
         world.step_to(schedule.end(step));
         progress.step(world.system.len());
     }
-    progress.finish();
     let points = world.system.particles().position.to_vec();
     let (len, at, path) = (points.len(), nanoseconds(world.system.time().seconds_f64()), scene.display());
     if len < 2 {

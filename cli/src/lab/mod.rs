@@ -68,6 +68,5 @@ fn study(args: &Lab, problems: &[Problem]) -> Outcome<Study> {
         }
         cases.push(remark::remarked(Case::new(problem, &reference, rows)));
     }
-    progress.finish();
     Ok(Study { origin: Origin::this(), cases })
 }

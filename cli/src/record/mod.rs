@@ -88,9 +88,9 @@ impl Recorder {
     pub(crate) fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
         let writer: Box<dyn Writer> = match format {
             RecordFormat::Csv => Box::new(table::Csv::new(WholeFile::create(path)?)),
-            RecordFormat::Jsonl => Box::new(table::Jsonl::new(WholeFile::create(path)?)),
+            RecordFormat::Jsonl => Box::new(table::Jsonl(WholeFile::create(path)?)),
             RecordFormat::Ply => Box::new(ply::Ply::new(path)?),
-            RecordFormat::Xyz => Box::new(xyz::Xyz::new(WholeFile::create(path)?)),
+            RecordFormat::Xyz => Box::new(xyz::Xyz(WholeFile::create(path)?)),
         };
         Ok(Self { path: path.to_path_buf(), writer })
     }

@@ -25,8 +25,6 @@ const ROUNDS: usize = 8;
 /// What all cases share.
 pub(crate) struct Bench<'a> {
     args: &'a Compare,
-    seed: u64,
-    segments: usize,
     entrants: &'a mut [Entrant],
     /// Lent to one structure after the other.
     memory: Vec<u32>,
@@ -46,13 +44,7 @@ impl<'a> Bench<'a> {
     /// For so many meshes.
     pub(crate) fn new(args: &'a Compare, entrants: &'a mut [Entrant], meshes: usize) -> Self {
         let gauge = Gauge::new((meshes * ROUNDS * entrants.len()) as u64);
-        let (seed, segments) = (args.seed(), args.segments());
-        Self { args, seed, segments, entrants, memory: Vec::new(), gauge }
-    }
-
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.gauge.finish();
+        Self { args, entrants, memory: Vec::new(), gauge }
     }
 
     /// Verifies and measures everybody on a mesh.
@@ -64,14 +56,14 @@ impl<'a> Bench<'a> {
         self.gauge
             .begin(format!("{}, {} triangles", surface.name, thousands(n)), (ROUNDS * self.entrants.len()) as u64);
         let radius = ball(surface, self.args.radius);
-        let queries = Query::all(surface, self.segments, Some(radius), self.seed);
+        let queries = Query::all(surface, self.args.segments(), Some(radius), self.args.seed());
         let (task, verified) = self.verified(mesh, &queries)?;
         let mismatches = self.mismatches(&task)?;
         let measured = self.measure(&task)?;
         let rounds = measured.iter().map(Measured::rounds).max().unwrap_or(0);
         let mut contestants = Vec::new();
         for (i, measured) in measured.into_iter().enumerate() {
-            let (all, asked) = (self.segments, task.asked[i]);
+            let (all, asked) = (self.args.segments(), task.asked[i]);
             let left_out =
                 (asked < all).then(|| format!("all but {} of {} segments", thousands(asked), thousands(all)));
             let mut one = measured.contestant(self.entrants[i].name(), left_out);
@@ -85,7 +77,7 @@ impl<'a> Bench<'a> {
             n,
             radius,
             neighbours: None,
-            queries: Some(self.segments),
+            queries: Some(self.args.segments()),
             verified,
             rounds,
             contestants,
@@ -97,9 +89,9 @@ impl<'a> Bench<'a> {
     /// What everybody has to answer, which our structures have; and how that was verified.
     fn verified<'t>(&mut self, mesh: Mesh<'t>, queries: &'t [Query]) -> Outcome<(Task<'t>, String)> {
         let n = mesh.triangles().len();
-        let fewer = (TESTS / n).max(FEWEST).min(self.segments);
+        let fewer = (TESTS / n).max(FEWEST).min(self.args.segments());
         let asked: Vec<_> =
-            self.entrants.iter().map(|entrant| if entrant.is_brute() { fewer } else { self.segments }).collect();
+            self.entrants.iter().map(|entrant| if entrant.is_brute() { fewer } else { self.args.segments() }).collect();
         // Brute force leads only where it is alone.
         let own = (0..asked.len()).filter(|&i| self.entrants[i].is_own());
         let Some(leader) = own.max_by_key(|&i| (asked[i], std::cmp::Reverse(i))) else {
@@ -108,7 +100,7 @@ impl<'a> Bench<'a> {
         let (expected, judged) = {
             let name = self.entrants[leader].name().to_string();
             let (tracer, _) = self.entrants[leader].build(mesh, &mut self.memory, 1)?;
-            Expected::by((&*tracer, &name), mesh, queries, asked[leader], self.seed)?
+            Expected::by((&*tracer, &name), mesh, queries, asked[leader], self.args.seed())?
         };
         for (i, entrant) in self.entrants.iter_mut().enumerate().filter(|(i, _)| *i != leader) {
             let name = entrant.name().to_string();

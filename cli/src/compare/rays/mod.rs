@@ -29,9 +29,7 @@ pub(super) fn cases(args: &Compare, peers: Vec<Box<dyn RayPeer>>) -> Outcome<Vec
     entrants.extend(peers.into_iter().map(Entrant::Peer));
     let surfaces = surface::surfaces(args)?;
     let mut bench = Bench::new(args, &mut entrants, surfaces.len());
-    let cases = surfaces.iter().map(|surface| bench.case(surface)).collect();
-    bench.finish();
-    cases
+    surfaces.iter().map(|surface| bench.case(surface)).collect()
 }
 
 /// Our structures that take part, in the order of every table.
