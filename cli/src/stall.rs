@@ -9,7 +9,7 @@ const NEGLIGIBLE: f64 = 0.01;
 /// The share of all steps of particles that may stall before it is said.
 const SELDOM: f64 = 0.01;
 
-/// What is lost in steps of `h` \[s\] of a run of some duration \[s\], if that is worth telling: told by where particles begin
+/// The motion lost in steps of `h` \[s\] of a run of some duration \[s\], if that is worth telling: told by where particles begin
 /// and by how fast they move at first or after a second's fall.
 pub(crate) fn foreseen(model: &Model, h: f64, duration: f64) -> Option<String> {
     let h = h / f64::from(model.substeps);
@@ -32,7 +32,7 @@ pub(crate) fn foreseen(model: &Model, h: f64, duration: f64) -> Option<String> {
     None
 }
 
-/// What was lost in a run in which particles made so many steps, if that is worth telling.
+/// The motion lost in a run in which particles made so many steps, if that is worth telling.
 pub(crate) fn told(totals: &Report, steps: f64) -> Option<String> {
     let stalled = totals.caps.stalled;
     (stalled as f64 > SELDOM * steps).then(|| {

@@ -1,4 +1,4 @@
-//! What to change.
+//! Advice on what to change.
 
 use super::contact::STEPS;
 use super::part::place;
@@ -13,7 +13,7 @@ use pointmass::stability::Limit;
 const ORBIT: f64 = 50.0;
 const PULL: f64 = 10.0;
 
-/// What to change, the most urgent first; or that nothing has to be.
+/// The changes to make, the most urgent first; or that nothing has to be.
 pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
     let mut advice = Vec::new();
@@ -74,7 +74,7 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
     advice
 }
 
-/// Of a method without any stable step, or of a scene that drives itself.
+/// The advice on a method without any stable step, or on a scene that drives itself.
 fn never(check: &Study, model: &Model, stand: &Stand) -> String {
     let drives = |spring: &&Spring| spring.ks < 0.0 || spring.kd < 0.0;
     if let Some(i) = model.springs.iter().position(|spring| drives(&spring)) {

@@ -10,7 +10,7 @@ use pointmass::{Emitter, ForceKind, MaterialList, Particle, Varied};
 pub(crate) struct Body {
     /// The particle as it begins; of those that are born what they have in common, with the largest radius.
     pub(crate) particle: Particle,
-    /// Whether an emitter bears it.
+    /// True if an emitter bears it.
     is_born: bool,
     /// Its number among the particles, or that of the emitter.
     number: usize,
@@ -75,17 +75,17 @@ impl Body {
         !self.particle.fixed
     }
 
-    /// How fast it is braked at the most \[1/s\].
+    /// The rate at which it is braked at the most \[1/s\].
     pub(crate) fn rate(&self) -> f64 {
         self.braked[0] / self.braked[1]
     }
 
-    /// Where it stands in the file.
+    /// Its place in the file.
     pub(crate) fn place(&self, model: &Model) -> String {
         if self.is_born { format!("emitters[{}]", self.number) } else { place(model, 0, self.number) }
     }
 
-    /// What brakes it most, in words.
+    /// The drag and the mass when it is braked most, in words.
     pub(crate) fn brake(&self) -> String {
         let [drag, mass] = self.braked.map(plain);
         self.at_some_age(format!("of drag {drag} kg/s and mass {mass} kg"))
@@ -115,7 +115,7 @@ pub(crate) fn extremes(bodies: &[Body]) -> Vec<Vec<Particle>> {
     extremes
 }
 
-/// What air does to a particle: so many times its own coefficient of drag, and a coefficient for all \[kg/s\].
+/// Air's effect on a particle: so many times its own coefficient of drag, and a coefficient for all \[kg/s\].
 fn air(model: &Model) -> [f64; 2] {
     model.forces.0.iter().fold([0.0, 0.0], |[own, all], force| match force {
         ForceKind::Drag(_) => [own + 1.0, all],

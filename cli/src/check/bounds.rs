@@ -9,15 +9,15 @@ use pointmass::scene::Model;
 use pointmass::stability::{Limit, Mode, Poses};
 use pointmass::{Method, Spring};
 
-/// What bounds the step of a scene.
+/// The bounds on the step of a scene.
 pub(crate) struct Bounds {
-    /// Whoever there may be.
+    /// All particles that there may be.
     pub(crate) bodies: Vec<Body>,
     /// The springs in every pose, for each of the extremes that lives come to.
     poses: Vec<Poses>,
     /// The spring whose two ends alone would oscillate fastest.
     pub(crate) stiffest: Option<Part>,
-    /// What drag slows down most.
+    /// The body that drag slows down most.
     pub(crate) dragged: Option<Part>,
     /// The balls that push each other apart most abruptly.
     pub(crate) contact: Option<Contact>,
@@ -69,7 +69,7 @@ impl Bounds {
         self.contact.as_ref().map_or(Limit::Unconditional, |contact| contact.largest_step(method))
     }
 
-    /// What to say of a run with this step \[s\] that takes this long \[s\].
+    /// Warnings of a run with this step \[s\] that takes this long \[s\].
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
         if method.chooses_steps() {
             return Vec::new();
@@ -97,7 +97,7 @@ impl Bounds {
         warnings
     }
 
-    /// How fast the fastest oscillation that nothing damps grows \[1/s\].
+    /// The growth of the fastest oscillation that nothing damps \[1/s\].
     pub(crate) fn growth(&self, method: Method, step: f64) -> f64 {
         self.poses.iter().map(|poses| poses.growth_across(method, step)).fold(0.0, f64::max)
     }
@@ -130,7 +130,7 @@ fn stiffest(model: &Model, bodies: &[Body]) -> Option<Part> {
     Some(Part { place: place(model, 1, i), spring: Some(i), about, mode })
 }
 
-/// Whatever is braked most.
+/// The body that is braked most.
 fn dragged(model: &Model, bodies: &[Body]) -> Option<Part> {
     let braked = bodies.iter().filter(|body| body.is_free() && body.rate() > 0.0);
     let body = braked.reduce(|a, b| if b.rate() > a.rate() { b } else { a })?;

@@ -19,9 +19,9 @@ pub(crate) const STEPS: f64 = 7.5;
 /// The contact of a scene that bounds the step most.
 pub(crate) struct Contact {
     pub(crate) part: Part,
-    /// How contacts swing: of two balls, and of one among as many as may touch it.
+    /// The oscillations of contacts: of two balls, and of one among as many as may touch it.
     swings: Vec<Mode>,
-    /// How fast friction stops the slip of two.
+    /// The decay by which friction stops the slip of two.
     slip: Option<Mode>,
 }
 
@@ -84,14 +84,14 @@ impl Contact {
         }
     }
 
-    /// How long a hit lasts \[s\]: half a swing.
+    /// The duration of a hit \[s\]: half a swing.
     pub(crate) fn duration(&self) -> f64 {
         let Mode { omega2, damping } = self.part.mode;
         std::f64::consts::PI / (omega2 - 0.25 * damping * damping).max(0.1 * omega2).sqrt()
     }
 }
 
-/// How two swing against each other while they touch.
+/// The oscillation of two against each other while they touch.
 fn swing(penalty: &Penalty, ball: &Body, other: &Body) -> Mode {
     let [mass, other_mass] = [ball, other].map(|ball| ball.mass[0]);
     let inverse = 1.0 / mass + if other.is_free() { 1.0 / other_mass } else { 0.0 };

@@ -12,7 +12,7 @@ use pointmass::{Method, Particle, Spring};
 pub(crate) struct Goals {
     /// The one that holds the most stiffly.
     pub(crate) part: Part,
-    /// Who may be led, and the springs among them, at each of the moments when goals may hold the most stiffly.
+    /// Particles that may be led, and the springs among them, at each of the moments when goals may hold the most stiffly.
     poses: Vec<Poses>,
 }
 
@@ -44,12 +44,12 @@ fn leads<M>(goal: &Goal<M>, particle: &Particle) -> bool {
     goal.material.is_none_or(|material| particle.material == Some(material))
 }
 
-/// How a goal pulls while so much time is left \[s\].
+/// The pull of a goal while so much time is left \[s\].
 fn pull(left: f64) -> Mode {
     Mode { omega2: 6.0 / (left * left), damping: 4.0 / left }
 }
 
-/// How a goal pulls just before `end` \[s\], if it does.
+/// The pull of a goal just before `end` \[s\], if it has not let go.
 fn last_pull<M>(goal: &Goal<M>, end: f32) -> Option<Mode> {
     let settle = f64::from(goal.settle);
     let left = f64::from(goal.arrive) - f64::from(end) - 4.0 * settle;

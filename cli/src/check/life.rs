@@ -3,7 +3,7 @@
 use pointmass::Varied;
 use pointmass::material::{Curve, Life, Over, Varying};
 
-/// How old particles grow.
+/// The ages that particles reach.
 pub(super) struct Ages {
     /// The largest share of a life: 1, or 0 of those who live for ever.
     share: f32,

@@ -1,4 +1,4 @@
-//! Where methods are stable, and where a scene's oscillations lie.
+//! Charts of where methods are stable, and where a scene's oscillations lie.
 //!
 //! One chart shows the plane of hλ, λ being the rates of the solutions e^{λt}: a method whose step multiplies them by R(hλ)
 //! is stable where |R| ≤ 1. The other shows hω against the damping ratio, for methods that have no such factor as well.
@@ -79,7 +79,7 @@ impl Scenery {
         mode.largest_step(self.method).admits(self.dt)
     }
 
-    /// Of an oscillation that grows, one rate may still decay.
+    /// True of a rate that decays, which one of an oscillation that grows may.
     fn is_calm(&self, z: [f64; 2]) -> bool {
         self.method.scheme().factor(z).is_some_and(|factor| factor <= 1.0)
     }

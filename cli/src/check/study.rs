@@ -1,4 +1,4 @@
-//! What there is to say about a scene's step.
+//! Findings about a scene's step.
 
 use super::body::extremes;
 use super::bounds::Bounds;
@@ -12,7 +12,7 @@ use pointmass::stability::Limit;
 use serde::Serialize;
 use std::path::Path;
 
-/// What there is to say about a scene's step. Times are in seconds, rates per second.
+/// Findings about a scene's step. Times are in seconds, rates per second.
 #[derive(Debug, Serialize)]
 pub(crate) struct Study {
     /// The scene's file.
@@ -30,7 +30,7 @@ pub(crate) struct Study {
     pub(crate) oscillations: Option<Oscillations>,
     /// The spring whose two ends alone would oscillate fastest.
     pub(crate) stiffest: Option<Part>,
-    /// What drag slows down most.
+    /// The body that drag slows down most.
     pub(crate) dragged: Option<Part>,
     /// The balls that push each other apart most abruptly, and how long a hit of them lasts.
     pub(crate) touching: Option<Part>,
@@ -38,7 +38,7 @@ pub(crate) struct Study {
     /// The goal that holds the most stiffly.
     pub(crate) led: Option<Part>,
     pub(crate) methods: Vec<Stand>,
-    /// How long paths may be to be followed with full accuracy to what they hit.
+    /// The length of paths that are followed with full accuracy to what they hit.
     pub(crate) followed: Option<Followed>,
     /// The two particles that attract each other into the quickest orbit.
     pub(crate) pair: Option<Pair>,
@@ -52,7 +52,7 @@ pub(crate) struct Study {
 /// The oscillations of the springs at rest.
 #[derive(Debug, Serialize)]
 pub(crate) struct Oscillations {
-    /// How many of them move.
+    /// The number of those that move.
     pub(crate) count: usize,
     pub(crate) how: How,
     /// The largest rate |λ| \[1/s\].
@@ -61,7 +61,7 @@ pub(crate) struct Oscillations {
     pub(crate) damping_ratio: Option<f64>,
 }
 
-/// What a method stands.
+/// The steps that a method stands.
 #[derive(Debug, Serialize)]
 pub(crate) struct Stand {
     pub(crate) method: String,
@@ -69,7 +69,7 @@ pub(crate) struct Stand {
     pub(crate) chooses_steps: bool,
     /// The largest step stable for springs that are where they start, and at rest there.
     pub(crate) at_rest: Limit,
-    /// Whether that is an estimate, since there are too many oscillations to work out all.
+    /// True if that is an estimate, since there are too many oscillations to work out all.
     pub(crate) estimated: bool,
     /// The largest step stable in every pose.
     pub(crate) every_pose: Limit,
@@ -79,9 +79,9 @@ pub(crate) struct Stand {
     pub(crate) contact: Limit,
     /// The largest step that is stable for whoever goals hold, in every pose.
     pub(crate) goal: Limit,
-    /// Whether it stands the step that is judged.
+    /// True if it stands the step that is judged.
     pub(crate) stable: bool,
-    /// How fast an oscillation across taut springs may grow at that step.
+    /// The rate at which an oscillation across taut springs may grow at that step.
     pub(crate) growth_across: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What is predicted, held against the engine itself.
+//! Predictions, held against the engine itself.
 
 use super::bounds::Bounds;
 use super::modes::{How, Spectrum};
@@ -28,7 +28,7 @@ fn row(masses: &[f32], ks: &[f32], kd: &[f32], drag: f32) -> Model {
     model(masses.iter().enumerate().map(particle).collect(), springs)
 }
 
-/// Whether a small push along the springs grows when the engine steps by `h` \[s\].
+/// True if a small push along the springs grows when the engine steps by `h` \[s\].
 fn grows(model: &Model, method: Method, h: f64) -> bool {
     const STEPS: usize = 4000;
     let mut model = model.clone();

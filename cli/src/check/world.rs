@@ -1,4 +1,4 @@
-//! What other than springs and drag has a time of its own: collisions, orbits, the pull of sinks.
+//! Processes other than springs and drag that have a time of their own: collisions, orbits, the pull of sinks.
 
 use super::body::Body;
 use super::net::wide;
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Particles that are looked at for the quickest pair.
 const MOST: usize = 4096;
 
-/// How long paths may be to be followed with full accuracy to what they hit.
+/// The length of paths that are followed with full accuracy to what they hit.
 #[derive(Debug, Serialize)]
 pub(crate) struct Followed {
     /// Acceleration \[m/s²\] of the scene's gravity.
@@ -27,7 +27,7 @@ pub(crate) struct Followed {
 pub(crate) struct Pair {
     /// Their places in the start.
     pub(crate) particles: [usize; 2],
-    /// How far apart they are \[m\].
+    /// The distance between them \[m\].
     pub(crate) distance: f64,
     /// √(G (m₁ + m₂) / d³) \[1/s\], with softening.
     pub(crate) rate: f64,

@@ -1,4 +1,4 @@
-//! Where contenders meet: one set of points after the other, first verified, then measured.
+//! The bench on which contenders meet: one set of points after the other, first verified, then measured.
 
 use super::args::Compare;
 use super::contender::{Effort, Question, provide};
@@ -16,7 +16,7 @@ use crate::report::words::thousands;
 use pointmass::Vec3;
 use pointmass::rng::Stream;
 
-/// What all cases share.
+/// The state that all cases share.
 pub(crate) struct Bench<'a> {
     args: &'a Compare,
     queries: Vec<Workload>,
@@ -35,7 +35,7 @@ const DEAR: f64 = 5e3;
 const DEAR_FOUND: f64 = 20.0;
 /// But nobody is waited for longer than this takes: some minutes for every query.
 const MOST: f64 = 1e11;
-/// How many points are asked to find out.
+/// The number of points that are asked to find out.
 const TRIED: usize = 64;
 
 /// Rounds that verification takes as long as, and rounds that are expected.
@@ -88,7 +88,7 @@ impl<'a> Bench<'a> {
         Ok(case)
     }
 
-    /// What everybody does, leaving out what would take too long.
+    /// The part that everybody takes, leaving out what would take too long.
     fn shares(&mut self, question: &Question<'_>) -> Outcome<Vec<Share>> {
         let n = question.points.len();
         let rows = sample(n, TRIED, self.args.seed());
@@ -154,7 +154,7 @@ impl<'a> Bench<'a> {
         Ok((expected, verified))
     }
 
-    /// What everybody has to answer, and to which queries.
+    /// The answers that everybody has to give, and to which queries.
     fn expected(&mut self, question: &Question<'_>, shares: &[Share]) -> Outcome<(Expected, Vec<Workload>)> {
         let n = question.points.len();
         let own = self.entrants.iter_mut().zip(shares).filter(|(entrant, share)| share.is_in() && entrant.is_own());
@@ -172,7 +172,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// How many distances a query of all points may compute, by what everybody would.
+/// The number of distances that a query of all points may compute, by what everybody would.
 pub(crate) fn limit(n: usize, efforts: impl Iterator<Item = Effort>) -> f64 {
     let none = Effort { distances: f64::INFINITY, found: 0.0 };
     let least = efforts.fold(none, |least, effort| Effort {

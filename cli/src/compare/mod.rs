@@ -114,7 +114,7 @@ fn study(args: &Compare, subject: Subject, peers: Peers) -> Outcome<Study> {
     })
 }
 
-/// What a reader should know before believing any of it.
+/// Notes that a reader should know before believing any of it.
 fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
     let mut notes = Vec::new();
     for case in cases {

@@ -1,4 +1,4 @@
-//! What a comparison makes of answers and figures that are known beforehand.
+//! Tests of what a comparison makes of answers and figures that are known beforehand.
 
 use super::bench::{limit, moved};
 use super::contender::{Answer, Build, Contender, Effort, Own, Question, Scratch};

@@ -11,10 +11,10 @@ use pointmass::Vec3;
 
 /// Up to so many points, every row is searched exhaustively.
 pub(crate) const EXHAUSTIVE: usize = 20_000;
-/// How many rows are otherwise.
+/// The number of rows that are otherwise.
 pub(crate) const SAMPLE: usize = 100;
 
-/// What everybody has to answer.
+/// The answers that everybody has to give.
 #[derive(Debug, Default)]
 pub(crate) struct Expected {
     counts: Vec<u32>,
@@ -24,7 +24,7 @@ pub(crate) struct Expected {
     moved: Vec<u32>,
 }
 
-/// What was asked of everybody.
+/// The queries that are verified.
 pub(crate) const ASKED: [Workload; 5] =
     [Workload::Count, Workload::Within, Workload::Pairs, Workload::Nearest, Workload::Moving];
 
@@ -84,7 +84,7 @@ impl Expected {
         Ok(expected)
     }
 
-    /// How many others a point has within the radius, on average.
+    /// The number of others that a point has within the radius, on average.
     pub(crate) fn neighbours(&self) -> f64 {
         total(&self.counts) as f64 / self.counts.len().max(1) as f64
     }
@@ -139,7 +139,7 @@ impl Expected {
         }
     }
 
-    /// Whether another library, which rounds in its own way, differs by more than that.
+    /// The fault of another library, which rounds in its own way, if it differs by more than that.
     fn nearly(&self, query: Workload, answer: &Answer) -> Option<String> {
         let sums = |counts: &[u32], found: u64| {
             let expected = total(counts);
@@ -206,7 +206,7 @@ struct Search<'a> {
     question: &'a Question<'a>,
 }
 
-/// What it finds for a row.
+/// The findings for a row.
 struct Found {
     count: u32,
     links: u64,

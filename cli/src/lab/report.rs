@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::short;
 
-/// How many steps' errors a row has room for.
+/// The number of steps' errors that a row has room for.
 const COLUMNS: usize = 5;
 
 const ORDER: &str = "the power of the step that errors go with, fitted to the three shortest steps whose errors are \
@@ -19,7 +19,7 @@ const WORK: &str = "evaluations of all forces, and products with their Jacobian,
 const FIXED: &str = "adaptive and embedded choose inner steps, so that their tolerance and not dt says how large errors \
     are; with an infinite tolerance, fixed, they take every step as it comes";
 
-/// What charts show.
+/// Explanations of the charts.
 const CHARTS: [(&str, &str); 4] = [
     (
         "Error against the step",

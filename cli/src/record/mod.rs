@@ -37,12 +37,12 @@ pub(crate) struct Frame {
     step: u64,
     time: f64,
     rows: Vec<Row>,
-    /// Whether rows have radii.
+    /// True if rows have radii.
     balls: bool,
     /// Names of columns of a user's own, and the values of each row in them.
     names: Vec<String>,
     custom: Vec<Vec<f32>>,
-    /// How they look at that instant.
+    /// Their colours at that instant.
     colors: Vec<Color>,
 }
 
@@ -76,11 +76,11 @@ pub(crate) struct Recorder {
     writer: Box<dyn Writer>,
 }
 
-/// What writes one format.
+/// A writer of one format.
 trait Writer {
     fn record(&mut self, frame: &Frame) -> std::io::Result<()>;
 
-    /// What was recorded, to be put where it belongs.
+    /// The files that were recorded, to be put where they belong.
     fn close(self: Box<Self>) -> Outcome<Vec<Written>>;
 }
 

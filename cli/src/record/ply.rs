@@ -16,7 +16,7 @@ impl Ply {
         Ok(Self { path: path.to_path_buf(), series: Series::create(path, false)? })
     }
 
-    /// What record number `i` will be called.
+    /// The name of record number `i`.
     fn numbered(&self, i: usize) -> PathBuf {
         let mut name = self.path.with_extension("").into_os_string();
         name.push(format!("_{i:06}.ply"));

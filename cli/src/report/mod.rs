@@ -11,9 +11,9 @@ pub(crate) mod words;
 use plot::Chart;
 use table::Table;
 
-/// Where findings are told. Words may begin in lower case and lack a full stop: a page puts that right.
+/// A place where findings are told. Words may begin in lower case and lack a full stop: a page puts that right.
 pub(crate) trait Report {
-    /// Whether there is room for what a reader at a terminal does without.
+    /// True if there is room for what a reader at a terminal does without.
     fn is_page(&self) -> bool;
 
     /// Begins a part of the second level or the third.
@@ -21,7 +21,7 @@ pub(crate) trait Report {
 
     fn paragraph(&mut self, words: &str);
 
-    /// What there is to know, each line behind its name.
+    /// Facts, each line behind its name.
     fn facts(&mut self, facts: &[(&str, String)]);
 
     /// Explanations, each behind what it explains.

@@ -5,7 +5,7 @@ use super::origin::Origin;
 use super::plot::Chart;
 use super::table::{Cell, Column, Table};
 
-/// How pages look, by day and by night; charts keep their colours' hues and change light for dark.
+/// The style of pages, by day and by night; charts keep their colours' hues and change light for dark.
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#222;--paper:#fff;--soft:#666;--line:#ddd;--best:#e5f3ea;--code:#f3f3f3}
 @media (prefers-color-scheme:dark){:root{--ink:#ddd;--paper:#181818;--soft:#aaa;--line:#444;--best:#1d3b29;--code:#2a2a2a}
@@ -50,7 +50,7 @@ fn sentence(words: &str) -> String {
 }
 
 impl Page {
-    /// What is told, under a title and what made it.
+    /// The page of what is told, under a title and what made it.
     pub(crate) fn told(title: &str, origin: &Origin, tell: impl FnOnce(&mut dyn Report)) -> String {
         let mut page = Self("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">".into());
         page.add("<meta name=\"viewport\" content=\"width=device-width\">");

@@ -10,7 +10,7 @@ const PANEL: Place = (560.0, 330.0);
 const BAR: f64 = 22.0;
 const AROUND_BARS: f64 = 44.0;
 const NUMBERS: f64 = 18.0;
-/// What surrounds a plot: above, beside and below, and at the axes.
+/// Margins of a plot: above, beside and below, and at the axes.
 const TITLE: f64 = 36.0;
 const MARGIN: f64 = 7.0;
 const AXES: Place = (40.0, 68.0);
@@ -31,14 +31,14 @@ const ALARM: &str = "#c81e1e";
 
 /// A chart of its own.
 pub(crate) struct Chart<'a> {
-    /// What it is about: the part of a report in which it stands.
+    /// Its subject: the part of a report in which it stands.
     pub(crate) of: String,
     pub(crate) title: String,
     pub(crate) kind: Kind<'a>,
     size: Place,
 }
 
-/// What a chart shows.
+/// The content of a chart.
 pub(crate) enum Kind<'a> {
     /// One quantity against another.
     Lines(Vec<Line<'a>>, Box<[Axis; 2]>),
@@ -54,7 +54,7 @@ pub(crate) struct Line<'a> {
     pub(crate) style: Style,
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Style {
     /// Through dots that have marks, if they are few.
@@ -88,15 +88,15 @@ pub(crate) struct Bar<'a> {
 
 /// A scale with its numbers.
 pub(crate) struct Axis {
-    /// What is counted, with its unit.
+    /// The quantity, with its unit.
     pub(crate) name: &'static str,
-    /// Whether equal lengths are equal factors; else it begins at zero.
+    /// True if equal lengths are equal factors; else it begins at zero.
     pub(crate) is_log: bool,
     /// From where to where it goes, if not as far as what is drawn.
     pub(crate) ends: Option<[f64; 2]>,
-    /// Where numbers stand; if nowhere, at round ones.
+    /// Places of numbers; if there are none, round ones.
     pub(crate) ticks: Vec<f64>,
-    /// How these are written.
+    /// The way in which these are written.
     pub(crate) format: fn(f64) -> String,
 }
 
@@ -294,7 +294,7 @@ impl Line<'_> {
         }
     }
 
-    /// What marks a line's dots, so that lines are told apart without colours too.
+    /// Marks a line's dots, so that lines are told apart without colours too.
     fn mark(&self, svg: &mut Svg, at: Place) {
         match self.style {
             Style::Dots { .. } => svg.dot(at, self.color(), 0.75),

@@ -12,7 +12,7 @@ use textwrap::{Options, WordSplitter};
 pub(crate) struct Terminal(String);
 
 impl Terminal {
-    /// What is told.
+    /// The text of what is told.
     pub(crate) fn told(tell: impl FnOnce(&mut dyn Report)) -> String {
         let mut terminal = Self::default();
         tell(&mut terminal);

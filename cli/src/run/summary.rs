@@ -1,4 +1,4 @@
-//! What a run came to, for people and for programs.
+//! The summary of a run, for people and for programs.
 
 use super::groups::GroupError;
 use crate::schedule::nanoseconds;
@@ -9,7 +9,7 @@ use pointmass::{Books, Caps, Energy, Measures, Report};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What a run came to. Times are in seconds of the scene, except `seconds`, which people had to wait.
+/// The summary of a run. Times are in seconds of the scene, except `seconds`, which people had to wait.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     /// The scene's file.
@@ -24,17 +24,17 @@ pub(crate) struct Summary {
     pub(crate) steps: u64,
     /// The instant reached \[s\].
     pub(crate) time: f64,
-    /// How steps were divided.
+    /// The division of steps.
     pub(crate) substeps: Told,
     /// Particles alive at the end.
     pub(crate) live: u64,
-    /// What has happened.
+    /// The totals of what has happened.
     #[serde(flatten)]
     pub(crate) totals: Report,
-    /// How far sums over far groups are from all pairs, if that was asked.
+    /// Errors of sums over far groups against all pairs, if that was asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) group_errors: Option<Vec<GroupError>>,
-    /// Where energy went, if account of it was kept.
+    /// The ledger of energy, if it was kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ledger: Option<Books>,
     /// Energy and momenta at the end.
@@ -145,7 +145,7 @@ impl Summary {
     }
 }
 
-/// What the method did.
+/// The work of the method, in words.
 fn method_effort(effort: &pointmass::Effort) -> String {
     let pointmass::Effort {
         evaluations,
@@ -203,7 +203,7 @@ fn accounts(books: &Books) -> Vec<(&'static str, String)> {
     entries.into_iter().enumerate().map(row).collect()
 }
 
-/// How far sums over far groups are from all pairs.
+/// Errors of sums over far groups against all pairs, in words.
 fn far(errors: &[GroupError]) -> String {
     let told = errors.iter().map(|error| {
         let GroupError { force, theta, rms, largest, particles } = error;
@@ -214,7 +214,7 @@ fn far(errors: &[GroupError]) -> String {
     if errors.is_empty() { "no force takes far groups as one".into() } else { told.collect::<Vec<_>>().join("; ") }
 }
 
-/// What the potential energy consists of, if it is more than one force's.
+/// The parts of the potential energy, if it is more than one force's.
 fn parts(forces: &[Entry]) -> String {
     let parts: Vec<_> = forces.iter().filter(|entry| entry.energy != 0.0).collect();
     if parts.len() < 2 {
@@ -224,7 +224,7 @@ fn parts(forces: &[Entry]) -> String {
     format!(" ({})", told.join(", "))
 }
 
-/// How steps were divided, if they were.
+/// The division of steps, in words, if they were divided.
 fn substeps(told: &Told, steps: u64) -> Option<String> {
     let Told { least, most, total, beyond, tolerance, .. } = *told;
     if most <= 1 {

@@ -1,4 +1,4 @@
-//! Where tracers meet: one mesh after the other, first verified, then measured.
+//! The bench on which tracers meet: one mesh after the other, first verified, then measured.
 
 use super::super::args::Compare;
 use super::super::contender::provide;
@@ -22,7 +22,7 @@ const FEWEST: usize = 50;
 /// Rounds that are expected, and verification as one more.
 const ROUNDS: usize = 8;
 
-/// What all cases share.
+/// The state that all cases share.
 pub(crate) struct Bench<'a> {
     args: &'a Compare,
     entrants: &'a mut [Entrant],
@@ -31,12 +31,12 @@ pub(crate) struct Bench<'a> {
     gauge: Gauge,
 }
 
-/// What entrants have to answer.
+/// The task of the entrants.
 struct Task<'a> {
     mesh: Mesh<'a>,
     queries: &'a [Query],
     expected: Expected,
-    /// How many segments of each kind an entrant is asked.
+    /// The number of segments of each kind that an entrant is asked.
     asked: Vec<usize>,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Bench<'a> {
         Ok(case)
     }
 
-    /// What everybody has to answer, which our structures have; and how that was verified.
+    /// The task of everybody, which our structures have solved; and how that was verified.
     fn verified<'t>(&mut self, mesh: Mesh<'t>, queries: &'t [Query]) -> Outcome<(Task<'t>, String)> {
         let n = mesh.triangles().len();
         let fewer = (TESTS / n).max(FEWEST).min(self.args.segments());
@@ -114,7 +114,7 @@ impl<'a> Bench<'a> {
         Ok((Task { mesh, queries, expected, asked }, verified))
     }
 
-    /// How many answers of other libraries are no rounding.
+    /// The number of answers of other libraries that are no rounding.
     fn mismatches(&mut self, task: &Task<'_>) -> Outcome<Vec<Option<usize>>> {
         let mut all = vec![None; self.entrants.len()];
         for (entrant, unlike) in self.entrants.iter_mut().zip(&mut all).filter(|(entrant, _)| !entrant.is_own()) {
@@ -156,7 +156,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What the mesh is, and how many segments of each kind hit it.
+/// The mesh in words, and the share of segments of each kind that hit it.
 fn about(surface: &Surface, task: &Task<'_>) -> String {
     let hit =
         |(i, query): (usize, &Query)| format!("{:.0} % of {}", task.expected.hits(i) * 100.0, query.workload.name());

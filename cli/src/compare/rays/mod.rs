@@ -54,7 +54,7 @@ fn entrants(args: &Compare) -> Outcome<Vec<Entrant>> {
     Ok(entrants)
 }
 
-/// How meshes are compared.
+/// The method by which meshes are compared.
 pub(super) fn method() -> Vec<String> {
     let (sample, part) = (thousands(verify::FEWEST), verify::MOST_UNLIKE * 100.0);
     vec![

@@ -1,8 +1,8 @@
-//! What meshes and clouds take from the elements of a PLY file.
+//! Elements of a PLY file, as far as meshes and clouds take them.
 
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
-/// What the list of a face's corners is called.
+/// Names of the list of a face's corners.
 pub(super) const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// The position of a vertex; planar if it has no z.
