@@ -3,6 +3,7 @@
 use crate::draw::{self, Dot, Line, Piece, Segment, Stage, Surface, shapes};
 use glam::Vec3;
 use pointmass::draw::{Appearance, appearance};
+use pointmass::motion::Script;
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
 use pointmass::{Heap, Scene, System, Time};

@@ -97,17 +97,22 @@ impl<'a, const N: usize> Curve<'a, N> {
     /// The `number`-th entry of keys, from 1, at an instant.
     fn value(&self, number: usize, instant: f32) -> f32 {
         let next = self.keys.partition_point(|key| key[0] <= instant);
+        let since = next.checked_sub(1).map_or(0.0, |from| instant - self.keys[from][0]);
+        self.piece(number, next, since).value()
+    }
+
+    /// The way of the `number`-th entry from the key before `next` to that one, so long after the former.
+    pub(crate) fn piece(&self, number: usize, next: usize, since: f32) -> Piece {
         let value = |at: usize| self.keys.get(at).map(|key| key[number]);
-        let Some(from) = next.checked_sub(1) else { return value(0).unwrap_or(1.0) };
-        let (Some(a), Some(b)) = (value(from), value(next)) else { return value(from).unwrap_or(1.0) };
+        let Some(from) = next.checked_sub(1) else { return Piece::still(value(0).unwrap_or(1.0)) };
+        let (Some(a), Some(b)) = (value(from), value(next)) else { return Piece::still(value(from).unwrap_or(1.0)) };
         let width = self.keys[next][0] - self.keys[from][0];
-        let share = (instant - self.keys[from][0]) / width;
+        let (share, way) = (since / width, b - a);
         if !self.smooth {
-            return a + (b - a) * share;
+            return Piece { from: a, powers: [way, 0.0, 0.0], share, width };
         }
         let (rise, fall) = (self.slope(number, from) * width, self.slope(number, next) * width);
-        let (square, cube) = (3.0 * (b - a) - 2.0 * rise - fall, rise + fall - 2.0 * (b - a));
-        a + (rise + (square + cube * share) * share) * share
+        Piece { from: a, powers: [rise, 3.0 * way - 2.0 * rise - fall, rise + fall - 2.0 * way], share, width }
     }
 
     /// Steffen's slope at a key.
@@ -133,6 +138,40 @@ impl<'a, const N: usize> Curve<'a, N> {
         let (a, b) = (self.keys.get(from)?, self.keys.get(from + 1)?);
         let width = b[0] - a[0];
         (width > 0.0).then(|| ((b[number] - a[number]) / width, width))
+    }
+}
+
+/// A cubic from a key to the next, and how far along it an instant is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    from: f32,
+    /// What the share, its square and its cube are multiplied by.
+    powers: [f32; 3],
+    share: f32,
+    width: f32,
+}
+
+impl Piece {
+    const fn still(value: f32) -> Self {
+        Self { from: value, powers: [0.0; 3], share: 0.0, width: 1.0 }
+    }
+
+    pub(crate) fn value(&self) -> f32 {
+        let ([rise, square, cube], share) = (self.powers, self.share);
+        self.from + (rise + (square + cube * share) * share) * share
+    }
+
+    /// Its first derivative by the instant.
+    pub(crate) fn slope(&self) -> f32 {
+        let ([rise, square, cube], share) = (self.powers, self.share);
+        (rise + (2.0 * square + 3.0 * cube * share) * share) / self.width
+    }
+
+    /// Its second derivative: here, at its first key and at its second, between which that goes straight.
+    pub(crate) fn bends(&self) -> [f32; 3] {
+        let [_, square, cube] = self.powers;
+        let factor = 2.0 / (self.width * self.width);
+        [self.share, 0.0, 1.0].map(|share| (square + 3.0 * cube * share) * factor)
     }
 }
 

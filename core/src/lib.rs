@@ -16,6 +16,7 @@ extern crate std;
 
 mod cloth;
 mod collide;
+mod composed;
 pub mod constrain;
 mod curve;
 mod custom;
@@ -34,6 +35,8 @@ pub mod math;
 #[cfg(feature = "std")]
 mod measure;
 mod memory;
+pub mod motion;
+mod named;
 mod observe;
 mod particles;
 pub mod rays;
@@ -56,7 +59,7 @@ pub use cloth::{ClothSprings, Sheet, SpringParams};
 pub use collide::{Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
-pub use constrain::{Constraint, Contacts, Distance};
+pub use constrain::{Attach, Constraint, Contacts, Distance};
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
 pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};

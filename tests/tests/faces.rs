@@ -2,10 +2,11 @@
 
 use pointmass::Response;
 use pointmass::force::Friction;
+use pointmass::motion::Motion;
 use pointmass::scene::Position;
 use pointmass::shape::{
-    Aabb, Affine, Collider, Contact, Cuboid, Cylinder, Hit, Hulls, Marks, Mesh, Motion, Moving, Placed, Plane, Ride,
-    Scenery, Segment, Shape, Sphere,
+    Aabb, Affine, Collider, Contact, Cuboid, Cylinder, Hit, Hulls, Marks, Mesh, Moving, Placed, Plane, Ride, Scenery,
+    Segment, Shape, Sphere,
 };
 use pointmass::{ContactMaterial, Drag, Emitter, Gravity, Heap, Integrator, Method, Particle, Scene, System, Time};
 use pointmass::{Observer, Spread, Varied, Vec3};

@@ -27,6 +27,7 @@ mod rays;
 mod reapers;
 mod rounding;
 mod sampling;
+mod scripted;
 mod springs;
 mod storage;
 mod tunnelling;

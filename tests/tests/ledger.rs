@@ -1,7 +1,8 @@
 //! The ledger closes: what is left over is the method's own error.
 
 use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
-use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
+use pointmass::motion::Motion;
+use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
 use pointmass::{
     Adaptive, Books, ClothSprings, ContactMaterial, Drag, Emitter, Force, Gravity, Heap, Ledger, Measures, Meetings,
     Method, MutualGravity, Particle, Rk4, Scene, Sheet, Size, Spring, SpringParams, System, Time, Varied, Vec3, Verlet,

@@ -50,9 +50,13 @@ fn the_guide_says_what_can_be_read_and_names_every_scene() {
     let mut system = model.system(1000, 1).expect("a little memory");
     system.step_to(&model.scene(), Time::from_seconds(2.0));
     assert!(system.len() == 400 && system.totals().hits > 0);
+    let ball = r#"{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "#;
+    let motion = listings.next().expect("a motion").replacen('{', ball, 1);
     let material = listings.next().expect("a material");
-    let scene = SceneFile::from_json("guide", &format!("{{\"materials\": [{material}]}}"));
-    scene.and_then(|scene| scene.check()).unwrap_or_else(|error| panic!("{error}"));
+    for part in [format!("{{\"scenery\": [{motion}]}}"), format!("{{\"materials\": [{material}]}}")] {
+        let scene = SceneFile::from_json("guide", &part);
+        scene.and_then(|scene| scene.check()).unwrap_or_else(|error| panic!("{error}"));
+    }
     for path in scenes() {
         let name = path.file_name().expect("a name").to_string_lossy();
         assert!(guide.contains(&format!("({name})")), "{name} is missing from scenes/README.md");

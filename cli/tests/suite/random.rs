@@ -3,6 +3,7 @@
 use pointmass::emit::{Burst, Emitter, Spread, Varied};
 use pointmass::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
 use pointmass::index::Structure;
+use pointmass::motion::MotionBuf;
 use pointmass::rays;
 use pointmass::scene::{Camera, Files, Group, Item, Light, Material, Run, SceneFile};
 use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Plane, Shape, Sphere, Triangle};
@@ -238,12 +239,15 @@ fn source() -> impl Strategy<Value = Source> {
     (shape, positive(), particle(), reference(), number(), number())
 }
 
-fn emitter((shape, rate, newborn, material, speed, cutoff): Source, materials: usize) -> Emitter<Shape<String>> {
+fn emitter(
+    (shape, rate, newborn, material, speed, cutoff): Source,
+    materials: usize,
+) -> Emitter<Shape<String>, Option<MotionBuf>> {
     Emitter {
         speed: Varied::exactly(speed),
         spread: Spread::Lecture(cutoff),
         material: within(material, materials),
-        ..Emitter::new(shape, rate).giving_birth_to(&newborn)
+        ..Emitter::moving(shape, rate, None).giving_birth_to(&newborn)
     }
 }
 
@@ -306,7 +310,7 @@ fn force() -> impl Strategy<Value = ForceKind> {
     ]
 }
 
-fn any_emitter() -> impl Strategy<Value = Emitter<Shape<String>>> {
+fn any_emitter() -> impl Strategy<Value = Emitter<Shape<String>, Option<MotionBuf>>> {
     let shape = prop_oneof![6 => common_shape(), 1 => circle(), 1 => triangle()];
     let spread = prop_oneof![number().prop_map(Spread::Uniform), number().prop_map(Spread::Lecture)];
     let burst = (0..1000u32, number(), prop_oneof![Just(0.0), 1e-9f32..1.0]);
@@ -334,7 +338,7 @@ fn any_emitter() -> impl Strategy<Value = Emitter<Shape<String>>> {
             lifetime,
             color,
             color_half_width,
-            ..Emitter::new(shape, rate)
+            ..Emitter::moving(shape, rate, None)
         }
     })
 }

@@ -3,6 +3,7 @@
 use crate::random::Memory;
 use pointmass::emit::{Emitter, Spread, Varied};
 use pointmass::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
+use pointmass::motion::MotionBuf;
 use pointmass::scene::{Camera, Group, Item, Light, Material, Model, SceneError, SceneFile, read_scn};
 use pointmass::shape::{Cone, Cuboid, Cylinder, Disc, Line, Shape, Sphere, Triangle};
 use pointmass::{Particle, Vec3};
@@ -63,9 +64,20 @@ const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-fn source(shape: Shape<String>, rate: f32, newborn: Particle, speed: f32, cutoff: f32) -> Emitter<Shape<String>> {
+fn source(
+    shape: Shape<String>,
+    rate: f32,
+    newborn: Particle,
+    speed: f32,
+    cutoff: f32,
+) -> Emitter<Shape<String>, Option<MotionBuf>> {
     let (speed, spread) = (Varied::exactly(speed), Spread::Lecture(cutoff));
-    Emitter { speed, spread, material: newborn.material, ..Emitter::new(shape, rate).giving_birth_to(&newborn) }
+    Emitter {
+        speed,
+        spread,
+        material: newborn.material,
+        ..Emitter::moving(shape, rate, None).giving_birth_to(&newborn)
+    }
 }
 
 fn everything() -> SceneFile {

@@ -1,6 +1,8 @@
 //! The constraints that a scene file names.
 
-use super::{Bodies, Constraint, Demand, Distance, Share};
+use super::{Attach, Bodies, Constraint, Demand, Distance, Share};
+use crate::motion::MotionBuf;
+use alloc::vec::Vec;
 
 /// A constraint, as files say it.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +11,8 @@ use super::{Bodies, Constraint, Demand, Distance, Share};
 pub enum ConstraintKind {
     /// Two particles at a distance.
     Distance(Distance),
+    /// Particles that go where a script says.
+    Attach(Attach<Vec<u32>, MotionBuf>),
 }
 
 impl ConstraintKind {
@@ -16,6 +20,7 @@ impl ConstraintKind {
     fn get(&self) -> &dyn Constraint {
         match self {
             Self::Distance(distance) => distance,
+            Self::Attach(attach) => attach,
         }
     }
 
@@ -24,6 +29,7 @@ impl ConstraintKind {
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::Distance(distance) => distance.fault(),
+            Self::Attach(attach) => attach.motion.fault().map(|why| ("motion", why)),
         }
     }
 
@@ -32,6 +38,7 @@ impl ConstraintKind {
     pub fn ends(&self) -> &[u32] {
         match self {
             Self::Distance(distance) => &distance.ends,
+            Self::Attach(attach) => &attach.particles,
         }
     }
 }

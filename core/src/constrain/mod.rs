@@ -5,12 +5,14 @@
 //! position-based dynamics with one iteration for each of many small steps (Macklin, Müller and Chentanez, "XPBD",
 //! MIG 2016; Macklin et al., "Small Steps in Physics Simulation", SCA 2019).
 
+mod attach;
 mod bodies;
 mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
 
+pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
 pub(crate) use bodies::{SHIFTED, TOUCHING};
 pub use contacts::Contacts;
@@ -19,6 +21,8 @@ pub use distance::Distance;
 pub use kind::ConstraintKind;
 
 pub use crate::memory::{Demand, Kept, Words};
+
+use crate::composed::composed;
 
 /// Something that the places and velocities of particles have to satisfy.
 ///
@@ -178,37 +182,4 @@ impl<T: Constraint> Constraint for Option<T> {
     all_of!(this => this.as_slice());
 }
 
-impl<T: Constraint> Constraint for [T] {
-    all_of!(this => this);
-}
-
-impl<T: Constraint, const N: usize> Constraint for [T; N] {
-    all_of!(this => this);
-}
-
-impl<T: Constraint, const N: usize> Constraint for heapless::Vec<T, N> {
-    all_of!(this => this);
-}
-
-#[cfg(feature = "alloc")]
-impl<T: Constraint> Constraint for alloc::vec::Vec<T> {
-    all_of!(this => this);
-}
-
-macro_rules! tuples {
-    ($($name:ident)+) => {
-        impl<$($name: Constraint),+> Constraint for ($($name,)+) {
-            all_of!(this => {
-                #[allow(non_snake_case)]
-                let ($($name,)+) = this;
-                [$($name as &dyn Constraint),+]
-            });
-        }
-    };
-}
-tuples!(A);
-tuples!(A B);
-tuples!(A B C);
-tuples!(A B C D);
-tuples!(A B C D E);
-tuples!(A B C D E F);
+composed!(Constraint by all_of);

@@ -2,6 +2,7 @@
 
 use super::{Births, Emit, Spread, Varied};
 use crate::math::{along, divide, unit};
+use crate::motion::Script;
 use crate::particles::{Color, Particle, WHITE};
 use crate::rng::Stream;
 use crate::shape::{Aabb, Spot, Surface};
@@ -43,9 +44,22 @@ const DRAWS: u32 = 32;
 /// A surface that gives birth to particles.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        deny_unknown_fields,
+        bound(
+            serialize = "S: serde::Serialize, M: Script + serde::Serialize",
+            deserialize = "S: serde::Deserialize<'de>, M: Default + serde::Deserialize<'de>"
+        )
+    )
+)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Emitter<S> {
+#[cfg_attr(
+    feature = "schema",
+    schemars(bound = "S: schemars::JsonSchema, M: Script + Default + serde::Serialize + schemars::JsonSchema")
+)]
+pub struct Emitter<S, M = ()> {
     /// Where births lie, uniformly by area.
     pub shape: S,
     /// Births lie inside the shape, if it is closed: uniformly by volume. Their directions lead away from its middle.
@@ -84,6 +98,9 @@ pub struct Emitter<S> {
     #[cfg_attr(feature = "serde", serde(default))]
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub velocity: Vec3,
+    /// How it moves besides, the shape and the direction with it; `()`: not at all.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Script::is_still"))]
+    pub motion: M,
     /// The share of the emitter's velocity that births take along, usually 0 to 1.
     #[cfg_attr(feature = "serde", serde(default))]
     pub inherit: f32,
@@ -121,7 +138,7 @@ pub struct Emitter<S> {
 
 /// One emitter, or two if it has bursts: those of the rate and those of the bursts are numbered separately, so that
 /// their random numbers do not depend on which come first in a step.
-impl<S: Surface + Sync> Emit for Emitter<S> {
+impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
     fn count(&self) -> usize {
         1 + usize::from(self.burst.is_some())
     }
@@ -153,6 +170,14 @@ impl<S> Emitter<S> {
     /// An emitter of `rate` births per second that are at rest, of 1 kg, immortal.
     #[must_use]
     pub const fn new(shape: S, rate: f32) -> Self {
+        Self::moving(shape, rate, ())
+    }
+}
+
+impl<S, M> Emitter<S, M> {
+    /// The same, of a shape that moves.
+    #[must_use]
+    pub const fn moving(shape: S, rate: f32, motion: M) -> Self {
         Self {
             shape,
             inside: false,
@@ -166,6 +191,7 @@ impl<S> Emitter<S> {
             direction: None,
             spread: Spread::Uniform(0.0),
             velocity: Vec3::ZERO,
+            motion,
             inherit: 0.0,
             radius: Varied::exactly(0.0),
             mass: Varied::exactly(1.0),
@@ -194,7 +220,7 @@ impl<S> Emitter<S> {
     }
 }
 
-impl<S: Surface> Emitter<S> {
+impl<S: Surface, M: Script> Emitter<S, M> {
     /// The bursts whose instants lie in [from, to): one at zero belongs to the first step.
     fn emit_bursts(&self, burst: &Burst, [from, to]: [Time; 2], births: &mut Births<'_>, number: usize) {
         let (first, every) = (Time::from_seconds(burst.at).ticks(), Time::from_seconds(burst.every).ticks());
@@ -262,10 +288,11 @@ impl<S: Surface> Emitter<S> {
         let inside = if self.inside { self.place_inside(random) } else { None };
         let spot = inside.unwrap_or_else(|| self.shape.sample([u, v, w]));
         let axis = self.direction.map_or(spot.normal, unit);
+        let (spot, axis, along_with) = self.carried(spot.point, axis, at);
         let direction = self.spread.direction(axis, [p, q]);
         Particle {
-            position: along(spot.point, self.velocity, at.seconds()),
-            velocity: along(self.velocity * self.inherit, direction, self.speed.pick(|| speed)),
+            position: along(spot, self.velocity, at.seconds()),
+            velocity: along(along_with * self.inherit, direction, self.speed.pick(|| speed)),
             radius: self.radius.pick(|| random.units(7)[1]),
             mass: self.mass.pick(|| random.units(3)[0]),
             fixed: self.fixed,
@@ -276,6 +303,16 @@ impl<S: Surface> Emitter<S> {
             material: self.material,
             color: Some(self.tint(random)),
         }
+    }
+
+    /// Where its motion has brought a place and a direction by an instant, and the velocity of the emitter there.
+    fn carried(&self, point: Vec3, axis: Vec3, at: Time) -> (Vec3, Vec3, Vec3) {
+        if self.motion.is_still() {
+            return (point, axis, self.velocity);
+        }
+        let frame = self.motion.frame(at);
+        let point = frame.world(point);
+        (point, frame.turn * axis, self.velocity + frame.velocity_at(point))
     }
 
     fn tint(&self, random: Stream) -> Color {

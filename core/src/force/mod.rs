@@ -50,6 +50,7 @@ pub use steady::Steady;
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 
+use crate::composed::composed;
 use crate::custom::CustomColumnsMut;
 use core::ops::Range;
 use glam::Vec3;
@@ -332,37 +333,4 @@ impl Force for ForceKind {
     same_as!(this => this.get());
 }
 
-impl<T: Force> Force for [T] {
-    sum_of!(this => this);
-}
-
-impl<T: Force, const N: usize> Force for [T; N] {
-    sum_of!(this => this);
-}
-
-impl<T: Force, const N: usize> Force for heapless::Vec<T, N> {
-    sum_of!(this => this);
-}
-
-#[cfg(feature = "alloc")]
-impl<T: Force> Force for alloc::vec::Vec<T> {
-    sum_of!(this => this);
-}
-
-macro_rules! tuples {
-    ($($name:ident)+) => {
-        impl<$($name: Force),+> Force for ($($name,)+) {
-            sum_of!(this => {
-                #[allow(non_snake_case)]
-                let ($($name,)+) = this;
-                [$($name as &dyn Force),+]
-            });
-        }
-    };
-}
-tuples!(A);
-tuples!(A B);
-tuples!(A B C);
-tuples!(A B C D);
-tuples!(A B C D E);
-tuples!(A B C D E F);
+composed!(Force by sum_of);

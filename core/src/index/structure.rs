@@ -3,6 +3,7 @@
 use super::cells;
 use super::sorted::Sorted;
 use super::{Brute, Bsp, Bvh, Cost, Grid, Hash, Kd, Neighbour, Octree, Quadtree, SpatialIndex, Stats, TooSmall};
+use crate::named::by_name;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -121,28 +122,4 @@ impl SpatialIndex for AnyIndex<'_> {
     }
 }
 
-impl core::fmt::Display for Structure {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// There is no structure of that name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnknownStructure;
-
-impl core::fmt::Display for UnknownStructure {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("unknown structure; there are")?;
-        Structure::ALL.iter().try_for_each(|structure| write!(f, " {structure}"))
-    }
-}
-
-impl core::error::Error for UnknownStructure {}
-
-impl core::str::FromStr for Structure {
-    type Err = UnknownStructure;
-    fn from_str(name: &str) -> Result<Self, UnknownStructure> {
-        Self::ALL.iter().copied().find(|structure| structure.name() == name).ok_or(UnknownStructure)
-    }
-}
+by_name!(Structure, UnknownStructure, "structure");

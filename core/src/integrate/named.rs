@@ -4,6 +4,7 @@ use super::{
     Adaptive, Dynamics, Embedded, Euler, Implicit, Integrator, LectureMidpoint, Midpoint, Motion, Rk4, Symplectic,
     Verlet,
 };
+use crate::named::by_name;
 use crate::time::Time;
 
 /// Declares the methods that have a name.
@@ -168,28 +169,4 @@ impl Integrator for Tuned {
     }
 }
 
-impl core::fmt::Display for Method {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// There is no integrator of that name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnknownMethod;
-
-impl core::fmt::Display for UnknownMethod {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("unknown integrator; there are")?;
-        Method::ALL.iter().try_for_each(|method| write!(f, " {method}"))
-    }
-}
-
-impl core::error::Error for UnknownMethod {}
-
-impl core::str::FromStr for Method {
-    type Err = UnknownMethod;
-    fn from_str(name: &str) -> Result<Self, UnknownMethod> {
-        Self::ALL.iter().copied().find(|method| method.name() == name).ok_or(UnknownMethod)
-    }
-}
+by_name!(Method, UnknownMethod, "integrator");

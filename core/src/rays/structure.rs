@@ -2,6 +2,7 @@
 
 use super::header::{Boxes, HEADER, Header};
 use super::{Index, Pieces, TooSmall, bsp, build, bvh, grid, kd, octree};
+use crate::named::by_name;
 
 /// How pieces are organised, by its name, as files and the command line say it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,28 +86,4 @@ fn brute<'m, P: Pieces + ?Sized>(pieces: &P, memory: &'m mut [u32]) -> Result<&'
     Ok(header.write(memory))
 }
 
-impl core::fmt::Display for Structure {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// There is no structure of that name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnknownStructure;
-
-impl core::fmt::Display for UnknownStructure {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("unknown structure; there are")?;
-        Structure::ALL.iter().try_for_each(|structure| write!(f, " {structure}"))
-    }
-}
-
-impl core::error::Error for UnknownStructure {}
-
-impl core::str::FromStr for Structure {
-    type Err = UnknownStructure;
-    fn from_str(name: &str) -> Result<Self, UnknownStructure> {
-        Self::ALL.iter().copied().find(|structure| structure.name() == name).ok_or(UnknownStructure)
-    }
-}
+by_name!(Structure, UnknownStructure, "structure");

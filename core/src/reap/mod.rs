@@ -15,6 +15,7 @@ pub use chance::Chance;
 pub use dense::Dense;
 pub use kind::ReaperKind;
 
+use crate::composed::composed;
 use crate::force::State;
 use crate::index::{IndexChoice, Neighbours};
 use crate::math::max;
@@ -211,35 +212,4 @@ impl Reaper for ReaperKind {
     same_as!(this => this.get());
 }
 
-impl<T: Reaper> Reaper for [T] {
-    any_of!(this => this);
-}
-
-impl<T: Reaper, const N: usize> Reaper for [T; N] {
-    any_of!(this => this);
-}
-
-impl<T: Reaper, const N: usize> Reaper for heapless::Vec<T, N> {
-    any_of!(this => this);
-}
-
-#[cfg(feature = "alloc")]
-impl<T: Reaper> Reaper for alloc::vec::Vec<T> {
-    any_of!(this => this);
-}
-
-macro_rules! tuples {
-    ($($name:ident)+) => {
-        impl<$($name: Reaper),+> Reaper for ($($name,)+) {
-            any_of!(this => {
-                #[allow(non_snake_case)]
-                let ($($name,)+) = this;
-                [$($name as &dyn Reaper),+]
-            });
-        }
-    };
-}
-tuples!(A);
-tuples!(A B);
-tuples!(A B C);
-tuples!(A B C D);
+composed!(Reaper by any_of);

@@ -4,6 +4,7 @@ use super::check_force::check_force;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
 use super::{Group, Light, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
+use crate::motion::{Motion, MotionBuf};
 use crate::reap::ReaperKind;
 use crate::shape::{Affine, Shape};
 use alloc::format;
@@ -180,7 +181,7 @@ impl SceneFile {
         }
     }
 
-    fn check_emitter(&self, at: &str, emitter: &Emitter<Shape<String>>) -> Checked {
+    fn check_emitter(&self, at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -> Checked {
         if !(emitter.rate >= 0.0 && emitter.rate <= MAX_RATE) {
             let message = format!("has to be from zero to {MAX_RATE:e}, not {}", emitter.rate);
             return Err(SceneError::value(format!("{at}.rate"), message));
@@ -211,6 +212,9 @@ impl SceneFile {
         }
         if !(radius.mean - radius.half_width.abs() >= 0.0) {
             return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the half_width counted in"));
+        }
+        if let Some(message) = emitter.motion.as_ref().and_then(Motion::fault) {
+            return Err(SceneError::value(format!("{at}.motion"), message));
         }
         let (Spread::Uniform(cutoff) | Spread::Lecture(cutoff)) = emitter.spread;
         finite(&format!("{at}.spread"), &[cutoff])?;
@@ -261,8 +265,7 @@ impl SceneFile {
             let at = format!("scenery[{i}]");
             check_shape(&format!("{at}.shape"), &item.shape)?;
             self.check_material(&at, item.material)?;
-            if item.motion.is_some_and(|motion| !motion.is_sound()) {
-                let message = "its numbers have to be finite, and its axis to have a direction if it turns";
+            if let Some(message) = item.motion.as_ref().and_then(Motion::fault) {
                 return Err(SceneError::value(format!("{at}.motion"), message));
             }
             self.check_group(&at, item.group)?;

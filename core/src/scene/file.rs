@@ -8,10 +8,11 @@ use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Sink, Spring};
 use crate::index::Structure;
 use crate::integrate::{Method, Tuning};
+use crate::motion::MotionBuf;
 use crate::particles::Particle;
 use crate::rays;
 use crate::reap::ReaperKind;
-use crate::shape::{Motion, Shape};
+use crate::shape::Shape;
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -39,7 +40,7 @@ pub struct SceneFile {
     pub cloths: Vec<Cloth>,
     /// What brings further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
-    pub emitters: Vec<Emitter<Shape<String>>>,
+    pub emitters: Vec<Emitter<Shape<String>, Option<MotionBuf>>>,
     /// What acts on all of them, in this order.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub forces: Vec<ForceKind>,
@@ -126,7 +127,7 @@ pub struct Item {
     pub group: Option<u32>,
     /// How it moves; without one it stands still.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
-    pub motion: Option<Motion>,
+    pub motion: Option<MotionBuf>,
 }
 
 /// A transform of scenery, inside another if it has a parent. (A flat list: nesting has no depth that could overflow.)

@@ -12,10 +12,11 @@ use crate::index::Structure;
 use crate::integrate::Tuned;
 use crate::math::max;
 use crate::memory::{Heap, Size};
+use crate::motion::MotionBuf;
 use crate::particles::{Color, Particle};
 use crate::rays;
 use crate::reap::ReaperKind;
-use crate::shape::{Affine, MeshBuf, Motion, Moving, Placed, Scenery, Shape};
+use crate::shape::{Affine, MeshBuf, Moving, Placed, Scenery, Shape};
 use crate::system::System;
 use alloc::collections::{BTreeMap, TryReserveError};
 use alloc::format;
@@ -35,7 +36,7 @@ pub struct Model {
     /// Springs between them.
     pub springs: Vec<Spring>,
     /// What brings further particles into the world.
-    pub emitters: Vec<Emitter<Shape<Arc<MeshBuf>>>>,
+    pub emitters: Vec<Emitter<Shape<Arc<MeshBuf>>, Option<MotionBuf>>>,
     /// What acts on them, in this order.
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
@@ -45,7 +46,7 @@ pub struct Model {
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// What they bounce off.
-    pub colliders: Scenery<Moving<Placed<Shape<Arc<MeshBuf>>>>>,
+    pub colliders: Scenery<Moving<Placed<Shape<Arc<MeshBuf>>>, MotionBuf>>,
     /// What else they die of, beside age and sinks.
     pub reapers: Vec<ReaperKind>,
     /// What each particle has beside the engine's own attributes.
@@ -74,7 +75,7 @@ pub struct Solid {
     /// Its material's number, if it has one.
     pub material: Option<u16>,
     /// How it moves from there.
-    pub motion: Motion,
+    pub motion: MotionBuf,
 }
 
 impl Model {
@@ -119,7 +120,7 @@ impl Model {
         for (i, item) in file.scenery.iter().enumerate() {
             let shape = meshes.shape(&format!("scenery[{i}].shape"), &item.shape)?;
             let material = item.material.or_else(|| file.material_of(item.group));
-            let motion = item.motion.unwrap_or(Motion::STILL);
+            let motion = item.motion.clone().unwrap_or_default();
             scenery.push(Solid { shape, to_world: placement(file, item.group), material, motion });
         }
         let pushes = file.contacts.iter().filter_map(|response| match response {
@@ -136,7 +137,7 @@ impl Model {
             }
             let placed = Placed::new(solid.shape.clone(), solid.to_world);
             let placed = placed.map(|placed| placed.made_of(solid.material));
-            let moving = placed.map(|placed| Moving::new(placed.clone(), &placed.bounds(), solid.motion));
+            let moving = placed.map(|placed| Moving::new(placed.clone(), &placed.bounds(), solid.motion.clone()));
             moving.map(|moving| (moving.clone(), moving.reach())).ok_or_else(|| {
                 let message = "its groups together flatten space: there is no inverse";
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
@@ -300,7 +301,7 @@ impl Start {
 }
 
 /// The largest radius that a particle of the scene may have \[m\].
-fn widest<M>(particles: &[Particle], emitters: &[Emitter<M>]) -> f32 {
+fn widest<S, M>(particles: &[Particle], emitters: &[Emitter<S, M>]) -> f32 {
     let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
     particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
 }
@@ -325,11 +326,11 @@ fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<
 }
 
 fn with_shape(
-    emitter: &Emitter<Shape<String>>,
+    emitter: &Emitter<Shape<String>, Option<MotionBuf>>,
     shape: Shape<Arc<MeshBuf>>,
     to_world: &Affine,
     file: &SceneFile,
-) -> Emitter<Shape<Arc<MeshBuf>>> {
+) -> Emitter<Shape<Arc<MeshBuf>>, Option<MotionBuf>> {
     let Emitter { inside, where_sparse, rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } =
         *emitter;
     let Emitter {
@@ -351,6 +352,7 @@ fn with_shape(
         direction,
         spread,
         velocity,
+        motion: emitter.motion.clone(),
         inherit,
         radius,
         mass,

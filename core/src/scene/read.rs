@@ -310,7 +310,7 @@ impl Reader<'_> {
             speed: Varied::exactly(velocity),
             spread: Spread::Lecture(angle_cutoff),
             material,
-            ..Emitter::new(shape, rate).giving_birth_to(&newborn)
+            ..Emitter::moving(shape, rate, None).giving_birth_to(&newborn)
         });
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::{Form, Item, Light, Material, Run, SceneFile};
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{ForceKind, MutualGravity, Sink, Spring};
+use crate::motion::{MotionBuf, Script};
 use crate::particles::Particle;
 use crate::shape::Shape;
 use alloc::format;
@@ -269,7 +270,7 @@ impl Writer {
         self.line(format_args!("particle {place} {mass} {fixed} {rest} {}", number(*material)));
     }
 
-    fn source(&mut self, index: usize, emitter: &Emitter<Shape<String>>) {
+    fn source(&mut self, index: usize, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) {
         let at = format!("emitters[{index}]");
         self.warn_of_group(&at, emitter.group);
         let Some(shape) = self.shape(&at, &emitter.shape, false) else { return };
@@ -292,8 +293,10 @@ impl Writer {
                 "{at}: in .scn births lie on surfaces, whoever is there; inside and where_sparse are left out"
             ));
         }
-        if emitter.direction.is_some() || emitter.velocity != Vec3::ZERO {
-            self.warn(format!("{at}: .scn has neither a direction nor a velocity of sources; they are left out"));
+        if emitter.direction.is_some() || emitter.velocity != Vec3::ZERO || !emitter.motion.is_still() {
+            self.warn(format!(
+                "{at}: .scn has neither a direction nor a velocity or motion of sources; they are left out"
+            ));
         }
         if emitter.radius != Varied::default() {
             self.warn(format!("{at}: .scn has no radii; they are left out"));

@@ -46,7 +46,7 @@ pub use line::Line;
 #[cfg(feature = "alloc")]
 pub use mesh::MeshBuf;
 pub use mesh::{BadMesh, Mesh};
-pub use moving::{Motion, Moving};
+pub use moving::Moving;
 pub use place::{Affine, Placed};
 pub use plane::Plane;
 #[cfg(feature = "alloc")]

@@ -3,7 +3,8 @@
 use pointmass::emit::Burst;
 use pointmass::force::Friction;
 use pointmass::index::{InGrid, InKd, IndexChoice, Structure};
-use pointmass::shape::{Aabb, Cuboid, Motion, Moving, Plane};
+use pointmass::motion::Motion;
+use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
 use pointmass::{
     ContactMaterial, Emitter, Gravity, Impact, Meetings, Observer, Particle, Scene, Spread, Time, Varied, Vec3,
 };

@@ -2,7 +2,8 @@
 
 use super::tunnels::told;
 use pointmass::force::Friction;
-use pointmass::shape::{Aabb, Collider, Cuboid, Motion, Moving, Plane, Segment, Sphere};
+use pointmass::motion::Motion;
+use pointmass::shape::{Aabb, Collider, Cuboid, Moving, Plane, Segment, Sphere};
 use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{G, Random, f64s, gap, often, run, started};
 
@@ -21,7 +22,7 @@ fn a_motion_is_where_its_formula_says_early_and_late() {
             swing: random.vector(1.0),
             frequency: random.between(0.0, 20.0),
             phase: random.between(-1.0, 1.0),
-            drift: Vec3::ZERO,
+            ..Motion::STILL
         };
         let instant = Time::from_seconds_f64(f64::from(random.magnitude(1e-3, 1e6)));
         let x = random.vector(3.0);
@@ -143,6 +144,7 @@ fn hits_and_contacts_of_moving_spheres_are_those_of_the_sphere_there() {
             frequency: random.between(0.0, 2.0),
             phase: random.unit(),
             drift: random.vector(0.1),
+            ..Motion::STILL
         };
         let sphere = Sphere { center: random.vector(1.0), radius: random.between(0.2, 1.0) };
         let ball = Moving::new(sphere, &Aabb { min: Vec3::splat(-2.0), max: Vec3::splat(2.0) }, motion);

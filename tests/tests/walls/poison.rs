@@ -1,8 +1,9 @@
 //! What cannot be used harms nobody: no panic, and rows that are no numbers are taken out and counted.
 
+use pointmass::motion::{Key, Motion};
 use pointmass::shape::{
-    Aabb, Affine, Capsule, Collider, Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Motion, Moving, Placed, Plane,
-    Segment, Sphere, Triangle,
+    Aabb, Affine, Capsule, Collider, Cone, Cuboid, Cylinder, Disc, Line, MeshBuf, Moving, Placed, Plane, Segment,
+    Sphere, Triangle,
 };
 use pointmass::{Gravity, Mat3, Particle, Scene, Time, Vec3};
 use pointmass_tests::{Form, Random, started};
@@ -50,6 +51,12 @@ fn nothing_panics_whatever_a_shape_and_a_path_are() {
             frequency: number(&mut random),
             phase: number(&mut random),
             drift: vector(&mut random),
+            keys: [(); 3].map(|()| Key {
+                time: number(&mut random),
+                place: vector(&mut random),
+                rotation: vector(&mut random),
+            }),
+            period: number(&mut random),
         };
         let linear = Mat3::from_cols(vector(&mut random), vector(&mut random), vector(&mut random));
         let placed = Placed::new(form.clone(), Affine { linear, shift: vector(&mut random) });

@@ -1,7 +1,8 @@
 //! What rests on scenery that moves goes where that takes it, for as long as friction can hold it.
 
 use pointmass::force::Friction;
-use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Disc, Motion, Moving, Placed, Plane};
+use pointmass::motion::Motion;
+use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Disc, Moving, Placed, Plane};
 use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{f64s, gap, run, started};
 

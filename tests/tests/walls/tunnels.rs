@@ -1,6 +1,7 @@
 //! Nothing passes a wall, however thin it is and however fast what comes is.
 
-use pointmass::shape::{Aabb, Collider, Cuboid, MeshBuf, Motion, Moving, Plane, Segment, Triangle};
+use pointmass::motion::Motion;
+use pointmass::shape::{Aabb, Collider, Cuboid, MeshBuf, Moving, Plane, Segment, Triangle};
 use pointmass::{Heap, Particle, Scene, Size, System, Time, Vec3};
 use pointmass_tests::solids::below;
 use pointmass_tests::surfaces::{Vec, cross, dot, minus, plus};

@@ -1,0 +1,87 @@
+//! Particles that go where a script says, and take along whatever is bound to them.
+
+use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::motion::Script;
+use glam::Vec3;
+
+/// Attaches particles to something that moves by a script: each keeps the place in its frame that it had when the constraint first
+/// acted.
+///
+/// Through a sub-step they go straight to where they have to be at its end; springs, rods and contacts feel them on that way. Whoever
+/// is `fixed` is moved by nothing else; others give way to constraints that come later in the list.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Attach<P, M> {
+    /// The particles, by their place in the scene's start.
+    pub particles: P,
+    /// How they move.
+    pub motion: M,
+}
+
+impl<P: AsRef<[u32]>, M> Attach<P, M> {
+    /// The words that it keeps: each particle's place in the frame, and whether these are known.
+    fn kept(&self) -> usize {
+        3 * self.particles.as_ref().len() + 1
+    }
+}
+
+impl<P: AsRef<[u32]>, M: Script> Attach<P, M> {
+    /// Takes the places of all in the frame as it is at the sub-step's beginning, at the first of all.
+    fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
+        let Some((known, places)) = kept.split_first_mut() else { return };
+        if *known != 0 {
+            return;
+        }
+        *known = 1;
+        let frame = self.motion.frame(bodies.substep.during[0]);
+        for (&number, place) in self.particles.as_ref().iter().zip(places.chunks_exact_mut(3)) {
+            if let Some(row) = bodies.row_of_start(number) {
+                let local = frame.local(bodies.position[row]).to_array();
+                place.copy_from_slice(&local.map(f32::to_bits));
+            }
+        }
+    }
+
+    /// Visits all that live, each with its row and its place in the frame.
+    fn each(&self, bodies: &mut Bodies<'_>, kept: &[u32], visit: impl Fn(&mut Bodies<'_>, usize, Vec3)) {
+        let places = kept.get(1..).unwrap_or_default().chunks_exact(3);
+        for (&number, place) in self.particles.as_ref().iter().zip(places) {
+            if let Some(row) = bodies.row_of_start(number) {
+                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
+                visit(bodies, row, Vec3::new(x, y, z));
+            }
+        }
+    }
+}
+
+impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
+    fn demand(&self) -> Demand {
+        Demand { kept: Words { per_row: 0, fixed: self.kept() }, ..Demand::NONE }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.particles.as_ref().is_empty()
+    }
+
+    /// Sends them off straight to where they have to be.
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.learn(bodies, share.kept.fixed);
+        let (end, h) = (self.motion.frame(bodies.substep.during[1]), bodies.substep.seconds());
+        if h > 0.0 {
+            self.each(bodies, share.kept.fixed, |bodies, row, place| {
+                bodies.velocity[row] = (end.world(place) - bodies.position[row]) * (1.0 / h);
+            });
+        }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let end = self.motion.frame(bodies.substep.during[1]);
+        self.each(bodies, share.kept.fixed, |bodies, row, place| {
+            let to = end.world(place);
+            bodies.shift(row, to - bodies.position[row]);
+            bodies.position[row] = to;
+            bodies.velocity[row] = end.velocity_at(to);
+        });
+    }
+}

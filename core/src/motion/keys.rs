@@ -1,0 +1,252 @@
+//! Motion from key to key: smooth curves through places and rotations.
+
+use super::Frame;
+use crate::curve::{Curve, Over, Piece};
+use crate::math::{divide, length, sin_cos_turns};
+use crate::time::Time;
+use core::f32::consts::TAU;
+use glam::{Mat3, Vec3};
+
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
+
+/// An instant of a scripted motion: where something is then, and how it is turned.
+///
+/// Between two keys each number goes along a cubic that passes neither of them (Steffen, "A simple method for monotonic interpolation
+/// in one dimension", A&A 239, 1990), so that velocities have no jumps. Before the first and after the last it stands still.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Key {
+    /// The instant \[s\].
+    pub time: f32,
+    /// The way from where it stood \[m\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub place: Vec3,
+    /// The angles about x, then y, then z by which it is turned about the pivot, the axes standing still, of any size \[rad\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub rotation: Vec3,
+}
+
+/// The keys of a motion, in the order of their instants; `()` are none, for which nothing is linked.
+pub trait Keys: Sync {
+    /// All of them.
+    fn all(&self) -> &[Key];
+
+    /// Whether there is none.
+    fn is_empty(&self) -> bool {
+        self.all().is_empty()
+    }
+}
+
+impl Keys for () {
+    fn all(&self) -> &[Key] {
+        &[]
+    }
+}
+
+impl Keys for [Key] {
+    fn all(&self) -> &[Key] {
+        self
+    }
+}
+
+impl<const N: usize> Keys for [Key; N] {
+    fn all(&self) -> &[Key] {
+        self
+    }
+}
+
+impl<T: Keys + ?Sized> Keys for &T {
+    fn all(&self) -> &[Key] {
+        (**self).all()
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Keys for Vec<Key> {
+    fn all(&self) -> &[Key] {
+        self
+    }
+}
+
+/// Why keys cannot be used, if they cannot.
+pub(super) fn fault(keys: &[Key], period: f32) -> Option<&'static str> {
+    let sound = |key: &Key| key.time.is_finite() && key.place.is_finite() && key.rotation.is_finite();
+    if !keys.iter().all(sound) || !(0.0..f32::INFINITY).contains(&period) {
+        Some("its keys have to be finite, and its period not to be below zero, in s")
+    } else if keys.iter().any(|key| key.time < 0.0) || keys.windows(2).any(|two| two[1].time <= two[0].time) {
+        Some("its keys have to be in the order of their times, from 0 on, no two at one time")
+    } else if period > 0.0 && keys.last().is_some_and(|key| key.time > period) {
+        Some("its keys have to lie within its period")
+    } else {
+        None
+    }
+}
+
+/// A vector of curves at an instant: its value, its derivatives, and the largest of the second ones about there.
+struct Led {
+    value: Vec3,
+    slope: Vec3,
+    bend: Vec3,
+    most: f32,
+}
+
+impl Led {
+    /// Three pieces of curves.
+    fn of(pieces: [Piece; 3]) -> Self {
+        let bends = pieces.map(|piece| piece.bends());
+        let [bend, first, second] = [0, 1, 2].map(|at| Vec3::from(bends.map(|bends| bends[at])));
+        Self {
+            value: Vec3::from(pieces.map(|piece| piece.value())),
+            slope: Vec3::from(pieces.map(|piece| piece.slope())),
+            bend,
+            most: length(first).max(length(second)),
+        }
+    }
+}
+
+/// The frame of what moves like `free` and is led by keys besides.
+pub(super) fn led(free: &Frame, keys: &[Key], period: f32, at: Time) -> Frame {
+    let at = match Time::from_seconds(period).ticks() {
+        0 => at,
+        period => Time::from_ticks(divide(u128::from(at.ticks()), period).1),
+    };
+    // Instants are compared and subtracted in ticks: late keys are as exact as early ones.
+    let next = keys.partition_point(|key| Time::from_seconds(key.time) <= at);
+    let since = next.checked_sub(1).map_or(0.0, |from| (at - Time::from_seconds(keys[from].time)).seconds());
+    // A cubic between two keys hangs on one more on either side.
+    let first = next.saturating_sub(2);
+    let near = &keys[first..keys.len().min(next + 2)];
+    let mut numbers = [[0.0; 7]; 4];
+    for (numbers, key) in numbers.iter_mut().zip(near) {
+        let (Vec3 { x, y, z }, turned) = (key.place, key.rotation);
+        *numbers = [key.time, x, y, z, turned.x, turned.y, turned.z];
+    }
+    let curve = Curve { keys: &numbers[..near.len()], over: Over::Seconds, smooth: true };
+    let piece = |number| curve.piece(number, next - first, since);
+    let [place, angles] = [1, 4].map(|number| Led::of([number, number + 1, number + 2].map(piece)));
+    let turning = Turning::of(&angles);
+    let spin = turning.turn * free.spin;
+    Frame {
+        turn: turning.turn * free.turn,
+        pivot: free.pivot,
+        place: free.place + place.value,
+        velocity: free.velocity + place.slope,
+        acceleration: free.acceleration + place.bend,
+        spin: turning.spin + spin,
+        spin_up: turning.spin_up + turning.spin.cross(spin),
+        bend: free.bend + place.most,
+    }
+}
+
+/// A rotation by angles about x, then y, then z, and how it changes.
+struct Turning {
+    turn: Mat3,
+    spin: Vec3,
+    spin_up: Vec3,
+}
+
+impl Turning {
+    fn of(angles: &Led) -> Self {
+        let [(sx, cx), (sy, cy), (sz, cz)] = angles.value.to_array().map(|angle| sin_cos_turns(angle * (1.0 / TAU)));
+        // The axes about which x and y turn what is turned about them already, as those after them have turned these.
+        let y = Vec3::new(-sz, cz, 0.0);
+        let x = Vec3::new(cz * cy, sz * cy, -sy);
+        let turn = Mat3::from_cols(
+            x,
+            Vec3::new(cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx),
+            Vec3::new(cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx),
+        );
+        let [about_x, about_y, about_z] = [x * angles.slope.x, y * angles.slope.y, Vec3::Z * angles.slope.z];
+        let carried = about_z.cross(about_y) + (about_z + about_y).cross(about_x);
+        Self {
+            turn,
+            spin: about_x + about_y + about_z,
+            spin_up: x * angles.bend.x + y * angles.bend.y + Vec3::Z * angles.bend.z + carried,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Motion, Script};
+    use super::*;
+
+    const KEYS: [Key; 4] = [
+        Key { time: 0.5, place: Vec3::ZERO, rotation: Vec3::ZERO },
+        Key { time: 1.0, place: Vec3::new(1.0, 2.0, 0.0), rotation: Vec3::new(0.3, -1.0, 7.0) },
+        Key { time: 2.0, place: Vec3::new(1.0, 3.0, -4.0), rotation: Vec3::new(0.3, 2.0, 9.0) },
+        Key { time: 2.5, place: Vec3::new(0.0, 0.0, -1.0), rotation: Vec3::new(-1.0, 0.0, 20.0) },
+    ];
+
+    fn motion(period: f32) -> Motion<[Key; 4]> {
+        let steady =
+            Motion { pivot: Vec3::new(1.0, -2.0, 0.5), spin: 0.4, axis: Vec3::new(1.0, 1.0, 0.0), ..Motion::STILL };
+        let Motion { pivot, axis, spin, .. } = steady;
+        Motion { pivot, axis, spin, swing: Vec3::X * 0.3, frequency: 0.7, ..Motion::with_keys(KEYS, period) }
+    }
+
+    #[test]
+    fn keys_are_met_and_kept_at_both_ends() {
+        let plain = Motion::with_keys(KEYS, 0.0);
+        for (at, key) in [(0.0, 0), (0.5, 0), (1.0, 1), (2.0, 2), (2.5, 3), (1e6, 3)] {
+            let frame = plain.frame(Time::from_seconds(at));
+            assert_eq!(frame.place, KEYS[key].place, "at {at}");
+            let Vec3 { x, y, z } = KEYS[key].rotation;
+            let turn = Mat3::from_rotation_z(z) * Mat3::from_rotation_y(y) * Mat3::from_rotation_x(x);
+            for column in 0..3 {
+                assert!((frame.turn.col(column) - turn.col(column)).length() < 3e-6, "at {at}");
+            }
+        }
+        assert_eq!(plain.frame(Time::from_seconds(9.0)).velocity, Vec3::ZERO);
+    }
+
+    #[test]
+    fn velocities_and_accelerations_are_derivatives() {
+        let motion = motion(0.0);
+        let h = 1.0 / 1024.0;
+        // Away from keys, where accelerations jump.
+        for at in [0.7f32, 0.83, 1.2, 1.625, 2.125, 2.375, 3.0] {
+            let frames = [at - h, at, at + h].map(|at| motion.frame(Time::from_seconds(at)));
+            for point in [Vec3::ZERO, Vec3::new(3.0, 1.0, -2.0)] {
+                let [before, here, after] = frames.each_ref().map(|frame| frame.world(point));
+                let there = &frames[1];
+                let velocity = (after - before) / (2.0 * h);
+                let off = length(there.velocity_at(here) - velocity) / (1.0 + length(velocity));
+                assert!(off < 2e-3, "at {at}: {velocity} against {}", there.velocity_at(here));
+                let [before, _, after] = frames.each_ref().map(|frame| frame.velocity_at(frame.world(point)));
+                let acceleration = (after - before) / (2.0 * h);
+                let off = length(there.acceleration_at(here) - acceleration) / (1.0 + length(acceleration));
+                assert!(off < 5e-3, "at {at}: {acceleration} against {}", there.acceleration_at(here));
+                assert!(length(there.local(here) - point) < 1e-5);
+            }
+            assert!(length(frames[1].acceleration) <= frames[1].bend * 1.0001, "at {at}");
+        }
+    }
+
+    #[test]
+    fn keys_begin_again_after_their_period_however_late() {
+        let motion = Motion::with_keys(KEYS, 3.0);
+        for at in [0.25f32, 0.75, 1.5, 2.25, 2.875] {
+            for round in [1, 1000, 1 << 20] {
+                let late = Time::from_seconds(at) + Time::from_ticks(Time::from_seconds(3.0).ticks() * round);
+                assert_eq!(motion.frame(late), motion.frame(Time::from_seconds(at)), "{round} rounds later");
+            }
+        }
+    }
+
+    #[test]
+    fn faulty_keys_are_told_apart() {
+        assert_eq!(motion(0.0).fault(), None);
+        assert_eq!(motion(2.5).fault(), None);
+        assert!(motion(2.0).fault().is_some_and(|why| why.contains("period")));
+        let mut swapped = KEYS;
+        swapped.swap(1, 2);
+        assert!(Motion::with_keys(swapped, 0.0).fault().is_some_and(|why| why.contains("order")));
+        let endless = [Key { place: Vec3::INFINITY, ..KEYS[0] }];
+        assert!(Motion::with_keys(endless, 0.0).fault().is_some_and(|why| why.contains("finite")));
+    }
+}
