@@ -1,12 +1,12 @@
 //! A progress bar on standard error, for runs long enough to wonder.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 use std::time::{Duration, Instant};
 
 /// Shown once a run has lasted this long.
 const PATIENCE: Duration = Duration::from_millis(700);
 
-/// Progress through a known number of steps; invisible where standard error is no terminal.
+/// Progress through a known number of steps; invisible where standard error is no terminal, and gone when dropped.
 pub(crate) struct Progress {
     bar: ProgressBar,
     since: Instant,
@@ -16,6 +16,7 @@ pub(crate) struct Progress {
 impl Progress {
     pub(crate) fn new(steps: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
+        let bar = bar.with_finish(ProgressFinish::AndClear);
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left  {msg}") {
             bar.set_style(style);
         }
@@ -55,10 +56,5 @@ impl Progress {
         if self.shown {
             self.bar.set_message(format!("{particles} particles"));
         }
-    }
-
-    /// Done; the bar goes away.
-    pub(crate) fn finish(&self) {
-        self.bar.finish_and_clear();
     }
 }

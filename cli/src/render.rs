@@ -69,7 +69,6 @@ pub(crate) fn render(args: &Render) -> Outcome {
             sink.push(&seen.frame(&moving)).map_err(Failure::new)?;
         }
     }
-    progress.finish();
     sink.finish().map_err(Failure::new)
 }
 

@@ -9,16 +9,12 @@ const NEGLIGIBLE: f64 = 0.01;
 /// The share of all steps of particles that may stall before it is said.
 const SELDOM: f64 = 0.01;
 
-/// What is lost in steps of `h` \[s\] of a run of some duration \[s\], if that is worth telling: told by where particles begin
+/// The motion lost in steps of `h` \[s\] of a run of some duration \[s\], if that is worth telling: told by where particles begin
 /// and by how fast they move at first or after a second's fall.
 pub(crate) fn foreseen(model: &Model, h: f64, duration: f64) -> Option<String> {
     let h = h / f64::from(model.substeps);
     let free = || model.particles.iter().filter(|particle| !particle.fixed);
-    let gravity = model.forces.0.iter().filter_map(|force| match force {
-        ForceKind::Gravity(gravity) => Some(gravity.acceleration),
-        _ => None,
-    });
-    let fall = wide(gravity.sum::<Vec3>()).map(|g| g.abs() * duration.min(1.0));
+    let fall = gravity(model).to_array().map(f64::from).map(|g| g.abs() * duration.min(1.0));
     for axis in 0..3 {
         let start = free().map(|particle| f64::from(particle.velocity[axis].abs()));
         let fastest = start.fold(fall[axis], f64::max);
@@ -36,7 +32,7 @@ pub(crate) fn foreseen(model: &Model, h: f64, duration: f64) -> Option<String> {
     None
 }
 
-/// What was lost in a run in which particles made so many steps, if that is worth telling.
+/// The motion lost in a run in which particles made so many steps, if that is worth telling.
 pub(crate) fn told(totals: &Report, steps: f64) -> Option<String> {
     let stalled = totals.caps.stalled;
     (stalled as f64 > SELDOM * steps).then(|| {
@@ -48,6 +44,9 @@ pub(crate) fn told(totals: &Report, steps: f64) -> Option<String> {
     })
 }
 
-fn wide(v: Vec3) -> [f64; 3] {
-    v.to_array().map(f64::from)
+/// The uniform acceleration of all \[m/s²\].
+pub(crate) fn gravity(model: &Model) -> Vec3 {
+    let of =
+        |force: &ForceKind| if let ForceKind::Gravity(gravity) = force { gravity.acceleration } else { Vec3::ZERO };
+    model.forces.0.iter().map(of).sum()
 }

@@ -17,6 +17,12 @@ pub(crate) enum Substeps {
     Auto,
 }
 
+impl Default for Substeps {
+    fn default() -> Self {
+        Self::Fixed(1)
+    }
+}
+
 impl FromStr for Substeps {
     type Err = String;
 

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 const TOLERANCE: f64 = 1e-4;
 
 /// The arguments of a command that runs a scene.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub(crate) struct Settings {
     /// The scene: .json or .scn
     pub(crate) scene: PathBuf,
@@ -70,21 +70,7 @@ pub(crate) struct Settings {
 impl Settings {
     /// A scene as it says itself, in steps that are not divided and on one thread.
     pub(crate) fn of(scene: &Path, reading: Reading) -> Self {
-        Self {
-            scene: scene.to_path_buf(),
-            reading,
-            duration: None,
-            dt: None,
-            integrator: None,
-            index: None,
-            response: None,
-            collision_index: None,
-            seed: None,
-            capacity: None,
-            substeps: Substeps::Fixed(1),
-            tolerance: None,
-            threads: Some(1),
-        }
+        Self { scene: scene.to_path_buf(), reading, threads: Some(1), ..Self::default() }
     }
 }
 

@@ -1,4 +1,4 @@
-//! What to change.
+//! Advice on what to change.
 
 use super::contact::STEPS;
 use super::part::place;
@@ -13,11 +13,11 @@ use pointmass::stability::Limit;
 const ORBIT: f64 = 50.0;
 const PULL: f64 = 10.0;
 
-/// What to change, the most urgent first; or that nothing has to be.
+/// The changes to make, the most urgent first; or that nothing has to be.
 pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
     let mut advice = Vec::new();
-    match stand.every_pose.and(stand.drag).and(stand.contact) {
+    match stand.every_pose.and(stand.drag).and(stand.contact).and(stand.goal) {
         _ if stand.chooses_steps => advice.push(format!("{} chooses its own steps", stand.method)),
         limit if limit.admits(check.dt) => advice.push(fine(check, limit)),
         Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
@@ -40,7 +40,7 @@ fn fine(check: &Study, limit: Limit) -> String {
                 false => text,
             }
         }
-        _ => format!("neither springs nor drag nor contacts limit the step of {method}: {step} or any other"),
+        _ => format!("neither springs nor drag nor contacts nor goals limit the step of {method}: {step} or any other"),
     }
 }
 
@@ -51,6 +51,12 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
         match stand.at_rest.and(stand.drag).admits(check.dt) {
             true if !stand.contact.admits(check.dt) => {
                 format!("steps of {step} by {} are too long for contacts by force: hits add energy", stand.method)
+            }
+            true if stand.every_pose.admits(check.dt) => {
+                format!(
+                    "steps of {step} by {} are too long for goals: whoever they hold swings ever wider",
+                    stand.method
+                )
             }
             true => format!("steps of {step} by {} are not stable in every pose: they may explode", stand.method),
             false => format!("steps of {step} by {} explode", stand.method),
@@ -68,7 +74,7 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
     advice
 }
 
-/// Of a method without any stable step, or of a scene that drives itself.
+/// The advice on a method without any stable step, or on a scene that drives itself.
 fn never(check: &Study, model: &Model, stand: &Stand) -> String {
     let drives = |spring: &&Spring| spring.ks < 0.0 || spring.kd < 0.0;
     if let Some(i) = model.springs.iter().position(|spring| drives(&spring)) {

@@ -1,31 +1,41 @@
-//! What bounds the step of a scene: its springs in every pose, and drag.
+//! The bounds on the step of a scene: its springs in every pose, drag, contacts and goals, over whole lives.
 
+use super::body::{Body, extremes};
 use super::contact::Contact;
+use super::goal::Goals;
 use super::part::{Part, place};
-use super::words::{plain, time};
+use super::words::time;
 use pointmass::scene::Model;
 use pointmass::stability::{Limit, Mode, Poses};
-use pointmass::{ForceKind, Method, Particle, Spring};
+use pointmass::{Method, Spring};
 
-/// What bounds the step of a scene.
+/// The bounds on the step of a scene.
 pub(crate) struct Bounds {
-    pub(crate) poses: Poses,
+    /// All particles that there may be.
+    pub(crate) bodies: Vec<Body>,
+    /// The springs in every pose, for each of the extremes that lives come to.
+    poses: Vec<Poses>,
     /// The spring whose two ends alone would oscillate fastest.
     pub(crate) stiffest: Option<Part>,
-    /// What drag slows down most.
+    /// The body that drag slows down most.
     pub(crate) dragged: Option<Part>,
     /// The balls that push each other apart most abruptly.
     pub(crate) contact: Option<Contact>,
+    /// The goals that particles are led to.
+    pub(crate) goals: Option<Goals>,
 }
 
 impl Bounds {
     pub(crate) fn of(model: &Model) -> Self {
-        let (particles, has_drag) = in_air(model);
+        let bodies = Body::all(model);
+        let corners = extremes(&bodies[..model.particles.len()]);
         Self {
-            poses: Poses::of(&particles, &model.springs, has_drag),
-            stiffest: stiffest(model),
-            dragged: if has_drag { dragged(model) } else { None },
-            contact: Contact::of(model),
+            poses: corners.iter().map(|corner| Poses::of(corner, &model.springs, true)).collect(),
+            stiffest: stiffest(model, &bodies),
+            dragged: dragged(model, &bodies),
+            contact: Contact::of(model, &bodies),
+            goals: Goals::of(model, &bodies),
+            bodies,
         }
     }
 
@@ -34,9 +44,19 @@ impl Bounds {
         self.lasting_step(method).and(self.contact_step(method))
     }
 
-    /// That of springs and drag, which always act.
+    /// That of springs, drag and goals, which act for long.
     fn lasting_step(&self, method: Method) -> Limit {
-        self.poses.largest_step(method).and(self.drag_step(method))
+        self.poses_step(method).and(self.drag_step(method)).and(self.goal_step(method))
+    }
+
+    /// The largest step that springs allow in every pose.
+    pub(crate) fn poses_step(&self, method: Method) -> Limit {
+        self.poses.iter().fold(Limit::Unconditional, |least, poses| least.and(poses.largest_step(method)))
+    }
+
+    /// The largest step that goals allow.
+    pub(crate) fn goal_step(&self, method: Method) -> Limit {
+        self.goals.as_ref().map_or(Limit::Unconditional, |goals| goals.largest_step(method))
     }
 
     /// The largest step that drag allows.
@@ -49,7 +69,7 @@ impl Bounds {
         self.contact.as_ref().map_or(Limit::Unconditional, |contact| contact.largest_step(method))
     }
 
-    /// What to say of a run with this step \[s\] that takes this long \[s\].
+    /// Warnings of a run with this step \[s\] that takes this long \[s\].
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
         if method.chooses_steps() {
             return Vec::new();
@@ -77,9 +97,9 @@ impl Bounds {
         warnings
     }
 
-    /// How fast the fastest oscillation that nothing damps grows \[1/s\].
+    /// The growth of the fastest oscillation that nothing damps \[1/s\].
     pub(crate) fn growth(&self, method: Method, step: f64) -> f64 {
-        self.poses.growth_across(method, step)
+        self.poses.iter().map(|poses| poses.growth_across(method, step)).fold(0.0, f64::max)
     }
 
     /// The part that bounds the step, in words.
@@ -89,61 +109,31 @@ impl Bounds {
             Limit::Step(step) => step,
             Limit::Unconditional => f64::INFINITY,
         };
-        let parts = [&self.stiffest, &self.dragged].into_iter().flatten();
+        let goal = self.goals.as_ref().map(|goals| &goals.part);
+        let parts = [self.stiffest.as_ref(), self.dragged.as_ref(), goal].into_iter().flatten();
         parts.min_by(|a, b| strictest(a).total_cmp(&strictest(b))).map(|part| format!("{} {}", part.place, part.about))
     }
 }
 
-/// What air does to a particle: so many times its own coefficient of drag, and a coefficient for all \[kg/s\].
-fn air(model: &Model) -> [f32; 2] {
-    model.forces.0.iter().fold([0.0, 0.0], |[own, all], force| match force {
-        ForceKind::Drag(_) => [own + 1.0, all],
-        ForceKind::Wind(wind) => wind.coefficient.map_or([own + 1.0, all], |k| [own, all + k]),
-        _ => [own, all],
-    })
-}
-
-/// The particles with the coefficients by which drag and wind together brake them, and whether these act.
-pub(crate) fn in_air(model: &Model) -> (Vec<Particle>, bool) {
-    let [own, all] = air(model);
-    let braked = |particle: &Particle| Particle { drag: own * particle.drag + all, ..*particle };
-    (model.particles.iter().map(braked).collect(), own != 0.0 || all != 0.0)
-}
-
-fn stiffest(model: &Model) -> Option<Part> {
-    let (particles, springs) = (&model.particles, &model.springs);
-    let pairs = springs.iter().map(|spring| spring.ends.map(|end| &particles[end as usize]));
-    let modes = pairs.zip(springs).map(|(ends, spring)| {
-        let inverse: f64 = ends.iter().filter(|end| !end.fixed).map(|end| 1.0 / f64::from(end.mass)).sum();
+fn stiffest(model: &Model, bodies: &[Body]) -> Option<Part> {
+    let pairs = model.springs.iter().map(|spring| spring.ends.map(|end| &bodies[end as usize]));
+    let modes = pairs.zip(&model.springs).map(|(ends, spring)| {
+        let inverse: f64 = ends.iter().filter(|end| end.is_free()).map(|end| 1.0 / end.mass[0]).sum();
         Mode { omega2: f64::from(spring.ks) * inverse, damping: f64::from(spring.kd) * inverse }
     });
     let rate = |mode: &Mode| mode.omega2.max(0.0).sqrt().max(mode.damping);
     let moving = modes.enumerate().filter(|(_, mode)| rate(mode) > 0.0);
     let (i, mode) = moving.reduce(|a, b| if rate(&b.1) > rate(&a.1) { b } else { a })?;
-    let Spring { ends: [a, b], ks, kd, .. } = springs[i];
-    let [m, n] = [a, b].map(|end| match &particles[end as usize] {
-        particle if particle.fixed => "fixed".to_string(),
-        particle => format!("{} kg", particle.mass),
-    });
+    let Spring { ends: [a, b], ks, kd, .. } = model.springs[i];
+    let [m, n] = [a, b].map(|end| bodies[end as usize].weight());
     let about = format!("between particles {a} ({m}) and {b} ({n}): ks {ks}, kd {kd}");
     Some(Part { place: place(model, 1, i), spring: Some(i), about, mode })
 }
 
-/// The largest drag over mass of any particle, at the start or of an emitter's births.
-fn dragged(model: &Model) -> Option<Part> {
-    let [own, all] = air(model).map(f64::from);
-    let start = model.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed);
-    let start = start.map(|(i, p)| ([0, i], own * f64::from(p.drag) + all, f64::from(p.mass)));
-    let births = model.emitters.iter().enumerate().filter(|(_, emitter)| !emitter.fixed);
-    let births = births.map(|(i, e)| {
-        let most = own * (f64::from(e.drag.mean) + f64::from(e.drag.half_width.abs())) + all;
-        ([1, i], most, f64::from(e.mass.mean) - f64::from(e.mass.half_width.abs()))
-    });
-    let rate = |part: &([usize; 2], f64, f64)| part.1 / part.2;
-    let braked = start.chain(births).filter(|part| rate(part) > 0.0);
-    let part = braked.reduce(|a, b| if rate(&b) > rate(&a) { b } else { a })?;
-    let mode = Mode { omega2: 0.0, damping: rate(&part) };
-    let ([kind, i], drag, mass) = part;
-    let place = if kind == 0 { place(model, 0, i) } else { format!("emitters[{i}]") };
-    Some(Part { place, spring: None, about: format!("of drag {} kg/s and mass {} kg", plain(drag), plain(mass)), mode })
+/// The body that is braked most.
+fn dragged(model: &Model, bodies: &[Body]) -> Option<Part> {
+    let braked = bodies.iter().filter(|body| body.is_free() && body.rate() > 0.0);
+    let body = braked.reduce(|a, b| if b.rate() > a.rate() { b } else { a })?;
+    let mode = Mode { omega2: 0.0, damping: body.rate() };
+    Some(Part { place: body.place(model), spring: None, about: body.brake(), mode })
 }

@@ -1,12 +1,13 @@
 //! Bounds that contacts by force put on the step: springs between balls that touch.
 
+use super::body::Body;
 use super::hit;
-use super::part::{Part, place};
-use super::words::{plain, time, typed};
+use super::part::Part;
+use super::words::{time, typed};
+use pointmass::Method;
 use pointmass::force::Penalty;
 use pointmass::scene::Model;
 use pointmass::stability::{Limit, Mode};
-use pointmass::{Emitter, Method};
 
 /// The largest Σ cos² of the angles between a line and the ways to all that touch a ball of their size: two before and
 /// behind it, and five at 60° around each.
@@ -18,33 +19,26 @@ pub(crate) const STEPS: f64 = 7.5;
 /// The contact of a scene that bounds the step most.
 pub(crate) struct Contact {
     pub(crate) part: Part,
-    /// How contacts swing: of two balls, and of one among as many as may touch it.
+    /// The oscillations of contacts: of two balls, and of one among as many as may touch it.
     swings: Vec<Mode>,
-    /// How fast friction stops the slip of two.
+    /// The decay by which friction stops the slip of two.
     slip: Option<Mode>,
-}
-
-/// A ball of the start or of an emitter.
-#[derive(Clone, Copy)]
-struct Ball {
-    /// Its number, or that of the emitter if the flag is set.
-    from: (bool, usize),
-    mass: f64,
-    fixed: bool,
 }
 
 impl Contact {
     /// None where no balls push each other apart.
-    pub(crate) fn of(model: &Model) -> Option<Self> {
-        let balls = balls(model);
+    pub(crate) fn of(model: &Model, bodies: &[Body]) -> Option<Self> {
         let penalty = model.forces.2.first()?;
-        let (mut free, fixed): (Vec<&Ball>, Vec<&Ball>) = balls.iter().partition(|ball| !ball.fixed);
-        free.sort_by(|a, b| a.mass.total_cmp(&b.mass));
+        // Of an emitter's balls one may touch the next.
+        let count = |body: &Body| if body.is_born() { 2 } else { 1 };
+        let is_ball = |body: &&Body| body.particle.radius > 0.0;
+        let balls: Vec<_> = bodies.iter().filter(is_ball).flat_map(|body| vec![body; count(body)]).collect();
+        let (mut free, fixed): (Vec<&Body>, Vec<&Body>) = balls.iter().partition(|ball| ball.is_free());
+        free.sort_by(|a, b| a.mass[0].total_cmp(&b.mass[0]));
         let lightest = *free.first()?;
-        let wall = fixed.into_iter().min_by(|a, b| a.mass.total_cmp(&b.mass));
+        let wall = fixed.into_iter().min_by(|a, b| a.mass[0].total_cmp(&b.mass[0]));
         let others: Vec<_> = free.get(1).copied().into_iter().chain(wall).collect();
-        let born = model.emitters.iter().any(|emitter| widest(emitter) > 0.0);
-        let crowd = if born { CROWD } else { CROWD.min(balls.len() as f64 - 1.0) };
+        let crowd = if balls.iter().any(|ball| ball.is_born()) { CROWD } else { CROWD.min(balls.len() as f64 - 1.0) };
         let pairs = others.iter().map(|other| swing(penalty, lightest, other));
         let mode = pairs.clone().max_by(|a, b| a.omega2.total_cmp(&b.omega2))?;
         let most = |mode: Mode| Mode { omega2: crowd * mode.omega2, damping: crowd * mode.damping };
@@ -56,11 +50,11 @@ impl Contact {
         let Penalty { stiffness, damping, .. } = *penalty;
         let about = format!(
             "({}) touching {} ({}): stiffness {stiffness}, damping {damping}",
-            told(lightest),
-            named(model, others[0]),
-            told(others[0])
+            lightest.weight(),
+            others[0].place(model),
+            others[0].weight()
         );
-        Some(Self { part: Part { place: named(model, lightest), spring: None, about, mode }, swings, slip })
+        Some(Self { part: Part { place: lightest.place(model), spring: None, about, mode }, swings, slip })
     }
 
     /// The largest step in which hits add no energy, and lasting contacts do not grow.
@@ -90,46 +84,20 @@ impl Contact {
         }
     }
 
-    /// How long a hit lasts \[s\]: half a swing.
+    /// The duration of a hit \[s\]: half a swing.
     pub(crate) fn duration(&self) -> f64 {
         let Mode { omega2, damping } = self.part.mode;
         std::f64::consts::PI / (omega2 - 0.25 * damping * damping).max(0.1 * omega2).sqrt()
     }
 }
 
-/// All that have a radius; of an emitter two, since one may touch the next.
-fn balls(model: &Model) -> Vec<Ball> {
-    let start = model.particles.iter().enumerate().filter(|(_, particle)| particle.radius > 0.0);
-    let start = start.map(|(i, p)| Ball { from: (false, i), mass: f64::from(p.mass), fixed: p.fixed });
-    let births = model.emitters.iter().enumerate().filter(|(_, emitter)| widest(emitter) > 0.0);
-    let births = births.flat_map(|(i, emitter)| {
-        let mass = f64::from(emitter.mass.mean) - f64::from(emitter.mass.half_width.abs());
-        [Ball { from: (true, i), mass, fixed: emitter.fixed }; 2]
-    });
-    start.chain(births).collect()
-}
-
-fn widest<S, M>(emitter: &Emitter<S, M>) -> f32 {
-    emitter.radius.mean + emitter.radius.half_width.abs()
-}
-
-/// How two swing against each other while they touch.
-fn swing(penalty: &Penalty, ball: &Ball, other: &Ball) -> Mode {
-    let inverse = 1.0 / ball.mass + if other.fixed { 0.0 } else { 1.0 / other.mass };
+/// The oscillation of two against each other while they touch.
+fn swing(penalty: &Penalty, ball: &Body, other: &Body) -> Mode {
+    let [mass, other_mass] = [ball, other].map(|ball| ball.mass[0]);
+    let inverse = 1.0 / mass + if other.is_free() { 1.0 / other_mass } else { 0.0 };
     // Its damping counts what is fixed by the mass it has, if it has any.
-    let reduced = if other.mass > 0.0 { ball.mass * other.mass / (ball.mass + other.mass) } else { ball.mass };
+    let reduced = if other_mass > 0.0 { mass * other_mass / (mass + other_mass) } else { mass };
     let stiffness = f64::from(penalty.stiffness);
     let damping = 2.0 * f64::from(penalty.damping) * (stiffness * reduced).sqrt();
     Mode { omega2: stiffness * inverse, damping: damping * inverse }
-}
-
-fn named(model: &Model, ball: &Ball) -> String {
-    match ball.from {
-        (false, i) => place(model, 0, i),
-        (true, i) => format!("emitters[{i}]"),
-    }
-}
-
-fn told(ball: &Ball) -> String {
-    if ball.fixed { "fixed".into() } else { format!("{} kg", plain(ball.mass)) }
 }

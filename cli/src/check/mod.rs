@@ -1,13 +1,17 @@
 //! `pointmass check`: which steps a scene stands, what limits them, and what to change.
 //!
-//! `net` makes matrices of the springs, `modes` and `verlet` work out their oscillations at rest, `bounds` what holds in
-//! every pose, `contact` and `hit` what touching balls ask for, `world` what else has a time of its own; `study` is what it
-//! came to, which `advice` puts into words, and `report` and `plot` tell.
+//! `body` is whoever there may be, with the extremes of its `life`. `net` makes matrices of the springs, `modes` and `verlet`
+//! work out their oscillations at rest, `bounds` what holds in every pose, `contact` and `hit` what touching balls ask for,
+//! `goal` what goals do, `world` what else has a time of its own; `study` is what it came to, which `advice` puts into words,
+//! and `report` and `plot` tell.
 
 mod advice;
+mod body;
 mod bounds;
 mod contact;
+mod goal;
 mod hit;
+mod life;
 mod modes;
 mod net;
 mod part;
@@ -70,25 +74,25 @@ pub(crate) fn check(args: &Check) -> Outcome {
     run.dt = args.dt.unwrap_or(run.dt);
     let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
     let outs = Outs::create(&args.out, [&args.scene])?;
-    let (mut study, spectrum) = Study::of(&args.scene, &model, &file.run);
+    let (mut study, spectra) = Study::of(&args.scene, &model, &file.run);
     study.advice = advice::advise(&study, &model);
     study.advice.extend(stall::foreseen(&model, file.run.dt, file.run.duration));
-    let charts = scenery(&study, spectrum, model.integrator.method).charts();
+    let charts = scenery(&study, spectra, model.integrator.method).charts();
     outs.write(|format| match format {
         StudyFormat::Csv => report::sheet(&study).csv(),
         StudyFormat::Json => json(&study),
-        StudyFormat::Html => Page::told("Which step?", &Origin::this(), |page| report::tell(&study, &charts, page)),
-        StudyFormat::Svg => all(&charts),
+        StudyFormat::Html => Ok(Page::told("Which step?", &Origin::this(), |page| report::tell(&study, &charts, page))),
+        StudyFormat::Svg => Ok(all(&charts)),
     })?;
     print(&match args.report {
-        Said::Text => Terminal::told(|terminal| report::tell(&study, &charts, terminal))?,
+        Said::Text => Terminal::told(|terminal| report::tell(&study, &charts, terminal)),
         Said::Json => line(&study)?,
     })
 }
 
 /// The oscillations that pictures show.
-fn scenery(study: &Study, spectrum: Option<Spectrum>, method: Method) -> Scenery {
-    let modes = spectrum.map_or(Vec::new(), |spectrum| spectrum.modes);
-    let parts = study.dragged.iter().chain(&study.touching).map(|part| part.mode);
-    Scenery { modes: modes.into_iter().chain(parts).collect(), method, dt: study.dt }
+fn scenery(study: &Study, spectra: Vec<Spectrum>, method: Method) -> Scenery {
+    let modes = spectra.into_iter().flat_map(|spectrum| spectrum.modes);
+    let parts = [&study.dragged, &study.touching, &study.led].into_iter().flatten().map(|part| part.mode);
+    Scenery { modes: modes.chain(parts).collect(), method, dt: study.dt }
 }

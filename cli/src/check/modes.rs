@@ -16,7 +16,7 @@ const MOST_UNEQUAL: usize = 360;
 /// Coordinates up to which Verlet's step is worked out exactly then.
 const MOST_VERLET: usize = 120;
 
-/// What was worked out, and how.
+/// The extent of what was worked out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum How {
@@ -38,9 +38,9 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of a scene's start; `drag` says whether linear drag acts. None if no spring holds what can move.
-    pub(crate) fn of(particles: &[Particle], springs: &[Spring], drag: bool) -> Option<Self> {
-        let net = Net::of(particles, springs, drag);
+    /// That of a scene's start, in which drag acts. None if no spring holds what can move.
+    pub(crate) fn of(particles: &[Particle], springs: &[Spring]) -> Option<Self> {
+        let net = Net::of(particles, springs);
         if net.bars.is_empty() {
             return None;
         }
@@ -70,7 +70,7 @@ impl Spectrum {
         }
     }
 
-    /// Whether that is no more than an estimate.
+    /// True if that is no more than an estimate.
     pub(crate) fn is_estimate(&self, method: Method) -> bool {
         let is_verlet = method.scheme() == Scheme::Verlet;
         match self.how {
@@ -103,7 +103,7 @@ impl Spectrum {
     }
 }
 
-/// Whether both have the same eigenvectors: then they commute.
+/// True if both have the same eigenvectors: then they commute.
 fn is_proportional(k: &DMatrix<f64>, c: &DMatrix<f64>) -> bool {
     /// Numbers in files are rounded; the error of a mode's damping is of the square of this.
     const ROUNDED: f64 = 1e-4;

@@ -26,7 +26,7 @@ pub(super) struct Bar {
 }
 
 impl Net {
-    pub(super) fn of(particles: &[Particle], springs: &[Spring], has_drag: bool) -> Self {
+    pub(super) fn of(particles: &[Particle], springs: &[Spring]) -> Self {
         let (mut place, mut drag) = (vec![None; particles.len()], Vec::new());
         let mut bars = Vec::new();
         for spring in springs {
@@ -40,7 +40,7 @@ impl Net {
                 }
                 let mass = f64::from(particle.mass);
                 let place = *place[i].get_or_insert_with(|| {
-                    drag.push(if has_drag { f64::from(particle.drag) / mass } else { 0.0 });
+                    drag.push(f64::from(particle.drag) / mass);
                     drag.len() - 1
                 });
                 (Some(place), mass.sqrt().recip())

@@ -1,4 +1,4 @@
-//! Where methods are stable, and where a scene's oscillations lie.
+//! Charts of where methods are stable, and where a scene's oscillations lie.
 //!
 //! One chart shows the plane of hλ, λ being the rates of the solutions e^{λt}: a method whose step multiplies them by R(hλ)
 //! is stable where |R| ≤ 1. The other shows hω against the damping ratio, for methods that have no such factor as well.
@@ -10,7 +10,7 @@ use pointmass::Method;
 use pointmass::stability::{Limit, Mode, Scheme};
 
 /// Width and height of each chart, in pixels.
-const SIZE: (u32, u32) = (640, 560);
+const SIZE: (f64, f64) = (640.0, 560.0);
 
 /// The content of pictures: oscillations, stepped by a method in steps of `dt` \[s\].
 pub(crate) struct Scenery {
@@ -60,7 +60,7 @@ fn plain(name: &str, look: usize, dots: Vec<(f64, f64)>) -> Line<'static> {
 impl Scenery {
     /// Both charts.
     pub(crate) fn charts(&self) -> Vec<Chart<'static>> {
-        vec![self.plane().sized(SIZE.0, SIZE.1), self.limits().sized(SIZE.0, SIZE.1)]
+        vec![self.plane().sized(SIZE), self.limits().sized(SIZE)]
     }
 
     /// Rates times the step.
@@ -79,7 +79,7 @@ impl Scenery {
         mode.largest_step(self.method).admits(self.dt)
     }
 
-    /// Of an oscillation that grows, one rate may still decay.
+    /// True of a rate that decays, which one of an oscillation that grows may.
     fn is_calm(&self, z: [f64; 2]) -> bool {
         self.method.scheme().factor(z).is_some_and(|factor| factor <= 1.0)
     }
@@ -91,7 +91,7 @@ impl Scenery {
         let (mut left, right) = (-3.7f64, 2.3);
         let reach = dots.iter().fold(0.0f64, |reach, ((re, im), _)| reach.max(-re).max(im.abs()));
         left = left.min(-1.08 * reach).max(FARTHEST * left);
-        let top = 0.5 * (right - left) * Chart::aspect(SIZE.0, SIZE.1);
+        let top = 0.5 * (right - left) * Chart::aspect(SIZE);
         let cross = [vec![(left, 0.0), (right, 0.0)], vec![(0.0, -top), (0.0, top)]];
         let mut lines: Vec<_> = cross.into_iter().map(|dots| plain("", 0, dots)).collect();
         for (scheme, method, look) in schemes() {

@@ -3,7 +3,6 @@
 use super::modes::How;
 use super::study::{Oscillations, Stand, Study};
 use super::words::{limit, plain, time};
-use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::plot::Chart;
 use crate::report::table::{Cell, Table};
@@ -12,7 +11,7 @@ use pointmass::stability::Limit;
 use std::fmt::Write;
 
 /// The meaning of the figures.
-const NOTES: [&str; 5] = [
+const NOTES: [&str; 7] = [
     "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
     "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
      and other forces; what only drifts is left out.",
@@ -20,12 +19,14 @@ const NOTES: [&str; 5] = [
      exceeds near the springs' rest lengths. Springs that are damped more or less than others are taken at their worst.",
     "Contact: hits of balls that push each other apart give back no more energy than they take, however the steps fall \
      within them, nor does a ball grow restless among as many of its size as can touch it.",
+    "Goal: whoever is held by goals, with its springs and drag, in every pose.",
+    "Particles whose drag or mass changes over their lives are taken at their lightest, most and least braked.",
     "Taut springs pull across themselves as well, and their damping does not act there: explicit Euler and the midpoint \
      method make that grow at any step, however slowly.",
 ];
 
 /// Tells all of it.
-pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report) -> Outcome {
+pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report) {
     report.facts(&facts(study));
     if report.is_page() {
         report.heading(2, "What to do");
@@ -35,17 +36,16 @@ pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report)
     report.table(&steps(study));
     if report.is_page() {
         report.heading(2, "Where methods are stable");
-        report.charts(&charts.iter().collect::<Vec<_>>())?;
+        report.charts(&charts.iter().collect::<Vec<_>>());
         report.heading(2, "What it means");
         NOTES.iter().for_each(|note| report.paragraph(note));
     } else {
         report.heading(2, "What to do");
         report.list(&study.advice);
     }
-    Ok(())
 }
 
-/// The bounds on the steps of every method; that of contacts only where there are some.
+/// The bounds on the steps of every method; those of contacts and goals only where there are some.
 fn steps(study: &Study) -> Table {
     let stands = || study.methods.iter();
     let mut table = Table::default();
@@ -55,6 +55,9 @@ fn steps(study: &Study) -> Table {
     table.column("drag", stands().map(|stand| limit(stand.drag)));
     if study.touching.is_some() {
         table.column("contact", stands().map(|stand| limit(stand.contact)));
+    }
+    if study.led.is_some() {
+        table.column("goal", stands().map(|stand| limit(stand.goal)));
     }
     table.words(format!("at {}", time(study.dt)), stands().map(verdict));
     table
@@ -75,6 +78,7 @@ pub(crate) fn sheet(study: &Study) -> Table {
     table.column("every_pose_s", stands().map(|stand| seconds(stand.every_pose)));
     table.column("drag_s", stands().map(|stand| seconds(stand.drag)));
     table.column("contact_s", stands().map(|stand| seconds(stand.contact)));
+    table.column("goal_s", stands().map(|stand| seconds(stand.goal)));
     table.column("dt_s", stands().map(|_| study.dt));
     table.column("stable", stands().map(|stand| stand.stable));
     table.column("growth_across_per_s", stands().map(|stand| stand.growth_across));
@@ -109,6 +113,7 @@ fn facts(study: &Study) -> Vec<(&'static str, String)> {
             .zip(study.hit)
             .map(|(part, hit)| ("contact", format!("{} {}; a hit lasts {}", part.place, part.about, time(hit)))),
     );
+    facts.extend(study.led.as_ref().map(|part| ("goal", format!("{} {}", part.place, part.about))));
     facts.extend(study.followed.as_ref().map(|followed| {
         let (step, g) = (time(followed.step), plain(followed.acceleration));
         let bounces = counted(followed.max_bounces as usize, "bounce");

@@ -1,6 +1,7 @@
-//! What there is to say about a scene's step.
+//! Findings about a scene's step.
 
-use super::bounds::{Bounds, in_air};
+use super::body::extremes;
+use super::bounds::Bounds;
 use super::contact::Contact;
 use super::modes::{How, Spectrum};
 use super::part::Part;
@@ -11,7 +12,7 @@ use pointmass::stability::Limit;
 use serde::Serialize;
 use std::path::Path;
 
-/// What there is to say about a scene's step. Times are in seconds, rates per second.
+/// Findings about a scene's step. Times are in seconds, rates per second.
 #[derive(Debug, Serialize)]
 pub(crate) struct Study {
     /// The scene's file.
@@ -29,13 +30,15 @@ pub(crate) struct Study {
     pub(crate) oscillations: Option<Oscillations>,
     /// The spring whose two ends alone would oscillate fastest.
     pub(crate) stiffest: Option<Part>,
-    /// What drag slows down most.
+    /// The body that drag slows down most.
     pub(crate) dragged: Option<Part>,
     /// The balls that push each other apart most abruptly, and how long a hit of them lasts.
     pub(crate) touching: Option<Part>,
     pub(crate) hit: Option<f64>,
+    /// The goal that holds the most stiffly.
+    pub(crate) led: Option<Part>,
     pub(crate) methods: Vec<Stand>,
-    /// How long paths may be to be followed with full accuracy to what they hit.
+    /// The length of paths that are followed with full accuracy to what they hit.
     pub(crate) followed: Option<Followed>,
     /// The two particles that attract each other into the quickest orbit.
     pub(crate) pair: Option<Pair>,
@@ -49,7 +52,7 @@ pub(crate) struct Study {
 /// The oscillations of the springs at rest.
 #[derive(Debug, Serialize)]
 pub(crate) struct Oscillations {
-    /// How many of them move.
+    /// The number of those that move.
     pub(crate) count: usize,
     pub(crate) how: How,
     /// The largest rate |λ| \[1/s\].
@@ -58,7 +61,7 @@ pub(crate) struct Oscillations {
     pub(crate) damping_ratio: Option<f64>,
 }
 
-/// What a method stands.
+/// The steps that a method stands.
 #[derive(Debug, Serialize)]
 pub(crate) struct Stand {
     pub(crate) method: String,
@@ -66,7 +69,7 @@ pub(crate) struct Stand {
     pub(crate) chooses_steps: bool,
     /// The largest step stable for springs that are where they start, and at rest there.
     pub(crate) at_rest: Limit,
-    /// Whether that is an estimate, since there are too many oscillations to work out all.
+    /// True if that is an estimate, since there are too many oscillations to work out all.
     pub(crate) estimated: bool,
     /// The largest step stable in every pose.
     pub(crate) every_pose: Limit,
@@ -74,19 +77,21 @@ pub(crate) struct Stand {
     pub(crate) drag: Limit,
     /// The largest step in which contacts by force add no energy.
     pub(crate) contact: Limit,
-    /// Whether it stands the step that is judged.
+    /// The largest step that is stable for whoever goals hold, in every pose.
+    pub(crate) goal: Limit,
+    /// True if it stands the step that is judged.
     pub(crate) stable: bool,
-    /// How fast an oscillation across taut springs may grow at that step.
+    /// The rate at which an oscillation across taut springs may grow at that step.
     pub(crate) growth_across: f64,
 }
 
 impl Study {
-    /// That of a scene, without advice, and the modes of its springs.
-    pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Option<Spectrum>) {
+    /// That of a scene, without advice, and the modes of its springs, at each of the extremes that lives come to.
+    pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Vec<Spectrum>) {
         let (dt, bounds) = (run.dt, Bounds::of(model));
-        let (braked, has_drag) = in_air(model);
-        let spectrum = Spectrum::of(&braked, &model.springs, has_drag);
-        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, spectrum.as_ref(), dt)).collect();
+        let corners = extremes(&bounds.bodies[..model.particles.len()]);
+        let spectra: Vec<_> = corners.iter().filter_map(|corner| Spectrum::of(corner, &model.springs)).collect();
+        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, dt)).collect();
         let study = Self {
             scene: path.display().to_string(),
             dt,
@@ -95,36 +100,37 @@ impl Study {
             free: model.particles.iter().filter(|particle| !particle.fixed).count(),
             springs: model.springs.len(),
             emitters: model.emitters.len(),
-            oscillations: spectrum.as_ref().map(oscillations),
+            oscillations: spectra.first().map(oscillations),
             stiffest: bounds.stiffest,
             dragged: bounds.dragged,
             hit: bounds.contact.as_ref().map(Contact::duration),
             touching: bounds.contact.map(|contact| contact.part),
+            led: bounds.goals.map(|goals| goals.part),
             methods,
             followed: followed(model),
             // An orbit that takes far longer than the run is none.
-            pair: fastest_pair(model).filter(|pair| pair.period < 10.0 * run.duration),
-            sinks: pulls(model),
+            pair: fastest_pair(model, &bounds.bodies).filter(|pair| pair.period < 10.0 * run.duration),
+            sinks: pulls(model, &bounds.bodies),
             not_judged: not_judged(model),
             advice: Vec::new(),
         };
-        (study, spectrum)
+        (study, spectra)
     }
 }
 
-fn stand(method: Method, bounds: &Bounds, spectrum: Option<&Spectrum>, dt: f64) -> Stand {
-    let at_rest = spectrum.map_or(Limit::Unconditional, |spectrum| spectrum.largest_step(method));
-    let (every_pose, drag) = (bounds.poses.largest_step(method), bounds.drag_step(method));
-    let contact = bounds.contact_step(method);
+fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], dt: f64) -> Stand {
+    let at_rest = spectra.iter().fold(Limit::Unconditional, |least, modes| least.and(modes.largest_step(method)));
+    let (every_pose, drag) = (bounds.poses_step(method), bounds.drag_step(method));
     Stand {
         method: method.to_string(),
         chooses_steps: method.chooses_steps(),
         at_rest,
-        estimated: spectrum.is_some_and(|spectrum| spectrum.is_estimate(method)),
+        estimated: spectra.iter().any(|spectrum| spectrum.is_estimate(method)),
         every_pose,
         drag,
-        contact,
-        stable: method.chooses_steps() || every_pose.and(drag).and(contact).admits(dt),
+        contact: bounds.contact_step(method),
+        goal: bounds.goal_step(method),
+        stable: method.chooses_steps() || bounds.largest_step(method).admits(dt),
         growth_across: bounds.growth(method, dt),
     }
 }

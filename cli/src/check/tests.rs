@@ -1,8 +1,9 @@
-//! What is predicted, held against the engine itself.
+//! Predictions, held against the engine itself.
 
+use super::bounds::Bounds;
 use super::modes::{How, Spectrum};
 use pointmass::scene::{Model, SceneFile};
-use pointmass::stability::Limit;
+use pointmass::stability::{Limit, Mode};
 use pointmass::{Drag, ForceKind, Heap, Method, Particle, Spring, System, Time, Vec3};
 
 /// Particles and springs without gravity, made ready.
@@ -27,7 +28,7 @@ fn row(masses: &[f32], ks: &[f32], kd: &[f32], drag: f32) -> Model {
     model(masses.iter().enumerate().map(particle).collect(), springs)
 }
 
-/// Whether a small push along the springs grows when the engine steps by `h` \[s\].
+/// True if a small push along the springs grows when the engine steps by `h` \[s\].
 fn grows(model: &Model, method: Method, h: f64) -> bool {
     const STEPS: usize = 4000;
     let mut model = model.clone();
@@ -43,7 +44,7 @@ fn grows(model: &Model, method: Method, h: f64) -> bool {
         let along = (model.particles[b].position - model.particles[a].position).normalize();
         model.particles[b].position += along * some();
     }
-    let mut system = System::with(Heap::new(model.size(model.particles.len())));
+    let mut system = System::with(Heap::new(model.size(model.particles.len().max(100))));
     system.start(&model.scene(), 1).expect("room");
     let fastest = |system: &System<Heap>| system.particles().velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
     let mut first = 0.0f32;
@@ -62,7 +63,7 @@ fn grows(model: &Model, method: Method, h: f64) -> bool {
 /// Predicted limits are the engine's, within 2 %.
 #[track_caller]
 fn holds(model: &Model, expected: How, methods: &[Method]) {
-    let spectrum = Spectrum::of(&model.particles, &model.springs, true).expect("springs");
+    let spectrum = Spectrum::of(&model.particles, &model.springs).expect("springs");
     assert_eq!(spectrum.how, expected);
     for &method in methods {
         match spectrum.largest_step(method) {
@@ -87,7 +88,7 @@ fn an_undamped_chain() {
     // Fixed at both ends it is known: ω = 2 √(k/m) sin(jπ/22).
     let mut chain = row(&[0.1; 12], &[100.0; 11], &[0.0; 11], 0.0);
     chain.particles[11].fixed = true;
-    let spectrum = Spectrum::of(&chain.particles, &chain.springs, true).expect("springs");
+    let spectrum = Spectrum::of(&chain.particles, &chain.springs).expect("springs");
     let mut found: Vec<f64> = spectrum.modes.iter().map(|mode| mode.omega2.sqrt()).collect();
     found.sort_by(f64::total_cmp);
     for (j, omega) in (1..).zip(&found) {
@@ -130,11 +131,104 @@ fn a_frame_in_space() {
     holds(&frame, How::Independent, &ALL);
 }
 
+/// The bound of a scene is the engine's: nothing grows a little below it, and something beyond it by such a factor.
+#[track_caller]
+fn bounds(scene: &str, methods: &[Method], beyond: f64) {
+    let file = SceneFile::from_json("a.json", scene).expect("a scene");
+    let model = Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene");
+    for &method in methods {
+        let Limit::Step(step) = Bounds::of(&model).largest_step(method) else { panic!("{method}: no step") };
+        assert!(!grows(&model, method, 0.98 * step), "{method} grows at 0.98 of {step}: {scene}");
+        assert!(grows(&model, method, beyond * step), "{method} does not grow at {beyond} of {step}: {scene}");
+    }
+}
+
+#[test]
+fn drag_and_mass_over_a_life() {
+    let scene = |life: &str, particles: &str, forces: &str| {
+        let materials = format!(r#"[{{}}, {{"life": {life}}}]"#);
+        format!(r#"{{"forces": [{forces}], "materials": {materials}, {particles}}}"#)
+    };
+    let both = r#"{"drag": {"keys": [[0, 1], [0.05, 4]], "over": "seconds"},
+        "mass": {"keys": [[0, 1], [0.07, 0.5]], "over": "seconds", "smooth": true}}"#;
+    // The second is braked more at birth.
+    let two =
+        r#""particles": [{"velocity": [1, 0, 0], "drag": 2, "material": 1}, {"velocity": [1, 0, 0], "drag": 15}]"#;
+    bounds(&scene(both, two, r#"{"drag": {}}"#), &ALL, 1.02);
+    // A wind's own coefficient has the mass alone to change.
+    bounds(&scene(both, two, r#"{"wind": {"field": [], "coefficient": 9}}"#), &ALL, 1.02);
+    let born = r#""emitters": [{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "burst": {"count": 90, "at": 0}, "speed": 1,
+        "drag": 3, "mass": {"mean": 2, "half_width": 0.01}, "material": 1}]"#;
+    let sides = r#"{"drag": {"between": [{"keys": [[0, 2]]}, {"keys": [[0, 9]]}]}}"#;
+    bounds(&scene(sides, born, r#"{"drag": {}}"#), &ALL, 1.06);
+    let hung = r#""particles": [{"fixed": true}, {"position": [1, 0, 0], "material": 1}],
+        "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 100, "kd": 4}]"#;
+    bounds(&scene(r#"{"mass": {"keys": [[0, 1], [0.1, 0.25]], "over": "seconds"}}"#, hung, ""), &ALL, 1.02);
+    // It grows heavy, and what is heavy grows slowly.
+    bounds(&scene(r#"{"mass": {"keys": [[20, 1], [30, 4]], "over": "seconds"}}"#, hung, ""), &ALL, 1.1);
+    // What damps a spring ceases to.
+    let loose = hung.replace("\"kd\": 4", "\"kd\": 0").replace("\"material\": 1", "\"material\": 1, \"drag\": 20");
+    let fades = r#"{"drag": {"keys": [[0, 1], [0.1, 0.2]], "over": "seconds"}}"#;
+    bounds(&scene(fades, &loose, r#"{"drag": {}}"#), &[Method::Euler], 1.06);
+}
+
+#[test]
+fn what_is_heavier_stands_longer_steps() {
+    for method in ALL {
+        for (k, c) in (0..40).flat_map(|i| (0..40).map(move |j| (f64::from(i), 0.2 * f64::from(j)))) {
+            let step = |inverse: f64| Mode { omega2: k * inverse, damping: c * inverse }.largest_step(method);
+            let Limit::Step(light) = step(1.0) else { continue };
+            assert!(
+                [0.9, 0.5, 0.1, 0.01].iter().all(|&inverse| step(inverse).admits(light * (1.0 - 1e-9))),
+                "{method}: {k} {c}"
+            );
+        }
+    }
+}
+
+#[test]
+fn goals_hold_as_springs_do() {
+    let scene = |goals: &str, rest: &str| {
+        let led = r#"{"position": [1, 0, 0], "velocity": [0, 1, 0], "mass": 0.2, "drag": 1, "material": 0}"#;
+        let particles = format!(r#""particles": [{{"fixed": true}}, {led}]"#);
+        format!(r#"{{"materials": [{{}}, {{}}], "goals": [{goals}], {particles}{rest}}}"#)
+    };
+    let goal = |settle: f64, more: &str| {
+        let place = r#"{"line": {"from": [1, 0, 0], "to": [1, 0.001, 0]}}"#;
+        format!(r#"{{"shape": {place}, "arrive": 0, "settle": {settle}{more}}}"#)
+    };
+    let [soft, hard] = [goal(0.1, ""), goal(0.03, "")];
+    bounds(&scene(&soft, ""), &ALL, 1.02);
+    bounds(&scene(&format!("{soft}, {hard}, {soft}"), ""), &ALL, 1.02);
+    bounds(&scene(&soft, r#", "forces": [{"drag": {}}]"#), &ALL, 1.02);
+    let spring = r#", "forces": [{"drag": {}}], "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 200}]"#;
+    let file = SceneFile::from_json("a.json", &scene(&soft, spring)).expect("a scene");
+    let model = Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene");
+    for method in LASTING {
+        let Some(goals) = Bounds::of(&model).goals else { panic!("goals") };
+        let Limit::Step(step) = goals.largest_step(method) else { panic!("{method}") };
+        assert!(!grows(&model, method, 0.98 * step), "{method} grows at 0.98 of {step}");
+        assert!(grows(&model, method, 1.02 * step), "{method} does not grow at 1.02 of {step}");
+    }
+    let limit = |goals: &str| {
+        let file = SceneFile::from_json("a.json", &scene(goals, "")).expect("a scene");
+        let model = Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene");
+        Bounds::of(&model).goals.map(|goals| (goals.part.place.clone(), goals.largest_step(Method::Symplectic)))
+    };
+    // Who is of another material is not led, and one goal after the other holds no more than each alone.
+    assert_eq!(limit(&goal(0.01, r#", "material": 1"#)), None);
+    assert_eq!(limit(&format!("{soft}, {}", goal(0.01, r#", "material": 1"#))), limit(&soft));
+    let [early, late] =
+        [goal(0.1, r#", "release": 1"#), goal(0.1, r#", "start": 1"#).replace("\"arrive\": 0", "\"arrive\": 2")];
+    assert_eq!(limit(&format!("{early}, {late}")), limit(&soft));
+    assert_eq!(limit(&format!("{soft}, {hard}")).map(|(place, _)| place), Some("goals[1]".into()));
+}
+
 #[test]
 fn what_is_too_large_is_taken_at_its_extreme() {
     let n = 320;
     let long = row(&vec![1.0; n], &vec![100.0; n - 1], &vec![20.0; n - 1], 0.0);
-    let spectrum = Spectrum::of(&long.particles, &long.springs, true).expect("springs");
+    let spectrum = Spectrum::of(&long.particles, &long.springs).expect("springs");
     assert_eq!(spectrum.how, How::Extreme);
     // ω² tends to 4 k/m: damping ratio 2, the fastest rate 20 (2 + √3).
     let fast = 20.0 * (2.0 + 3f64.sqrt());
@@ -150,7 +244,7 @@ fn what_is_too_large_is_taken_at_its_extreme() {
 
 #[test]
 fn springs_that_hold_nothing_have_no_modes() {
-    let none = |particles: &[Particle], springs: &[Spring]| Spectrum::of(particles, springs, true).is_none();
+    let none = |particles: &[Particle], springs: &[Spring]| Spectrum::of(particles, springs).is_none();
     let spring = Spring { kd: 1.0, ..Spring::new([0, 1], 1.0, 1.0) };
     let fixed = Particle { fixed: true, ..Particle::REST };
     assert!(none(&[Particle::REST], &[]));
@@ -176,7 +270,7 @@ fn the_course_s_scenes() {
         file.forces = vec![ForceKind::Drag(Drag {})];
         file.particles.iter_mut().for_each(|particle| particle.velocity = Vec3::ZERO);
         let model = Model::load(&file, &path.to_string_lossy(), &mut crate::load::Disk).expect("a sound scene");
-        let spectrum = Spectrum::of(&model.particles, &model.springs, true).expect("springs");
+        let spectrum = Spectrum::of(&model.particles, &model.springs).expect("springs");
         for (method, known) in [Method::Euler, Method::Midpoint, Method::Symplectic, Method::Rk4].into_iter().zip(known)
         {
             let Limit::Step(step) = spectrum.largest_step(method) else { panic!("{name} {method}") };

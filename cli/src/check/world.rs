@@ -1,7 +1,8 @@
-//! What other than springs and drag has a time of its own: collisions, orbits, the pull of sinks.
+//! Processes other than springs and drag that have a time of their own: collisions, orbits, the pull of sinks.
 
+use super::body::Body;
 use super::net::wide;
-use nalgebra::Vector3;
+use crate::stall::gravity;
 use pointmass::scene::Model;
 use pointmass::stability::longest_followed_step;
 use pointmass::{Force, ForceKind, Sink};
@@ -10,7 +11,7 @@ use serde::Serialize;
 /// Particles that are looked at for the quickest pair.
 const MOST: usize = 4096;
 
-/// How long paths may be to be followed with full accuracy to what they hit.
+/// The length of paths that are followed with full accuracy to what they hit.
 #[derive(Debug, Serialize)]
 pub(crate) struct Followed {
     /// Acceleration \[m/s²\] of the scene's gravity.
@@ -26,7 +27,7 @@ pub(crate) struct Followed {
 pub(crate) struct Pair {
     /// Their places in the start.
     pub(crate) particles: [usize; 2],
-    /// How far apart they are \[m\].
+    /// The distance between them \[m\].
     pub(crate) distance: f64,
     /// √(G (m₁ + m₂) / d³) \[1/s\], with softening.
     pub(crate) rate: f64,
@@ -60,31 +61,27 @@ pub(crate) fn not_judged(model: &Model) -> Vec<&'static str> {
 
 /// None where nothing is hit or nothing falls.
 pub(crate) fn followed(model: &Model) -> Option<Followed> {
-    let gravity = model.forces.0.iter().filter_map(|force| match force {
-        ForceKind::Gravity(gravity) => Some(gravity.acceleration),
-        _ => None,
-    });
-    let acceleration = gravity.fold(Vector3::zeros(), |sum, g| sum + wide(g)).norm();
+    let acceleration = wide(gravity(model)).norm();
     let is_hit = !model.colliders.is_empty() || !model.forces.1.is_empty();
     let (step, max_bounces) = (longest_followed_step(acceleration), model.max_bounces);
     (is_hit && acceleration > 0.0).then_some(Followed { acceleration, step, max_bounces })
 }
 
-/// Of the first few thousand particles.
-pub(crate) fn fastest_pair(model: &Model) -> Option<Pair> {
+/// The quickest among the first few thousand particles, at the greatest masses of their lives.
+pub(crate) fn fastest_pair(model: &Model, bodies: &[Body]) -> Option<Pair> {
     let gravity = model.forces.0.iter().find_map(|force| match force {
         ForceKind::MutualGravity(gravity) => Some(gravity),
         _ => None,
     })?;
     let softening = f64::from(gravity.softening).powi(2);
-    let particles = &model.particles[..model.particles.len().min(MOST)];
+    let bodies = &bodies[..model.particles.len().min(MOST)];
     let mut fastest: Option<Pair> = None;
-    for (j, b) in particles.iter().enumerate() {
-        for (i, a) in particles[..j].iter().enumerate() {
-            let distance = (wide(a.position) - wide(b.position)).norm();
+    for (j, b) in bodies.iter().enumerate() {
+        for (i, a) in bodies[..j].iter().enumerate() {
+            let distance = (wide(a.particle.position) - wide(b.particle.position)).norm();
             // What is fixed pulls and is not pulled.
-            let pulling = [(a, b), (b, a)].into_iter().filter(|(_, pulled)| !pulled.fixed);
-            let mass: f64 = pulling.map(|(by, _)| f64::from(by.mass)).sum();
+            let pulling = [(a, b), (b, a)].into_iter().filter(|(_, pulled)| pulled.is_free());
+            let mass: f64 = pulling.map(|(by, _)| by.mass[1]).sum();
             let cube = (distance * distance + softening).powf(1.5);
             let rate = (f64::from(gravity.constant) * mass / cube).sqrt();
             if rate.is_finite() && rate > fastest.as_ref().map_or(0.0, |pair| pair.rate) {
@@ -95,11 +92,8 @@ pub(crate) fn fastest_pair(model: &Model) -> Option<Pair> {
     fastest
 }
 
-pub(crate) fn pulls(model: &Model) -> Vec<Pull> {
-    let start = model.particles.iter().filter(|particle| !particle.fixed).map(|particle| f64::from(particle.mass));
-    let births = model.emitters.iter().filter(|emitter| !emitter.fixed);
-    let births = births.map(|emitter| f64::from(emitter.mass.mean) - f64::from(emitter.mass.half_width.abs()));
-    let mass = start.chain(births).fold(f64::INFINITY, f64::min);
+pub(crate) fn pulls(model: &Model, bodies: &[Body]) -> Vec<Pull> {
+    let mass = bodies.iter().filter(|body| body.is_free()).map(|body| body.mass[0]).fold(f64::INFINITY, f64::min);
     let pull = |(i, sink): (usize, &Sink<_>)| {
         let gradient = steepest(sink);
         let rate = (gradient / mass).sqrt();

@@ -1,4 +1,4 @@
-//! Where contenders meet: one set of points after the other, first verified, then measured.
+//! The bench on which contenders meet: one set of points after the other, first verified, then measured.
 
 use super::args::Compare;
 use super::contender::{Effort, Question, provide};
@@ -16,10 +16,9 @@ use crate::report::words::thousands;
 use pointmass::Vec3;
 use pointmass::rng::Stream;
 
-/// What all cases share.
+/// The state that all cases share.
 pub(crate) struct Bench<'a> {
     args: &'a Compare,
-    seed: u64,
     queries: Vec<Workload>,
     entrants: &'a mut [Entrant],
     /// Lent to one structure after the other.
@@ -36,7 +35,7 @@ const DEAR: f64 = 5e3;
 const DEAR_FOUND: f64 = 20.0;
 /// But nobody is waited for longer than this takes: some minutes for every query.
 const MOST: f64 = 1e11;
-/// How many points are asked to find out.
+/// The number of points that are asked to find out.
 const TRIED: usize = 64;
 
 /// Rounds that verification takes as long as, and rounds that are expected.
@@ -48,12 +47,7 @@ impl<'a> Bench<'a> {
     pub(crate) fn new(args: &'a Compare, queries: Vec<Workload>, entrants: &'a mut [Entrant], points: usize) -> Self {
         let ahead = points as u64 * entrants.len() as u64 * (VERIFICATION + ROUNDS);
         let gauge = Gauge::new(ahead);
-        Self { args, seed: args.seed(), queries, entrants, memory: Vec::new(), gauge }
-    }
-
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.gauge.finish();
+        Self { args, queries, entrants, memory: Vec::new(), gauge }
     }
 
     /// Verifies and measures everybody on so many of the source's points.
@@ -68,7 +62,7 @@ impl<'a> Bench<'a> {
             Some(radius) => radius,
             None => radius_for(&points, self.args.neighbours(), &mut self.memory)?,
         };
-        let moved = moved(&points, radius, self.seed);
+        let moved = moved(&points, radius, self.args.seed());
         let question = Question { points: &points, moved: &moved, radius, k: self.args.k() };
         let shares = self.shares(&question)?;
         let (expected, verified) = self.verify(&question, &shares)?;
@@ -94,10 +88,10 @@ impl<'a> Bench<'a> {
         Ok(case)
     }
 
-    /// What everybody does, leaving out what would take too long.
+    /// The part that everybody takes, leaving out what would take too long.
     fn shares(&mut self, question: &Question<'_>) -> Outcome<Vec<Share>> {
         let n = question.points.len();
-        let rows = sample(n, TRIED, self.seed);
+        let rows = sample(n, TRIED, self.args.seed());
         // What is within a radius costs about the same, however it is told.
         let mut efforts = Vec::new();
         for entrant in self.entrants.iter_mut() {
@@ -160,25 +154,25 @@ impl<'a> Bench<'a> {
         Ok((expected, verified))
     }
 
-    /// What everybody has to answer, and to which queries.
+    /// The answers that everybody has to give, and to which queries.
     fn expected(&mut self, question: &Question<'_>, shares: &[Share]) -> Outcome<(Expected, Vec<Workload>)> {
         let n = question.points.len();
         let own = self.entrants.iter_mut().zip(shares).filter(|(entrant, share)| share.is_in() && entrant.is_own());
         // Who does the most; the first of these.
         let leader = own.min_by_key(|(_, share)| std::cmp::Reverse(share.queries.len()));
         match leader.filter(|_| n > EXHAUSTIVE) {
-            None => Ok((Expected::exhaustive(question, &self.queries), self.queries.clone())),
+            None => Ok((Expected::exhaustive(question, &self.queries, 0..n), self.queries.clone())),
             Some((entrant, share)) => {
                 let name = entrant.name().to_string();
                 let mut contender = entrant.enter(n, &mut self.memory);
-                let expected = Expected::by(contender.as_mut(), &name, question, &share.queries, self.seed)?;
+                let expected = Expected::by(contender.as_mut(), &name, question, &share.queries, self.args.seed())?;
                 Ok((expected, share.queries.clone()))
             }
         }
     }
 }
 
-/// How many distances a query of all points may compute, by what everybody would.
+/// The number of distances that a query of all points may compute, by what everybody would.
 pub(crate) fn limit(n: usize, efforts: impl Iterator<Item = Effort>) -> f64 {
     let none = Effort { distances: f64::INFINITY, found: 0.0 };
     let least = efforts.fold(none, |least, effort| Effort {

@@ -1,4 +1,4 @@
-//! Who takes part: our structures, and other libraries where the program has them.
+//! Those who take part: our structures, and other libraries where the program has them.
 
 use super::workload::Workload;
 use crate::outcome::{Failure, Outcome};
@@ -7,14 +7,14 @@ use pointmass::index::{AnyIndex, Cost, Neighbour, SpatialIndex, Structure};
 use serde::Serialize;
 use std::hint::black_box;
 
-/// What is asked, and of which points.
+/// A question, and the points that it is about.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Question<'a> {
     pub(crate) points: &'a [Vec3],
     /// The same points after a small move.
     pub(crate) moved: &'a [Vec3],
     pub(crate) radius: f32,
-    /// How many nearest.
+    /// The number of nearest.
     pub(crate) k: usize,
 }
 
@@ -36,14 +36,29 @@ impl Scratch {
 /// A whole answer, to be verified.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Answer {
-    /// How many others, by row.
+    /// The number of others, by row.
     Counts(Vec<u32>),
-    /// Of every row, the sum of `link` over its others.
+    /// The sum of `link` over the others of every row.
     Links(Vec<u64>),
-    /// Of every row, the distances of the k nearest others; infinite where there are fewer.
+    /// The distances of the k nearest others of every row; infinite where there are fewer.
     Distances(Vec<f32>),
-    /// Of rows and others, how many there are.
+    /// The number of rows and others in all.
     Total(u64),
+}
+
+impl Answer {
+    /// The answer for some rows alone, where it has rows; `k` is the number of nearest of each.
+    pub(crate) fn of(&self, rows: &[usize], k: usize) -> Self {
+        match self {
+            Self::Counts(counts) => Self::Counts(rows.iter().filter_map(|&row| counts.get(row).copied()).collect()),
+            Self::Links(links) => Self::Links(rows.iter().filter_map(|&row| links.get(row).copied()).collect()),
+            Self::Distances(distances) => {
+                let of_row = |&row: &usize| distances.get(row * k..(row + 1) * k).unwrap_or_default();
+                Self::Distances(rows.iter().flat_map(of_row).copied().collect())
+            }
+            Self::Total(total) => Self::Total(*total),
+        }
+    }
 }
 
 /// A fingerprint of two rows, in either order (the finaliser of SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
@@ -54,7 +69,7 @@ pub(crate) fn link(a: u32, b: u32) -> u64 {
     x ^ (x >> 31)
 }
 
-/// What has been built.
+/// The properties of what has been built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Build {
     /// Nodes or cells; none if it does not say.
@@ -69,7 +84,7 @@ pub(crate) struct Build {
     pub(crate) bytes_each: Option<f64>,
 }
 
-/// What a query takes for a point, before it is asked of all.
+/// The work of a query for a point, before it is asked of all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
     /// Distances computed, and nodes visited.
@@ -78,9 +93,9 @@ pub(crate) struct Effort {
     pub(crate) found: f64,
 }
 
-/// Who takes part: sorts points in, and answers. `None`: it has no such query.
+/// One who takes part: sorts points in, and answers. `None`: it has no such query.
 pub(crate) trait Contender {
-    /// Whether its answers have to be the same as ours to the last bit.
+    /// True if its answers have to be the same as ours to the last bit.
     fn is_exact(&self) -> bool {
         true
     }
@@ -98,7 +113,7 @@ pub(crate) trait Contender {
     /// Answers; what is verified.
     fn answer(&mut self, query: Workload, question: &Question<'_>) -> Option<Answer>;
 
-    /// What it would do for a point, on average of some rows; none if it does not say.
+    /// The work that it would do for a point, on average of some rows; none if it does not say.
     fn effort(&mut self, query: Workload, question: &Question<'_>, rows: &[usize]) -> Option<Effort>;
 }
 

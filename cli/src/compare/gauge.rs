@@ -1,8 +1,8 @@
-//! How far a comparison is.
+//! Progress of a comparison.
 
 use crate::progress::Progress;
 
-/// How far the whole comparison is; a unit of work is a point that an entrant goes through once.
+/// Progress of the whole comparison; a unit of work is a point that an entrant goes through once.
 pub(crate) struct Gauge {
     progress: Progress,
     /// Units of the cases after this one.
@@ -12,14 +12,9 @@ pub(crate) struct Gauge {
 }
 
 impl Gauge {
-    /// Of so much work.
+    /// A gauge of so much work.
     pub(crate) fn new(ahead: u64) -> Self {
         Self { progress: Progress::of_work(ahead), ahead, title: String::new() }
-    }
-
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.progress.finish();
     }
 
     /// A case begins, of which so much was expected.

@@ -59,19 +59,19 @@ pub(crate) fn compare(args: &Compare, peers: Peers) -> Outcome {
     outs.write(|format| match format {
         StudyFormat::Csv => sheet::sheet(&study).csv(),
         StudyFormat::Json => json(&study),
-        StudyFormat::Html => page(&study, args.detail),
-        StudyFormat::Svg => plot::all(&chart::charts(&study)),
+        StudyFormat::Html => Ok(page(&study, args.detail)),
+        StudyFormat::Svg => Ok(plot::all(&chart::charts(&study))),
     })?;
-    print(&text(&study, args.detail)?)
+    print(&text(&study, args.detail))
 }
 
 /// The comparison as a page.
-fn page(study: &Study, detail: bool) -> Outcome<String> {
+fn page(study: &Study, detail: bool) -> String {
     Page::told("Which spatial partition?", &study.origin, |page| report::tell(study, detail, page))
 }
 
 /// The comparison for a terminal.
-fn text(study: &Study, detail: bool) -> Outcome<String> {
+fn text(study: &Study, detail: bool) -> String {
     Terminal::told(|terminal| report::tell(study, detail, terminal))
 }
 
@@ -93,7 +93,6 @@ fn of_points(args: &Compare, peers: Vec<Box<dyn Peer>>) -> Outcome<Vec<Case>> {
             cases.push(bench.case(source, n)?);
         }
     }
-    bench.finish();
     Ok(cases)
 }
 
@@ -115,7 +114,7 @@ fn study(args: &Compare, subject: Subject, peers: Peers) -> Outcome<Study> {
     })
 }
 
-/// What a reader should know before believing any of it.
+/// Notes that a reader should know before believing any of it.
 fn notes(cases: &[Case], wanted: Option<f64>) -> Vec<String> {
     let mut notes = Vec::new();
     for case in cases {

@@ -4,13 +4,12 @@ use super::chart::charts;
 use super::study::{Case, Contestant, Crossover, Study, Subject, names, series, workloads};
 use super::workload::Workload;
 use super::{rays, stopwatch, verify};
-use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::{counted, digits, ratio, thousands};
 
 /// Tells all of it: at a terminal what to use comes last, where one looks first.
-pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outcome {
+pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
     if report.is_page() {
         summary(study, report);
         advice(study, report);
@@ -28,7 +27,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
         }
         growth(study, of, &cases, report);
         crossovers(study, of, report);
-        report.charts(&charts.iter().filter(|chart| chart.of == of).collect::<Vec<_>>())?;
+        report.charts(&charts.iter().filter(|chart| chart.of == of).collect::<Vec<_>>());
         if let Some(largest) = cases.last().filter(|_| report.is_page() && !detail) {
             details(largest, report);
         }
@@ -38,7 +37,6 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
     } else {
         advice(study, report);
     }
-    Ok(())
 }
 
 fn summary(study: &Study, report: &mut dyn Report) {
@@ -66,7 +64,7 @@ fn advice(study: &Study, report: &mut dyn Report) {
     report.items(&study.notes.iter().map(|note| ("note", note.as_str())).collect::<Vec<_>>());
 }
 
-/// How many points of what radius and how many neighbours; how many triangles, and asked how often.
+/// The number of points, the radius and its neighbours; or the number of triangles, and of segments.
 fn heading(case: &Case) -> String {
     let (of, n, radius) = (&case.of, thousands(case.n), digits(f64::from(case.radius)));
     match case.subject {
@@ -115,7 +113,7 @@ fn overview(case: &Case, report: &mut dyn Report) {
     }
 }
 
-/// What somebody did not do, and who finds other first hits than ours, and how often.
+/// Remarks on what somebody did not do, and on who finds other first hits than ours, and how often.
 fn remarks(case: &Case) -> Vec<String> {
     let left_out = |one: &Contestant| one.left_out.as_ref().map(|why| format!("{} left out: {why}", one.name));
     let queries = case.queries.unwrap_or_default();
@@ -128,7 +126,7 @@ fn remarks(case: &Case) -> Vec<String> {
     all().filter_map(left_out).chain(all().filter_map(unlike)).collect()
 }
 
-/// What every query looked at.
+/// The nodes and triangles that every query looked at.
 fn work(case: &Case, report: &mut dyn Report) {
     report.paragraph("nodes visited and triangles tested, for each query; counted, so the same on every machine");
     let all: Vec<_> = case.contestants.iter().filter(|one| one.build.nodes.is_some()).collect();
@@ -199,7 +197,7 @@ fn growth(study: &Study, of: &str, cases: &[&Case], report: &mut dyn Report) {
     report.paragraph("1 is linear; n log n looks like 1.1 here, all pairs like 2");
 }
 
-/// Who overtakes whom; at a terminal only where the lead changes.
+/// Sentences on who overtakes whom; at a terminal only where the lead changes.
 fn crossovers(study: &Study, of: &str, report: &mut dyn Report) {
     let is_told = |crossover: &&Crossover| crossover.of == of && (crossover.leads || report.is_page());
     let told: Vec<_> = study.crossovers.iter().filter(is_told).collect();
@@ -245,7 +243,7 @@ fn method(study: &Study, report: &mut dyn Report) {
     ));
 }
 
-/// How points are compared.
+/// The method by which points are compared.
 fn of_points(study: &Study) -> Vec<String> {
     let (most, sample, k) = (thousands(verify::EXHAUSTIVE), verify::SAMPLE, study.k);
     let (totals, distances) = (verify::TOTALS, verify::DISTANCES);

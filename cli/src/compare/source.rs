@@ -1,4 +1,4 @@
-//! Where the points come from: made up, a file, or a scene that was run.
+//! Sources of points: made up, a file, or a scene that was run.
 
 use super::args::Compare;
 use super::distribution::Distribution;
@@ -13,7 +13,7 @@ use crate::schedule::{Schedule, nanoseconds};
 use crate::world::{Settings, World};
 use pointmass::Vec3;
 
-/// How many points are made up if nobody says.
+/// The numbers of points that are made up if nobody says.
 const SIZES: [usize; 3] = [1000, 10_000, 100_000];
 
 /// Points that are to be compared on, in one or more sizes.
@@ -78,7 +78,6 @@ fn from_scene(scene: &std::path::Path, args: &Compare, seed: u64) -> Outcome<Sou
         world.step_to(schedule.end(step));
         progress.step(world.system.len());
     }
-    progress.finish();
     let points = world.system.particles().position.to_vec();
     let (len, at, path) = (points.len(), nanoseconds(world.system.time().seconds_f64()), scene.display());
     if len < 2 {
@@ -98,7 +97,7 @@ impl Source {
         }
     }
 
-    /// How many points there are.
+    /// The number of points.
     fn len(&self) -> usize {
         match self {
             Self::Made(..) => usize::MAX,
@@ -106,7 +105,7 @@ impl Source {
         }
     }
 
-    /// What so many of its points are.
+    /// So many of its points in words.
     pub(crate) fn about(&self, n: usize) -> String {
         match self {
             Self::Made(distribution, seed) => format!("{}; seed {seed}", distribution.describe()),

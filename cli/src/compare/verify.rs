@@ -11,10 +11,10 @@ use pointmass::Vec3;
 
 /// Up to so many points, every row is searched exhaustively.
 pub(crate) const EXHAUSTIVE: usize = 20_000;
-/// How many rows are otherwise.
+/// The number of rows that are otherwise.
 pub(crate) const SAMPLE: usize = 100;
 
-/// What everybody has to answer.
+/// The answers that everybody has to give.
 #[derive(Debug, Default)]
 pub(crate) struct Expected {
     counts: Vec<u32>,
@@ -24,16 +24,20 @@ pub(crate) struct Expected {
     moved: Vec<u32>,
 }
 
-/// What was asked of everybody.
+/// The queries that are verified.
 pub(crate) const ASKED: [Workload; 5] =
     [Workload::Count, Workload::Within, Workload::Pairs, Workload::Nearest, Workload::Moving];
 
 impl Expected {
-    /// By exhaustive search of all rows.
-    pub(crate) fn exhaustive(question: &Question<'_>, queries: &[Workload]) -> Self {
+    /// By exhaustive search of some rows.
+    pub(crate) fn exhaustive(
+        question: &Question<'_>,
+        queries: &[Workload],
+        rows: impl Iterator<Item = usize> + Clone,
+    ) -> Self {
         let mut expected = Self::default();
         let search = Search::new(question.points, question);
-        for row in 0..question.points.len() {
+        for row in rows.clone() {
             let found = search.row(row, queries.contains(&Workload::Nearest));
             expected.counts.push(found.count);
             expected.links.push(found.links);
@@ -41,7 +45,7 @@ impl Expected {
         }
         if queries.contains(&Workload::Moving) {
             let search = Search::new(question.moved, question);
-            expected.moved = (0..question.moved.len()).map(|row| search.row(row, false).count).collect();
+            expected.moved = rows.map(|row| search.row(row, false).count).collect();
         }
         expected
     }
@@ -54,70 +58,33 @@ impl Expected {
         queries: &[Workload],
         seed: u64,
     ) -> Outcome<Self> {
-        let mut expected = Self::default();
-        leader.build(question.points, question.radius)?;
-        for query in [Workload::Count, Workload::Within, Workload::Nearest] {
-            if query != Workload::Nearest || queries.contains(&query) {
-                expected.take(leader.answer(query, question));
-            }
-        }
         let rows = sample(question.points.len(), SAMPLE, seed);
-        expected.judge(name, &rows, question, queries)?;
-        if queries.contains(&Workload::Moving) {
-            leader.follow(question.moved, question.radius)?;
-            if let Some(Answer::Counts(moved)) = leader.answer(Workload::Count, question) {
-                expected.moved = moved;
+        let (truth, mut expected) = (Self::exhaustive(question, queries, rows.iter().copied()), Self::default());
+        leader.build(question.points, question.radius)?;
+        // Counts and links are what all that is found within the radius is held against.
+        let is_needed = |query: &Workload| {
+            matches!(query, Workload::Count | Workload::Within) || *query != Workload::Pairs && queries.contains(query)
+        };
+        for query in ASKED.into_iter().filter(is_needed) {
+            if query == Workload::Moving {
+                leader.follow(question.moved, question.radius)?;
             }
-            expected.judge_moved(name, &rows, question)?;
+            let Some(answer) = leader.answer(query, question) else { continue };
+            if let Some((i, what)) = truth.exactly(query, &answer.of(&rows, question.k)) {
+                return Err(wrong(name, query, rows[i], what, question));
+            }
+            match answer {
+                Answer::Counts(moved) if query == Workload::Moving => expected.moved = moved,
+                Answer::Counts(counts) => expected.counts = counts,
+                Answer::Links(links) => expected.links = links,
+                Answer::Distances(distances) => expected.distances = distances,
+                Answer::Total(_) => {}
+            }
         }
         Ok(expected)
     }
 
-    fn take(&mut self, answer: Option<Answer>) {
-        match answer {
-            Some(Answer::Counts(counts)) => self.counts = counts,
-            Some(Answer::Links(links)) => self.links = links,
-            Some(Answer::Distances(distances)) => self.distances = distances,
-            Some(Answer::Total(_)) | None => {}
-        }
-    }
-
-    /// Searches some rows exhaustively.
-    fn judge(&self, name: &str, rows: &[usize], question: &Question<'_>, queries: &[Workload]) -> Outcome {
-        let search = Search::new(question.points, question);
-        for &row in rows {
-            let found = search.row(row, queries.contains(&Workload::Nearest));
-            let wrong = |query, what| Err(wrong(name, query, row, what, question, &search));
-            if self.counts.get(row) != Some(&found.count) {
-                return wrong(Workload::Count, told(&found.count, self.counts.get(row)));
-            }
-            if self.links.get(row) != Some(&found.links) {
-                return wrong(
-                    Workload::Within,
-                    format!("expected {} neighbours, found others than these", found.count),
-                );
-            }
-            let distances = self.distances.chunks(question.k).nth(row).unwrap_or_default();
-            if !same(distances, &found.distances) {
-                return wrong(Workload::Nearest, format!("expected {:?}, found {distances:?}", found.distances));
-            }
-        }
-        Ok(())
-    }
-
-    fn judge_moved(&self, name: &str, rows: &[usize], question: &Question<'_>) -> Outcome {
-        let search = Search::new(question.moved, question);
-        for &row in rows {
-            let count = search.row(row, false).count;
-            if self.moved.get(row) != Some(&count) {
-                let what = told(&count, self.moved.get(row));
-                return Err(wrong(name, Workload::Moving, row, what, question, &search));
-            }
-        }
-        Ok(())
-    }
-
-    /// How many others a point has within the radius, on average.
+    /// The number of others that a point has within the radius, on average.
     pub(crate) fn neighbours(&self) -> f64 {
         total(&self.counts) as f64 / self.counts.len().max(1) as f64
     }
@@ -142,8 +109,7 @@ impl Expected {
                 self.nearly(query, &answer).map(|what| (0, what))
             };
             if let Some((row, what)) = fault {
-                let points = if query == Workload::Moving { question.moved } else { question.points };
-                return Err(wrong(name, query, row, what, question, &Search::new(points, question)));
+                return Err(wrong(name, query, row, what, question));
             }
         }
         Ok(())
@@ -173,7 +139,7 @@ impl Expected {
         }
     }
 
-    /// Whether another library, which rounds in its own way, differs by more than that.
+    /// The fault of another library, which rounds in its own way, if it differs by more than that.
     fn nearly(&self, query: Workload, answer: &Answer) -> Option<String> {
         let sums = |counts: &[u32], found: u64| {
             let expected = total(counts);
@@ -222,18 +188,8 @@ fn first_unlike<T: PartialEq>(expected: &[T], found: &[T]) -> Option<usize> {
     unlike.or_else(|| (expected.len() != found.len()).then(|| expected.len().min(found.len()).saturating_sub(1)))
 }
 
-fn same(a: &[f32], b: &[f32]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
-}
-
-fn wrong(
-    name: &str,
-    query: Workload,
-    row: usize,
-    what: String,
-    question: &Question<'_>,
-    search: &Search<'_>,
-) -> Failure {
+fn wrong(name: &str, query: Workload, row: usize, what: String, question: &Question<'_>) -> Failure {
+    let search = Search::new(if query == Workload::Moving { question.moved } else { question.points }, question);
     let (query, n, radius) = (query.name(), question.points.len(), question.radius);
     let some = search.others(row).map(|row| row.to_string()).take(8).collect::<Vec<_>>().join(" ");
     Failure::new(format!(
@@ -250,7 +206,7 @@ struct Search<'a> {
     question: &'a Question<'a>,
 }
 
-/// What it finds for a row.
+/// The findings for a row.
 struct Found {
     count: u32,
     links: u64,

@@ -37,12 +37,13 @@ pub(crate) fn lab(args: &Lab) -> Outcome {
         StudyFormat::Csv => sheet::sheet(&study).csv(),
         StudyFormat::Json => json(&study),
         StudyFormat::Html => {
-            Page::told("How exact are the integrators?", &study.origin, |page| report::tell(&study, args.detail, page))
+            let title = "How exact are the integrators?";
+            Ok(Page::told(title, &study.origin, |page| report::tell(&study, args.detail, page)))
         }
-        StudyFormat::Svg => plot::all(&chart::charts(&study)),
+        StudyFormat::Svg => Ok(plot::all(&chart::charts(&study))),
     })?;
     print(&match args.report {
-        Said::Text => Terminal::told(|terminal| report::tell(&study, args.detail, terminal))?,
+        Said::Text => Terminal::told(|terminal| report::tell(&study, args.detail, terminal)),
         Said::Json => line(&study)?,
     })
 }
@@ -67,6 +68,5 @@ fn study(args: &Lab, problems: &[Problem]) -> Outcome<Study> {
         }
         cases.push(remark::remarked(Case::new(problem, &reference, rows)));
     }
-    progress.finish();
     Ok(Study { origin: Origin::this(), cases })
 }

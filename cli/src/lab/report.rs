@@ -3,12 +3,11 @@
 use super::chart::charts;
 use super::remark::step;
 use super::study::{Case, Point, Row, Steps, Study};
-use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::short;
 
-/// How many steps' errors a row has room for.
+/// The number of steps' errors that a row has room for.
 const COLUMNS: usize = 5;
 
 const ORDER: &str = "the power of the step that errors go with, fitted to the three shortest steps whose errors are \
@@ -20,7 +19,7 @@ const WORK: &str = "evaluations of all forces, and products with their Jacobian,
 const FIXED: &str = "adaptive and embedded choose inner steps, so that their tolerance and not dt says how large errors \
     are; with an infinite tolerance, fixed, they take every step as it comes";
 
-/// What charts show.
+/// Explanations of the charts.
 const CHARTS: [(&str, &str); 4] = [
     (
         "Error against the step",
@@ -41,7 +40,7 @@ const CHARTS: [(&str, &str); 4] = [
 ];
 
 /// Tells all of it.
-pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outcome {
+pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
     if report.is_page() {
         report.paragraph("every figure is the same on each run");
     }
@@ -55,7 +54,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
         energies(case, report);
         by_tolerance(case, report);
         report.items(&case.notes.iter().map(|note| ("note", note.as_str())).collect::<Vec<_>>());
-        report.charts(&charts.iter().filter(|chart| chart.of == case.problem).collect::<Vec<_>>())?;
+        report.charts(&charts.iter().filter(|chart| chart.of == case.problem).collect::<Vec<_>>());
     }
     report.heading(2, "How to read it");
     let has_own = study.cases.iter().flat_map(|case| &case.rows).any(|row| row.steps == Steps::Own);
@@ -65,7 +64,6 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outc
         report.heading(2, "What is to be seen");
         report.items(&CHARTS);
     }
-    Ok(())
 }
 
 /// An error in so few letters.

@@ -37,12 +37,12 @@ pub(crate) struct Frame {
     step: u64,
     time: f64,
     rows: Vec<Row>,
-    /// Whether rows have radii.
+    /// True if rows have radii.
     balls: bool,
     /// Names of columns of a user's own, and the values of each row in them.
     names: Vec<String>,
     custom: Vec<Vec<f32>>,
-    /// How they look at that instant.
+    /// Their colours at that instant.
     colors: Vec<Color>,
 }
 
@@ -76,11 +76,11 @@ pub(crate) struct Recorder {
     writer: Box<dyn Writer>,
 }
 
-/// What writes one format.
+/// A writer of one format.
 trait Writer {
     fn record(&mut self, frame: &Frame) -> std::io::Result<()>;
 
-    /// What was recorded, to be put where it belongs.
+    /// The files that were recorded, to be put where they belong.
     fn close(self: Box<Self>) -> Outcome<Vec<Written>>;
 }
 
@@ -88,9 +88,9 @@ impl Recorder {
     pub(crate) fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
         let writer: Box<dyn Writer> = match format {
             RecordFormat::Csv => Box::new(table::Csv::new(WholeFile::create(path)?)),
-            RecordFormat::Jsonl => Box::new(table::Jsonl::new(WholeFile::create(path)?)),
+            RecordFormat::Jsonl => Box::new(table::Jsonl(WholeFile::create(path)?)),
             RecordFormat::Ply => Box::new(ply::Ply::new(path)?),
-            RecordFormat::Xyz => Box::new(xyz::Xyz::new(WholeFile::create(path)?)),
+            RecordFormat::Xyz => Box::new(xyz::Xyz(WholeFile::create(path)?)),
         };
         Ok(Self { path: path.to_path_buf(), writer })
     }

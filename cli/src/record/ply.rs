@@ -3,10 +3,6 @@
 use super::{Frame, Row, Writer};
 use crate::outcome::Outcome;
 use crate::whole::{Series, Written};
-use ply_rs_bw::ply::{
-    Addable, DefaultElement, ElementDef, Encoding, Ply as Cloud, Property, PropertyDef, PropertyType, ScalarType,
-};
-use ply_rs_bw::writer::Writer as CloudWriter;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -20,7 +16,7 @@ impl Ply {
         Ok(Self { path: path.to_path_buf(), series: Series::create(path, false)? })
     }
 
-    /// What record number `i` will be called.
+    /// The name of record number `i`.
     fn numbered(&self, i: usize) -> PathBuf {
         let mut name = self.path.with_extension("").into_os_string();
         name.push(format!("_{i:06}.ply"));
@@ -32,8 +28,7 @@ impl Writer for Ply {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let path = self.numbered(self.series.len());
         let mut out = BufWriter::new(self.series.next(path)?);
-        let mut cloud = cloud(frame);
-        CloudWriter::new().write_ply(&mut out, &mut cloud).map_err(io::Error::other)?;
+        write(&mut out, frame)?;
         out.flush()
     }
 
@@ -42,46 +37,25 @@ impl Writer for Ply {
     }
 }
 
-fn cloud(frame: &Frame) -> Cloud<DefaultElement> {
-    use ScalarType::{Double, Float, UChar, UInt};
-    let columns = [
-        ("x", Float),
-        ("y", Float),
-        ("z", Float),
-        ("vx", Float),
-        ("vy", Float),
-        ("vz", Float),
-        ("mass", Float),
-        ("age", Double),
-        ("id", UInt),
-        ("red", UChar),
-        ("green", UChar),
-        ("blue", UChar),
-        ("alpha", UChar),
-        // In clouds of balls only.
-        ("radius", Float),
-    ];
-    let columns = if frame.balls { &columns[..] } else { &columns[..columns.len() - 1] };
-    let own = frame.names.iter().map(|name| (name.as_str(), Float));
-    let columns: Vec<_> = columns.iter().cloned().chain(own).collect();
-    let mut vertex = ElementDef::new("vertex".to_string());
-    for (name, kind) in &columns {
-        vertex.properties.add(PropertyDef::new(name.to_string(), PropertyType::Scalar(kind.clone())));
+fn write(out: &mut impl Write, frame: &Frame) -> io::Result<()> {
+    let floats = ["x", "y", "z", "vx", "vy", "vz", "mass"].map(|name| ("float", name));
+    let rest = [("double", "age"), ("uint", "id")];
+    let color = ["red", "green", "blue", "alpha"].map(|name| ("uchar", name));
+    let radius = frame.balls.then_some(("float", "radius"));
+    let own = frame.names.iter().map(|name| ("float", name.as_str()));
+    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment time {} step {}", frame.time, frame.step)?;
+    writeln!(out, "element vertex {}", frame.rows.len())?;
+    for (kind, name) in floats.into_iter().chain(rest).chain(color).chain(radius).chain(own) {
+        writeln!(out, "property {kind} {name}")?;
     }
-    let point = |((row, color), custom): ((&Row, &[u8; 4]), &Vec<f32>)| {
+    writeln!(out, "end_header")?;
+    for ((row, color), custom) in frame.rows.iter().zip(&frame.colors).zip(&frame.custom) {
         let Row { x, y, z, vx, vy, vz, mass, age, id, radius, .. } = *row;
-        let floats = [x, y, z, vx, vy, vz, mass].into_iter().map(Property::Float);
-        let rest = [Property::Double(age), Property::UInt(id)];
-        let values =
-            floats.chain(rest).chain(color.iter().map(|&c| Property::UChar(c))).chain(radius.map(Property::Float));
-        let values = values.chain(custom.iter().copied().map(Property::Float));
-        columns.iter().map(|(name, _)| name.to_string()).zip(values).collect()
-    };
-    let points = frame.rows.iter().zip(&frame.colors).zip(&frame.custom);
-    let mut cloud = Cloud::new();
-    cloud.header.encoding = Encoding::BinaryLittleEndian;
-    cloud.header.comments.push(format!("time {} step {}", frame.time, frame.step));
-    cloud.header.elements.add(vertex);
-    cloud.payload.insert("vertex".to_string(), points.map(point).collect());
-    cloud
+        out.write_all([x, y, z, vx, vy, vz, mass].map(f32::to_le_bytes).as_flattened())?;
+        out.write_all(&age.to_le_bytes())?;
+        out.write_all(&id.to_le_bytes())?;
+        out.write_all(color)?;
+        radius.iter().chain(custom).try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
+    }
+    Ok(())
 }

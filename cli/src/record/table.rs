@@ -48,27 +48,19 @@ fn as_map<S: Serializer>(pairs: &[(&String, &f32)], serializer: S) -> Result<S::
     serializer.collect_map(pairs.iter().copied())
 }
 
-pub(super) struct Jsonl {
-    file: WholeFile,
-}
-
-impl Jsonl {
-    pub(super) fn new(file: WholeFile) -> Self {
-        Self { file }
-    }
-}
+pub(super) struct Jsonl(pub(super) WholeFile);
 
 impl Writer for Jsonl {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         for (row, custom) in frame.rows.iter().zip(&frame.custom) {
             let custom = frame.names.iter().zip(custom).collect();
-            serde_json::to_writer(&mut self.file, &Line { row, custom })?;
-            self.file.write_all(b"\n")?;
+            serde_json::to_writer(&mut self.0, &Line { row, custom })?;
+            self.0.write_all(b"\n")?;
         }
         Ok(())
     }
 
     fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
-        Ok(vec![self.file.close()?])
+        Ok(vec![self.0.close()?])
     }
 }

@@ -5,19 +5,11 @@ use crate::outcome::Outcome;
 use crate::whole::{WholeFile, Written};
 use std::io::{self, Write};
 
-pub(super) struct Xyz {
-    file: WholeFile,
-}
-
-impl Xyz {
-    pub(super) fn new(file: WholeFile) -> Self {
-        Self { file }
-    }
-}
+pub(super) struct Xyz(pub(super) WholeFile);
 
 impl Writer for Xyz {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
-        let out = &mut self.file;
+        let out = &mut self.0;
         writeln!(out, "{}", frame.rows.len())?;
         let radius = if frame.balls { ":radius:R:1" } else { "" };
         let own: String = frame.names.iter().map(|name| format!(":{name}:R:1")).collect();
@@ -33,6 +25,6 @@ impl Writer for Xyz {
     }
 
     fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
-        Ok(vec![self.file.close()?])
+        Ok(vec![self.0.close()?])
     }
 }

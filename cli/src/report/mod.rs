@@ -3,17 +3,17 @@
 pub(crate) mod origin;
 pub(crate) mod page;
 pub(crate) mod plot;
+mod svg;
 pub(crate) mod table;
 pub(crate) mod terminal;
 pub(crate) mod words;
 
-use crate::outcome::Outcome;
 use plot::Chart;
 use table::Table;
 
-/// Where findings are told. Words may begin in lower case and lack a full stop: a page puts that right.
+/// A place where findings are told. Words may begin in lower case and lack a full stop: a page puts that right.
 pub(crate) trait Report {
-    /// Whether there is room for what a reader at a terminal does without.
+    /// True if there is room for what a reader at a terminal does without.
     fn is_page(&self) -> bool;
 
     /// Begins a part of the second level or the third.
@@ -21,7 +21,7 @@ pub(crate) trait Report {
 
     fn paragraph(&mut self, words: &str);
 
-    /// What there is to know, each line behind its name.
+    /// Facts, each line behind its name.
     fn facts(&mut self, facts: &[(&str, String)]);
 
     /// Explanations, each behind what it explains.
@@ -33,5 +33,5 @@ pub(crate) trait Report {
     fn table(&mut self, table: &Table);
 
     /// Charts, which only a page shows.
-    fn charts(&mut self, charts: &[&Chart<'_>]) -> Outcome;
+    fn charts(&mut self, charts: &[&Chart<'_>]);
 }

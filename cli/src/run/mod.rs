@@ -80,7 +80,7 @@ pub(crate) fn run(args: &Run) -> Outcome {
         }
         progress.step(world.system.len());
     }
-    progress.finish();
+    drop(progress);
     // How many sub-steps particles have made, those of each step being as many on average.
     let substeps = effort.particle_steps as f64 * world.pace.told().total as f64 / (effort.steps as f64).max(1.0);
     warn(stall::told(world.system.totals(), substeps).as_slice());

@@ -1,15 +1,15 @@
-//! What a run came to, for people and for programs.
+//! The summary of a run, for people and for programs.
 
 use super::groups::GroupError;
 use crate::schedule::nanoseconds;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
 use pointmass::force::Entry;
-use pointmass::{Books, Caps, Died, Energy, Measures};
+use pointmass::{Books, Caps, Energy, Measures, Report};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What a run came to. Times are in seconds of the scene, except `seconds`, which people had to wait.
+/// The summary of a run. Times are in seconds of the scene, except `seconds`, which people had to wait.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     /// The scene's file.
@@ -24,42 +24,24 @@ pub(crate) struct Summary {
     pub(crate) steps: u64,
     /// The instant reached \[s\].
     pub(crate) time: f64,
-    /// How steps were divided.
+    /// The division of steps.
     pub(crate) substeps: Told,
-    /// Particles put in at the beginning.
-    pub(crate) initial: u64,
-    /// Particles born.
-    pub(crate) born: u64,
     /// Particles alive at the end.
     pub(crate) live: u64,
-    /// Particles removed, by cause.
-    pub(crate) died: Died,
-    /// Particles that found no room.
-    pub(crate) refused: u64,
-    /// Times that a particle met a collider.
-    pub(crate) hits: u64,
-    /// Times that a bound cut work short.
-    pub(crate) caps: Caps,
-    /// Times that two particles met.
-    pub(crate) contacts: u64,
-    /// Springs that broke.
-    pub(crate) broken: u64,
-    /// What the method did.
-    pub(crate) effort: pointmass::Effort,
-    /// How far sums over far groups are from all pairs, if that was asked.
+    /// The totals of what has happened.
+    #[serde(flatten)]
+    pub(crate) totals: Report,
+    /// Errors of sums over far groups against all pairs, if that was asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) group_errors: Option<Vec<GroupError>>,
-    /// Where energy went, if account of it was kept.
+    /// The ledger of energy, if it was kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ledger: Option<Books>,
-    /// Energy at the end \[J\].
-    pub(crate) energy: Energy,
+    /// Energy and momenta at the end.
+    #[serde(flatten)]
+    pub(crate) measures: Measures,
     /// Energy and power of every force at the end.
     pub(crate) forces: Vec<Entry>,
-    /// Momentum at the end \[kg m/s\].
-    pub(crate) momentum: [f64; 3],
-    /// Angular momentum about the origin at the end \[kg m²/s\].
-    pub(crate) angular_momentum: [f64; 3],
     /// The state's fingerprint.
     pub(crate) hash: String,
     /// Time it took \[s\].
@@ -82,8 +64,6 @@ pub(crate) struct Effort {
 impl Summary {
     /// Sums up the world as it is.
     pub(crate) fn of(scene: &std::path::Path, world: &World, effort: Effort) -> Self {
-        let totals = world.system.totals();
-        let measures = Measures::of(&world.system, &world.model.scene());
         Self {
             scene: scene.display().to_string(),
             integrator: world.integrator().to_string(),
@@ -92,22 +72,12 @@ impl Summary {
             steps: effort.steps,
             time: nanoseconds(world.system.time().seconds_f64()),
             substeps: world.pace.told(),
-            initial: totals.initial,
-            born: totals.born,
             live: world.system.len() as u64,
-            died: totals.died,
-            refused: totals.refused,
-            hits: totals.hits,
-            caps: totals.caps,
-            contacts: totals.contacts,
-            broken: totals.broken,
-            effort: totals.effort,
+            totals: *world.system.totals(),
             group_errors: None,
             ledger: None,
-            energy: measures.energy,
+            measures: Measures::of(&world.system, &world.model.scene()),
             forces: Measures::by_force(&world.system, &world.model.scene()),
-            momentum: measures.momentum,
-            angular_momentum: measures.angular_momentum,
             hash: format!("{:016x}", world.system.hash()),
             seconds: effort.seconds,
             ns_per_particle_step: match effort.particle_steps {
@@ -119,6 +89,8 @@ impl Summary {
 
     /// A page for people.
     pub(crate) fn text(&self) -> String {
+        let Report { initial, born, died, refused, hits, contacts, broken, caps, effort } = &self.totals;
+        let Measures { energy: Energy { kinetic, potential }, momentum, angular_momentum } = self.measures;
         let mut rows: Vec<(&str, String)> = vec![
             ("scene", self.scene.clone()),
             ("run", format!("{} steps of {:.6} s by {}, seed {}", self.steps, self.dt, self.integrator, self.seed)),
@@ -127,22 +99,22 @@ impl Summary {
         rows.extend(substeps(&self.substeps, self.steps).map(|told| ("sub-steps", told)));
         rows.push((
             "particles",
-            format!("{} at first + {} born = {} live + {} died", self.initial, self.born, self.live, self.died.total()),
+            format!("{initial} at first + {born} born = {} live + {} died", self.live, died.total()),
         ));
         let died = [
-            ("of age", self.died.lifetime),
-            ("at sinks", self.died.sink),
-            ("of crowding", self.died.density),
-            ("by chance", self.died.chance),
-            ("by the program's own rule or hand", self.died.other),
-            ("no longer finite", self.died.nonfinite),
+            ("of age", died.lifetime),
+            ("at sinks", died.sink),
+            ("of crowding", died.density),
+            ("by chance", died.chance),
+            ("by the program's own rule or hand", died.other),
+            ("no longer finite", died.nonfinite),
         ];
         push_counts(&mut rows, "died", &died);
-        let Caps { bounces, chords, springs, contacts, stalled, insufficient_memory } = self.caps;
-        push_counts(&mut rows, "refused", &[("found no room; raise --capacity", self.refused)]);
-        push_counts(&mut rows, "hits", &[("", self.hits)]);
-        push_counts(&mut rows, "contacts", &[("", self.contacts)]);
-        push_counts(&mut rows, "broken", &[("springs", self.broken)]);
+        push_counts(&mut rows, "refused", &[("found no room; raise --capacity", *refused)]);
+        push_counts(&mut rows, "hits", &[("", *hits)]);
+        push_counts(&mut rows, "contacts", &[("", *contacts)]);
+        push_counts(&mut rows, "broken", &[("springs", *broken)]);
+        let Caps { bounces, chords, springs, contacts, stalled, insufficient_memory } = *caps;
         let caps = [
             ("paths with too many bounces", bounces),
             ("paths with too many chords", chords),
@@ -152,16 +124,15 @@ impl Summary {
             ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);
-        rows.push(("effort", method_effort(&self.effort)));
-        let Energy { kinetic, potential } = self.energy;
+        rows.push(("effort", method_effort(effort)));
         rows.push((
             "energy",
             format!("{} J kinetic, {} J potential{}", number(kinetic), number(potential), parts(&self.forces)),
         ));
         rows.extend(self.group_errors.iter().map(|errors| ("groups", far(errors))));
         rows.extend(self.ledger.iter().flat_map(accounts));
-        rows.push(("momentum", vector(self.momentum, "kg m/s")));
-        rows.push(("angular", vector(self.angular_momentum, "kg m²/s")));
+        rows.push(("momentum", vector(momentum, "kg m/s")));
+        rows.push(("angular", vector(angular_momentum, "kg m²/s")));
         rows.push(("hash", self.hash.clone()));
         let pace = self.ns_per_particle_step;
         rows.push(("took", format!("{:.3} s, {pace:.1} ns a particle and step", self.seconds)));
@@ -174,7 +145,7 @@ impl Summary {
     }
 }
 
-/// What the method did.
+/// The work of the method, in words.
 fn method_effort(effort: &pointmass::Effort) -> String {
     let pointmass::Effort {
         evaluations,
@@ -232,7 +203,7 @@ fn accounts(books: &Books) -> Vec<(&'static str, String)> {
     entries.into_iter().enumerate().map(row).collect()
 }
 
-/// How far sums over far groups are from all pairs.
+/// Errors of sums over far groups against all pairs, in words.
 fn far(errors: &[GroupError]) -> String {
     let told = errors.iter().map(|error| {
         let GroupError { force, theta, rms, largest, particles } = error;
@@ -243,7 +214,7 @@ fn far(errors: &[GroupError]) -> String {
     if errors.is_empty() { "no force takes far groups as one".into() } else { told.collect::<Vec<_>>().join("; ") }
 }
 
-/// What the potential energy consists of, if it is more than one force's.
+/// The parts of the potential energy, if it is more than one force's.
 fn parts(forces: &[Entry]) -> String {
     let parts: Vec<_> = forces.iter().filter(|entry| entry.energy != 0.0).collect();
     if parts.len() < 2 {
@@ -253,7 +224,7 @@ fn parts(forces: &[Entry]) -> String {
     format!(" ({})", told.join(", "))
 }
 
-/// How steps were divided, if they were.
+/// The division of steps, in words, if they were divided.
 fn substeps(told: &Told, steps: u64) -> Option<String> {
     let Told { least, most, total, beyond, tolerance, .. } = *told;
     if most <= 1 {

@@ -292,6 +292,46 @@ fn wind_brakes_as_drag_does_and_what_is_not_looked_at_is_named() {
 }
 
 #[test]
+fn lives_and_goals_bound_the_step() {
+    let folder = Folder::with(
+        "a.json",
+        r#"{"forces": [{"drag": {}}], "particles": [{"drag": 2, "lifetime": 3, "material": 0}],
+            "materials": [{"life": {"drag": [[0, 1], [1, 5]], "mass": [[0, 1], [0.5, 0.25], [1, 1]]}}]}"#,
+    );
+    let report = check(&folder, "a.json --integrator euler");
+    // Halfway the drag is 6 kg/s and the mass 0.25 kg.
+    assert!((steps(&report, "drag", &["euler"])[0] - 2e3 / 24.0).abs() < 0.01, "{report}");
+    let text = folder.run("check a.json --integrator euler").fine().stdout;
+    assert!(text.contains("particles[0] of drag 6 kg/s and mass 0.25 kg over its life: 24 /s"), "{text}");
+    assert!(!text.contains("goal"), "{text}");
+
+    let goal = |material: u32| {
+        format!(
+            r#"{{"goals": [{{"shape": {{"sphere": {{"center": [0, 0, 0], "radius": 1}}}}, "arrive": 1, "material": {material}}}],
+            "materials": [{{}}, {{}}], "particles": [{{"material": 0}}]}}"#
+        )
+    };
+    folder.write("b.json", goal(0));
+    let report = check(&folder, "b.json --dt 0.1 --integrator symplectic");
+    // 4 − 2h 4/T − h² 6/T² = 0.
+    let step = 100.0 * (160f64.sqrt() - 8.0) / 12.0;
+    assert!((steps(&report, "goal", &["symplectic"])[0] / step - 1.0).abs() < 1e-5, "{report}");
+    assert_eq!(report["led"]["place"], "goals[0]", "{report}");
+    let text = folder.run("check b.json --dt 0.1 --integrator symplectic").fine().stdout;
+    for word in ["goals[0] that settles in 100.0 ms", "too long for goals", "--dt 0.0387", "    goal  at 100.0 ms"] {
+        assert!(text.contains(word), "no {word}:\n{text}");
+    }
+    let run = |args: &str| folder.run(&format!("run b.json --dt 0.1 --integrator symplectic --duration 3 {args}"));
+    let warnings = run("").warnings().join(" ");
+    assert!(warnings.contains("38.74 ms, because of goals[0]"), "{warnings}");
+    assert!(number(&run("--substeps auto --tolerance 10 --report json").fine().report(), "substeps/least") >= 3.0);
+    // Nobody is led.
+    folder.write("b.json", goal(1));
+    assert_eq!(check(&folder, "b.json --dt 0.1")["led"], Value::Null);
+    run("").fine();
+}
+
+#[test]
 fn springs_of_fabrics_are_found_in_the_file() {
     let sheet = r#"{"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [2, 2]}}"#;
     let cloth = |ks: u32| {

@@ -2,34 +2,8 @@
 
 use super::{Fault, Rows};
 use crate::meshes::MAX_BYTES;
-use crate::meshes::ply::{Skipped, split};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use crate::meshes::ply::{Point, Skipped, split};
 use std::io::{BufRead, Read};
-
-/// The position of a vertex; planar if it has no z.
-struct Vertex([f64; 3]);
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self([0.0; 3])
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
-            return PropertyAccessResult::Ignored;
-        };
-        // Of the types there are, only the double is rounded by the library, and whole numbers of 32 bits.
-        let number = match value {
-            Property::Double(number) => Some(number),
-            Property::Int(number) => Some(f64::from(number)),
-            Property::UInt(number) => Some(f64::from(number)),
-            other => other.to_f32_lossy().map(f64::from),
-        };
-        let Some(number) = number else { return PropertyAccessResult::UnsupportedType };
-        self.0[axis] = number;
-        PropertyAccessResult::Set
-    }
-}
 
 /// Refuses what is larger than any file that is read whole.
 pub(super) fn check_size(bytes: u64) -> Result<(), Fault> {
@@ -60,7 +34,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Rows, Fault> {
                 break;
             }
             if element.name == "vertex" {
-                let Vertex(row) = payload.next(element, number)?;
+                let Point(row) = payload.next(element, number)?;
                 rows.push(row).map_err(Fault::new)?;
             } else {
                 let Skipped = payload.next(element, number)?;

@@ -1,4 +1,4 @@
-//! Where tracers meet: one mesh after the other, first verified, then measured.
+//! The bench on which tracers meet: one mesh after the other, first verified, then measured.
 
 use super::super::args::Compare;
 use super::super::contender::provide;
@@ -22,23 +22,21 @@ const FEWEST: usize = 50;
 /// Rounds that are expected, and verification as one more.
 const ROUNDS: usize = 8;
 
-/// What all cases share.
+/// The state that all cases share.
 pub(crate) struct Bench<'a> {
     args: &'a Compare,
-    seed: u64,
-    segments: usize,
     entrants: &'a mut [Entrant],
     /// Lent to one structure after the other.
     memory: Vec<u32>,
     gauge: Gauge,
 }
 
-/// What entrants have to answer.
+/// The task of the entrants.
 struct Task<'a> {
     mesh: Mesh<'a>,
     queries: &'a [Query],
     expected: Expected,
-    /// How many segments of each kind an entrant is asked.
+    /// The number of segments of each kind that an entrant is asked.
     asked: Vec<usize>,
 }
 
@@ -46,13 +44,7 @@ impl<'a> Bench<'a> {
     /// For so many meshes.
     pub(crate) fn new(args: &'a Compare, entrants: &'a mut [Entrant], meshes: usize) -> Self {
         let gauge = Gauge::new((meshes * ROUNDS * entrants.len()) as u64);
-        let (seed, segments) = (args.seed(), args.segments());
-        Self { args, seed, segments, entrants, memory: Vec::new(), gauge }
-    }
-
-    /// Everything is done.
-    pub(crate) fn finish(&self) {
-        self.gauge.finish();
+        Self { args, entrants, memory: Vec::new(), gauge }
     }
 
     /// Verifies and measures everybody on a mesh.
@@ -64,14 +56,14 @@ impl<'a> Bench<'a> {
         self.gauge
             .begin(format!("{}, {} triangles", surface.name, thousands(n)), (ROUNDS * self.entrants.len()) as u64);
         let radius = ball(surface, self.args.radius);
-        let queries = Query::all(surface, self.segments, Some(radius), self.seed);
+        let queries = Query::all(surface, self.args.segments(), Some(radius), self.args.seed());
         let (task, verified) = self.verified(mesh, &queries)?;
         let mismatches = self.mismatches(&task)?;
         let measured = self.measure(&task)?;
         let rounds = measured.iter().map(Measured::rounds).max().unwrap_or(0);
         let mut contestants = Vec::new();
         for (i, measured) in measured.into_iter().enumerate() {
-            let (all, asked) = (self.segments, task.asked[i]);
+            let (all, asked) = (self.args.segments(), task.asked[i]);
             let left_out =
                 (asked < all).then(|| format!("all but {} of {} segments", thousands(asked), thousands(all)));
             let mut one = measured.contestant(self.entrants[i].name(), left_out);
@@ -85,7 +77,7 @@ impl<'a> Bench<'a> {
             n,
             radius,
             neighbours: None,
-            queries: Some(self.segments),
+            queries: Some(self.args.segments()),
             verified,
             rounds,
             contestants,
@@ -94,12 +86,12 @@ impl<'a> Bench<'a> {
         Ok(case)
     }
 
-    /// What everybody has to answer, which our structures have; and how that was verified.
+    /// The task of everybody, which our structures have solved; and how that was verified.
     fn verified<'t>(&mut self, mesh: Mesh<'t>, queries: &'t [Query]) -> Outcome<(Task<'t>, String)> {
         let n = mesh.triangles().len();
-        let fewer = (TESTS / n).max(FEWEST).min(self.segments);
+        let fewer = (TESTS / n).max(FEWEST).min(self.args.segments());
         let asked: Vec<_> =
-            self.entrants.iter().map(|entrant| if entrant.is_brute() { fewer } else { self.segments }).collect();
+            self.entrants.iter().map(|entrant| if entrant.is_brute() { fewer } else { self.args.segments() }).collect();
         // Brute force leads only where it is alone.
         let own = (0..asked.len()).filter(|&i| self.entrants[i].is_own());
         let Some(leader) = own.max_by_key(|&i| (asked[i], std::cmp::Reverse(i))) else {
@@ -108,7 +100,7 @@ impl<'a> Bench<'a> {
         let (expected, judged) = {
             let name = self.entrants[leader].name().to_string();
             let (tracer, _) = self.entrants[leader].build(mesh, &mut self.memory, 1)?;
-            Expected::by((&*tracer, &name), mesh, queries, asked[leader], self.seed)?
+            Expected::by((&*tracer, &name), mesh, queries, asked[leader], self.args.seed())?
         };
         for (i, entrant) in self.entrants.iter_mut().enumerate().filter(|(i, _)| *i != leader) {
             let name = entrant.name().to_string();
@@ -122,7 +114,7 @@ impl<'a> Bench<'a> {
         Ok((Task { mesh, queries, expected, asked }, verified))
     }
 
-    /// How many answers of other libraries are no rounding.
+    /// The number of answers of other libraries that are no rounding.
     fn mismatches(&mut self, task: &Task<'_>) -> Outcome<Vec<Option<usize>>> {
         let mut all = vec![None; self.entrants.len()];
         for (entrant, unlike) in self.entrants.iter_mut().zip(&mut all).filter(|(entrant, _)| !entrant.is_own()) {
@@ -164,7 +156,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What the mesh is, and how many segments of each kind hit it.
+/// The mesh in words, and the share of segments of each kind that hit it.
 fn about(surface: &Surface, task: &Task<'_>) -> String {
     let hit =
         |(i, query): (usize, &Query)| format!("{:.0} % of {}", task.expected.hits(i) * 100.0, query.workload.name());

@@ -29,9 +29,7 @@ pub(super) fn cases(args: &Compare, peers: Vec<Box<dyn RayPeer>>) -> Outcome<Vec
     entrants.extend(peers.into_iter().map(Entrant::Peer));
     let surfaces = surface::surfaces(args)?;
     let mut bench = Bench::new(args, &mut entrants, surfaces.len());
-    let cases = surfaces.iter().map(|surface| bench.case(surface)).collect();
-    bench.finish();
-    cases
+    surfaces.iter().map(|surface| bench.case(surface)).collect()
 }
 
 /// Our structures that take part, in the order of every table.
@@ -56,7 +54,7 @@ fn entrants(args: &Compare) -> Outcome<Vec<Entrant>> {
     Ok(entrants)
 }
 
-/// How meshes are compared.
+/// The method by which meshes are compared.
 pub(super) fn method() -> Vec<String> {
     let (sample, part) = (thousands(verify::FEWEST), verify::MOST_UNLIKE * 100.0);
     vec![

@@ -1,12 +1,12 @@
-//! What a mesh takes from the elements of a PLY file.
+//! Elements of a PLY file, as far as meshes and clouds take them.
 
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
-/// What the list of a face's corners is called.
+/// Names of the list of a face's corners.
 pub(super) const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// The position of a vertex.
-pub(super) struct Point(pub(super) [f32; 3]);
+/// The position of a vertex; planar if it has no z.
+pub(crate) struct Point(pub(crate) [f64; 3]);
 
 impl PropertyAccess for Point {
     fn new() -> Self {
@@ -17,7 +17,14 @@ impl PropertyAccess for Point {
         let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
             return PropertyAccessResult::Ignored;
         };
-        let Some(number) = value.to_f32_lossy() else { return PropertyAccessResult::UnsupportedType };
+        // Of the types there are, only the double is rounded by the library, and whole numbers of 32 bits.
+        let number = match value {
+            Property::Double(number) => Some(number),
+            Property::Int(number) => Some(f64::from(number)),
+            Property::UInt(number) => Some(f64::from(number)),
+            other => other.to_f32_lossy().map(f64::from),
+        };
+        let Some(number) = number else { return PropertyAccessResult::UnsupportedType };
         self.0[axis] = number;
         PropertyAccessResult::Set
     }
@@ -40,7 +47,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// An element that a mesh has no use for.
+/// An element that nobody has a use for.
 pub(crate) struct Skipped;
 
 impl PropertyAccess for Skipped {

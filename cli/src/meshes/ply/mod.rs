@@ -12,8 +12,8 @@ use ply_rs_bw::ply::Property;
 use super::MeshData;
 use super::text;
 use crate::fault::{Fault, excerpt};
-pub(crate) use elements::Skipped;
-use elements::{Face, Point};
+use elements::Face;
+pub(crate) use elements::{Point, Skipped};
 pub(crate) use header::split;
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
@@ -29,6 +29,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
             match element.name.as_str() {
                 "vertex" => {
                     let Point(point) = payload.next(element, number)?;
+                    let point = point.map(|x| x as f32);
                     if !point.iter().all(|x| x.is_finite()) {
                         return Err(payload.fault(element, number, &format!("{point:?}: expected finite coordinates")));
                     }
