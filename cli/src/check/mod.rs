@@ -81,11 +81,11 @@ pub(crate) fn check(args: &Check) -> Outcome {
     outs.write(|format| match format {
         StudyFormat::Csv => report::sheet(&study).csv(),
         StudyFormat::Json => json(&study),
-        StudyFormat::Html => Ok(Page::told("Which step?", &Origin::this(), |page| report::tell(&study, &charts, page))),
-        StudyFormat::Svg => Ok(all(&charts)),
+        StudyFormat::Html => Page::told("Which step?", &Origin::this(), |page| report::tell(&study, &charts, page)),
+        StudyFormat::Svg => all(&charts),
     })?;
     print(&match args.report {
-        Said::Text => Terminal::told(|terminal| report::tell(&study, &charts, terminal)),
+        Said::Text => Terminal::told(|terminal| report::tell(&study, &charts, terminal))?,
         Said::Json => line(&study)?,
     })
 }

@@ -10,7 +10,7 @@ use pointmass::Method;
 use pointmass::stability::{Limit, Mode, Scheme};
 
 /// Width and height of each chart, in pixels.
-const SIZE: (f64, f64) = (640.0, 560.0);
+const SIZE: (u32, u32) = (640, 560);
 
 /// The content of pictures: oscillations, stepped by a method in steps of `dt` \[s\].
 pub(crate) struct Scenery {
@@ -60,7 +60,7 @@ fn plain(name: &str, look: usize, dots: Vec<(f64, f64)>) -> Line<'static> {
 impl Scenery {
     /// Both charts.
     pub(crate) fn charts(&self) -> Vec<Chart<'static>> {
-        vec![self.plane().sized(SIZE), self.limits().sized(SIZE)]
+        vec![self.plane().sized(SIZE.0, SIZE.1), self.limits().sized(SIZE.0, SIZE.1)]
     }
 
     /// Rates times the step.
@@ -91,7 +91,7 @@ impl Scenery {
         let (mut left, right) = (-3.7f64, 2.3);
         let reach = dots.iter().fold(0.0f64, |reach, ((re, im), _)| reach.max(-re).max(im.abs()));
         left = left.min(-1.08 * reach).max(FARTHEST * left);
-        let top = 0.5 * (right - left) * Chart::aspect(SIZE);
+        let top = 0.5 * (right - left) * Chart::aspect(SIZE.0, SIZE.1);
         let cross = [vec![(left, 0.0), (right, 0.0)], vec![(0.0, -top), (0.0, top)]];
         let mut lines: Vec<_> = cross.into_iter().map(|dots| plain("", 0, dots)).collect();
         for (scheme, method, look) in schemes() {

@@ -3,6 +3,7 @@
 use super::modes::How;
 use super::study::{Oscillations, Stand, Study};
 use super::words::{limit, plain, time};
+use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::plot::Chart;
 use crate::report::table::{Cell, Table};
@@ -26,7 +27,7 @@ const NOTES: [&str; 7] = [
 ];
 
 /// Tells all of it.
-pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report) {
+pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report) -> Outcome {
     report.facts(&facts(study));
     if report.is_page() {
         report.heading(2, "What to do");
@@ -36,13 +37,14 @@ pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report)
     report.table(&steps(study));
     if report.is_page() {
         report.heading(2, "Where methods are stable");
-        report.charts(&charts.iter().collect::<Vec<_>>());
+        report.charts(&charts.iter().collect::<Vec<_>>())?;
         report.heading(2, "What it means");
         NOTES.iter().for_each(|note| report.paragraph(note));
     } else {
         report.heading(2, "What to do");
         report.list(&study.advice);
     }
+    Ok(())
 }
 
 /// The bounds on the steps of every method; those of contacts and goals only where there are some.

@@ -59,19 +59,19 @@ pub(crate) fn compare(args: &Compare, peers: Peers) -> Outcome {
     outs.write(|format| match format {
         StudyFormat::Csv => sheet::sheet(&study).csv(),
         StudyFormat::Json => json(&study),
-        StudyFormat::Html => Ok(page(&study, args.detail)),
-        StudyFormat::Svg => Ok(plot::all(&chart::charts(&study))),
+        StudyFormat::Html => page(&study, args.detail),
+        StudyFormat::Svg => plot::all(&chart::charts(&study)),
     })?;
-    print(&text(&study, args.detail))
+    print(&text(&study, args.detail)?)
 }
 
 /// The comparison as a page.
-fn page(study: &Study, detail: bool) -> String {
+fn page(study: &Study, detail: bool) -> Outcome<String> {
     Page::told("Which spatial partition?", &study.origin, |page| report::tell(study, detail, page))
 }
 
 /// The comparison for a terminal.
-fn text(study: &Study, detail: bool) -> String {
+fn text(study: &Study, detail: bool) -> Outcome<String> {
     Terminal::told(|terminal| report::tell(study, detail, terminal))
 }
 

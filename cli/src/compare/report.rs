@@ -4,12 +4,13 @@ use super::chart::charts;
 use super::study::{Case, Contestant, Crossover, Study, Subject, names, series, workloads};
 use super::workload::Workload;
 use super::{rays, stopwatch, verify};
+use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::{counted, digits, ratio, thousands};
 
 /// Tells all of it: at a terminal what to use comes last, where one looks first.
-pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
+pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outcome {
     if report.is_page() {
         summary(study, report);
         advice(study, report);
@@ -27,7 +28,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
         }
         growth(study, of, &cases, report);
         crossovers(study, of, report);
-        report.charts(&charts.iter().filter(|chart| chart.of == of).collect::<Vec<_>>());
+        report.charts(&charts.iter().filter(|chart| chart.of == of).collect::<Vec<_>>())?;
         if let Some(largest) = cases.last().filter(|_| report.is_page() && !detail) {
             details(largest, report);
         }
@@ -37,6 +38,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
     } else {
         advice(study, report);
     }
+    Ok(())
 }
 
 fn summary(study: &Study, report: &mut dyn Report) {

@@ -202,7 +202,7 @@ fn every_report_tells_the_same_figures() {
     }
     case.rank();
     let study = study_of(vec![case]);
-    let table = text(&study, true);
+    let table = text(&study, true).expect("it can be told");
     let words = table.split_whitespace().collect::<Vec<_>>().join(" ");
     // Median, ratio, mark; and in detail median, minimum, spread, ratio.
     for row in ["grid 100 1.00* 20 25 %", "kd 200 2.00 40 25 %"] {
@@ -227,7 +227,7 @@ fn every_report_tells_the_same_figures() {
     ] {
         assert_eq!([cell(0, name), cell(1, name)], [Some(of_grid), Some(of_kd)], "{name}");
     }
-    let html = page(&study, false);
+    let html = page(&study, false).expect("the page can be drawn");
     for cell in
         ["<td class=\"best\">100 <small>1.00</small></td>", "<td>200 <small>2.00</small></td>", "100 + 0 ns  (1.00 x)"]
     {
@@ -324,7 +324,7 @@ fn reports_escape_what_users_name() {
     study.origin.command = command(["x", "compare", "--points", "it's <b>.csv"].map(String::from).into_iter());
     study.notes = vec!["<script>".into()];
     assert_eq!(study.origin.command, r"pointmass compare --points 'it'\''s <b>.csv'");
-    let html = page(&study, false);
+    let html = page(&study, false).expect("the page can be drawn");
     for raw in ["a<b", "<script", "<b>", "http:", "https:", "NaN", "src="] {
         let html = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
         assert!(!html.contains(raw), "{raw}");
@@ -332,9 +332,9 @@ fn reports_escape_what_users_name() {
     assert!(
         html.contains("a&lt;b &amp; &quot;c&quot;") && html.contains("kd overtakes") | html.contains("grid overtakes")
     );
-    let svg = plot::all(&chart::charts(&study));
+    let svg = plot::all(&chart::charts(&study)).expect("the charts can be drawn");
     assert!(svg.contains("a&lt;b &amp; ") && svg.trim_end().ends_with("</svg>"));
     let sheet = sheet::sheet(&study).csv().expect("the table can be written");
     assert_eq!(sheet.lines().count(), 1 + 2 * 2 * 2);
-    assert!(text(&study, true).contains("grid overtakes kd at about "));
+    assert!(text(&study, true).is_ok_and(|text| text.contains("grid overtakes kd at about ")));
 }

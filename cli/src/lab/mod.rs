@@ -37,13 +37,12 @@ pub(crate) fn lab(args: &Lab) -> Outcome {
         StudyFormat::Csv => sheet::sheet(&study).csv(),
         StudyFormat::Json => json(&study),
         StudyFormat::Html => {
-            let title = "How exact are the integrators?";
-            Ok(Page::told(title, &study.origin, |page| report::tell(&study, args.detail, page)))
+            Page::told("How exact are the integrators?", &study.origin, |page| report::tell(&study, args.detail, page))
         }
-        StudyFormat::Svg => Ok(plot::all(&chart::charts(&study))),
+        StudyFormat::Svg => plot::all(&chart::charts(&study)),
     })?;
     print(&match args.report {
-        Said::Text => Terminal::told(|terminal| report::tell(&study, args.detail, terminal)),
+        Said::Text => Terminal::told(|terminal| report::tell(&study, args.detail, terminal))?,
         Said::Json => line(&study)?,
     })
 }

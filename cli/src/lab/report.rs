@@ -3,6 +3,7 @@
 use super::chart::charts;
 use super::remark::step;
 use super::study::{Case, Point, Row, Steps, Study};
+use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::table::{Cell, Table};
 use crate::report::words::short;
@@ -40,7 +41,7 @@ const CHARTS: [(&str, &str); 4] = [
 ];
 
 /// Tells all of it.
-pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
+pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) -> Outcome {
     if report.is_page() {
         report.paragraph("every figure is the same on each run");
     }
@@ -54,7 +55,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
         energies(case, report);
         by_tolerance(case, report);
         report.items(&case.notes.iter().map(|note| ("note", note.as_str())).collect::<Vec<_>>());
-        report.charts(&charts.iter().filter(|chart| chart.of == case.problem).collect::<Vec<_>>());
+        report.charts(&charts.iter().filter(|chart| chart.of == case.problem).collect::<Vec<_>>())?;
     }
     report.heading(2, "How to read it");
     let has_own = study.cases.iter().flat_map(|case| &case.rows).any(|row| row.steps == Steps::Own);
@@ -64,6 +65,7 @@ pub(crate) fn tell(study: &Study, detail: bool, report: &mut dyn Report) {
         report.heading(2, "What is to be seen");
         report.items(&CHARTS);
     }
+    Ok(())
 }
 
 /// An error in so few letters.

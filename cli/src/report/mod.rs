@@ -3,11 +3,11 @@
 pub(crate) mod origin;
 pub(crate) mod page;
 pub(crate) mod plot;
-mod svg;
 pub(crate) mod table;
 pub(crate) mod terminal;
 pub(crate) mod words;
 
+use crate::outcome::Outcome;
 use plot::Chart;
 use table::Table;
 
@@ -33,5 +33,5 @@ pub(crate) trait Report {
     fn table(&mut self, table: &Table);
 
     /// Charts, which only a page shows.
-    fn charts(&mut self, charts: &[&Chart<'_>]);
+    fn charts(&mut self, charts: &[&Chart<'_>]) -> Outcome;
 }

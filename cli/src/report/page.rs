@@ -4,8 +4,9 @@ use super::Report;
 use super::origin::Origin;
 use super::plot::Chart;
 use super::table::{Cell, Column, Table};
+use crate::outcome::Outcome;
 
-/// The style of pages, by day and by night; charts keep their colours' hues and change light for dark.
+/// How pages look, by day and by night; charts keep their colours' hues and change light for dark.
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#222;--paper:#fff;--soft:#666;--line:#ddd;--best:#e5f3ea;--code:#f3f3f3}
 @media (prefers-color-scheme:dark){:root{--ink:#ddd;--paper:#181818;--soft:#aaa;--line:#444;--best:#1d3b29;--code:#2a2a2a}
@@ -50,8 +51,8 @@ fn sentence(words: &str) -> String {
 }
 
 impl Page {
-    /// The page of what is told, under a title and what made it.
-    pub(crate) fn told(title: &str, origin: &Origin, tell: impl FnOnce(&mut dyn Report)) -> String {
+    /// What is told, under a title and what made it.
+    pub(crate) fn told(title: &str, origin: &Origin, tell: impl FnOnce(&mut dyn Report) -> Outcome) -> Outcome<String> {
         let mut page = Self("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">".into());
         page.add("<meta name=\"viewport\" content=\"width=device-width\">");
         page.add(&format!("<title>{title}</title>\n<style>\n{STYLE}\n</style></head>\n<body>\n<h1>{title}</h1>\n"));
@@ -59,9 +60,9 @@ impl Page {
         let told = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.os);
         page.facts(&[("Program", format!("pointmass {version}, {}", machine.build)), ("Machine", told)]);
         page.add(&format!("<dl><dt>Command</dt><dd><code>{}</code></dd></dl>\n", escape(command)));
-        tell(&mut page);
+        tell(&mut page)?;
         page.add("</body></html>\n");
-        page.0
+        Ok(page.0)
     }
 
     fn add(&mut self, html: &str) {
@@ -103,12 +104,13 @@ impl Report for Page {
         self.add(&html(table));
     }
 
-    fn charts(&mut self, charts: &[&Chart<'_>]) {
+    fn charts(&mut self, charts: &[&Chart<'_>]) -> Outcome {
         self.add("<div class=\"charts\">\n");
         for chart in charts {
-            self.add(&chart.svg());
+            self.add(&chart.svg()?);
         }
         self.add("</div>\n");
+        Ok(())
     }
 }
 

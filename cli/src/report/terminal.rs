@@ -4,6 +4,7 @@ use super::Report;
 use super::plot::Chart;
 use super::table::{Cell, Column, Table};
 use super::words::WIDTH;
+use crate::outcome::Outcome;
 use comfy_table::{CellAlignment, ContentArrangement};
 use textwrap::{Options, WordSplitter};
 
@@ -12,11 +13,11 @@ use textwrap::{Options, WordSplitter};
 pub(crate) struct Terminal(String);
 
 impl Terminal {
-    /// The text of what is told.
-    pub(crate) fn told(tell: impl FnOnce(&mut dyn Report)) -> String {
+    /// What is told.
+    pub(crate) fn told(tell: impl FnOnce(&mut dyn Report) -> Outcome) -> Outcome<String> {
         let mut terminal = Self::default();
-        tell(&mut terminal);
-        terminal.0
+        tell(&mut terminal)?;
+        Ok(terminal.0)
     }
 
     /// Words in lines that fit, behind a mark; what follows the first line stands as far in as said.
@@ -70,7 +71,9 @@ impl Report for Terminal {
         self.0.push_str(&text(table));
     }
 
-    fn charts(&mut self, _: &[&Chart<'_>]) {}
+    fn charts(&mut self, _: &[&Chart<'_>]) -> Outcome {
+        Ok(())
+    }
 }
 
 /// A table in lines that fit. Columns that find no room beside the others come below them, behind the names again.
@@ -133,7 +136,6 @@ fn laid_out<'a>(columns: impl Iterator<Item = &'a Column>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::Outcome;
 
     fn table() -> Table {
         let mut table = Table::default();
