@@ -12,6 +12,7 @@ mod queue;
 mod slide;
 mod sweep;
 mod tile_sweep;
+mod waiting;
 
 pub use meetings::{Impulse, Meetings};
 pub(crate) use passage::Passage;

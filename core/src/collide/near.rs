@@ -1,15 +1,15 @@
 //! Whom a flat face may touch: all rows of a tile are held against it, and most are far from it.
 
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
-use crate::math::max;
-use crate::rows::{farthest, filled, largest_of};
-use crate::shape::Face;
+use crate::math::{largest, max};
+use crate::rows::{farthest, filled, flat, largest_of};
+use crate::shape::{Aabb, Face};
 use core::ops::Range;
 use glam::Vec3;
 use wide::f32x4;
 
 /// Rows that are held against a face at once.
-pub(super) const BLOCK: usize = 512;
+pub(super) const BLOCK: usize = 640;
 
 /// A bit for each row of a block.
 pub(super) type Marks = [u8; BLOCK / LANES];
@@ -22,45 +22,36 @@ pub(super) struct Balls<'a> {
     pub(super) time: f32,
 }
 
+/// Some of them, and how large the numbers of their paths are.
+#[derive(Clone, Copy)]
+pub(super) struct Block<'a> {
+    balls: Balls<'a>,
+    /// The largest number of the velocities, of the control points, and of the radii; or more, but what is no number does not count.
+    fastest: f32,
+    largest: f32,
+    radius: f32,
+}
+
 /// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far.
 struct Slab<'a, const AXIS: usize> {
     balls: Balls<'a>,
     sides: [f32; 2],
 }
 
-impl Balls<'_> {
-    fn rows(&self, rows: Range<usize>) -> Self {
+impl<'a> Balls<'a> {
+    /// No more than a block of them.
+    #[inline]
+    pub(super) fn block(&self, rows: Range<usize>) -> Block<'a> {
         let Self { ends, radius, time } = *self;
-        Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], time }
+        let balls = Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], time };
+        let ([x0, v0, x1, v1], third) = (balls.ends.map(farthest), balls.third());
+        let (fastest, largest) = (max(v0, v1), max(x0 + third * v0, x1 + third * v1));
+        Block { balls, fastest, largest, radius: largest_of(balls.radius) }
     }
 
     /// A third of the time, by which control points are away from the ends.
     fn third(&self) -> f32 {
         self.time * (1.0 / 3.0)
-    }
-
-    /// Who of no more than a block of them may touch the face, as far as boxes around their paths tell: never fewer than
-    /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
-    #[inline(never)]
-    pub(super) fn near(&self, rows: Range<usize>, face: &Face) -> Marks {
-        let balls = self.rows(rows);
-        let [point, _, unit] = face.vectors();
-        // No number of the paths is larger, of those that are finite: others are followed nowhere.
-        let [x0, v0, x1, v1] = balls.ends.map(farthest);
-        let (third, radius) = (balls.third(), largest_of(balls.radius));
-        let largest = max(x0 + third * v0, x1 + third * v1) + face.size() + radius;
-        let room = radius + largest * (128.0 * f32::EPSILON);
-        let sides = |axis: usize| [point[axis] - room, point[axis] + room];
-        match unit.abs().to_array() {
-            _ if !(largest < 1e37) => [u8::MAX; BLOCK / LANES],
-            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, sides: sides(0) }),
-            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, sides: sides(1) }),
-            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, sides: sides(2) }),
-            _ => widest(
-                #[inline(always)]
-                || balls.marks(|ends, radius| near(face, ends, radius, third)),
-            ),
-        }
     }
 
     /// What is told of eight after the other, side by side.
@@ -75,10 +66,79 @@ impl Balls<'_> {
         }
         if let Some(mark) = marks.get_mut(radius.len()).filter(|_| !radius_rest.is_empty()) {
             let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
-            *mark = near([&x0, &v0, &x1, &v1], &filled(radius_rest));
+            // There are fewer rows than eight.
+            *mark = near([&x0, &v0, &x1, &v1], &filled(radius_rest)) & !(u8::MAX << radius_rest.len());
         }
         marks
     }
+}
+
+impl Block<'_> {
+    /// Who of them may touch the face, as far as boxes around their paths tell: never fewer than
+    /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
+    #[inline(never)]
+    pub(super) fn near(&self, face: &Face) -> Marks {
+        let Self { balls, .. } = *self;
+        let ([point, _, unit], third) = (face.vectors(), balls.third());
+        // No number of the paths is larger, of those that are finite: others are followed nowhere.
+        let largest = self.largest + face.size() + self.radius;
+        let room = self.radius + largest * (128.0 * f32::EPSILON);
+        let sides = |axis: usize| [point[axis] - room, point[axis] + room];
+        match unit.abs().to_array() {
+            _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
+            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, sides: sides(0) }),
+            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, sides: sides(1) }),
+            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, sides: sides(2) }),
+            _ => widest(
+                #[inline(always)]
+                || balls.marks(|ends, radius| near(face, ends, radius, third)),
+            ),
+        }
+    }
+
+    /// Who of them may touch a box, as far as the axis tells that it is thinnest along.
+    #[inline(never)]
+    pub(super) fn near_box(&self, bounds: &Aabb) -> Marks {
+        let Self { balls, radius, .. } = *self;
+        let largest = self.largest + largest(bounds.min) + largest(bounds.max) + radius;
+        let room = radius + largest * (256.0 * f32::EPSILON);
+        let extent = bounds.max - bounds.min;
+        let sides = |axis: usize| [bounds.min[axis] - room, bounds.max[axis] + room];
+        match extent.min_element() {
+            _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
+            least if least == extent.x => run(Slab::<0> { balls, sides: sides(0) }),
+            least if least == extent.y => run(Slab::<1> { balls, sides: sides(1) }),
+            _ => run(Slab::<2> { balls, sides: sides(2) }),
+        }
+    }
+
+    /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
+    /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
+    pub(super) fn reach(&self, size: f32) -> f32 {
+        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, fastest, largest, radius } = *self;
+        // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
+        let way = 2.5 * time * (fastest + 4.0 * most_apart(v0, v1));
+        way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)
+    }
+}
+
+/// The largest difference of two columns' numbers; what is no number does not count.
+fn most_apart(a: &[Vec3], b: &[Vec3]) -> f32 {
+    let ((a, a_rest), (b, b_rest)) = (flat(a).as_chunks::<16>(), flat(b).as_chunks::<16>());
+    let most = widest(
+        #[inline(always)]
+        || {
+            let mut most = [0.0; 16];
+            for (a, b) in a.iter().zip(b) {
+                for i in 0..16 {
+                    most[i] = max((a[i] - b[i]).abs(), most[i]);
+                }
+            }
+            most
+        },
+    );
+    let rest = a_rest.iter().zip(b_rest).fold(0.0, |most, (a, b)| max((a - b).abs(), most));
+    most.into_iter().fold(rest, max)
 }
 
 impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {

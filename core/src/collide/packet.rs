@@ -1,142 +1,24 @@
-//! Eight paths past one flat face, side by side: of those who lie on it, and of those who bounce off it once.
+//! Eight paths past one flat face, side by side: of those who lie on it, and of those who bounce off it a few times.
 //!
 //! Every number is made as `Sweep` makes it, in the same order, and so has the same bits. Whoever needs more than this is left
-//! to that: two hits in a step, a hit after which it rests, a place that is not free.
+//! to that: more hits in a step than are found here, a place that is not free.
 
-use super::path::{CHORD_ERROR, MAX_CHORDS};
-use super::sweep::{LAIN, MAX_LOOKS, RESTING};
-use crate::lanes::{Eight, LANES, Vectors, max, min, negated, not};
+mod hits;
+mod paths;
+
+use super::sweep::{LAIN, RESTING};
+use crate::lanes::{Eight, LANES, Vectors, max, negated, not};
 use crate::shape::Face;
 use crate::time::Time;
 use glam::Vec3;
-
-/// Eight cubics, as `Path`.
-#[derive(Clone, Copy)]
-pub(super) struct Paths<F> {
-    pub(super) x0: Vectors<F>,
-    pub(super) v0: Vectors<F>,
-    pub(super) x1: Vectors<F>,
-    pub(super) v1: Vectors<F>,
-    /// How long they take \[s\].
-    pub(super) time: F,
-}
-
-/// The same as polynomials.
-struct Cubics<F> {
-    start: Vectors<F>,
-    coefficients: [Vectors<F>; 3],
-    /// Half the change of velocity as a way, and how much farther the cubic leads.
-    bend: Vectors<F>,
-    excess: Vectors<F>,
-}
-
-/// Straight pieces of them.
-struct Segments<F> {
-    from: Vectors<F>,
-    to: Vectors<F>,
-}
-
-impl<F: Eight> Segments<F> {
-    #[inline(always)]
-    fn at(&self, time: F) -> Vectors<F> {
-        self.from + (self.to - self.from) * time
-    }
-
-    /// Where balls that go along them first meet a face.
-    #[inline(always)]
-    fn first_hits(&self, face: &Face, radius: F) -> Hits<F> {
-        let Self { from, to } = *self;
-        let (like, [point, normal, unit]) = (radius, face.vectors());
-        let (zero, one) = (like.all(0.0), like.all(1.0));
-        let (point, normal, unit) =
-            (Vectors::splat(like, point), Vectors::splat(like, normal), Vectors::splat(like, unit));
-        let size = like.all(face.size());
-        let slack = like.all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + radius + size);
-        let (before, after) = (normal.dot(from - point), normal.dot(to - point));
-        let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
-        let rises = before.simd_lt(zero) & after.simd_ge(zero);
-        let time = min(max(before / (before - after), zero), one);
-        let center = Hits { are: falls | rises, time, normal: Vectors::select(falls, unit, -unit), slack };
-        let wide = radius.simd_gt(slack);
-        if !wide.any() {
-            return center;
-        }
-        let start = unit.dot(from - point);
-        let normal = Vectors::select(start.simd_lt(zero), -unit, unit);
-        let (room, closing) = (start.abs() - radius, negated(normal.dot(to - from)));
-        let time = max(room, zero) / closing;
-        let touched = wide & closing.simd_gt(zero) & time.simd_le(one);
-        let is_first = touched & not(center.are & center.time.simd_lt(time));
-        let mut hits = center;
-        hits.take(is_first, Hits { are: touched, time, normal, slack });
-        hits
-    }
-}
-
-impl<F: Eight> Hits<F> {
-    /// Takes some from others.
-    #[inline(always)]
-    fn take(&mut self, mask: F, others: Self) {
-        self.are = self.are | mask;
-        self.time = mask.select(others.time, self.time);
-        self.normal = Vectors::select(mask, others.normal, self.normal);
-        self.slack = mask.select(others.slack, self.slack);
-    }
-}
-
-impl<F: Eight> Meetings<F> {
-    fn none(place: Vectors<F>, unclear: F) -> Self {
-        let (like, zero) = (unclear, unclear.all(0.0));
-        let hits = Hits { are: zero, time: zero, normal: Vectors::splat(like, Vec3::ZERO), slack: zero };
-        Self { hits, unclear, place, begun: zero, chord_from: place }
-    }
-
-    /// Takes those that chords have found before `end` to their instants on the paths.
-    #[inline(always)]
-    fn put_on_path(&mut self, paths: &Paths<F>, cubics: &Cubics<F>, face: &Face, radius: F, end: F) {
-        let all = |x| radius.all(x);
-        let time = cubics.crossings(&self.hits, self.place, [self.begun, end]);
-        let place = cubics.at(time);
-        let is_far = (place - self.place).length().simd_gt(all(16.0) * self.hits.slack) & self.hits.are;
-        self.hits.time = time;
-        self.place = place;
-        if !is_far.any() {
-            return;
-        }
-        // A place far along the surface from that on the chord asks for the surface there.
-        let reach = (end - self.begun) * all(1.0 / 16.0);
-        let [from, to] = [max(time - reach, self.begun), min(time + reach, end)];
-        let begin = Vectors::select(from.simd_eq(all(0.0)), paths.x0, cubics.at(from));
-        let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(all(1.0)), paths.x1, cubics.at(to)) };
-        let near = piece.first_hits(face, radius);
-        let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(all(0.0));
-        let time = cubics.crossings(&near, piece.at(near.time), [from, to]);
-        self.place = Vectors::select(are, cubics.at(time), self.place);
-        self.hits.take(are, Hits { time, ..near });
-    }
-}
-
-/// Where some of them meet the face.
-struct Hits<F> {
-    /// Which do.
-    are: F,
-    time: F,
-    normal: Vectors<F>,
-    slack: F,
-}
-
-/// The same on the paths.
-struct Meetings<F> {
-    hits: Hits<F>,
-    /// Those whose place could not be told here.
-    unclear: F,
-    place: Vectors<F>,
-    begun: F,
-    chord_from: Vectors<F>,
-}
+use hits::{Hits, Meetings, Segments};
+use paths::Cubics;
+pub(super) use paths::Paths;
 
 /// Properties of eight particles that decide how they meet a face.
 pub(super) struct Riders<F> {
+    /// Those that are held where they are.
+    pub(super) is_fixed: F,
     pub(super) radius: F,
     pub(super) elasticity: F,
     /// Coefficients of friction.
@@ -153,161 +35,8 @@ pub(super) struct Outcome {
     pub(super) settled: u32,
     pub(super) hits: [u32; ROUNDS],
     pub(super) left: u32,
-    /// Places and velocities, coordinate by coordinate.
-    pub(super) ends: [[[f32; LANES]; 3]; 2],
-}
-
-impl<F: Eight> Paths<F> {
-    /// The first of two where a mask says so, else the second.
-    #[inline(always)]
-    fn select(mask: F, a: Self, b: Self) -> Self {
-        Self {
-            x0: Vectors::select(mask, a.x0, b.x0),
-            v0: Vectors::select(mask, a.v0, b.v0),
-            x1: Vectors::select(mask, a.x1, b.x1),
-            v1: Vectors::select(mask, a.v1, b.v1),
-            time: mask.select(a.time, b.time),
-        }
-    }
-
-    /// Where they lead, and the velocities there.
-    #[inline(always)]
-    fn ends(&self) -> [[[f32; LANES]; 3]; 2] {
-        [self.x1.columns(), self.v1.columns()]
-    }
-
-    #[inline(always)]
-    fn acceleration(&self) -> Vectors<F> {
-        (self.v1 - self.v0) / self.time
-    }
-
-    /// Those of which all numbers are finite, and their sums.
-    #[inline(always)]
-    fn are_finite(&self) -> F {
-        let zero = self.time.all(0.0);
-        let nought = (self.x0 + self.v0 + self.x1 + self.v1) * zero;
-        let [x, y, z] = nought.0;
-        (x + y + z).simd_eq(zero)
-    }
-
-    #[inline(always)]
-    fn cubics(&self) -> Cubics<F> {
-        let all = |x| self.time.all(x);
-        let half = all(0.5) * self.time;
-        let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * half;
-        let noticed = |axis: usize| {
-            let (excess, rounding) = (excess.0[axis], self.x0.0[axis].abs() + self.x1.0[axis].abs());
-            excess & not(excess.abs().simd_le(rounding * all(f32::EPSILON)))
-        };
-        let excess = Vectors([noticed(0), noticed(1), noticed(2)]);
-        let bend = (self.v1 - self.v0) * half;
-        let coefficients = [self.v0 * self.time, bend + excess * all(3.0), excess * all(-2.0)];
-        Cubics { start: self.x0, coefficients, bend, excess }
-    }
-
-    /// Their velocities at fractions of their times.
-    #[inline(always)]
-    fn velocity(&self, cubics: &Cubics<F>, s: F) -> Vectors<F> {
-        let Cubics { bend, excess, .. } = *cubics;
-        let steady = self.v0 + (self.v1 - self.v0) * s;
-        let all = |x| s.all(x);
-        let is_smooth = not(excess.is_zero()) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
-        let share = all(6.0) * s * (all(1.0) - s) / self.time;
-        Vectors::select(is_smooth, steady + excess * share, steady)
-    }
-
-    /// Where those who are asked for first meet a face.
-    #[inline(always)]
-    fn first_meetings(&self, cubics: &Cubics<F>, face: &Face, radius: F, asked: F) -> Meetings<F> {
-        let all = |x| radius.all(x);
-        let chords = asked.select(cubics.chords(), all(1.0));
-        let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
-        let mut found = Meetings::none(self.x0, unclear);
-        let mut end = all(0.0);
-        let (mut from, most) = (self.x0, chords.to_array().into_iter().fold(1.0, crate::math::max));
-        for i in 0..(most as u8).min(MAX_CHORDS as u8) {
-            let (begun, ends) = (all(f32::from(i)), all(f32::from(i + 1)));
-            let share = ends / chords;
-            let to = Vectors::select(ends.simd_eq(chords), self.x1, cubics.at(share));
-            let piece = Segments { from, to };
-            let open = asked & begun.simd_lt(chords) & not(found.hits.are | unclear);
-            let hits = piece.first_hits(face, radius);
-            let are = hits.are & open;
-            if are.any() {
-                found.chord_from = Vectors::select(are, from, found.chord_from);
-                found.begun = are.select(begun / chords, found.begun);
-                found.place = Vectors::select(are, piece.at(hits.time), found.place);
-                end = are.select(share, end);
-                let time = (begun + hits.time) / chords;
-                found.hits.take(are, Hits { time, ..hits });
-            }
-            from = to;
-        }
-        if found.hits.are.any() {
-            found.put_on_path(self, cubics, face, radius, end);
-        }
-        found
-    }
-}
-
-impl<F: Eight> Cubics<F> {
-    #[inline(always)]
-    fn at(&self, s: F) -> Vectors<F> {
-        let [c1, c2, c3] = self.coefficients;
-        self.start + (c1 + (c2 + c3 * s) * s) * s
-    }
-
-    /// Those whose ends lag behind their velocities.
-    #[inline(always)]
-    fn lag(&self) -> F {
-        let bend = self.bend.dot(self.bend);
-        self.excess.dot(self.bend).simd_lt(bend.all(-0.5) * bend)
-    }
-
-    /// When they cross the planes that touch the surface at places where they are hit, between two instants, from the side of the
-    /// normal to the other.
-    #[inline(always)]
-    fn crossings(&self, hits: &Hits<F>, place: Vectors<F>, [begun, end]: [F; 2]) -> F {
-        let [c1, c2, c3] = self.coefficients;
-        let (c1, c2, c3) = (c1.dot(hits.normal), c2.dot(hits.normal), c3.dot(hits.normal));
-        let c0 = (self.start - place).dot(hits.normal);
-        let all = |x| end.all(x);
-        let (mut low, mut high, mut s, mut sought) = (begun, end, end, hits.are);
-        for _ in 0..MAX_LOOKS {
-            let height = c0 + (c1 + (c2 + c3 * s) * s) * s;
-            let slope = c1 + (all(2.0) * c2 + all(3.0) * c3 * s) * s;
-            let above = height.simd_gt(all(0.0));
-            (low, high) = (above.select(s, low), above.select(high, s));
-            let newton = s - height / slope;
-            let is_between = newton.simd_ge(low) & newton.simd_le(high);
-            let next = sought.select(is_between.select(newton, all(0.5) * (low + high)), s);
-            let moved = (next - s).abs().simd_gt(all(f32::EPSILON) * end);
-            s = next;
-            sought = sought & moved;
-            if !sought.any() {
-                break;
-            }
-        }
-        s
-    }
-
-    /// How many chords stay near each, without a bound.
-    #[inline(always)]
-    fn chords(&self) -> F {
-        const STRAIGHT: f32 = (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR);
-        let [_, c2, c3] = self.coefficients;
-        let (like, one) = (c2.0[0], c2.0[0].all(1.0));
-        let all = |x| like.all(x);
-        let end = c2 + c3 * all(3.0);
-        let (c2, end) = (c2.dot(c2), end.dot(end));
-        let bent = not(max(c2, end).simd_le(all(STRAIGHT)));
-        if !bent.any() {
-            return one;
-        }
-        let ratio = all(2.0) * max(c2.sqrt(), end.sqrt()) / all(8.0 * CHORD_ERROR);
-        let whole = like.of(ratio.sqrt().to_array().map(|root| root as u16 as f32));
-        (bent & ratio.simd_gt(one)).select(whole + one, one)
-    }
+    /// Places and velocities, each with some number behind it.
+    pub(super) ends: [[[f32; 4]; LANES]; 2],
 }
 
 impl<F: Eight> Riders<F> {
@@ -316,7 +45,7 @@ impl<F: Eight> Riders<F> {
     pub(super) fn lie(&self, paths: &Paths<F>, face: &Face) -> Outcome {
         let acceleration = paths.acceleration();
         let (lying, normal) = self.seated(paths, face, acceleration);
-        let lying = lying & paths.are_finite();
+        let lying = lying & paths.are_finite() & not(self.is_fixed);
         if !lying.any() {
             return Outcome { settled: 0, hits: [0; ROUNDS], left: 0, ends: paths.ends() };
         }
@@ -396,7 +125,7 @@ impl<F: Eight> Riders<F> {
     #[inline(always)]
     pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, step: Time, max_bounces: u32) -> Outcome {
         let (mut onward, mut cubics) = (*paths, paths.cubics());
-        let mut clear = paths.are_finite() & not(cubics.lag());
+        let mut clear = paths.are_finite() & not(cubics.lag() | self.is_fixed);
         let mut meetings = paths.first_meetings(&cubics, face, self.radius, clear);
         let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);

@@ -333,24 +333,25 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 }
 
-/// The surroundings of a ball in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits. Of elasticities up
-/// to one these take no speed from it but by what they set it off.
+/// What is around a ball in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits.
 pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f32; 2], dt: f32) -> Facing {
-    if !(0.0..=1.0).contains(&elasticity) {
-        return Facing::Several;
-    }
-    let hull = path.hull(radius);
-    let (size, speed) = (max(largest(hull.min), largest(hull.max)), max(length(path.v0), length(path.v1)));
-    // Newborns look ahead as far as they would go in a whole step.
-    let reach = dt * (speed + 4.0 * length(path.v1 - path.v0));
-    let within = |size: f32| {
-        let room = reach + 128.0 * f32::EPSILON * size;
-        walls.facing(&Aabb { min: hull.min - room, max: hull.max + room })
-    };
-    match within(size) {
-        Facing::Face(face) if face.size() > size => within(face.size()),
+    let within = |size: f32| surroundings(path, [radius, elasticity], dt, size).map(|bounds| walls.facing(&bounds));
+    match within(0.0) {
+        Some(Facing::Face(face)) => within(face.size()),
         other => other,
     }
+    .unwrap_or(Facing::Several)
+}
+
+/// The box that holds it meanwhile, among things as far away from the origin as `size` \[m\]. Of elasticities up to one hits take no
+/// speed from it but by what they set it off; of others nothing is known.
+pub(super) fn surroundings(path: &Path, [radius, elasticity]: [f32; 2], dt: f32, size: f32) -> Option<Aabb> {
+    let hull = path.hull(radius);
+    let size = max(max(largest(hull.min), largest(hull.max)), size);
+    let speed = max(length(path.v0), length(path.v1));
+    // Newborns look ahead as far as they would go in a whole step.
+    let room = dt * (speed + 4.0 * length(path.v1 - path.v0)) + 128.0 * f32::EPSILON * size;
+    (0.0..=1.0).contains(&elasticity).then_some(Aabb { min: hull.min - room, max: hull.max + room })
 }
 
 /// Tells whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface.

@@ -3,16 +3,18 @@
 use super::near::{BLOCK, Balls};
 use super::packet::{Outcome, Paths, Riders};
 use super::path::Path;
-use super::sweep::{Sweep, facing};
+use super::sweep::{Sweep, facing, surroundings};
+use super::waiting::{Packet, Queue, ones};
 use crate::constrain::{SHIFTED, TOUCHING};
-use crate::lanes::{Eight, Kernel, LANES, Vectors, run};
+use crate::lanes::{Eight, Kernel, LANES, Vectors, run, widest};
 use crate::material::on_surface;
+use crate::math::{largest, max};
 use crate::memory::{Layout, Past};
 use crate::observe::{Attention, Observer};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::shape::{Aabb, Face, Facing, Hulls, Marks};
+use crate::shape::{Aabb, Collider, Face, Facing, Hulls, Many, Marks};
 use crate::step::Tile;
 use crate::time::Time;
 use glam::Vec3;
@@ -27,16 +29,11 @@ const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 struct TileSweep<'s, 'a> {
     tile: &'s mut Tile<'a>,
     past: Past<'s>,
+    /// Whether surfaces may have friction, or take more of a bounce than particles do by themselves.
+    has_materials: bool,
     facing: Facing,
     report: &'s mut Report,
     observer: Option<&'s mut dyn Observer>,
-}
-
-/// Rows that wait until there are eight.
-#[derive(Clone, Copy, Default)]
-struct Queue {
-    rows: [usize; LANES],
-    len: usize,
 }
 
 /// Rows that wait to go past a face: as if they lay on it, and as if they bounced off it.
@@ -50,13 +47,20 @@ struct Waiting {
 pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
     let work = core::mem::take(&mut tile.work);
     let past = Layout::of(tile.scene.plan(), tile.capacity).past(work);
-    let facing = if SHORT_WAY { tile.scene.colliders.facing(&EVERYWHERE) } else { Facing::Several };
+    let many = if SHORT_WAY { tile.scene.colliders.many() } else { None };
+    let outskirts = many.and_then(Many::outskirts);
+    let facing = match outskirts {
+        Some((face, things)) if things == Aabb::EMPTY => face.map_or(Facing::Nothing, Facing::Face),
+        None if SHORT_WAY && many.is_none() => tile.scene.colliders.facing(&EVERYWHERE),
+        _ => Facing::Several,
+    };
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
-    let has_sinks = !tile.scene.sinks.is_empty();
-    let mut tile_sweep = TileSweep { tile: &mut *tile, past, facing, report, observer };
-    match facing {
-        Facing::Face(face) if SHORT_WAY && !has_sinks => tile_sweep.go_past(&face),
+    let (has_sinks, has_materials) = (!tile.scene.sinks.is_empty(), tile.scene.materials.count() > 0);
+    let mut tile_sweep = TileSweep { tile: &mut *tile, past, has_materials, facing, report, observer };
+    match (facing, many.zip(outskirts)) {
+        (Facing::Face(face), _) if SHORT_WAY && !has_sinks => tile_sweep.go_past(&face),
+        (_, Some((many, (face, things)))) if tile_sweep.goes_in_packets() => tile_sweep.go_among(many, face, &things),
         _ => tile_sweep.go(),
     }
     tile.work = work;
@@ -65,14 +69,14 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
 /// Rows that may lie on a face.
 struct Lie<'t, 's, 'a> {
     of: &'t TileSweep<'s, 'a>,
-    rows: &'t [usize],
+    rows: &'t [usize; LANES],
     face: &'t Face,
 }
 
 /// Rows that may bounce off a face.
 struct Bounce<'t, 's, 'a> {
     of: &'t TileSweep<'s, 'a>,
-    rows: &'t [usize],
+    rows: &'t [usize; LANES],
     face: &'t Face,
 }
 
@@ -100,43 +104,27 @@ impl Waiting {
     }
 }
 
-impl Queue {
-    /// Puts a row in; all eight, once there are so many.
-    fn push(&mut self, row: usize) -> Option<[usize; LANES]> {
-        self.rows[self.len] = row;
-        self.len = (self.len + 1) % LANES;
-        (self.len == 0).then_some(self.rows)
-    }
-}
-
-/// Which bits of a packet are set.
-fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
-    core::iter::from_fn(move || {
-        let i = bits.trailing_zeros() as usize % u32::BITS as usize;
-        let any = bits != 0;
-        bits &= bits.wrapping_sub(1);
-        any.then_some(i)
-    })
-}
-
 impl TileSweep<'_, '_> {
     /// Follows one row after the other; those who are near the same face alone go past it in packets.
     fn go(&mut self) {
         let in_packets = SHORT_WAY && self.goes_in_packets();
-        let mut waiting = None;
+        let mut waiting: Option<Waiting> = None;
         for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
+            let mut in_packet = 0;
             for (i, mark) in marked(self.tile, &self.past, first).into_iter().enumerate() {
                 let row = first + i;
                 if mark == 0 {
                     continue;
                 }
                 match if in_packets { self.face_of(row) } else { None } {
-                    None => self.follow(row),
-                    Some(face) => {
-                        let waiting = waiting.get_or_insert_with(|| Waiting::before(face));
-                        if waiting.face == face { self.queue(row, waiting) } else { self.follow(row) }
+                    Some(face) if waiting.get_or_insert_with(|| Waiting::before(face)).face == face => {
+                        in_packet |= 1_u64 << i;
                     }
+                    _ => self.follow(row),
                 }
+            }
+            if let Some(waiting) = &mut waiting {
+                self.queue(first, in_packet, waiting);
             }
         }
         if let Some(waiting) = waiting {
@@ -149,17 +137,82 @@ impl TileSweep<'_, '_> {
         let (old, in_packets) = (self.tile.old, self.goes_in_packets());
         let mut waiting = Waiting::before(*face);
         for first in (0..old).step_by(BLOCK) {
-            let marks = self.balls().near(first..old.min(first + BLOCK), face);
-            let words = marks.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes));
-            for (row, marks) in (first..old).step_by(u32::BITS as usize).zip(words) {
-                for row in ones(marks).map(|i| row + i).take_while(|&row| row < old) {
-                    let is_fixed = self.tile.attributes.inverse_mass[row] == 0.0;
-                    if in_packets && !is_fixed { self.queue(row, &mut waiting) } else { self.follow(row) }
+            let count = (old - first).min(BLOCK);
+            let marks = self.balls().block(first..first + count).near(face);
+            let words = marks.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
+            for (row, marks) in (first..first + count).step_by(u64::BITS as usize).zip(words) {
+                if in_packets {
+                    self.queue(row, marks, &mut waiting);
+                } else {
+                    ones(marks).for_each(|i| self.follow(row + i));
                 }
             }
         }
         self.go_on(waiting);
         (old..self.tile.position.len()).for_each(|row| self.follow(row));
+    }
+
+    /// Follows all past many things, those in packets that meet nothing but a flat face: `face`, outside a box around all others.
+    #[inline(never)]
+    fn go_among(&mut self, many: &dyn Many, face: Option<Face>, things: &Aabb) {
+        let (len, old) = (self.tile.position.len(), self.tile.old);
+        let mut waiting = face.map(Waiting::before);
+        let size = max(max(largest(things.min), largest(things.max)), face.map_or(0.0, |face| face.size()));
+        for first in (0..old).step_by(BLOCK) {
+            let rows = first..old.min(first + BLOCK);
+            let block = self.balls().block(rows.clone());
+            let by_face = face.map_or([0; BLOCK / LANES], |face| block.near(&face));
+            let by_things = block.near_box(things);
+            // Who gains speed by hits may get anywhere.
+            let elasticities = &self.tile.attributes.elasticity[rows.clone()];
+            let reach = if never_gain(elasticities) { block.reach(size) } else { f32::INFINITY };
+            let room = Aabb { min: things.min - reach, max: things.max + reach };
+            let words = by_face.as_chunks().0.iter().zip(by_things.as_chunks().0);
+            for (row, (by_face, by_things)) in rows.step_by(u64::BITS as usize).zip(words) {
+                let mut past_face = u64::from_le_bytes(*by_face);
+                let by_things = u64::from_le_bytes(*by_things);
+                for k in ones(past_face | by_things) {
+                    if self.is_between(row + k, &room) && self.go_between(row + k, many, size) {
+                        past_face &= !(1 << k);
+                    }
+                }
+                if let Some(waiting) = &mut waiting {
+                    self.queue(row, past_face, waiting);
+                }
+            }
+        }
+        if let Some(waiting) = waiting {
+            self.go_on(waiting);
+        }
+        let known = face.map_or(Facing::Nothing, Facing::Face);
+        for row in old..len {
+            if !self.go_between(row, many, size) {
+                self.follow_past(row, self.tile.scene.colliders, Some(known));
+            }
+        }
+    }
+
+    /// Whether a box may be in between where a row's path begins and where it ends. Of what is no number it may.
+    #[inline(always)]
+    fn is_between(&self, row: usize, room: &Aabb) -> bool {
+        let (a, b) = (self.past.start[0][row], self.tile.position[row]);
+        let is_beside = |axis: usize| {
+            (a[axis] < room.min[axis]) & (b[axis] < room.min[axis])
+                | (a[axis] > room.max[axis]) & (b[axis] > room.max[axis])
+        };
+        !(is_beside(0) | is_beside(1) | is_beside(2))
+    }
+
+    /// Follows the particle in a row past the things that it is near, among such as are no farther from the origin than `size` \[m\];
+    /// false, if there is nothing near but the face outside their box.
+    fn go_between(&mut self, row: usize, many: &dyn Many, size: f32) -> bool {
+        let Tile { dt, attributes: ref m, .. } = *self.tile;
+        let own = [m.lives.radius[row], m.elasticity[row]];
+        let Some(bounds) = surroundings(&self.path(row), own, dt.seconds(), size) else {
+            self.follow(row);
+            return true;
+        };
+        many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
     }
 
     /// All rows on their ways.
@@ -183,23 +236,28 @@ impl TileSweep<'_, '_> {
         }
     }
 
-    /// Lets a row wait for others.
+    /// Lets those of some rows from the first on that are marked wait for others. A tile's last row goes alone, as none is behind it
+    /// to be read with it.
     #[inline(always)]
-    fn queue(&mut self, row: usize, waiting: &mut Waiting) {
-        if let Some(rows) = waiting.lying.push(row) {
-            self.lie(&rows, waiting);
+    fn queue(&mut self, first: usize, mut marks: u64, waiting: &mut Waiting) {
+        let last = self.tile.position.len() - 1;
+        if let Some(bit) = 1_u64.checked_shl((last - first) as u32).filter(|bit| marks & bit != 0) {
+            marks ^= bit;
+            self.follow(last);
+        }
+        waiting.lying.push_all(first, marks);
+        while let Some(packet) = waiting.lying.pop() {
+            self.lie(&packet, waiting);
         }
     }
 
     /// Lets those go who still wait.
     fn go_on(&mut self, mut waiting: Waiting) {
-        let lying = waiting.lying;
-        if lying.len > 0 {
-            self.lie(&lying.rows[..lying.len], &mut waiting);
+        if let Some(packet) = waiting.lying.rest() {
+            self.lie(&packet, &mut waiting);
         }
-        let Waiting { face, bouncing, .. } = waiting;
-        if bouncing.len > 0 {
-            self.bounce(&bouncing.rows[..bouncing.len], &face);
+        if let Some(packet) = waiting.bouncing.rest() {
+            self.bounce(&packet, &waiting.face);
         }
     }
 
@@ -212,67 +270,85 @@ impl TileSweep<'_, '_> {
 
     /// Lets those who lie on the face do so; the others bounce.
     #[inline(never)]
-    fn lie(&mut self, rows: &[usize], Waiting { face, bouncing, .. }: &mut Waiting) {
-        let outcome = run(Lie { of: self, rows, face });
-        for i in ones(self.settle(rows, &outcome)) {
-            if let Some(rows) = bouncing.push(rows[i]) {
-                self.bounce(&rows, face);
-            }
+    fn lie(&mut self, packet: &Packet, Waiting { face, bouncing, .. }: &mut Waiting) {
+        let outcome = run(Lie { of: self, rows: &packet.rows, face });
+        for i in ones(self.settle(packet, &outcome)) {
+            bouncing.push(packet.rows[i % LANES]);
+        }
+        while let Some(packet) = bouncing.pop() {
+            self.bounce(&packet, face);
         }
     }
 
     /// Lets those bounce off the face who do so once.
     #[inline(never)]
-    fn bounce(&mut self, rows: &[usize], face: &Face) {
-        let outcome = run(Bounce { of: self, rows, face });
-        self.settle(rows, &outcome);
+    fn bounce(&mut self, packet: &Packet, face: &Face) {
+        let outcome = run(Bounce { of: self, rows: &packet.rows, face });
+        self.settle(packet, &outcome);
     }
 
     /// Puts rows where they have come to, follows those who have to be, and says which are left: a bit each.
     #[inline(always)]
-    fn settle(&mut self, rows: &[usize], outcome: &Outcome) -> u32 {
-        let of_all = (1 << rows.len()) - 1;
+    fn settle(&mut self, Packet { rows, len }: &Packet, outcome: &Outcome) -> u32 {
+        let of_all = (1 << *len) - 1;
         self.report.hits += outcome.hits.iter().map(|hits| u64::from((hits & of_all).count_ones())).sum::<u64>();
-        let [[x, y, z], [u, v, w]] = &outcome.ends;
         let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
-        for (i, &row) in rows.iter().enumerate().take(LANES) {
-            let is_settled = outcome.settled >> i & 1 != 0;
-            if let (true, Some(position), Some(velocity)) = (is_settled, position.get_mut(row), velocity.get_mut(row)) {
-                (*position, *velocity) = (Vec3::new(x[i], y[i], z[i]), Vec3::new(u[i], v[i], w[i]));
+        let velocity = &mut velocity[..position.len()];
+        let [places, velocities] = &outcome.ends;
+        for (i, (&row, ([x, y, z, _], [u, v, w, _]))) in rows.iter().zip(places.iter().zip(velocities)).enumerate() {
+            // Who is missing is the first over again.
+            if outcome.settled >> i & 1 != 0 {
+                (position[row], velocity[row]) = (Vec3::new(*x, *y, *z), Vec3::new(*u, *v, *w));
             }
         }
         for i in ones(outcome.left & of_all) {
-            self.follow(rows[i]);
+            self.follow(rows[i % LANES]);
         }
         of_all & !(outcome.settled | outcome.left)
     }
 
-    /// Rows side by side, the first of them where there are fewer than eight.
+    /// Rows side by side, none of which is the tile's last.
     #[inline(always)]
-    fn packet<F: Eight>(&self, like: F, rows: &[usize], face: &Face) -> (Riders<F>, Paths<F>) {
-        let Tile { scene, attributes: ref m, .. } = *self.tile;
-        let (mut all, mut radius, mut elasticity) = ([rows[0]; LANES], [0.0; LANES], [0.0; LANES]);
+    fn packet<F: Eight>(&self, like: F, rows: &[usize; LANES], face: &Face) -> (Riders<F>, Paths<F>) {
+        let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
+        let (last, [start_x, start_v]) = (position.len() - 1, self.past.start);
+        let (radii, inverse_masses, own) = (&m.lives.radius[..last], &m.inverse_mass[..last], &m.elasticity[..last]);
+        let (mut radius, mut inverse_mass, mut elasticity) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (i, &row) in rows.iter().enumerate() {
+            (radius[i], inverse_mass[i], elasticity[i]) = (radii[row], inverse_masses[row], own[row]);
+        }
         let (mut at_rest, mut kinetic) = ([0.0; LANES], [0.0; LANES]);
-        all[..rows.len()].copy_from_slice(rows);
-        for (i, &row) in all.iter().enumerate() {
-            (radius[i], elasticity[i]) = (m.lives.radius[row], m.elasticity[row]);
+        if self.has_materials {
+            [elasticity, at_rest, kinetic] = self.mixed(rows, face, &elasticity);
         }
-        if scene.materials.count() > 0 {
-            for (i, &row) in all.iter().enumerate() {
-                let own = m.lives.material[row].checked_sub(1);
-                let mixed = on_surface(scene.materials, elasticity[i], own, face.material());
-                (elasticity[i], at_rest[i], kinetic[i]) =
-                    (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
-            }
+        let riders = Riders {
+            is_fixed: like.of(inverse_mass).simd_eq(like.all(0.0)),
+            radius: like.of(radius),
+            elasticity: like.of(elasticity),
+            at_rest: like.of(at_rest),
+            kinetic: like.of(kinetic),
+        };
+        let paths = Paths {
+            x0: Vectors::gather(like, start_x, last, rows),
+            v0: Vectors::gather(like, start_v, last, rows),
+            x1: Vectors::gather(like, position, last, rows),
+            v1: Vectors::gather(like, velocity, last, rows),
+            time: like.all(self.tile.dt.seconds()),
+        };
+        (riders, paths)
+    }
+
+    /// The elasticities of rows on a face, and the coefficients of friction at rest and in motion.
+    #[inline(never)]
+    fn mixed(&self, rows: &[usize; LANES], face: &Face, elasticity: &[f32; LANES]) -> [[f32; LANES]; 3] {
+        let mut mixed = [[0.0; LANES]; 3];
+        let [bounces, at_rest, kinetic] = &mut mixed;
+        for (i, (&row, &elasticity)) in rows.iter().zip(elasticity).enumerate() {
+            let own = self.tile.attributes.lives.material[row].checked_sub(1);
+            let mixed = on_surface(self.tile.scene.materials, elasticity, own, face.material());
+            (bounces[i], at_rest[i], kinetic[i]) = (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
         }
-        let (radius, elasticity) = (like.of(radius), like.of(elasticity));
-        let (at_rest, kinetic) = (like.of(at_rest), like.of(kinetic));
-        let [start_x, start_v] = self.past.start;
-        let (x0, v0) = (Vectors::gather(like, start_x, &all), Vectors::gather(like, start_v, &all));
-        let x1 = Vectors::gather(like, self.tile.position, &all);
-        let v1 = Vectors::gather(like, self.tile.velocity, &all);
-        let time = like.all(self.tile.dt.seconds());
-        (Riders { radius, elasticity, at_rest, kinetic }, Paths { x0, v0, x1, v1, time })
+        mixed
     }
 
     /// A row's path through the step.
@@ -286,10 +362,16 @@ impl TileSweep<'_, '_> {
     }
 
     /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
-    #[inline(never)]
     fn follow(&mut self, row: usize) {
+        let known = Some(self.facing).filter(|known| *known != Facing::Several);
+        self.follow_past(row, self.tile.scene.colliders, known);
+    }
+
+    /// The same past these, of which so much is known.
+    #[inline(never)]
+    fn follow_past(&mut self, row: usize, walls: &dyn Collider, known: Option<Facing>) {
         let path = self.path(row);
-        let Self { tile, past, facing: known, report, observer } = self;
+        let Self { tile, past, report, observer, .. } = self;
         let observer: Option<&mut dyn Observer> = match observer {
             Some(observer) => Some(&mut **observer),
             None => None,
@@ -313,7 +395,7 @@ impl TileSweep<'_, '_> {
         let before = report.hits;
         let sweep = Sweep {
             scene,
-            walls: scene.colliders,
+            walls,
             sinks,
             id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },
             row: tile.first + row,
@@ -328,9 +410,9 @@ impl TileSweep<'_, '_> {
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
         let is_newborn = row >= old;
         // Whoever is near one face alone goes the short way, among however many things.
-        let facing = match *known {
-            Facing::Several if SHORT_WAY => facing(scene.colliders, &path, [radius, sweep.elasticity], sweep.dt),
-            known => known,
+        let facing = match known {
+            None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
+            known => known.unwrap_or(Facing::Several),
         };
         let arrival = match facing {
             Facing::Face(face) if SHORT_WAY => sweep.past(&face).travel(&path, is_newborn, may_lie),
@@ -343,6 +425,15 @@ impl TileSweep<'_, '_> {
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
             (end.position, end.velocity, end.pending_death);
     }
+}
+
+/// Whether all elasticities are between zero and one: the bits of such numbers are in the same order, and below those of all others.
+fn never_gain(elasticities: &[f32]) -> bool {
+    let most = widest(
+        #[inline(always)]
+        || elasticities.iter().fold(0, |most: u32, elasticity| most.max(elasticity.to_bits())),
+    );
+    most <= 1.0_f32.to_bits()
 }
 
 /// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.

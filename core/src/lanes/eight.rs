@@ -5,6 +5,7 @@
 
 use super::LANES;
 use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
+use wide::f32x4;
 
 /// Eight numbers side by side. A mask has all bits of a lane set, or none.
 pub(crate) trait Eight:
@@ -40,6 +41,21 @@ pub(crate) trait Eight:
     fn thrice(self) -> [Self; 3] {
         let [a, b, c, d, e, f, g, h] = self.to_array();
         [self.of([a, a, a, b, b, b, c, c]), self.of([c, d, d, d, e, e, e, f]), self.of([f, f, g, g, g, h, h, h])]
+    }
+    /// Eight vectors coordinate by coordinate; the last number of each does not count.
+    #[inline(always)]
+    fn columns_of(self, vectors: [[f32; 4]; LANES]) -> [Self; 3] {
+        let four = |i: usize| f32x4::new(vectors[i]);
+        let [a, b, c, _] = f32x4::transpose([four(0), four(1), four(2), four(3)]);
+        let [e, f, g, _] = f32x4::transpose([four(4), four(5), four(6), four(7)]);
+        [self.of(bytemuck::cast([a, e])), self.of(bytemuck::cast([b, f])), self.of(bytemuck::cast([c, g]))]
+    }
+    /// The same turned round: one vector after the other, each with some number behind it.
+    #[inline(always)]
+    fn vectors_of([x, y, z]: [Self; 3]) -> [[f32; 4]; LANES] {
+        let halves = |lanes: Self| bytemuck::cast::<[f32; LANES], [f32x4; 2]>(lanes.to_array());
+        let ([a, e], [b, f], [c, g]) = (halves(x), halves(y), halves(z));
+        bytemuck::cast([f32x4::transpose([a, b, c, c]), f32x4::transpose([e, f, g, g])])
     }
     /// A bit for each lane of this mask.
     fn to_bitmask(self) -> u32;
@@ -170,11 +186,12 @@ impl Eight for wide::f32x8 {
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod avx2 {
     use super::{Eight, LANES};
-    use core::arch::x86_64::{__m256, __m256i, _mm256_permutevar8x32_ps};
+    use core::arch::x86_64::{__m256, __m256i, _mm256_permutevar8x32_ps, _mm256_shuffle_ps};
+    use core::arch::x86_64::{_mm256_unpackhi_ps, _mm256_unpacklo_ps};
     use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
     use fearless_simd::x86::Avx2;
-    use fearless_simd::{Bytes, ExtractToken, Select, SimdBase, SimdFloat, SimdFrom, SimdInto, SimdMask};
-    use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
+    use fearless_simd::{Bytes, ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdInto, SimdMask};
+    use fearless_simd::{f32x4, f32x8, i32x8, mask32x8, u32x8};
 
     // Compilers make a dozen instructions of what is one.
     fearless_simd::kernel!(
@@ -183,6 +200,32 @@ mod avx2 {
             _mm256_permutevar8x32_ps(lanes, order)
         }
     );
+
+    // Four rows of four in each half of the registers, as three columns.
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn turned(avx2: Avx2, a: __m256, b: __m256, c: __m256, d: __m256) -> [__m256; 3] {
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (last_ab, last_cd) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            let (x, y) = (_mm256_shuffle_ps::<0b01_00_01_00>(ab, cd), _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd));
+            [x, y, _mm256_shuffle_ps::<0b01_00_01_00>(last_ab, last_cd)]
+        }
+    );
+
+    // Three columns as four rows in each half of the registers.
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn turned_back(avx2: Avx2, x: __m256, y: __m256, z: __m256) -> [__m256; 4] {
+            let (low, high) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
+            let (a, b) = (_mm256_shuffle_ps::<0b00_00_01_00>(low, z), _mm256_shuffle_ps::<0b01_01_11_10>(low, z));
+            [a, b, _mm256_shuffle_ps::<0b10_10_01_00>(high, z), _mm256_shuffle_ps::<0b11_11_11_10>(high, z)]
+        }
+    );
+
+    #[inline(always)]
+    fn both(avx2: Avx2, low: [f32; 4], high: [f32; 4]) -> __m256 {
+        avx2.combine_f32x4(f32x4::from_slice(avx2, &low), f32x4::from_slice(avx2, &high)).into()
+    }
 
     #[derive(Clone, Copy)]
     pub(super) struct Wide(f32x8<Avx2>);
@@ -298,6 +341,27 @@ mod avx2 {
             )
         }
         #[inline(always)]
+        fn columns_of(self, v: [[f32; 4]; LANES]) -> [Self; 3] {
+            let avx2 = self.0.token();
+            let [a, b, c, d, e, f, g, h] = v;
+            let [a, b] = [both(avx2, a, e), both(avx2, b, f)];
+            let [c, d] = [both(avx2, c, g), both(avx2, d, h)];
+            turned(avx2, a, b, c, d).map(
+                #[inline(always)]
+                |column| Self(column.simd_into(avx2)),
+            )
+        }
+        #[inline(always)]
+        fn vectors_of([x, y, z]: [Self; 3]) -> [[f32; 4]; LANES] {
+            let avx2 = x.0.token();
+            let rows = turned_back(avx2, x.0.into(), y.0.into(), z.0.into()).map(
+                #[inline(always)]
+                |rows| bytemuck::cast::<[f32; LANES], [[f32; 4]; 2]>(f32x8::simd_from(avx2, rows).into()),
+            );
+            let [[a, e], [b, f], [c, g], [d, h]] = rows;
+            [a, b, c, d, e, f, g, h]
+        }
+        #[inline(always)]
         fn to_bitmask(self) -> u32 {
             self.mask().to_bitmask() as u32
         }
@@ -313,11 +377,14 @@ mod tests {
     struct Everything([[f32; LANES]; 2]);
 
     impl Kernel for Everything {
-        type Output = ([[f32; LANES]; 20], u32);
+        type Output = ([[f32; LANES]; 26], u32);
         #[inline(always)]
         fn run<F: Eight>(self, like: F) -> Self::Output {
             let [a, b] = self.0.map(|lanes| like.of(lanes));
             let ([c, d, e], mask) = (a.thrice(), a.simd_lt(b));
+            let rows = F::vectors_of([a, b, c]);
+            let [x, y, z] = like.columns_of(rows.map(|[x, y, z, _]| [z, x, y, 0.0]));
+            let row = |axis: usize| like.of(rows.map(|row| row[axis]));
             let made = [
                 a + b,
                 a - b,
@@ -339,6 +406,12 @@ mod tests {
                 e,
                 mask.select(a, b) - like.all(0.5),
                 like,
+                x,
+                y,
+                z,
+                row(0),
+                row(1),
+                row(2),
             ];
             (made.map(Eight::to_array), mask.to_bitmask())
         }
@@ -350,6 +423,9 @@ mod tests {
         for i in 0..121 {
             let lanes = [0, 1].map(|k| core::array::from_fn(|lane| numbers[(i / [1, 11][k] + lane) % 11]));
             let (one, other) = (run(Everything(lanes)), Everything(lanes).run(wide::f32x8::ZERO));
+            let same = |one: [f32; LANES], other: [f32; LANES]| one.map(f32::to_bits) == other.map(f32::to_bits);
+            assert!(same(one.0[21], one.0[23]) && same(one.0[22], one.0[24]) && same(one.0[20], one.0[25]));
+            assert!(same(one.0[23], lanes[0]) && same(one.0[24], lanes[1]));
             assert_eq!(one.1, other.1);
             for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");

@@ -14,22 +14,21 @@ impl<F: Eight> Vectors<F> {
         Self([like.all(v.x), like.all(v.y), like.all(v.z)])
     }
 
-    /// Those of eight rows.
+    /// Those of eight rows before the `last`, which are read with what the rows behind them begin with.
     #[inline(always)]
-    pub(crate) fn gather(like: F, column: &[Vec3], rows: &[usize; LANES]) -> Self {
-        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for (i, &row) in rows.iter().enumerate() {
-            let v = column[row];
-            (x[i], y[i], z[i]) = (v.x, v.y, v.z);
+    pub(crate) fn gather(like: F, column: &[Vec3], last: usize, rows: &[usize; LANES]) -> Self {
+        let (column, next) = (&column[..last], &column[1..][..last]);
+        let mut vectors = [[0.0; 4]; LANES];
+        for (vector, &row) in vectors.iter_mut().zip(rows) {
+            *vector = [column[row].x, column[row].y, column[row].z, next[row].x];
         }
-        Self([like.of(x), like.of(y), like.of(z)])
+        Self(like.columns_of(vectors))
     }
 
-    /// One coordinate of all after the other.
+    /// One after the other, each with some number behind it.
     #[inline(always)]
-    pub(crate) fn columns(self) -> [[f32; LANES]; 3] {
-        let [x, y, z] = self.0;
-        [x.to_array(), y.to_array(), z.to_array()]
+    pub(crate) fn rows(self) -> [[f32; 4]; LANES] {
+        F::vectors_of(self.0)
     }
 
     #[inline(always)]

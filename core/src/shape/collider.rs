@@ -1,6 +1,6 @@
 //! Things that a moving point can run into, one by one or in lists.
 
-use super::{Aabb, Affine, Facing, Hulls, Marks};
+use super::{Aabb, Affine, Facing, Hulls, Many, Marks};
 use crate::math::{along, high, largest, low, max, minus};
 use crate::time::Time;
 use glam::Vec3;
@@ -74,6 +74,12 @@ pub trait Collider: Sync {
     /// operating system do not ask.
     fn facing(&self, bounds: &Aabb) -> Facing {
         if self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
+    }
+
+    /// It as many things, of which those that are near a place are found at once. By default it is one. Chips without an operating
+    /// system do not ask.
+    fn many(&self) -> Option<&dyn Many> {
+        None
     }
 
     /// Visits the places of it that are nearest to `center` and within `reach` \[m\] of it at an instant, one for each
@@ -251,6 +257,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn facing(&self, bounds: &Aabb) -> Facing {
         (**self).facing(bounds)
+    }
+    fn many(&self) -> Option<&dyn Many> {
+        (**self).many()
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);

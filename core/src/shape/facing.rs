@@ -1,5 +1,6 @@
 //! What of a collider is near: nothing, one flat face that stands still, or more than that.
 
+use super::{Aabb, Collider};
 use crate::math::{largest, unit};
 use glam::Vec3;
 
@@ -33,6 +34,16 @@ impl Facing {
             other => other,
         }
     }
+}
+
+/// Many things, of which few are near any place.
+pub trait Many: Sync {
+    /// The box outside which there is nothing but one flat face, or nothing at all; none, if that is not known.
+    fn outskirts(&self) -> Option<(Option<Face>, Aabb)>;
+
+    /// Calls `then` with what answers as it does itself, and sooner where no question leads out of `bounds`: the few things there.
+    /// Where there is nothing but the flat face it does not, and says so by false.
+    fn near(&self, bounds: &Aabb, then: &mut dyn FnMut(&dyn Collider)) -> bool;
 }
 
 /// A plane that stands still, ready for many who ask: what runs over floors and walls most of the time.

@@ -3,6 +3,8 @@
 mod aabb;
 mod ball;
 mod capsule;
+#[cfg(feature = "alloc")]
+mod cells;
 mod collider;
 mod cone;
 mod convex;
@@ -37,7 +39,7 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
-pub use facing::{Face, Facing};
+pub use facing::{Face, Facing, Many};
 pub use heightfield::{BadHeights, HeightField};
 #[cfg(feature = "alloc")]
 pub use heights::{HeightFieldBuf, Heights};

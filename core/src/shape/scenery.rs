@@ -1,6 +1,7 @@
 //! Many things to run into, behind an index of their boxes.
 
-use super::{Aabb, Collider, Contact, Facing, Hit, Hulls, Marks, Ride, Segment, earlier};
+use super::cells::{Cells, Found, insert};
+use super::{Aabb, Collider, Contact, Face, Facing, Hit, Hulls, Many, Marks, Ride, Segment, earlier};
 use crate::math::{largest, max};
 use crate::rays::{Index, Pieces, Structure};
 use crate::time::Time;
@@ -11,6 +12,9 @@ use glam::Vec3;
 
 /// Fewer things than this are looked at one by one.
 const WORTH_AN_INDEX: usize = 8;
+
+/// Everything.
+const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
 /// A list of colliders of which only those are asked whose boxes are near: what a hundred things cost is little more than what one
 /// costs that a particle is near.
@@ -24,8 +28,17 @@ pub struct Scenery<C> {
     all: Aabb,
     /// Those whose boxes have no end, and which are therefore always near.
     endless: Vec<usize>,
-    /// An index of the other boxes; none, if there are few.
+    /// The other boxes by the cells of a grid, for whoever is asked about a small place.
+    cells: Cells,
+    /// An index of them for all others; none, if there are few.
     words: Vec<u32>,
+}
+
+/// Those things of many that are near a place.
+struct Nearby<'s, C> {
+    of: &'s Scenery<C>,
+    /// Their numbers, and where no other is; none, if they are too many.
+    known: Option<(&'s Found, Aabb)>,
 }
 
 /// Boxes as an index sees them.
@@ -59,11 +72,39 @@ impl<C: Collider> Scenery<C> {
             // Too few to be worth it, or more than can be numbered.
             Err(_) => Vec::new(),
         };
-        Self { things, boxes, all, endless, words }
+        let cells = Cells::new(&boxes.0, &all, &|number| !is_endless(&boxes.0[number]));
+        Self { things, boxes, all, endless, cells, words }
+    }
+
+    /// Finds those that a box may share a point with; false, if they may be too many.
+    #[inline]
+    fn find(&self, bounds: &Aabb, found: &mut Found) -> bool {
+        let has_room = self.endless.iter().all(|&number| insert(found, number as u32));
+        has_room && self.cells.near(&self.boxes.0, bounds, found)
     }
 
     /// Visits those that a box may share a point with, in their order.
     fn near(&self, bounds: &Aabb, visit: &mut dyn FnMut(&C)) {
+        let mut found = Found::new();
+        if self.find(bounds, &mut found) {
+            self.visit(&found, bounds, visit);
+        } else {
+            self.visit_many(bounds, visit);
+        }
+    }
+
+    /// Visits those of some that a box may share a point with.
+    #[inline]
+    fn visit(&self, numbers: &[u32], bounds: &Aabb, visit: &mut dyn FnMut(&C)) {
+        numbers
+            .iter()
+            .map(|&number| &self.things[number as usize])
+            .filter(|thing| thing.may_touch(bounds))
+            .for_each(visit);
+    }
+
+    #[inline(never)]
+    fn visit_many(&self, bounds: &Aabb, visit: &mut dyn FnMut(&C)) {
         let mut ask = |thing: &C| {
             if thing.may_touch(bounds) {
                 visit(thing);
@@ -81,6 +122,29 @@ impl<C: Collider> Scenery<C> {
         });
         endless.for_each(|number| ask(&self.things[number]));
     }
+
+    /// All of them.
+    fn anywhere(&self) -> Nearby<'_, C> {
+        Nearby { of: self, known: None }
+    }
+}
+
+impl<C: Collider> Nearby<'_, C> {
+    /// Visits those that a box may share a point with, in their order.
+    #[inline]
+    fn near(&self, bounds: &Aabb, mut visit: impl FnMut(&C)) {
+        match self.known {
+            Some((numbers, within)) if holds(&within, bounds) => self.of.visit(numbers, bounds, &mut visit),
+            _ => self.of.near(bounds, &mut visit),
+        }
+    }
+}
+
+/// Whether a box holds another.
+#[inline]
+fn holds(outer: &Aabb, inner: &Aabb) -> bool {
+    let holds = |axis: usize| (inner.min[axis] >= outer.min[axis]) & (inner.max[axis] <= outer.max[axis]);
+    holds(0) & holds(1) & holds(2)
 }
 
 /// A box with room for what rounding may do to whoever is held against it, and for what lines touch beside themselves.
@@ -96,17 +160,82 @@ impl<C> Deref for Scenery<C> {
     }
 }
 
-impl<C: Collider> Collider for Scenery<C> {
+impl<C: Collider> Many for Scenery<C> {
+    fn outskirts(&self) -> Option<(Option<Face>, Aabb)> {
+        match *self.endless {
+            [] => Some((None, self.all)),
+            [number] => match self.things[number].facing(&EVERYWHERE) {
+                Facing::Face(face) => Some((Some(face), self.all)),
+                Facing::Nothing => Some((None, self.all)),
+                Facing::Several => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn near(&self, bounds: &Aabb, then: &mut dyn FnMut(&dyn Collider)) -> bool {
+        let mut found = Found::new();
+        let is_known = self.find(bounds, &mut found);
+        let is_anything = !is_known || found.len() > self.endless.len();
+        if is_anything {
+            then(&Nearby { of: self, known: is_known.then_some((&found, *bounds)) });
+        }
+        is_anything
+    }
+}
+
+impl<C: Collider> Collider for Nearby<'_, C> {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let mut best = None;
-        self.near(&segment.bounds(), &mut |thing| best = earlier(best, thing.first_hit(segment)));
+        self.near(&segment.bounds(), |thing| best = earlier(best, thing.first_hit(segment)));
         best
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let mut may = false;
-        self.near(bounds, &mut |_| may = true);
+        self.near(bounds, |_| may = true);
         may
+    }
+
+    fn facing(&self, bounds: &Aabb) -> Facing {
+        match self.known {
+            Some((numbers, within)) if holds(&within, bounds) => {
+                numbers.iter().fold(Facing::Nothing, |facing, &number| match facing {
+                    Facing::Several => facing,
+                    one => one.and(self.of.things[number as usize].facing(bounds)),
+                })
+            }
+            _ => self.of.facing(bounds),
+        }
+    }
+
+    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach };
+        self.near(&bounds, |thing| thing.contacts(center, reach, at, visit));
+    }
+
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.of.things.carry(point, radius, during)
+    }
+
+    fn ride(&self, seat: &Segment) -> Option<Ride> {
+        let mut ride = None;
+        self.near(&seat.bounds(), |thing| ride = ride.or_else(|| thing.ride(seat)));
+        ride
+    }
+
+    fn is_empty(&self) -> bool {
+        Collider::is_empty(&self.of.things[..])
+    }
+}
+
+impl<C: Collider> Collider for Scenery<C> {
+    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+        self.anywhere().first_hit(segment)
+    }
+
+    fn may_touch(&self, bounds: &Aabb) -> bool {
+        self.anywhere().may_touch(bounds)
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
@@ -142,22 +271,23 @@ impl<C: Collider> Collider for Scenery<C> {
         facing
     }
 
+    fn many(&self) -> Option<&dyn Many> {
+        Some(self)
+    }
+
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        let bounds = Aabb { min: center - reach, max: center + reach };
-        self.near(&bounds, &mut |thing| thing.contacts(center, reach, at, visit));
+        self.anywhere().contacts(center, reach, at, visit);
     }
 
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-        self.things.carry(point, radius, during)
+        self.anywhere().carry(point, radius, during)
     }
 
     fn ride(&self, seat: &Segment) -> Option<Ride> {
-        let mut ride = None;
-        self.near(&seat.bounds(), &mut |thing| ride = ride.or_else(|| thing.ride(seat)));
-        ride
+        self.anywhere().ride(seat)
     }
 
     fn is_empty(&self) -> bool {
-        Collider::is_empty(&self.things[..])
+        self.anywhere().is_empty()
     }
 }

@@ -21,7 +21,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// Rows of a tile: enough to share the cost of the calls, few enough for the innermost cache.
-pub(super) const TILE: usize = 512;
+pub(super) const TILE: usize = 640;
 
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]

@@ -1,0 +1,177 @@
+//! Where eight paths side by side meet a flat face.
+
+use super::paths::{Cubics, Paths};
+use crate::collide::path::MAX_CHORDS;
+use crate::collide::sweep::MAX_LOOKS;
+use crate::lanes::{Eight, Vectors, max, min, negated, not};
+use crate::shape::Face;
+use glam::Vec3;
+
+/// Where some of them meet the face.
+pub(super) struct Hits<F> {
+    /// Which do.
+    pub(super) are: F,
+    pub(super) time: F,
+    pub(super) normal: Vectors<F>,
+    pub(super) slack: F,
+}
+
+/// The same on the paths.
+pub(super) struct Meetings<F> {
+    pub(super) hits: Hits<F>,
+    /// Those whose place could not be told here.
+    pub(super) unclear: F,
+    pub(super) place: Vectors<F>,
+    pub(super) begun: F,
+    pub(super) chord_from: Vectors<F>,
+}
+
+/// Straight pieces of them.
+pub(super) struct Segments<F> {
+    pub(super) from: Vectors<F>,
+    pub(super) to: Vectors<F>,
+}
+
+impl<F: Eight> Segments<F> {
+    #[inline(always)]
+    pub(super) fn at(&self, time: F) -> Vectors<F> {
+        self.from + (self.to - self.from) * time
+    }
+
+    /// Where balls that go along them first meet a face.
+    #[inline(always)]
+    pub(super) fn first_hits(&self, face: &Face, radius: F) -> Hits<F> {
+        let Self { from, to } = *self;
+        let (like, [point, normal, unit]) = (radius, face.vectors());
+        let (zero, one) = (like.all(0.0), like.all(1.0));
+        let (point, normal, unit) =
+            (Vectors::splat(like, point), Vectors::splat(like, normal), Vectors::splat(like, unit));
+        let size = like.all(face.size());
+        let slack = like.all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + radius + size);
+        let (before, after) = (normal.dot(from - point), normal.dot(to - point));
+        let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
+        let rises = before.simd_lt(zero) & after.simd_ge(zero);
+        let time = min(max(before / (before - after), zero), one);
+        let center = Hits { are: falls | rises, time, normal: Vectors::select(falls, unit, -unit), slack };
+        let wide = radius.simd_gt(slack);
+        if !wide.any() {
+            return center;
+        }
+        let start = unit.dot(from - point);
+        let normal = Vectors::select(start.simd_lt(zero), -unit, unit);
+        let (room, closing) = (start.abs() - radius, negated(normal.dot(to - from)));
+        let time = max(room, zero) / closing;
+        let touched = wide & closing.simd_gt(zero) & time.simd_le(one);
+        let is_first = touched & not(center.are & center.time.simd_lt(time));
+        let mut hits = center;
+        hits.take(is_first, Hits { are: touched, time, normal, slack });
+        hits
+    }
+}
+
+impl<F: Eight> Hits<F> {
+    /// Takes some from others.
+    #[inline(always)]
+    pub(super) fn take(&mut self, mask: F, others: Self) {
+        self.are = self.are | mask;
+        self.time = mask.select(others.time, self.time);
+        self.normal = Vectors::select(mask, others.normal, self.normal);
+        self.slack = mask.select(others.slack, self.slack);
+    }
+}
+
+impl<F: Eight> Meetings<F> {
+    fn none(place: Vectors<F>, unclear: F) -> Self {
+        let (like, zero) = (unclear, unclear.all(0.0));
+        let hits = Hits { are: zero, time: zero, normal: Vectors::splat(like, Vec3::ZERO), slack: zero };
+        Self { hits, unclear, place, begun: zero, chord_from: place }
+    }
+
+    /// Takes those that chords have found before `end` to their instants on the paths.
+    #[inline(always)]
+    fn put_on_path(&mut self, paths: &Paths<F>, cubics: &Cubics<F>, face: &Face, radius: F, end: F) {
+        let all = |x| radius.all(x);
+        let time = cubics.crossings(&self.hits, self.place, [self.begun, end]);
+        let place = cubics.at(time);
+        let is_far = (place - self.place).length().simd_gt(all(16.0) * self.hits.slack) & self.hits.are;
+        self.hits.time = time;
+        self.place = place;
+        if !is_far.any() {
+            return;
+        }
+        // A place far along the surface from that on the chord asks for the surface there.
+        let reach = (end - self.begun) * all(1.0 / 16.0);
+        let [from, to] = [max(time - reach, self.begun), min(time + reach, end)];
+        let begin = Vectors::select(from.simd_eq(all(0.0)), paths.x0, cubics.at(from));
+        let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(all(1.0)), paths.x1, cubics.at(to)) };
+        let near = piece.first_hits(face, radius);
+        let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(all(0.0));
+        let time = cubics.crossings(&near, piece.at(near.time), [from, to]);
+        self.place = Vectors::select(are, cubics.at(time), self.place);
+        self.hits.take(are, Hits { time, ..near });
+    }
+}
+
+impl<F: Eight> Paths<F> {
+    /// Where those who are asked for first meet a face.
+    #[inline(always)]
+    pub(super) fn first_meetings(&self, cubics: &Cubics<F>, face: &Face, radius: F, asked: F) -> Meetings<F> {
+        let all = |x| radius.all(x);
+        let chords = asked.select(cubics.chords(), all(1.0));
+        let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
+        let mut found = Meetings::none(self.x0, unclear);
+        let mut end = all(0.0);
+        let (mut from, most) = (self.x0, chords.to_array().into_iter().fold(1.0, crate::math::max));
+        for i in 0..(most as u8).min(MAX_CHORDS as u8) {
+            let (begun, ends) = (all(f32::from(i)), all(f32::from(i + 1)));
+            let share = ends / chords;
+            let to = Vectors::select(ends.simd_eq(chords), self.x1, cubics.at(share));
+            let piece = Segments { from, to };
+            let open = asked & begun.simd_lt(chords) & not(found.hits.are | unclear);
+            let hits = piece.first_hits(face, radius);
+            let are = hits.are & open;
+            if are.any() {
+                found.chord_from = Vectors::select(are, from, found.chord_from);
+                found.begun = are.select(begun / chords, found.begun);
+                found.place = Vectors::select(are, piece.at(hits.time), found.place);
+                end = are.select(share, end);
+                let time = (begun + hits.time) / chords;
+                found.hits.take(are, Hits { time, ..hits });
+            }
+            from = to;
+        }
+        if found.hits.are.any() {
+            found.put_on_path(self, cubics, face, radius, end);
+        }
+        found
+    }
+}
+
+impl<F: Eight> Cubics<F> {
+    /// When they cross the planes that touch the surface at places where they are hit, between two instants, from the side of the
+    /// normal to the other.
+    #[inline(always)]
+    fn crossings(&self, hits: &Hits<F>, place: Vectors<F>, [begun, end]: [F; 2]) -> F {
+        let [c1, c2, c3] = self.coefficients;
+        let (c1, c2, c3) = (c1.dot(hits.normal), c2.dot(hits.normal), c3.dot(hits.normal));
+        let c0 = (self.start - place).dot(hits.normal);
+        let all = |x| end.all(x);
+        let (mut low, mut high, mut s, mut sought) = (begun, end, end, hits.are);
+        for _ in 0..MAX_LOOKS {
+            let height = c0 + (c1 + (c2 + c3 * s) * s) * s;
+            let slope = c1 + (all(2.0) * c2 + all(3.0) * c3 * s) * s;
+            let above = height.simd_gt(all(0.0));
+            (low, high) = (above.select(s, low), above.select(high, s));
+            let newton = s - height / slope;
+            let is_between = newton.simd_ge(low) & newton.simd_le(high);
+            let next = sought.select(is_between.select(newton, all(0.5) * (low + high)), s);
+            let moved = (next - s).abs().simd_gt(all(f32::EPSILON) * end);
+            s = next;
+            sought = sought & moved;
+            if !sought.any() {
+                break;
+            }
+        }
+        s
+    }
+}

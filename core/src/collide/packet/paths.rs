@@ -1,0 +1,117 @@
+//! Paths of eight particles side by side, and the polynomials that they are.
+
+use crate::collide::path::CHORD_ERROR;
+use crate::lanes::{Eight, LANES, Vectors, max, not};
+
+/// Eight cubics, as `Path`.
+#[derive(Clone, Copy)]
+pub(in crate::collide) struct Paths<F> {
+    pub(in crate::collide) x0: Vectors<F>,
+    pub(in crate::collide) v0: Vectors<F>,
+    pub(in crate::collide) x1: Vectors<F>,
+    pub(in crate::collide) v1: Vectors<F>,
+    /// How long they take \[s\].
+    pub(in crate::collide) time: F,
+}
+
+/// The same as polynomials.
+pub(super) struct Cubics<F> {
+    pub(super) start: Vectors<F>,
+    pub(super) coefficients: [Vectors<F>; 3],
+    /// Half the change of velocity as a way, and how much farther the cubic leads.
+    pub(super) bend: Vectors<F>,
+    pub(super) excess: Vectors<F>,
+}
+
+impl<F: Eight> Paths<F> {
+    /// The first of two where a mask says so, else the second.
+    #[inline(always)]
+    pub(super) fn select(mask: F, a: Self, b: Self) -> Self {
+        Self {
+            x0: Vectors::select(mask, a.x0, b.x0),
+            v0: Vectors::select(mask, a.v0, b.v0),
+            x1: Vectors::select(mask, a.x1, b.x1),
+            v1: Vectors::select(mask, a.v1, b.v1),
+            time: mask.select(a.time, b.time),
+        }
+    }
+
+    /// Where they lead, and the velocities there.
+    #[inline(always)]
+    pub(super) fn ends(&self) -> [[[f32; 4]; LANES]; 2] {
+        [self.x1.rows(), self.v1.rows()]
+    }
+
+    #[inline(always)]
+    pub(super) fn acceleration(&self) -> Vectors<F> {
+        (self.v1 - self.v0) / self.time
+    }
+
+    /// Those of which all numbers are finite, and their sums.
+    #[inline(always)]
+    pub(super) fn are_finite(&self) -> F {
+        let zero = self.time.all(0.0);
+        let nought = (self.x0 + self.v0 + self.x1 + self.v1) * zero;
+        let [x, y, z] = nought.0;
+        (x + y + z).simd_eq(zero)
+    }
+
+    #[inline(always)]
+    pub(super) fn cubics(&self) -> Cubics<F> {
+        let all = |x| self.time.all(x);
+        let half = all(0.5) * self.time;
+        let excess = (self.x1 - self.x0) - (self.v0 + self.v1) * half;
+        let noticed = |axis: usize| {
+            let (excess, rounding) = (excess.0[axis], self.x0.0[axis].abs() + self.x1.0[axis].abs());
+            excess & not(excess.abs().simd_le(rounding * all(f32::EPSILON)))
+        };
+        let excess = Vectors([noticed(0), noticed(1), noticed(2)]);
+        let bend = (self.v1 - self.v0) * half;
+        let coefficients = [self.v0 * self.time, bend + excess * all(3.0), excess * all(-2.0)];
+        Cubics { start: self.x0, coefficients, bend, excess }
+    }
+
+    /// Their velocities at fractions of their times.
+    #[inline(always)]
+    pub(super) fn velocity(&self, cubics: &Cubics<F>, s: F) -> Vectors<F> {
+        let Cubics { bend, excess, .. } = *cubics;
+        let steady = self.v0 + (self.v1 - self.v0) * s;
+        let all = |x| s.all(x);
+        let is_smooth = not(excess.is_zero()) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
+        let share = all(6.0) * s * (all(1.0) - s) / self.time;
+        Vectors::select(is_smooth, steady + excess * share, steady)
+    }
+}
+
+impl<F: Eight> Cubics<F> {
+    #[inline(always)]
+    pub(super) fn at(&self, s: F) -> Vectors<F> {
+        let [c1, c2, c3] = self.coefficients;
+        self.start + (c1 + (c2 + c3 * s) * s) * s
+    }
+
+    /// Those whose ends lag behind their velocities.
+    #[inline(always)]
+    pub(super) fn lag(&self) -> F {
+        let bend = self.bend.dot(self.bend);
+        self.excess.dot(self.bend).simd_lt(bend.all(-0.5) * bend)
+    }
+
+    /// How many chords stay near each, without a bound.
+    #[inline(always)]
+    pub(super) fn chords(&self) -> F {
+        const STRAIGHT: f32 = (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR);
+        let [_, c2, c3] = self.coefficients;
+        let (like, one) = (c2.0[0], c2.0[0].all(1.0));
+        let all = |x| like.all(x);
+        let end = c2 + c3 * all(3.0);
+        let (c2, end) = (c2.dot(c2), end.dot(end));
+        let bent = not(max(c2, end).simd_le(all(STRAIGHT)));
+        if !bent.any() {
+            return one;
+        }
+        let ratio = all(2.0) * max(c2.sqrt(), end.sqrt()) / all(8.0 * CHORD_ERROR);
+        let whole = like.of(ratio.sqrt().to_array().map(|root| root as u16 as f32));
+        (bent & ratio.simd_gt(one)).select(whole + one, one)
+    }
+}

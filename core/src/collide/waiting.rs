@@ -1,0 +1,68 @@
+//! Rows that wait until there are enough of them to go side by side.
+
+use crate::lanes::LANES;
+
+/// Rows that wait until there are eight: those of a word of marks besides fewer than eight of before.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Queue {
+    rows: [[usize; LANES]; 9],
+    len: usize,
+}
+
+/// Rows that go together, the first of them in place of those that are missing, and how many they are.
+#[derive(Clone, Copy)]
+pub(super) struct Packet {
+    pub(super) rows: [usize; LANES],
+    pub(super) len: usize,
+}
+
+impl Queue {
+    /// Puts a row in, behind no more than there is room for.
+    #[inline(always)]
+    pub(super) fn push(&mut self, row: usize) {
+        if let Some(place) = self.rows.as_flattened_mut().get_mut(self.len) {
+            *place = row;
+            self.len += 1;
+        }
+    }
+
+    /// Puts in those from the first on that are marked.
+    #[inline(always)]
+    pub(super) fn push_all(&mut self, first: usize, mut marks: u64) {
+        let (rows, mut len) = (self.rows.as_flattened_mut(), self.len);
+        while let Some(place) = rows.get_mut(len).filter(|_| marks != 0) {
+            *place = first + marks.trailing_zeros() as usize;
+            marks &= marks - 1;
+            len += 1;
+        }
+        self.len = len;
+    }
+
+    /// The last eight, once there are so many.
+    #[inline(always)]
+    pub(super) fn pop(&mut self) -> Option<Packet> {
+        let rest = self.len.checked_sub(LANES)?;
+        let rows = *self.rows.as_flattened().get(rest..)?.first_chunk()?;
+        self.len = rest;
+        Some(Packet { rows, len: LANES })
+    }
+
+    /// Those who still wait, if anybody does.
+    pub(super) fn rest(&self) -> Option<Packet> {
+        let mut rows = self.rows[0];
+        let (first, len) = (rows[0], self.len.min(LANES));
+        rows[len..].fill(first);
+        (len > 0).then_some(Packet { rows, len })
+    }
+}
+
+/// The numbers of the bits that are set.
+pub(super) fn ones(bits: impl Into<u64>) -> impl Iterator<Item = usize> {
+    let mut bits = bits.into();
+    core::iter::from_fn(move || {
+        let i = bits.trailing_zeros() as usize % u64::BITS as usize;
+        let any = bits != 0;
+        bits &= bits.wrapping_sub(1);
+        any.then_some(i)
+    })
+}
