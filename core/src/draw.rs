@@ -17,7 +17,7 @@ pub struct Appearance {
     pub diameter: f32,
     /// The factor of that size which is in `diameter` already, for points.
     pub scale: f32,
-    /// Whether it is drawn with its own radius: a body, no mark.
+    /// True if it is drawn with its own radius: a body, no mark.
     pub solid: bool,
     /// Its colour, with the opacity it has now.
     pub color: Color,

@@ -11,7 +11,7 @@ use glam::Vec3;
 pub(crate) use vectors::Vectors;
 use wide::{f32x4, f32x8};
 
-/// How many there are.
+/// Their number.
 pub(crate) const LANES: usize = 8;
 
 /// Where a lane that stands for nothing is put, without weight: so far that whatever is divided by its distance is zero,

@@ -54,7 +54,7 @@ struct Snapshot {
     velocity: Vec<Vec3>,
 }
 
-/// Energy \[J\] by cause, above zero what came in.
+/// Energy \[J\] by cause: above zero what came in, below zero what was lost.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Books {

@@ -38,7 +38,7 @@ pub trait Script: Sync {
     /// Where everything is at an instant and how it moves there: a pure function of the instant.
     fn frame(&self, at: Time) -> Frame;
 
-    /// Whether it never moves anything: nobody then asks where.
+    /// Tells whether it never moves anything: nobody then asks where.
     fn is_still(&self) -> bool {
         false
     }

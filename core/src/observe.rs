@@ -10,12 +10,17 @@ use glam::Vec3;
 /// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away.
 ///
 /// ```
-/// use pointmass::{Cause, Heap, LifeEvent, Observer, Particle, Scene, System, Time};
+/// use pointmass::{Attention, Cause, Heap, LifeEvent, Observer, Particle, Scene, System, Time};
 ///
 /// /// Counts who dies of age.
 /// struct Registrar(u32);
 ///
 /// impl Observer for Registrar {
+///     // The phases do not matter to it: steps stay as fast as they are unseen.
+///     fn attention(&self) -> Attention {
+///         Attention::Events
+///     }
+///
 ///     fn died(&mut self, _: &LifeEvent, cause: Cause) {
 ///         self.0 += u32::from(cause == Cause::Lifetime);
 ///     }
@@ -37,7 +42,7 @@ pub trait Observer {
 
     /// Tells what it wants to know of. A step in which no particle looks at another and nobody watches the phases takes
     /// them through all of these a few at a time; and many at once, if nothing is to be told and the program has
-    /// threads. To the same bits.
+    /// threads. To the same bits. Unless it says otherwise it wants to know everything, which is slowest.
     fn attention(&self) -> Attention {
         Attention::Phases
     }

@@ -26,15 +26,15 @@ pub struct Particle {
     pub mass: f32,
     /// It never moves, but still attracts and pulls at its springs.
     pub fixed: bool,
-    /// Coefficient of linear drag \[kg/s\].
+    /// Coefficient of linear drag \[kg/s\], for forces that read it (`Drag`, `Wind`).
     pub drag: f32,
-    /// Electric charge \[C\].
+    /// Electric charge \[C\], for forces that read it (`Coulomb`).
     pub charge: f32,
     /// The share of the normal speed it keeps when it hits something, 0 to 1.
     pub elasticity: f32,
     /// How long it lives \[s\]; zero or less: for ever.
     pub lifetime: f32,
-    /// Number of its material in the scene, if it has one.
+    /// Number of its material in the scene from 0, if it has one.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub material: Option<u16>,
     /// Its colour; without one, that of its material.

@@ -15,7 +15,8 @@ pub struct Report {
     pub died: Died,
     /// Particles that found no room.
     pub refused: u64,
-    /// Times that a particle met a collider; of contacts held by position one in each sub-step.
+    /// Times that a particle met a collider; of contacts held by position one in each sub-step. What rests on one meets it in
+    /// every step.
     pub hits: u64,
     /// Times that two particles met; of contacts held by position one in each sub-step, of those by force none.
     pub contacts: u64,

@@ -34,7 +34,7 @@ pub(crate) struct Compare {
     /// other numbers take a random subset
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = count)]
     pub(crate) n: Vec<usize>,
-    /// The triangles of a mesh, which segments are held against: .off, .obj, .stl or .ply
+    /// The triangles of a mesh, which segments are held against: .off, .obj, .stl, .ply, or the ink of a .png
     #[arg(long, value_name = "FILE", conflicts_with_all = ["points", "scene", "distribution", "surface", "triangles"])]
     pub(crate) mesh: Option<PathBuf>,
     /// Made-up meshes, one or more; by default both. What is asked of a mesh is --queries ray

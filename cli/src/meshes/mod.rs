@@ -1,4 +1,4 @@
-//! Triangle meshes from files: OFF, OBJ, STL and PLY, told apart by the file's extension; and some that are made up.
+//! Triangle meshes from files: OFF, OBJ, STL, PLY and the ink of PNG, told apart by the file's extension; and some that are made up.
 //!
 //! Whatever the bytes are, the answer is a mesh or one line saying what is wrong with the file: nothing here panics,
 //! and nothing is allocated because a header promises it.
@@ -6,6 +6,7 @@
 mod made;
 mod obj;
 mod off;
+mod picture;
 pub(crate) mod ply;
 mod stl;
 #[cfg(test)]
@@ -74,7 +75,8 @@ pub fn parse(name_for_messages: &str, extension: &str, bytes: &[u8]) -> Outcome<
 
 type Reader = fn(&[u8]) -> Result<MeshData, Fault>;
 
-const READERS: [(&str, Reader); 4] = [("off", off::read), ("obj", obj::read), ("stl", stl::read), ("ply", ply::read)];
+const READERS: [(&str, Reader); 5] =
+    [("off", off::read), ("obj", obj::read), ("stl", stl::read), ("ply", ply::read), ("png", picture::read)];
 
 fn reader(extension: &str) -> Result<Reader, Fault> {
     let known = READERS.iter().find(|(name, _)| name.eq_ignore_ascii_case(extension));

@@ -204,9 +204,9 @@ fn files_that_are_no_meshes_are_refused() {
     assert!(message(&path("missing.off")).contains("missing.off: can't be read: "));
     assert!(
         message(&path("cube.fbx"))
-            .ends_with("cube.fbx: unknown extension .fbx: a mesh is one of .off, .obj, .stl, .ply")
+            .ends_with("cube.fbx: unknown extension .fbx: a mesh is one of .off, .obj, .stl, .ply, .png")
     );
-    assert!(message(&path("cube")).ends_with("cube: no extension: a mesh is one of .off, .obj, .stl, .ply"));
+    assert!(message(&path("cube")).ends_with("cube: no extension: a mesh is one of .off, .obj, .stl, .ply, .png"));
 
     fs::create_dir(path("folder.off")).unwrap();
     assert!(message(&path("folder.off")).ends_with("folder.off: is a directory: name a mesh file"));

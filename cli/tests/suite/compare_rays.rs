@@ -126,7 +126,7 @@ fn what_is_no_mesh_is_refused() {
         ("--mesh b.off", "b.off:6: "),
         ("--mesh c.off", "c.off: the mesh is 0.0e0 across: expected from 1e-12 to 1e15; scale it"),
         ("--mesh d.off", "d.off: the mesh is 1.0e30 across"),
-        ("--mesh e.txt", "e.txt: unknown extension .txt: a mesh is one of .off, .obj, .stl, .ply"),
+        ("--mesh e.txt", "e.txt: unknown extension .txt: a mesh is one of .off, .obj, .stl, .ply, .png"),
         ("--mesh no.off", "no.off: can't be read: "),
         ("--mesh .", "."),
         ("--queries ray --n 50", "--n is about points: --queries ray is asked of a mesh, see --mesh"),

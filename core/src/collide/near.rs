@@ -54,7 +54,7 @@ impl<'a> Balls<'a> {
         self.time * (1.0 / 3.0)
     }
 
-    /// What is told of eight after the other, side by side.
+    /// The answers for eight after the other, side by side.
     #[inline(always)]
     fn marks(&self, near: impl Fn([&[Vec3; LANES]; 4], &[f32; LANES]) -> u8) -> Marks {
         let mut marks = [0; BLOCK / LANES];
@@ -74,7 +74,7 @@ impl<'a> Balls<'a> {
 }
 
 impl Block<'_> {
-    /// Who of them may touch the face, as far as boxes around their paths tell: never fewer than
+    /// A mask of those that may touch the face, as far as boxes around their paths tell: never fewer than
     /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
     #[inline(never)]
     pub(super) fn near(&self, face: &Face) -> Marks {
@@ -96,7 +96,7 @@ impl Block<'_> {
         }
     }
 
-    /// Who of them may touch a box, as far as the axis tells that it is thinnest along.
+    /// A mask of those that may touch a box, as far as the axis tells that it is thinnest along.
     #[inline(never)]
     pub(super) fn near_box(&self, bounds: &Aabb) -> Marks {
         let Self { balls, radius, .. } = *self;
@@ -210,7 +210,7 @@ fn near(face: &Face, [x0, v0, x1, v1]: [&[Vec3; LANES]; 4], radius: &[f32; LANES
     half(0) | half(1) << 4
 }
 
-/// Who of balls on four paths between these places and velocities may touch a face: a bit each.
+/// A bit for each of the balls on four paths between these places and velocities: set, if it may touch a face.
 #[inline(always)]
 fn near_four(face: &Face, [x0, v0, x1, v1]: [&[Vec3; 4]; 4], radius: &[f32; 4], third: f32) -> u8 {
     let (x0, v0, x1, v1) = (turned(x0), turned(v0), turned(x1), turned(v1));

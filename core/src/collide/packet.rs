@@ -26,7 +26,7 @@ pub(super) struct Riders<F> {
     pub(super) kinetic: F,
 }
 
-/// How many hits of a particle in a step are found in packets.
+/// The number of hits of a particle in a step are found in packets.
 const ROUNDS: usize = 4;
 
 /// The outcome of a packet: a bit for each particle.
@@ -62,7 +62,7 @@ impl<F: Eight> Riders<F> {
         Outcome { settled, hits, left, ends: along.ends() }
     }
 
-    /// Who begins on the face and leaves it only to come back to it within the step; and the normals toward them.
+    /// Those that begin on the face and leaves it only to come back to it within the step; and the normals toward them.
     #[inline(always)]
     fn seated(&self, paths: &Paths<F>, face: &Face, acceleration: Vectors<F>) -> (F, Vectors<F>) {
         let (time, like) = (paths.time, paths.time);
@@ -235,7 +235,7 @@ impl<F: Eight> Riders<F> {
         (Vectors::select(aside, before, beside), is_free)
     }
 
-    /// What friction does to slips, as `Friction` has it.
+    /// The effect of friction on slips, as `Friction` has it.
     #[inline(always)]
     fn answer(&self, slip: Vectors<F>, press: F) -> Vectors<F> {
         let (speed, zero) = (slip.length(), press.all(0.0));

@@ -333,7 +333,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 }
 
-/// What is around a ball in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits.
+/// A box around a ball in a step of `dt` \[s\] wherever a path may lead it on which it is followed on after hits.
 pub(super) fn facing(walls: &dyn Collider, path: &Path, [radius, elasticity]: [f32; 2], dt: f32) -> Facing {
     let within = |size: f32| surroundings(path, [radius, elasticity], dt, size).map(|bounds| walls.facing(&bounds));
     match within(0.0) {

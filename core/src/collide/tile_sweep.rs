@@ -19,7 +19,7 @@ use crate::step::Tile;
 use crate::time::Time;
 use glam::Vec3;
 
-/// Whether what faces one flat wall alone is followed by code of its own: chips are spared that.
+/// True where what faces one flat wall alone is followed by code of its own: chips are spared that.
 const SHORT_WAY: bool = !cfg!(target_os = "none");
 
 /// Everything.
@@ -29,7 +29,7 @@ const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 struct TileSweep<'s, 'a> {
     tile: &'s mut Tile<'a>,
     past: Past<'s>,
-    /// Whether surfaces may have friction, or take more of a bounce than particles do by themselves.
+    /// True if surfaces may have friction, or take more of a bounce than particles do by themselves.
     has_materials: bool,
     facing: Facing,
     report: &'s mut Report,
@@ -192,7 +192,7 @@ impl TileSweep<'_, '_> {
         }
     }
 
-    /// Whether a box may be in between where a row's path begins and where it ends. Of what is no number it may.
+    /// Tells whether a box may be in between where a row's path begins and where it ends. Of what is no number it may.
     #[inline(always)]
     fn is_between(&self, row: usize, room: &Aabb) -> bool {
         let (a, b) = (self.past.start[0][row], self.tile.position[row]);
@@ -261,7 +261,7 @@ impl TileSweep<'_, '_> {
         }
     }
 
-    /// Whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
+    /// Tells whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
     fn goes_in_packets(&self) -> bool {
         let Tile { scene, dt, .. } = *self.tile;
         let alone = self.observer.is_none() && scene.sinks.is_empty() && self.past.marks.is_empty();
@@ -427,7 +427,7 @@ impl TileSweep<'_, '_> {
     }
 }
 
-/// Whether all elasticities are between zero and one: the bits of such numbers are in the same order, and below those of all others.
+/// Tells whether all elasticities are between zero and one: the bits of such numbers are in the same order, and below those of all others.
 fn never_gain(elasticities: &[f32]) -> bool {
     let most = widest(
         #[inline(always)]

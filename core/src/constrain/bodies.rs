@@ -110,7 +110,8 @@ impl Bodies<'_> {
         (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
     }
 
-    /// Moves a particle by `by` \[m\], and lets its velocity follow: by what that is over the sub-step.
+    /// Moves a particle by `by` \[m\], and lets its velocity follow: by what that is over the sub-step. Whoever is
+    /// fixed is moved as well: a constraint leaves out rows whose inverse mass is zero.
     pub fn shift(&mut self, row: usize, by: Vec3) {
         self.position[row] += by;
         let h = self.substep.seconds();

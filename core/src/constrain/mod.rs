@@ -29,6 +29,10 @@ use crate::composed::composed;
 /// A tuple, slice or reference of constraints is a constraint: all of them, one after the other in each phase. Every
 /// constraint sees what those before it have done.
 ///
+/// Whatever goes to the nearest place that satisfies it takes energy out of the motion, the less the shorter the sub-steps. To keep it, go
+/// back along the direction of the sub-step's beginning ([`Bodies::before`]), take what violates the constraint out of velocities in
+/// [`settle`](Constraint::settle), and use `Verlet` (RATTLE); the example `own_constraint` does so.
+///
 /// ```
 /// use pointmass::constrain::{Bodies, Share};
 /// use pointmass::{Constraint, Gravity, Heap, Particle, Scene, System, Time, Vec3};

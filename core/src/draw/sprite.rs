@@ -16,7 +16,7 @@ pub struct Sprite {
     pub right: Vec3,
     /// The way from there to the middle of its top \[m\].
     pub up: Vec3,
-    /// What the picture is multiplied by: red, green, blue in sRGB, and opacity.
+    /// The colour that its picture is multiplied by: red, green, blue in sRGB, and opacity.
     pub color: Color,
     /// The number of its material.
     pub material: u16,

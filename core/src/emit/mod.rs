@@ -58,7 +58,7 @@ use glam::Vec3;
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 pub trait Emit: Sync {
-    /// How many emitters it is.
+    /// The number of emitters that it is.
     fn count(&self) -> usize;
 
     /// How far it asks who is near, by [`Births::count_within`] \[m\]; zero: it does not.
@@ -72,7 +72,7 @@ pub trait Emit: Sync {
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>);
 }
 
-/// What an emitter has done so far; numbers and instants of births go on from here, even when its rate changes.
+/// The state of an emitter; numbers and instants of births go on from here, even when its rate changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EmitterState {
     /// Births so far, those that found no room included.
@@ -81,7 +81,7 @@ pub struct EmitterState {
     pub(crate) phase: u64,
 }
 
-/// What emitters give birth into.
+/// The place that emitters give birth into.
 #[allow(missing_debug_implementations)]
 pub struct Births<'a> {
     pub(crate) workspace: Workspace<'a>,
@@ -118,13 +118,13 @@ impl Births<'_> {
         Due { phase, rate, from, next: 1, last: (reached >> 64) as u64 }
     }
 
-    /// Whether no further birth finds room.
+    /// Tells whether no further birth finds room.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.workspace.is_full()
     }
 
-    /// How many particles lie within `radius` \[m\] of a place: those of before this step where they were then, those born in it
+    /// The number of particles that lie within `radius` \[m\] of a place: those of before this step where they were then, those born in it
     /// where they were born. Costs one query of the scene's index if the emitter's [`reach`](Emit::reach) is as much, and a look
     /// at each newborn.
     #[must_use]
@@ -217,7 +217,7 @@ pub struct Due {
 impl Due {
     const NONE: Self = Self { phase: 0, rate: 0, from: Time::ZERO, next: 1, last: 0 };
 
-    /// How many are left.
+    /// The number of those that are left.
     #[must_use]
     pub const fn left(&self) -> u64 {
         (self.last + 1).saturating_sub(self.next)

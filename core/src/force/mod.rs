@@ -137,8 +137,9 @@ pub trait Force: Sync {
         0.0
     }
 
-    /// Power \[W\] that it brings into kinetic and its own potential energy taken together: below zero for what slows
-    /// things down, zero for a force that is the slope of its energy.
+    /// The power \[W\] that it brings into kinetic and its own potential energy taken together: below zero for what slows
+    /// things down, zero (unless it says otherwise) for a force that is the slope of its energy. Without an energy it is the sum of
+    /// F·v; where that is left out, its work turns up in the ledger's remainder.
     #[cfg(feature = "std")]
     fn power(&self, state: &State<'_>) -> f64 {
         let _ = state;

@@ -13,7 +13,8 @@ pub struct Euler;
 /// Symplectic (semi-implicit) Euler: v += h a, then x += h v with the new v.
 ///
 /// Order 1, one evaluation, and the energy of an oscillation stays bounded for h ω ≤ 2. The cheapest method that can
-/// be trusted: effects with many particles.
+/// be trusted, for forces of the place alone and drag: effects with many particles. A force across the velocity (magnetic, Coriolis)
+/// feeds energy in, as with explicit Euler: take [`Rk4`](super::Rk4) there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Symplectic;
 

@@ -6,7 +6,8 @@ use crate::time::Time;
 /// Velocity Verlet: x += h v + h²/2 a, then v += h/2 (a + a') with a' found at the new place.
 ///
 /// Order 2, two evaluations; the energy of an oscillation stays bounded for h ω ≤ 2. Orbits and undamped springs over
-/// long times. Forces that depend on velocity are given v + h a for the second evaluation, which keeps order 2.
+/// long times. Forces that depend on velocity are given v + h a for the second evaluation, which keeps order 2,
+/// but no longer the energy: a force across the velocity (magnetic, Coriolis) feeds it in slowly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verlet;
 

@@ -1,6 +1,6 @@
 //! Eight numbers or vectors side by side, in whatever registers the machine turns out to have.
 //!
-//! What is done to them is the same operations in the same order, each correctly rounded, and so the same bits. A kernel is compiled
+//! They go through the same operations in the same order, each correctly rounded, and so the same bits. A kernel is compiled
 //! for each kind of registers; functions that it calls have to be spread over it for that.
 
 use super::LANES;
@@ -60,14 +60,14 @@ pub(crate) trait Eight:
     /// A bit for each lane of this mask.
     fn to_bitmask(self) -> u32;
 
-    /// Whether this mask holds for any.
+    /// Tells whether this mask holds for any.
     #[inline(always)]
     fn any(self) -> bool {
         self.to_bitmask() != 0
     }
 }
 
-/// What can be done in registers of any kind.
+/// Arithmetic that registers of any kind can do.
 pub(crate) trait Kernel {
     type Output;
     /// Does it in such registers as `like` is in.

@@ -36,7 +36,7 @@ pub trait Keys: Sync {
     /// All of them.
     fn all(&self) -> &[Key];
 
-    /// Whether there is none.
+    /// Tells whether there is none.
     fn is_empty(&self) -> bool {
         self.all().is_empty()
     }

@@ -6,7 +6,7 @@
 pub enum Cause {
     /// By age.
     Lifetime,
-    /// By a rule of the program's own.
+    /// By a rule of the program's own, or by `System::remove`; several rules count for themselves what is whose.
     Other,
     /// Where too many were.
     Density,

@@ -139,7 +139,7 @@ impl<'a> Verdicts<'a> {
         self.claimed - 1
     }
 
-    /// The particle in the `nth` of the rows has to go.
+    /// The particle in the `nth` of the rows that were asked about, from 0, has to go.
     #[inline]
     pub fn end(&mut self, nth: usize, cause: Cause) {
         if let Some(pending_death) = self.pending_deaths.get_mut(nth) {

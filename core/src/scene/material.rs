@@ -100,7 +100,7 @@ impl Sprite {
         SpriteMaterial { frames: (columns * rows).max(1), rate: self.rate, blend: self.blend, facing: self.facing }
     }
 
-    /// Whether it can be used; `at` is where it stands.
+    /// Tells whether it can be used; `at` is where it stands.
     pub(super) fn check(&self, at: &str) -> Result<(), SceneError> {
         let is_file = self.picture.len() > 4 && self.picture.to_ascii_lowercase().ends_with(".png");
         if !is_file && !Self::PICTURES.contains(&&*self.picture) {

@@ -169,7 +169,7 @@ impl Model {
         widest(&self.particles, &self.emitters) > 0.0
     }
 
-    /// The scene, for a system to step through.
+    /// The scene, for a system to step through. A program adds what is its own: `Scene { forces: &(&model.forces, Mine), ..model.scene() }`.
     #[must_use]
     pub fn scene(&self) -> Scene<'_> {
         Scene {

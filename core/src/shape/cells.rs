@@ -150,7 +150,7 @@ impl CellRange {
     }
 }
 
-/// Whether two boxes share a point.
+/// Tells whether two boxes share a point.
 #[inline]
 fn meet(a: &Aabb, b: &Aabb) -> bool {
     let meets = |axis: usize| (a.min[axis] <= b.max[axis]) & (a.max[axis] >= b.min[axis]);

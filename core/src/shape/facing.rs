@@ -1,10 +1,10 @@
-//! What of a collider is near: nothing, one flat face that stands still, or more than that.
+//! The parts of a collider that are near: nothing, one flat face that stands still, or more than that.
 
 use super::{Aabb, Collider};
 use crate::math::{largest, unit};
 use glam::Vec3;
 
-/// What of a collider a path inside a box can meet.
+/// The parts of a collider that a path inside a box can meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Facing {
     /// Nothing.
@@ -17,7 +17,7 @@ pub enum Facing {
 }
 
 impl Facing {
-    /// What two colliders together are.
+    /// The parts of two colliders together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {

@@ -26,7 +26,7 @@ type Four = [f32; 12];
 pub type Marks = [u32; Hulls::MANY];
 
 impl Hulls {
-    /// How many there are: on hosts enough to share the cost of a call, on bare metal few, as they lie on the stack.
+    /// Their number: on hosts enough to share the cost of a call, on bare metal few, as they lie on the stack.
     pub const MANY: usize = if cfg!(target_os = "none") { 8 } else { 32 };
 
     /// Those around balls on the cubics with these places and velocities at both ends, so many seconds apart: of their
@@ -126,7 +126,7 @@ mod tests {
     use crate::rng::Stream;
     use crate::shape::{Collider, Cuboid, Plane, Sphere};
 
-    /// What may touch by itself is marked among others, wherever it is and however many they are.
+    /// Whatever may touch by itself is marked among others, wherever it is and however many they are.
     #[test]
     fn no_path_that_may_touch_is_passed_by() {
         let (mut marked, mut all) = (0, 0);

@@ -15,6 +15,24 @@ const PIECE_ERROR: f32 = 1e-4;
 const MAX_PIECES: u32 = 8;
 
 /// A collider that moves as a script says.
+///
+/// ```
+/// use pointmass::motion::{Key, Motion};
+/// use pointmass::shape::{Cuboid, Moving, Surface};
+/// use pointmass::{Gravity, Heap, Particle, Scene, System, Time, Vec3};
+///
+/// // A lift, which goes up by two metres from the first to the third second.
+/// let floor = Cuboid { min: Vec3::new(-1.0, -0.1, -1.0), max: Vec3::new(1.0, 0.0, 1.0) };
+/// let keys = [Key { time: 1.0, ..Key::default() }, Key { time: 3.0, place: Vec3::Y * 2.0, ..Key::default() }];
+/// let lift = Moving::new(floor, &floor.bounds(), Motion::with_keys(keys, 0.0));
+/// let start = [Particle { position: Vec3::Y * 0.2, elasticity: 0.0, ..Particle::REST }];
+/// let scene = Scene { start: &start, forces: &Gravity::EARTH, colliders: &lift, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// (1..=240).for_each(|frame| drop(system.step_to(&scene, Time::frame(frame, 60))));
+/// assert!((system.particles().position[0].y - 2.0).abs() < 1e-3);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moving<C, M = Motion> {
     collider: C,

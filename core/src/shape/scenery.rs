@@ -140,7 +140,7 @@ impl<C: Collider> Nearby<'_, C> {
     }
 }
 
-/// Whether a box holds another.
+/// Tells whether a box holds another.
 #[inline]
 fn holds(outer: &Aabb, inner: &Aabb) -> bool {
     let holds = |axis: usize| (inner.min[axis] >= outer.min[axis]) & (inner.max[axis] <= outer.max[axis]);

@@ -97,7 +97,7 @@ impl<F: Eight> Cubics<F> {
         self.excess.dot(self.bend).simd_lt(bend.all(-0.5) * bend)
     }
 
-    /// How many chords stay near each, without a bound.
+    /// The number of chords that stay near each, without a bound.
     #[inline(always)]
     pub(super) fn chords(&self) -> F {
         const STRAIGHT: f32 = (4.0 * CHORD_ERROR) * (4.0 * CHORD_ERROR);

@@ -25,7 +25,7 @@ use lists::{KEPT, Kept};
 /// therefore presses by less than the weight above it; friction counts in what is missing, so that a stack slides as
 /// far as one ball does and what can rest on others comes to stand still (six on each other, or steps of 1/24 s, ask
 /// for 12 sub-steps). Balls do not spin. Hits and contacts of this kind are counted in every sub-step, and
-/// [`Observer`](crate::Observer)s are not told of them.
+/// [`Observer`](crate::Observer)s are told of each touch once, as it begins ([`touched`](crate::Observer::touched)).
 ///
 /// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
 /// (`caps.contacts`), bits do not depend on it.
