@@ -21,7 +21,7 @@ fn refused(folder: &Folder, name: &str, error: &str) {
 }
 
 #[track_caller]
-fn refused_by(folder: &Folder, name: &str, error: &str, commands: &[&str]) {
+pub(crate) fn refused_by(folder: &Folder, name: &str, error: &str, commands: &[&str]) {
     folder.write("old.csv", "old");
     let before = folder.names();
     for command in commands {

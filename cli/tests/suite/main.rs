@@ -19,6 +19,7 @@ mod round_trip;
 mod scenes;
 mod scn;
 mod sinks;
+mod sprites;
 mod stall;
 mod tool;
 mod touching;
