@@ -323,7 +323,7 @@ fn only_who_has_a_picture_and_can_be_seen_is_in_the_list_and_what_finds_no_room_
         .map(|i| Particle {
             position: Vec3::new(f32::from(i), 0.0, 0.0),
             velocity: Vec3::new(0.0, 1.0, f32::from(i) * 0.1),
-            material: (i % 3 > 0).then_some(i % 3 - 1),
+            material: (i % 3).checked_sub(1),
             color: Some([200, 100, 50, if i % 5 == 0 { 0 } else { 255 }]),
             ..Particle::REST
         })
