@@ -41,7 +41,7 @@ impl Light {
         Vec3::from(self.0.map(|sum| sum as f32)) * (1.0 / Self::ONE)
     }
 
-    /// What is left of it behind something of an opacity.
+    /// Leaves as much of it as comes through something of an opacity.
     fn behind(&mut self, opacity: f32) {
         if self.0 != [0; 3] {
             let left = self.get() * (1.0 - opacity);

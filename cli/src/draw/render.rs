@@ -101,7 +101,7 @@ impl Mover<'_> {
         }
     }
 
-    /// What it does to the ground under it: lines nothing.
+    /// The shadow or light that it casts on the ground under it; lines cast none.
     fn caster(&self) -> Option<Caster> {
         match self {
             Self::Sprite(sprite) => {

@@ -159,7 +159,7 @@ pub struct Moving<'a> {
     pub dots: &'a [Dot],
     /// Particles as pictures.
     pub billboards: &'a [Billboard],
-    /// What joins them.
+    /// The lines that join them.
     pub segments: &'a [Segment],
 }
 

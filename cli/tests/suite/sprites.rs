@@ -41,6 +41,27 @@ fn sprites_and_keys_that_are_wrong() {
 }
 
 #[test]
+fn what_scn_cannot_say_of_them_is_warned_of() {
+    let folder = Folder::new();
+    let motion = r#"{"keys": [{"time": 0}, {"time": 1, "place": [1, 0, 0]}]}"#;
+    let sphere = r#"{"sphere": {"center": [0, 0, 0], "radius": 1}}"#;
+    folder.write(
+        "a.json",
+        format!(
+            r#"{{"particles": [{{}}], "constraints": [{{"attach": {{"particles": [0], "motion": {motion}}}}}],
+                "materials": [{{"sprite": {{"picture": "puff"}}}}], "scenery": [{{"shape": {sphere}, "motion": {motion}}}],
+                "emitters": [{{"shape": {sphere}, "motion": {motion}}}]}}"#
+        ),
+    );
+    let answer = folder.run("convert a.json a.scn");
+    let warnings = answer.warnings();
+    for left_out in ["constraints: ", "materials: .scn has no sprites", "scenery[0].motion: ", "emitters[0]: "] {
+        let about = warnings.iter().filter(|warning| warning.starts_with(left_out) && warning.contains("left out"));
+        assert_eq!(about.count(), 1, "{left_out}: {warnings:#?}");
+    }
+}
+
+#[test]
 fn pictures_that_cannot_be_read_spoil_only_what_needs_them() {
     let folder = Folder::new();
     folder.write("small.png", "no picture");

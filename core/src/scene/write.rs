@@ -74,6 +74,9 @@ impl Writer {
         if scene.contacts.is_some() {
             self.warn("contacts: in .scn particles pass through each other; that is left out");
         }
+        if !scene.constraints.is_empty() {
+            self.warn("constraints: .scn binds by springs alone; they are left out");
+        }
         if !scene.custom.is_empty() {
             self.warn("custom: in .scn particles have no further columns; they are left out");
         }
