@@ -14,6 +14,10 @@ const PIECE_ERROR: f32 = 1e-4;
 /// which something turns by an angle a, by a² / 512 of the distance from its axis.
 const MAX_PIECES: u32 = 8;
 
+/// The largest number of times that what is carried along is pushed off what rounding put it behind: in a corner of three
+/// faces, off each, and once more.
+const MAX_PUSHES: u32 = 4;
+
 /// A collider that moves as a script says.
 ///
 /// ```
@@ -142,7 +146,16 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
             return point;
         }
         let [start, end] = during.map(|instant| motion.frame(instant));
-        end.world(start.local(point))
+        let from = start.local(point);
+        let mut place = end.world(from);
+        // Rounding may have put it behind what it was nearer to than that.
+        for _ in 0..MAX_PUSHES {
+            let moved = Segment { from, to: end.local(place), radius, during: [during[1]; 2] };
+            let Some(hit) = self.collider.first_hit(&moved) else { break };
+            let rounding = Segment { radius, ..Segment::new(point, place) }.slack(size(&end));
+            place += end.turn * hit.normal * (2.0 * (hit.slack + rounding));
+        }
+        place
     }
 
     fn ride(&self, seat: &Segment) -> Option<Ride> {
@@ -181,8 +194,13 @@ fn in_world(motion: &impl Script, segment: &Segment, piece: &Segment, hit: Hit, 
     let velocity = frame.velocity_at(center - normal * segment.radius);
     // How far the piece strays from the path toward the surface, and what turning and moving round.
     let strays = (frame.local(center) - piece.at(time)).dot(hit.normal).abs();
-    let rounding = segment.slack(largest(frame.pivot) + largest(frame.place));
+    let rounding = segment.slack(size(&frame));
     Hit { normal, velocity: frame.turn * hit.velocity + velocity, slack: hit.slack + strays + rounding, ..hit }
+}
+
+/// How far from the origin a frame's numbers are \[m\], which says what rounding does to places in it.
+fn size(frame: &Frame) -> f32 {
+    largest(frame.pivot) + largest(frame.place)
 }
 
 /// The instant at a share of a span.
