@@ -1,8 +1,20 @@
 //! The looks of particles: the same to whatever draws them.
+//!
+//! What there is to draw is written as plain lists into memory that the caller lends: [`sprites`] (pictures that stand in space),
+//! [`solids`] (shapes), [`trails`](Trails::lines), [`springs`] and [`velocities`] (lines), [`surface`] (cloth). The same bits on every
+//! machine; what finds no room is counted.
 
+mod line;
+mod solid;
 mod sprite;
+mod surface;
+mod trail;
 
+pub use line::{Line, edges, springs, velocities};
+pub use solid::{Instance, solid, solids};
 pub use sprite::{Sprite, View, back_to_front, sprite, sprites};
+pub use surface::{Patch, Vertex, surface};
+pub use trail::{Knot, Ring, Trails};
 
 use crate::force::State;
 use crate::material::{Age, Life, Property, SpriteMaterial, Varying, life_of};
@@ -94,4 +106,19 @@ fn frame(sprite: &SpriteMaterial, age: Age) -> u16 {
 /// A channel times a factor, rounded.
 fn faded(channel: u8, factor: f32) -> u8 {
     (f32::from(channel) * factor + 0.5) as u8
+}
+
+/// Writes a list as far as there is room; returns the number of entries and how many were left out.
+fn fill<T>(list: impl Iterator<Item = T>, into: &mut [T]) -> (usize, usize) {
+    let (mut count, mut left_out) = (0, 0);
+    for entry in list {
+        match into.get_mut(count) {
+            Some(room) => {
+                *room = entry;
+                count += 1;
+            }
+            None => left_out += 1,
+        }
+    }
+    (count, left_out)
 }

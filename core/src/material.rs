@@ -62,6 +62,10 @@ pub struct Material<'a> {
     pub glow: f32,
     /// The picture they are drawn with; none: a ball or a glow.
     pub sprite: Option<SpriteMaterial>,
+    /// The way the shape points that they are drawn as; none: they have no shape of their own.
+    pub heading: Option<Heading>,
+    /// The trail they leave; none: none.
+    pub trail: Option<TrailMaterial>,
     /// Their lives, as curves.
     pub life: Life<'a>,
 }
@@ -107,6 +111,32 @@ pub enum Facing {
     Velocity,
     /// A way of its own: it turns by its rotation about an axis that is random and stays as it is, as a leaf tumbles.
     Free,
+}
+
+/// The way a shape points that a particle is drawn as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Heading {
+    /// It stands as it is, turned about the world's y axis by the particle's rotation.
+    #[default]
+    Upright,
+    /// Its y axis along the velocity, about which it is turned by the rotation.
+    Velocity,
+    /// It turns by its rotation about an axis that is random and stays as it is.
+    Free,
+}
+
+/// The trail that particles leave: a ribbon along their way, which gets narrower and fainter with its age.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TrailMaterial {
+    /// The time after which a place on it is forgotten \[s\].
+    pub seconds: f32,
+    /// Its width at the particle \[m\]; zero: about a pixel all along.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub width: f32,
 }
 
 /// The life of particles: a property without a curve stays as it is.
@@ -170,7 +200,7 @@ impl<'a> Material<'a> {
             mass: None,
             buoyancy: None,
         };
-        Self { contact, size: 0.0, glow: 0.0, sprite: None, life }
+        Self { contact, size: 0.0, glow: 0.0, sprite: None, heading: None, trail: None, life }
     }
 }
 

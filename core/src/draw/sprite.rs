@@ -1,6 +1,6 @@
 //! Particles as pictures that stand in space: plain lists, for whatever draws them.
 
-use super::{Appearance, appearance};
+use super::{Appearance, appearance, fill};
 use crate::force::State;
 use crate::material::{Blend, Facing, Property};
 use crate::math::{frame, max, sin_cos, sin_cos_turns, sqrt, unit};
@@ -91,17 +91,7 @@ pub fn sprite(state: &State<'_>, row: usize, view: &View) -> Option<Sprite> {
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 pub fn sprites(state: &State<'_>, view: &View, into: &mut [Sprite]) -> (usize, usize) {
-    let (mut count, mut left_out) = (0, 0);
-    for sprite in (0..state.position.len()).filter_map(|row| sprite(state, row, view)) {
-        match into.get_mut(count) {
-            Some(room) => {
-                *room = sprite;
-                count += 1;
-            }
-            None => left_out += 1,
-        }
-    }
-    (count, left_out)
+    fill((0..state.position.len()).filter_map(|row| sprite(state, row, view)), into)
 }
 
 /// The order in which sprites have to be drawn, the farthest first, those at one distance in the order of the list: a radix sort, in
@@ -160,7 +150,7 @@ fn turned((right, up): (Vec3, Vec3), angle: f32) -> (Vec3, Vec3) {
 }
 
 /// The right and the top of what has turned by an angle about an axis in its plane that is a particle's own.
-fn tumbled(key: u32, angle: f32) -> (Vec3, Vec3) {
+pub(super) fn tumbled(key: u32, angle: f32) -> (Vec3, Vec3) {
     let height = 2.0 * Property::AxisHeight.between(key) - 1.0;
     let (sin, cos) = sin_cos_turns(Property::AxisAngle.between(key));
     let around = sqrt(max(1.0 - height * height, 0.0));

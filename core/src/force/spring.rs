@@ -265,6 +265,15 @@ impl<'a> Springs<'a> {
         list.get(place_in(list, number)).is_some_and(|&entry| entry == number as u32 | BROKEN)
     }
 
+    /// Tells whether a spring that joined two particles of the start is broken.
+    pub(crate) fn is_torn(&self, a: u32, b: u32) -> bool {
+        let list = self.incident.get(Self::list(self.last_spring, a)).unwrap_or_default();
+        list.iter().filter(|&&entry| entry & BROKEN != 0).any(|entry| {
+            let spring = self.springs.get((entry & !BROKEN) as usize);
+            spring.is_some_and(|spring| spring.ends == [a, b] || spring.ends == [b, a])
+        })
+    }
+
     /// The springs that hold.
     pub fn held(&self) -> impl Iterator<Item = Held<'a>> {
         let this = *self;

@@ -4,6 +4,7 @@ use super::check_force::check_force;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
 use super::{Group, Light, SceneError, SceneFile};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
+use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
 use crate::reap::ReaperKind;
 use crate::shape::{Affine, Shape};
@@ -320,6 +321,30 @@ impl SceneFile {
             }
             if let Some(sprite) = &m.sprite {
                 sprite.check(&format!("materials[{i}].sprite"))?;
+            }
+            if let Some(shape) = &m.shape {
+                let at = format!("materials[{i}].shape");
+                if m.sprite.is_some() {
+                    return Err(SceneError::value(at, "particles are drawn as a shape or with a sprite, not both"));
+                }
+                if matches!(shape.form, Shape::Plane(_) | Shape::Line(_)) {
+                    return Err(SceneError::value(
+                        format!("{at}.form"),
+                        "a particle cannot be drawn as a plane or a line",
+                    ));
+                }
+                check_shape(&format!("{at}.form"), &shape.form)?;
+            }
+            if let Some(TrailMaterial { seconds, width }) = m.trail {
+                let at = format!("materials[{i}].trail");
+                if !(seconds > 0.0 && seconds.is_finite()) {
+                    let message = format!("has to be above zero, in seconds, not {seconds}");
+                    return Err(SceneError::value(format!("{at}.seconds"), message));
+                }
+                if !(0.0..f32::INFINITY).contains(&width) {
+                    let message = format!("has to be zero or more, in metres, not {width}");
+                    return Err(SceneError::value(format!("{at}.width"), message));
+                }
             }
             m.life.check(&format!("materials[{i}].life"))?;
         }

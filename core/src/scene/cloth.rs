@@ -1,7 +1,7 @@
 //! Spring meshes in scene files, and what they are woven into.
 
 use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
-use super::{SceneError, SceneFile};
+use super::{PatchBuf, SceneError, SceneFile};
 use crate::cloth::{ClothSprings, Sheet, mesh_springs};
 use crate::force::{Pressure, Spring};
 use crate::particles::{Color, Particle};
@@ -110,6 +110,16 @@ impl Cloth {
         let Gas { amount, outside } = self.gas?;
         let triangles = mesh?.triangles().iter().map(|corners| corners.map(|corner| first + corner)).collect();
         Some(Pressure { triangles, amount, outside })
+    }
+
+    /// Its surface, if it has one.
+    pub(super) fn patch(&self, mesh: Option<&MeshBuf>, first: u32) -> Option<PatchBuf> {
+        let (count, triangles): (usize, Vec<_>) = match (&self.form, mesh) {
+            (Form::Sheet(sheet), _) => (sheet.positions().count(), sheet.triangles().collect()),
+            (Form::Mesh(_), Some(mesh)) => (mesh.vertices().len(), mesh.triangles().to_vec()),
+            (Form::Mesh(_), None) => return None,
+        };
+        (!triangles.is_empty()).then_some(PatchBuf { first, count: count as u32, triangles, material: self.material })
     }
 
     /// The particles of a sheet; those of a mesh are known once it is read.

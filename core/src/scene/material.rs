@@ -2,8 +2,12 @@
 
 use super::SceneError;
 use super::numbers::finite;
-use crate::material::{self, Blend, ContactMaterial, Curve, Facing, Life, MaterialList, Over, SpriteMaterial, Varying};
+use crate::material::{
+    self, Blend, ContactMaterial, Curve, Facing, Heading, Life, MaterialList, Over, SpriteMaterial, TrailMaterial,
+    Varying,
+};
 use crate::particles::Color;
+use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -37,6 +41,12 @@ pub struct Material {
     /// The picture particles are drawn with; without one they are balls or glows.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub sprite: Option<Sprite>,
+    /// The shape particles are drawn as, instead of balls or glows.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub shape: Option<ParticleShape>,
+    /// The trail particles leave.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub trail: Option<TrailMaterial>,
     /// How it feels to what touches it.
     #[cfg_attr(feature = "serde", serde(alias = "grip", skip_serializing_if = "ContactMaterial::is_plain"))]
     pub contact: ContactMaterial,
@@ -59,10 +69,24 @@ impl Default for Material {
             size: 0.0,
             glow: 0.0,
             sprite: None,
+            shape: None,
+            trail: None,
             contact: ContactMaterial::default(),
             life: LifeBuf::default(),
         }
     }
+}
+
+/// The shape that particles are drawn as.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ParticleShape {
+    /// The shape about the particle, in halves of the diameter that the particle is drawn with: a box from −1 to 1 is as wide as that.
+    pub form: Shape<String>,
+    /// The way it points.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub heading: Heading,
 }
 
 /// The picture that particles are drawn with.
@@ -305,9 +329,16 @@ impl MaterialList for Vec<Material> {
         self.len()
     }
     fn get(&self, number: usize) -> Option<material::Material<'_>> {
-        let Material { contact, size, glow, sprite, life, .. } = self.as_slice().get(number)?;
-        let sprite = sprite.as_ref().map(Sprite::lend);
-        Some(material::Material { contact: *contact, size: *size, glow: *glow, sprite, life: life.lend() })
+        let Material { contact, size, glow, sprite, shape, trail, life, .. } = self.as_slice().get(number)?;
+        Some(material::Material {
+            contact: *contact,
+            size: *size,
+            glow: *glow,
+            sprite: sprite.as_ref().map(Sprite::lend),
+            heading: shape.as_ref().map(|shape| shape.heading),
+            trail: *trail,
+            life: life.lend(),
+        })
     }
     fn contact(&self, number: usize) -> ContactMaterial {
         self.as_slice().get(number).map(|material| material.contact).unwrap_or_default()

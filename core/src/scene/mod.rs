@@ -43,9 +43,9 @@ pub use error::SceneError;
 pub use file::{Camera, Group, Item, Light, Run, SceneFile};
 pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
-pub use material::{CurveBuf, LifeBuf, Material, Sides, Sprite, VaryingBuf};
+pub use material::{CurveBuf, LifeBuf, Material, ParticleShape, Sides, Sprite, VaryingBuf};
 #[cfg(feature = "alloc")]
-pub use model::{Forces, Model, Solid};
+pub use model::{Forces, Model, PatchBuf, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use response::{Position, Response};

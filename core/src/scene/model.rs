@@ -6,6 +6,7 @@ use super::{Files, Form, Material, SceneError, SceneFile, beside};
 use crate::collide::Meetings;
 use crate::constrain::{ConstraintKind, Contacts};
 use crate::custom::CustomBuf;
+use crate::draw::Patch;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Penalty, Sink, Spring};
 use crate::index::Structure;
@@ -63,6 +64,31 @@ pub struct Model {
     pub index: Structure,
     /// Where the particles and springs of each cloth begin among all.
     pub cloths: Vec<[usize; 2]>,
+    /// The surfaces of cloths that have one.
+    pub patches: Vec<PatchBuf>,
+    /// The shapes that particles are drawn as, by the numbers of their materials.
+    pub shapes: Vec<Option<Shape<Arc<MeshBuf>>>>,
+}
+
+/// The particles that a surface spans: a [`Patch`] that owns its triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchBuf {
+    /// The number that its first corner has among all particles.
+    pub first: u32,
+    /// How many corners it has.
+    pub count: u32,
+    /// Its triangles, by corners counted from 0.
+    pub triangles: Vec<[u32; 3]>,
+    /// The number of its material, if it has one.
+    pub material: Option<u16>,
+}
+
+impl PatchBuf {
+    /// It, lent.
+    #[must_use]
+    pub fn lend(&self) -> Patch<'_> {
+        Patch { first: self.first, count: self.count, triangles: &self.triangles }
+    }
 }
 
 /// A piece of scenery where it stands.
@@ -123,6 +149,11 @@ impl Model {
             let motion = item.motion.clone().unwrap_or_default();
             scenery.push(Solid { shape, to_world: placement(file, item.group), material, motion });
         }
+        let mut shapes = Vec::with_capacity(file.materials.len());
+        for (i, material) in file.materials.iter().enumerate() {
+            let form = material.shape.as_ref().map(|shape| &shape.form);
+            shapes.push(form.map(|form| meshes.shape(&format!("materials[{i}].shape.form"), form)).transpose()?);
+        }
         let pushes = file.contacts.iter().filter_map(|response| match response {
             Response::Force(penalty) => Some(penalty.reaching(2.0 * widest(&start.particles, &file.emitters))),
             _ => None,
@@ -160,6 +191,8 @@ impl Model {
             index: file.run.index,
             max_bounces: file.run.max_bounces,
             cloths: start.cloths,
+            patches: start.patches,
+            shapes,
         })
     }
 
@@ -256,6 +289,7 @@ struct Start {
     forces: Vec<ForceKind>,
     /// Where they begin.
     cloths: Vec<[usize; 2]>,
+    patches: Vec<PatchBuf>,
 }
 
 impl Start {
@@ -265,6 +299,7 @@ impl Start {
             springs: file.springs.clone(),
             forces: Vec::new(),
             cloths: Vec::new(),
+            patches: Vec::new(),
         };
         for (i, cloth) in file.cloths.iter().enumerate() {
             let mesh = match &cloth.form {
@@ -291,6 +326,7 @@ impl Start {
             start.cloths.push([start.particles.len(), start.springs.len()]);
             start.particles.extend(particles);
             start.springs.extend(springs);
+            start.patches.extend(cloth.patch(mesh.as_deref(), first));
             start.forces.extend(cloth.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
         }
         for particle in &mut start.particles {

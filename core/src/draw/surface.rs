@@ -1,0 +1,90 @@
+//! Surfaces between particles, such as cloth: smooth, and torn where its springs are.
+
+use super::appearance;
+use crate::force::State;
+use crate::math::unit;
+use crate::particles::Color;
+use glam::Vec3;
+
+/// A corner of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex {
+    /// Its place \[m\].
+    pub place: Vec3,
+    /// The unit normal of the surface there, the mean of the triangles around by their areas; zero where there are none.
+    pub normal: Vec3,
+    /// Its colour: red, green, blue in sRGB, and opacity.
+    pub color: Color,
+}
+
+impl Vertex {
+    /// Nothing that can be seen, to fill a buffer with.
+    pub const NONE: Self = Self { place: Vec3::ZERO, normal: Vec3::ZERO, color: [0; 4] };
+}
+
+/// The particles that a surface spans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch<'a> {
+    /// The number that its first corner has in the scene's start.
+    pub first: u32,
+    /// How many corners it has; they follow each other there.
+    pub count: u32,
+    /// Its triangles, by corners counted from 0, seen anticlockwise from outside.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// Writes a surface's corners, and those of its triangles that are there, in their order; returns the numbers of both. A triangle is
+/// gone if one of its corners is, or a spring along one of its edges has broken.
+///
+/// What finds no room is left out: triangles as well, whose corners do. `triangles` needs as many entries as the patch has.
+///
+/// ```
+/// use pointmass::draw::{Patch, Vertex, surface};
+/// use pointmass::{Heap, Particle, Scene, Sheet, System, Vec3};
+///
+/// let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [2, 2] };
+/// let start: Vec<_> = sheet.particles(Particle::REST).collect();
+/// let scene = Scene { start: &start, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// let all: Vec<_> = sheet.triangles().collect();
+/// let patch = Patch { first: 0, count: 9, triangles: &all };
+/// let (mut vertices, mut triangles) = ([Vertex::NONE; 9], [[0; 3]; 8]);
+/// assert_eq!(surface(&system.state(&scene), &patch, &mut vertices, &mut triangles), (9, 8));
+/// assert!(vertices.iter().all(|vertex| vertex.normal.y.abs() == 1.0)); // It lies flat.
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+pub fn surface(
+    state: &State<'_>,
+    patch: &Patch<'_>,
+    vertices: &mut [Vertex],
+    triangles: &mut [[u32; 3]],
+) -> (usize, usize) {
+    let Patch { first, count, triangles: all } = *patch;
+    let count = vertices.len().min(count as usize);
+    let vertices = &mut vertices[..count];
+    let row = |corner: u32| state.springs.row(first.checked_add(corner)?);
+    for (vertex, corner) in vertices.iter_mut().zip(0..) {
+        *vertex = row(corner).map_or(Vertex::NONE, |row| {
+            let color = appearance(state, row).map_or([0; 4], |look| look.color);
+            Vertex { place: state.position[row], normal: Vec3::ZERO, color }
+        });
+    }
+    let may_tear = state.springs.springs.iter().any(|spring| spring.breaks_at.is_some());
+    let torn = |[a, b, c]: [u32; 3]| {
+        let torn = |a: u32, b: u32| state.springs.is_torn(first + a, first + b);
+        may_tear && (torn(a, b) || torn(b, c) || torn(c, a))
+    };
+    let is_there = |corners: [u32; 3]| corners.iter().all(|&corner| (corner as usize) < count && row(corner).is_some());
+    let mut kept = 0;
+    for &corners in all.iter().filter(|&&corners| is_there(corners) && !torn(corners)) {
+        let Some(room) = triangles.get_mut(kept) else { break };
+        *room = corners;
+        kept += 1;
+        let [a, b, c] = corners.map(|corner| vertices[corner as usize].place);
+        let normal = (b - a).cross(c - a);
+        corners.iter().for_each(|&corner| vertices[corner as usize].normal += normal);
+    }
+    vertices.iter_mut().for_each(|vertex| vertex.normal = unit(vertex.normal));
+    (count, kept)
+}
