@@ -4,6 +4,7 @@
 //! disk), `world` (a scene in motion), `schedule` (when steps end), `substeps` (how they are divided), `record` (state to
 //! files), `draw` (state to pictures), `report` (findings to a terminal, a page or a table) and `outcome` (what went wrong).
 
+mod cast;
 mod check;
 pub mod compare;
 mod convert;
@@ -24,6 +25,7 @@ mod schedule;
 mod stage;
 mod stall;
 mod statistics;
+mod style;
 mod substeps;
 mod temporary;
 mod whole;

@@ -1,10 +1,12 @@
 //! `pointmass render`: steps a scene and draws it.
 
-use crate::draw::{Moving, Renderer, Sink, Stage};
+use crate::cast::{Cast, Memory, Seen};
+use crate::draw::{Moving, Piece, Renderer, Sink};
 use crate::formats::{PictureFormat, named};
 use crate::outcome::{Failure, Outcome};
 use crate::progress::Progress;
-use crate::stage::{Cast, Seen, moves, pictures, stage};
+use crate::stage::{moves, pictures, stage, view};
+use crate::style::Style;
 use crate::world::{Settings, World};
 use pointmass::Time;
 use std::path::PathBuf;
@@ -24,6 +26,9 @@ pub(crate) struct Render {
     /// Pictures per second of the scene's time
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) fps: u32,
+    /// Draw particles in one of the lecture's styles, not as the scene says
+    #[arg(long, value_name = "NAME")]
+    pub(crate) style: Option<Style>,
     /// Draw the surfaces that particles come from and vanish at as well
     #[arg(long)]
     pub(crate) show_sources: bool,
@@ -40,33 +45,37 @@ pub(crate) fn render(args: &Render) -> Outcome {
 
     world.warn_of_steps(frame_time / substeps as f64, world.duration);
 
-    let pictures = pictures(&world.file, &args.world.scene)?;
-    let renderer = |world: &World| {
-        let stage = stage(&world.file, &world.model, args.show_sources, world.system.time());
-        let stage = Stage { pictures: pictures.clone(), ..stage };
+    let pictures = pictures(&world.file, &args.world.scene, args.style)?;
+    let renderer = |world: &World, pieces: Vec<Piece>| {
+        let mut stage = stage(&world.file, &world.model, args.show_sources, world.system.time());
+        stage.pictures = pictures.clone();
+        stage.pieces.extend(pieces);
         Renderer::new(&stage, args.size.0, args.size.1)
     };
+    let (view, dot) = view(&world.file, &world.model);
+    let mut memory = Memory::new(&world.file, args.style, world.system.capacity());
+    let mut cast = Cast::new(&world.model, args.style, view, dot, &mut memory);
     // What stands still is brought before the lens but once.
-    let (moves, mut seen) = (moves(&world.model), renderer(&world));
-    let mut cast = Cast::new(&world.file, &world.model);
+    let changes = moves(&world.model) || cast.has_pieces(&world.model);
+    let mut still = renderer(&world, Vec::new());
     let mut progress = Progress::new(frames * substeps);
     for frame in 0..=frames {
         if frame > 0 {
             for substep in 1..=substeps {
                 let elapsed = (frame - 1) as f64 + substep as f64 / substeps as f64;
                 world.step_to(Time::from_seconds_f64(elapsed * frame_time));
+                cast.look(&world.system, &world.model);
                 progress.step(world.system.len());
             }
         }
         // Every picture remembers where things were in the one before, drawn or not.
-        let Seen { dots, billboards } = cast.see(&world.system, &world.model.scene());
+        let Seen { dots, billboards, segments, ribbons, pieces } = cast.see(&world.system, &world.file, &world.model);
         if frame == frames || !sink.keeps_only_last() {
-            if moves {
-                seen = renderer(&world);
+            if changes {
+                still = renderer(&world, pieces);
             }
-            let segments = Cast::segments(&world.system, &world.model.scene());
-            let moving = Moving { dots: &dots, billboards: &billboards, segments: &segments };
-            sink.push(&seen.frame(&moving)).map_err(Failure::new)?;
+            let moving = Moving { dots: &dots, billboards: &billboards, segments: &segments, ribbons: &ribbons };
+            sink.push(&still.frame(&moving)).map_err(Failure::new)?;
         }
     }
     sink.finish().map_err(Failure::new)

@@ -1,15 +1,15 @@
 //! A scene as the renderer sees it: scenery, and what moves.
 
-use crate::draw::{self, Billboard, Dot, Flipbook, Line, Piece, Segment, Stage, Surface, shapes};
+use crate::draw::{self, Flipbook, Line, Piece, Stage, Surface, shapes};
 use crate::outcome::{Failure, Outcome};
+use crate::style::Style;
 use glam::Vec3;
-use pointmass::draw::{Appearance, Sprite, View, appearance, sprite};
+use pointmass::Time;
+use pointmass::draw::View;
 use pointmass::material::Blend;
 use pointmass::motion::Script;
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
-use pointmass::{Heap, Scene, System, Time};
-use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -42,75 +42,13 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant
     stage
 }
 
-/// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
-const DOT: f32 = 0.009;
-
-/// What moves, remembering where it was in the picture before.
-pub(crate) struct Cast {
-    before: HashMap<u32, Vec3>,
-    /// The diameter of points whose material has none \[m\].
-    size: f32,
-    view: View,
-}
-
-/// The particles in a frame: those that have a picture, and those that have none.
-pub(crate) struct Seen {
-    pub(crate) dots: Vec<Dot>,
-    pub(crate) billboards: Vec<Billboard>,
-}
-
-impl Cast {
-    /// Nobody has been seen yet.
-    pub(crate) fn new(file: &SceneFile, model: &Model) -> Self {
-        let bounds = bounds(file, model);
-        let camera = camera(file.camera.as_ref(), bounds);
-        let width = 2.0 * (bounds.center() - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
-        Self { before: HashMap::new(), size: DOT * width, view: View { eye: camera.eye, up: camera.up } }
-    }
-
-    /// The particles as they are now.
-    pub(crate) fn see(&mut self, system: &System<Heap>, scene: &Scene<'_>) -> Seen {
-        let (particles, state) = (system.particles(), system.state(scene));
-        let mut now = HashMap::with_capacity(particles.serial.len());
-        let (mut dots, mut billboards) = (Vec::new(), Vec::new());
-        for (row, (&position, &serial)) in particles.position.iter().zip(particles.serial).enumerate() {
-            if let Some(sprite) = sprite(&state, row, &self.view) {
-                billboards.push(billboard(&sprite));
-                continue;
-            }
-            let Some(Appearance { diameter, scale, solid, color, glow, .. }) = appearance(&state, row) else {
-                continue;
-            };
-            let is_point = particles.radius[row] == 0.0 && !(diameter > 0.0) && scale > 0.0;
-            let size = if is_point { self.size * scale } else { diameter };
-            let is_seen = size > 0.0 && color[3] > 0;
-            let previous = self.before.get(&serial).copied().unwrap_or(position);
-            if is_seen {
-                dots.push(Dot { position, previous, color, size, glow, solid });
-            }
-            now.insert(serial, position);
-        }
-        self.before = now;
-        Seen { dots, billboards }
-    }
-
-    /// The springs as they are now.
-    pub(crate) fn segments(system: &System<Heap>, scene: &Scene<'_>) -> Vec<Segment> {
-        let springs = system.state(scene).springs;
-        let position = system.particles().position;
-        springs.ends().map(|[a, b]| Segment { a: position[a], b: position[b], color: [170, 170, 180, 255] }).collect()
-    }
-}
-
-fn billboard(sprite: &Sprite) -> Billboard {
-    let Sprite { center, right, up, color, material, frame, blend } = *sprite;
-    Billboard { center, right, up, color, picture: usize::from(material), frame, blend }
-}
-
-/// The pictures of particles, by the numbers of their materials; `path` is the scene's.
-pub(crate) fn pictures(file: &SceneFile, path: &Path) -> Outcome<Arc<[Flipbook]>> {
+/// The pictures of particles, by the numbers of their materials; `path` is the scene's. In the style of sprites those that have none
+/// are puffs, as are those of particles without a material, under the last number.
+pub(crate) fn pictures(file: &SceneFile, path: &Path, style: Option<Style>) -> Outcome<Arc<[Flipbook]>> {
+    let otherwise = if style == Some(Style::Sprites) { Flipbook::named("puff") } else { None };
+    let otherwise = otherwise.unwrap_or_default();
     let picture = |(i, material): (usize, &Material)| {
-        let Some(sprite) = &material.sprite else { return Ok(Flipbook::default()) };
+        let Some(sprite) = &material.sprite else { return Ok(otherwise.clone()) };
         if let Some(book) = Flipbook::named(&sprite.picture) {
             return Ok(book);
         }
@@ -124,7 +62,18 @@ pub(crate) fn pictures(file: &SceneFile, path: &Path) -> Outcome<Arc<[Flipbook]>
         }
         Ok(Flipbook::new(&picture, sprite.grid, sprite.blend == Blend::Premultiplied))
     };
-    file.materials.iter().enumerate().map(picture).collect()
+    file.materials.iter().enumerate().map(picture).chain([Ok(otherwise.clone())]).collect()
+}
+
+/// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
+const DOT: f32 = 0.009;
+
+/// The place that a scene is seen from, and the diameter of points in it whose material has none \[m\].
+pub(crate) fn view(file: &SceneFile, model: &Model) -> (View, f32) {
+    let bounds = bounds(file, model);
+    let camera = camera(file.camera.as_ref(), bounds);
+    let width = 2.0 * (bounds.center() - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
+    (View { eye: camera.eye, up: camera.up }, DOT * width)
 }
 
 /// Whether some of the scenery moves.
@@ -208,7 +157,7 @@ fn lights(lights: &[Light]) -> Vec<draw::Light> {
     lights.iter().map(light).collect()
 }
 
-fn look(material: &Material) -> draw::Material {
+pub(crate) fn look(material: &Material) -> draw::Material {
     let [r, g, b] = material.transmission;
     draw::Material {
         ambient: material.ambient.into(),
@@ -243,7 +192,7 @@ fn ground(field: &HeightField<'_>) -> Surface {
     shapes::mesh(&vertices, &triangles)
 }
 
-fn tessellate(shape: &Shape<Arc<MeshBuf>>, reach: f32) -> Surface {
+pub(crate) fn tessellate(shape: &Shape<Arc<MeshBuf>>, reach: f32) -> Surface {
     match shape {
         Shape::Line(_) => Surface::default(),
         Shape::Box(s) => {

@@ -44,5 +44,5 @@ pub use camera::Camera;
 pub use picture::Flipbook;
 pub use render::Renderer;
 pub use sink::Sink;
-pub use stage::{Billboard, Dot, Light, Line, Material, Moving, Piece, Segment, Stage};
+pub use stage::{Billboard, Dot, Light, Line, Material, Moving, Piece, Stage};
 pub use surface::Surface;

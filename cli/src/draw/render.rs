@@ -82,7 +82,9 @@ impl Renderer {
         let Self { lens, frustum, codec, pictures, .. } = self;
         let sprites = moving.dots.iter().filter_map(|dot| Sprite::new(dot, lens, frustum, codec));
         let boards = moving.billboards.iter().filter_map(|board| Placed::new(board, pictures, lens, codec));
-        let threads = moving.segments.iter().filter_map(|line| Thread::new(line, lens, frustum, codec));
+        let lines = moving.segments.iter().map(|line| (line, false));
+        let lines = lines.chain(moving.ribbons.iter().map(|line| (line, true)));
+        let threads = lines.filter_map(|(line, joined)| Thread::new(line, joined, lens, frustum, codec));
         let threads = threads.map(Mover::Thread);
         let mut movers: Vec<_> =
             threads.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect();

@@ -159,17 +159,8 @@ pub struct Moving<'a> {
     pub dots: &'a [Dot],
     /// Particles as pictures.
     pub billboards: &'a [Billboard],
-    /// The lines that join them.
-    pub segments: &'a [Segment],
-}
-
-/// A moving line, such as a spring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// One end.
-    pub a: Vec3,
-    /// The other end.
-    pub b: Vec3,
-    /// Red, green, blue (sRGB) and opacity.
-    pub color: [u8; 4],
+    /// Lines by themselves, such as springs.
+    pub segments: &'a [pointmass::draw::Line],
+    /// Lines of which each begins where one ends, such as trails.
+    pub ribbons: &'a [pointmass::draw::Line],
 }

@@ -3,6 +3,7 @@
 use super::*;
 use glam::Vec3;
 use image::RgbImage;
+use pointmass::draw::Line;
 use pointmass::material::Blend;
 
 const WIDTH: u32 = 160;
@@ -27,7 +28,7 @@ fn dot(position: Vec3, [red, green, blue]: [u8; 3]) -> Dot {
     Dot { position, previous: position, color: [red, green, blue, 255], size: 0.05, glow: 0.0, solid: false }
 }
 
-fn frame(stage: &Stage, dots: &[Dot], segments: &[Segment]) -> RgbImage {
+fn frame(stage: &Stage, dots: &[Dot], segments: &[Line]) -> RgbImage {
     Renderer::new(stage, WIDTH, HEIGHT).frame(&Moving { dots, segments, ..Moving::default() })
 }
 
@@ -70,7 +71,7 @@ fn what_is_nearer_hides_what_is_farther() {
         assert_eq!(middle(&frame(&stage, &[], &[]))[1], 0);
         for (distance, seen) in [(1.5, true), (2.5, false)] {
             let place = distance * Vec3::NEG_Z;
-            let line = Segment { a: place - Vec3::X, b: place + Vec3::X, color: [0, 0, 255, 255] };
+            let line = Line::plain([place - Vec3::X, place + Vec3::X], [0, 0, 255, 255]);
             for image in [frame(&stage, &[dot(place, [0, 0, 255])], &[]), frame(&stage, &[], &[line])] {
                 assert_eq!(middle(&image)[2] > 100, seen, "at {distance}");
             }
@@ -150,7 +151,7 @@ fn nothing_that_is_not_finite_is_drawn() {
     let mut broken = sound.clone();
     broken.pieces.push(Piece { surface: shapes::sphere(NAN, 1.0), ..Piece::default() });
     broken.pieces.push(Piece { surface: shapes::sphere(Vec3::ZERO, f32::INFINITY), ..Piece::default() });
-    broken.lines.push(Line { a: Vec3::NEG_Z, b: NAN, material: Material::default() });
+    broken.lines.push(super::Line { a: Vec3::NEG_Z, b: NAN, material: Material::default() });
     let (color, attenuation) = (Vec3::ONE, [1.0, 0.0, 0.0]);
     broken.lights.push(Light::Point { color, position: NAN, attenuation });
     broken.lights.push(Light::Directional { color: NAN, direction: Vec3::NEG_Z });
@@ -161,7 +162,7 @@ fn nothing_that_is_not_finite_is_drawn() {
         dot(Vec3::Z, [255; 3]),
         Dot { color: [255, 255, 255, 0], ..dot(here, [255; 3]) },
     ];
-    let segments = [Segment { a: here, b: NAN, color: [255; 4] }];
+    let segments = [Line::plain([here, NAN], [255; 4])];
     assert_eq!(frame(&broken, &dots, &segments), frame(&sound, &[], &[]));
 
     let plain = frame(&sound, &[Dot { size: 0.0, ..dot(here, [255; 3]) }], &[]);

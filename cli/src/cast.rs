@@ -1,0 +1,206 @@
+//! What moves, as the renderer sees it: particles in the looks of their materials, or in a style of the lecture's.
+
+use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
+use crate::stage::{look, tessellate};
+use crate::style::{Style, Styled};
+use glam::Vec3;
+use pointmass::draw::{
+    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, solid, springs, sprite, surface,
+};
+use pointmass::force::State;
+use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
+use pointmass::{Color, Heap, System};
+use std::collections::HashMap;
+
+/// The places that are remembered of each trail.
+const KNOTS: usize = 48;
+
+/// The strain at which springs are all red, or blue, where they are drawn by it.
+const FULL_STRAIN: f32 = 0.1;
+
+/// A particle's way since the picture before, remembered by its serial, and how points are drawn.
+pub(crate) struct Cast<'m> {
+    before: HashMap<u32, Vec3>,
+    /// The diameter of points whose material has none \[m\].
+    size: f32,
+    view: View,
+    style: Option<Style>,
+    trails: Option<Trails<'m>>,
+    /// Whether a particle of the start is a surface's corner, which is drawn instead.
+    covered: Vec<bool>,
+    /// The shapes of particles, by their materials, about the origin.
+    forms: Vec<Surface>,
+}
+
+/// The memory of trails, lent to whoever looks on.
+#[derive(Default)]
+pub(crate) struct Memory {
+    rings: Vec<Ring>,
+    knots: Vec<Knot>,
+}
+
+/// All that moves in a frame.
+#[derive(Default)]
+pub(crate) struct Seen {
+    pub(crate) dots: Vec<Dot>,
+    pub(crate) billboards: Vec<Billboard>,
+    pub(crate) segments: Vec<Line>,
+    pub(crate) ribbons: Vec<Line>,
+    /// Shapes and surfaces.
+    pub(crate) pieces: Vec<Piece>,
+}
+
+/// Whether particles leave trails.
+fn has_trails(file: &SceneFile, style: Option<Style>) -> bool {
+    style == Some(Style::Trails) || style.is_none() && file.materials.iter().any(|material| material.trail.is_some())
+}
+
+impl Memory {
+    /// As much as trails in a style take of as many particles as may live at once.
+    pub(crate) fn new(file: &SceneFile, style: Option<Style>, capacity: usize) -> Self {
+        let slots = if has_trails(file, style) { capacity } else { 0 };
+        Self { rings: vec![Ring::NONE; slots], knots: vec![Knot::NONE; slots * KNOTS] }
+    }
+}
+
+impl<'m> Cast<'m> {
+    /// Nobody has been seen yet. `dot` is the diameter of points whose material has none \[m\].
+    pub(crate) fn new(model: &Model, style: Option<Style>, view: View, dot: f32, memory: &'m mut Memory) -> Self {
+        let mut covered = vec![false; model.particles.len()];
+        for PatchBuf { first, count, .. } in model.patches.iter().filter(|_| style.is_none()) {
+            covered[*first as usize..][..*count as usize].fill(true);
+        }
+        let form = |shape: &Option<_>| shape.as_ref().map_or_else(Surface::default, |shape| tessellate(shape, 1.0));
+        let forms = model.shapes.iter().map(form).collect();
+        let Memory { rings, knots } = memory;
+        let trails = (!rings.is_empty()).then(|| Trails::new(rings, knots, None));
+        Self { before: HashMap::new(), size: dot, view, style, trails, covered, forms }
+    }
+
+    /// Whether there are shapes or surfaces, so that light and shadow change from picture to picture.
+    pub(crate) fn has_pieces(&self, model: &Model) -> bool {
+        let shapes = self.forms.iter().any(|form| !form.triangles.is_empty());
+        shapes && matches!(self.style, None | Some(Style::Shapes)) || self.style.is_none() && !model.patches.is_empty()
+    }
+
+    /// Looks on after a step: trails remember.
+    pub(crate) fn look(&mut self, system: &System<Heap>, model: &Model) {
+        let Some(trails) = &mut self.trails else { return };
+        let scene = model.scene();
+        styled(&system.state(&scene), self.style, self.size, |state| {
+            trails.look(state);
+        });
+    }
+
+    /// All as it is now.
+    pub(crate) fn see(&mut self, system: &System<Heap>, file: &SceneFile, model: &Model) -> Seen {
+        let (mut seen, scene) = (Seen::default(), model.scene());
+        styled(&system.state(&scene), self.style, self.size, |state| {
+            self.particles(state, system.particles().serial, file, &mut seen);
+            seen.segments = self.springs(state);
+            if let Some(trails) = &self.trails {
+                seen.ribbons = vec![Line::NONE; state.position.len() * (KNOTS + 1)];
+                let (count, _) = trails.lines(state, &mut seen.ribbons);
+                seen.ribbons.truncate(count);
+            }
+            if self.style.is_none() {
+                seen.pieces.extend(model.patches.iter().filter_map(|patch| cloth(state, patch, file)));
+            }
+        });
+        seen
+    }
+
+    fn particles(&mut self, state: &State<'_>, serial: &[u32], file: &SceneFile, seen: &mut Seen) {
+        let mut now = HashMap::with_capacity(serial.len());
+        for (row, (&position, &serial)) in state.position.iter().zip(serial).enumerate() {
+            now.insert(serial, position);
+            if self.covered.get(serial as usize).is_some_and(|&covered| covered) {
+                continue;
+            }
+            if let Some(sprite) = sprite(state, row, &self.view) {
+                seen.billboards.push(billboard(&sprite));
+            } else if let Some(piece) = self.shape(state, row, file) {
+                seen.pieces.push(piece);
+            } else if let Some(dot) = self.dot(state, row, serial) {
+                seen.dots.push(dot);
+            }
+        }
+        self.before = now;
+    }
+
+    fn shape(&self, state: &State<'_>, row: usize, file: &SceneFile) -> Option<Piece> {
+        let Instance { center, axes, color, material } = solid(state, row)?;
+        let form = self.forms.get(usize::from(material)).filter(|form| !form.triangles.is_empty())?;
+        let material = painted(file.materials.get(usize::from(material)), color);
+        Some(Piece { surface: form.transformed(axes, center), material, endless: false })
+    }
+
+    fn dot(&self, state: &State<'_>, row: usize, serial: u32) -> Option<Dot> {
+        let Appearance { diameter, scale, solid, color, glow, .. } = appearance(state, row)?;
+        let position = state.position[row];
+        let is_point = state.radius[row] == 0.0 && !(diameter > 0.0) && scale > 0.0;
+        let size = match self.style {
+            Some(Style::Points | Style::Lines | Style::Trails) => 0.0,
+            _ if is_point => self.size * scale,
+            _ if diameter > 0.0 => diameter,
+            _ => return None,
+        };
+        let previous = self.before.get(&serial).copied().unwrap_or(position);
+        let (previous, glow) = match self.style {
+            Some(Style::Shapes) => (position, 0.0),
+            Some(_) => (position, glow),
+            None => (previous, glow),
+        };
+        (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })
+    }
+
+    /// The springs as they are now, but for those of surfaces.
+    fn springs(&self, state: &State<'_>) -> Vec<Line> {
+        if self.style.is_some_and(|style| style != Style::Lines) {
+            return Vec::new();
+        }
+        let full = if self.style.is_some() { FULL_STRAIN } else { f32::INFINITY };
+        let mut lines = vec![Line::NONE; state.springs.springs.len()];
+        let (count, _) = springs(state, full, &mut lines);
+        let is_covered = |number: &u32| self.covered.get(*number as usize).is_some_and(|&covered| covered);
+        let held = state.springs.held().zip(lines.into_iter().take(count));
+        held.filter(|(held, _)| !held.spring.ends.iter().all(is_covered)).map(|(_, line)| line).collect()
+    }
+}
+
+/// A state whose materials are drawn in a style; the pictures of points, which have no size, have this radius \[m\].
+fn styled(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnce(&State<'_>)) {
+    let Some(style) = style else { return see(state) };
+    let materials = Styled { materials: state.materials, style };
+    let material = materials.column(state.material);
+    let least = if style == Style::Sprites { size } else { 0.0 };
+    let radius: Vec<_> = state.radius.iter().map(|radius| radius.max(least)).collect();
+    see(&State { material: &material, materials: &materials, radius: &radius, ..*state });
+}
+
+fn billboard(sprite: &Sprite) -> Billboard {
+    let Sprite { center, right, up, color, material, frame, blend } = *sprite;
+    Billboard { center, right, up, color, picture: usize::from(material), frame, blend }
+}
+
+/// The surface of a cloth, lit.
+fn cloth(state: &State<'_>, patch: &PatchBuf, file: &SceneFile) -> Option<Piece> {
+    let mut vertices = vec![Vertex::NONE; patch.count as usize];
+    let mut triangles = vec![[0; 3]; patch.triangles.len()];
+    let (_, count) = surface(state, &patch.lend(), &mut vertices, &mut triangles);
+    triangles.truncate(count);
+    let color = vertices.get(triangles.first()?[0] as usize)?.color;
+    let places: Vec<_> = vertices.iter().map(|vertex| vertex.place).collect();
+    let normals = vertices.iter().map(|vertex| vertex.normal).collect();
+    let material = patch.material.and_then(|number| file.materials.get(usize::from(number)));
+    let surface = Surface { normals, ..shapes::mesh(&places, &triangles) };
+    Some(Piece { surface, material: painted(material, color), endless: false })
+}
+
+/// A material in the colour of a particle.
+fn painted(material: Option<&Material>, [red, green, blue, alpha]: Color) -> draw::Material {
+    let [red, green, blue, opacity] = [red, green, blue, alpha].map(|channel| f32::from(channel) / 255.0);
+    let tint = Vec3::new(red, green, blue);
+    let own = material.map_or_else(draw::Material::default, look);
+    draw::Material { ambient: tint, diffuse: tint, opacity: opacity * own.opacity, ..own }
+}
