@@ -18,6 +18,9 @@ const KNOTS: usize = 48;
 /// The strain at which springs are all red, or blue, where they are drawn by it.
 const FULL_STRAIN: f32 = 0.1;
 
+/// How far before what it lies on a cloth is drawn, in sides of its triangles.
+const LIFT: f32 = 0.3;
+
 /// A particle's way since the picture before, remembered by its serial, and how points are drawn.
 pub(crate) struct Cast<'m> {
     before: HashMap<u32, Vec3>,
@@ -132,7 +135,7 @@ impl<'m> Cast<'m> {
         let Instance { center, axes, color, material } = solid(state, row)?;
         let form = self.forms.get(usize::from(material)).filter(|form| !form.triangles.is_empty())?;
         let material = painted(file.materials.get(usize::from(material)), color);
-        Some(Piece { surface: form.transformed(axes, center), material, endless: false })
+        Some(Piece { surface: form.transformed(axes, center), material, endless: false, lift: 0.0 })
     }
 
     fn dot(&self, state: &State<'_>, row: usize, serial: u32) -> Option<Dot> {
@@ -194,7 +197,9 @@ fn cloth(state: &State<'_>, patch: &PatchBuf, file: &SceneFile) -> Option<Piece>
     let normals = vertices.iter().map(|vertex| vertex.normal).collect();
     let material = patch.material.and_then(|number| file.materials.get(usize::from(number)));
     let surface = Surface { normals, ..shapes::mesh(&places, &triangles) };
-    Some(Piece { surface, material: painted(material, color), endless: false })
+    // Its corners lie on what it covers, its triangles behind that.
+    let lift = LIFT * (surface.area() / count as f32).sqrt();
+    Some(Piece { surface, material: painted(material, color), endless: false, lift })
 }
 
 /// A material in the colour of a particle.

@@ -176,7 +176,7 @@ fn place(stage: &mut Stage, shape: &Shape<Arc<MeshBuf>>, to_world: &Affine, mate
         return;
     }
     let surface = tessellate(shape, reach).transformed(to_world.linear, to_world.shift);
-    stage.pieces.push(Piece { surface, material, endless: matches!(shape, Shape::Plane(_)) });
+    stage.pieces.push(Piece { surface, material, endless: matches!(shape, Shape::Plane(_)), lift: 0.0 });
 }
 
 /// A height field as a mesh.

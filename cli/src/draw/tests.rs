@@ -21,7 +21,7 @@ fn glowing(emission: Vec3, opacity: f32) -> Material {
 
 /// A wall across the view at a distance.
 fn wall(distance: f32, material: Material) -> Piece {
-    Piece { surface: shapes::plane(distance * Vec3::NEG_Z, Vec3::Z, 5.0), material, endless: false }
+    Piece { surface: shapes::plane(distance * Vec3::NEG_Z, Vec3::Z, 5.0), material, endless: false, lift: 0.0 }
 }
 
 fn dot(position: Vec3, [red, green, blue]: [u8; 3]) -> Dot {
@@ -95,7 +95,8 @@ fn glass_shows_what_is_behind_it() {
 #[test]
 fn ground_under_the_camera_reaches_the_edge_of_the_picture() {
     let surface = shapes::plane(0.3 * Vec3::NEG_Y, Vec3::Y, 1e4);
-    let image = frame(&stage(vec![Piece { surface, material: glowing(Vec3::X, 1.0), endless: false }]), &[], &[]);
+    let image =
+        frame(&stage(vec![Piece { surface, material: glowing(Vec3::X, 1.0), endless: false, lift: 0.0 }]), &[], &[]);
     for x in 0..WIDTH {
         assert!(image[(x, HEIGHT - 1)][0] > 200 && image[(x, 0)][0] < 50);
     }
@@ -104,7 +105,7 @@ fn ground_under_the_camera_reaches_the_edge_of_the_picture() {
 #[test]
 fn endless_ground_melts_into_the_background() {
     let surface = shapes::plane(0.3 * Vec3::NEG_Y, Vec3::Y, 1e4);
-    let ground = Piece { surface, material: glowing(Vec3::X, 1.0), endless: true };
+    let ground = Piece { surface, material: glowing(Vec3::X, 1.0), endless: true, lift: 0.0 };
     let image = frame(&stage(vec![ground]), &[], &[]);
     let column: Vec<u8> = (0..HEIGHT).map(|y| image[(80, y)][0]).collect();
     assert!(column.windows(2).all(|pair| pair[1].abs_diff(pair[0]) < 40), "{column:?}");
@@ -114,7 +115,7 @@ fn endless_ground_melts_into_the_background() {
 #[test]
 fn balls_cast_shadows_on_the_ground() {
     let white = Material { ambient: Vec3::ZERO, ..Material::default() };
-    let piece = |surface| Piece { surface, material: white, endless: false };
+    let piece = |surface| Piece { surface, material: white, endless: false, lift: 0.0 };
     let ground = piece(shapes::plane(Vec3::NEG_Y, Vec3::Y, 20.0));
     let ball = piece(shapes::sphere(Vec3::new(0.0, 2.0, -4.0), 0.5));
     let sun = Light::Directional { color: Vec3::ONE, direction: Vec3::NEG_Y };
