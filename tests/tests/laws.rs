@@ -22,6 +22,7 @@ mod indices;
 mod integrators;
 mod ledger;
 mod lives;
+mod looks;
 #[path = "rays/main.rs"]
 mod rays;
 mod reapers;

@@ -3,12 +3,15 @@
 //! A charged sheet on springs, one that swings and some that break, and a balloon, moved through every force by every
 //! method; then the same once more of a material that changes over their lives, and how they look.
 
-use pointmass::draw::{Sprite, View, appearance, back_to_front, sprites};
+use pointmass::draw::{
+    self, Instance, Knot, Line, Patch, Ring, Sprite, Trails, Vertex, View, appearance, back_to_front, solids, sprites,
+    surface,
+};
 use pointmass::force::{
     Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, State, Viscosity, Vortex, Wind,
 };
 use pointmass::index::InGrid;
-use pointmass::material::{Blend, Curve, Facing, Life, Over, SpriteMaterial, Varying};
+use pointmass::material::{Blend, Curve, Facing, Heading, Life, Over, SpriteMaterial, TrailMaterial, Varying};
 use pointmass::{
     ClothSprings, ContactMaterial, Drag, Fnv, Force, Gravity, Inline, Material, Method, Midpoint, Particle, Scene,
     Sheet, Spring, SpringParams, System, Time, Vec3,
@@ -33,6 +36,8 @@ const FACES: [[u32; 3]; 8] = {
 
 const PARTICLES: usize = WOVEN.0 + CORNERS.len();
 const SPRINGS: usize = WOVEN.1 + EDGES.len();
+/// Particles whose trails there is memory for; those of all others are counted.
+const TRAILS: usize = 8;
 const COLUMNS: usize = 24;
 /// The columns that materials change.
 const KEPT: usize = 2;
@@ -45,10 +50,16 @@ const fn plain(keys: &'static [[f32; 2]], smooth: bool) -> Option<Varying<'stati
     Some(Varying { from: curve(keys, smooth), to: None })
 }
 
-/// A material of which everything changes, drawn with a flipbook that faces so.
+/// A material of which everything changes, drawn with a flipbook that faces so, or as a shape, and with a trail.
 const fn aging(facing: Facing) -> Material<'static> {
     let sprite = SpriteMaterial { frames: 6, rate: 7.5, blend: Blend::Alpha, facing };
-    Material { size: 0.1, sprite: Some(sprite), ..AGING }
+    let heading = match facing {
+        Facing::Camera => Heading::Upright,
+        Facing::Velocity => Heading::Velocity,
+        Facing::Free => Heading::Free,
+    };
+    let trail = TrailMaterial { seconds: 0.1, width: 0.02 };
+    Material { size: 0.1, sprite: Some(sprite), heading: Some(heading), trail: Some(trail), ..AGING }
 }
 
 const AGING: Material<'static> = Material {
@@ -121,6 +132,8 @@ fn grow_old(
     let base = Scene { start, forces, integrator: &Midpoint, index: &InGrid, materials, ..Scene::EMPTY };
     let scene = Scene { springs: &springs, ..base };
     let mut hash = Fnv::new();
+    let (mut rings, mut knots) = ([Ring::NONE; TRAILS], [Knot::NONE; 6 * TRAILS]);
+    let mut trails = Trails::new(&mut rings, &mut knots, None);
     if system.start(&scene, 1).is_ok() {
         for frame in 1..=88 {
             system.step(&scene, Time::frame(frame, 60) - system.time());
@@ -130,6 +143,11 @@ fn grow_old(
                 hash.bytes(&look.color);
             }
             hash_sprites(&state, &mut hash);
+            hash.long(trails.look(&state) as u64);
+            hash_lines(|into| trails.lines(&state, into), &mut hash);
+            hash_lines(|into| draw::springs(&state, 0.2, into), &mut hash);
+            hash_solids(&state, &mut hash);
+            hash_surface(&state, &mut hash);
         }
     }
     hash.long(system.hash());
@@ -148,6 +166,40 @@ fn hash_sprites(state: &State<'_>, hash: &mut Fnv) {
         hash.bytes(&color);
         hash.long(frame.into());
     }
+}
+
+/// Lines, as many as a chip can spare the memory for.
+#[inline(never)]
+fn hash_lines(list: impl FnOnce(&mut [Line]) -> (usize, usize), hash: &mut Fnv) {
+    let mut drawn = [Line::NONE; 32];
+    let (count, left_out) = list(&mut drawn);
+    hash.long(left_out as u64);
+    for Line { ends, widths, colors } in &drawn[..count] {
+        ends.iter().flat_map(|end| end.to_array()).chain(*widths).for_each(|x| hash.float(x));
+        hash.bytes(colors.as_flattened());
+    }
+}
+
+/// The shapes that particles are drawn as.
+#[inline(never)]
+fn hash_solids(state: &State<'_>, hash: &mut Fnv) {
+    let mut drawn = [Instance::NONE; PARTICLES];
+    let (count, _) = solids(state, &mut drawn);
+    for Instance { center, axes, color, .. } in &drawn[..count] {
+        center.to_array().into_iter().chain(axes.to_cols_array()).for_each(|x| hash.float(x));
+        hash.bytes(color);
+    }
+}
+
+/// The balloon, and the normals on it.
+#[inline(never)]
+fn hash_surface(state: &State<'_>, hash: &mut Fnv) {
+    let own = FACES.map(|face| face.map(|corner| corner - WOVEN.0 as u32));
+    let patch = Patch { first: WOVEN.0 as u32, count: CORNERS.len() as u32, triangles: &own };
+    let (mut vertices, mut triangles) = ([Vertex::NONE; CORNERS.len()], [[0; 3]; FACES.len()]);
+    let (_, count) = surface(state, &patch, &mut vertices, &mut triangles);
+    hash.long(count as u64);
+    vertices.iter().flat_map(|vertex| vertex.normal.to_array()).for_each(|x| hash.float(x));
 }
 
 fn forces() -> impl Force {
