@@ -2,6 +2,7 @@
 
 use crate::draw::{self, Billboard, Dot, Flipbook, Line, Piece, Segment, Stage, Surface, shapes};
 use crate::outcome::{Failure, Outcome};
+use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::draw::{Appearance, Sprite, View, appearance, sprite};
 use pointmass::material::Blend;
@@ -61,11 +62,15 @@ pub(crate) struct Seen {
 
 impl Cast {
     /// Nobody has been seen yet.
-    pub(crate) fn new(file: &SceneFile, model: &Model) -> Self {
-        let bounds = bounds(file, model);
-        let camera = camera(file.camera.as_ref(), bounds);
-        let width = 2.0 * (bounds.center() - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
+    pub(crate) fn new(from: &Viewpoint) -> Self {
+        let Viewpoint { camera, middle } = from;
+        let width = 2.0 * (middle - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
         Self { before: HashMap::new(), size: DOT * width, view: View { eye: camera.eye, up: camera.up } }
+    }
+
+    /// Looks from elsewhere from now on; points keep their size.
+    pub(crate) fn look(&mut self, camera: &draw::Camera) {
+        self.view = View { eye: camera.eye, up: camera.up };
     }
 
     /// The particles as they are now.
@@ -137,8 +142,25 @@ pub(crate) fn size(file: &SceneFile, model: &Model) -> f64 {
     f64::from(bounds(file, model).radius())
 }
 
+/// The scene's view of itself: by its camera, or by one that looks down −z at all that stays put.
+pub(crate) fn viewpoint(file: &SceneFile, model: &Model) -> Viewpoint {
+    let bounds = bounds(file, model);
+    Viewpoint::new(camera(file.camera.as_ref(), bounds), bounds.center())
+}
+
 /// A box around all that stays put, for a camera that nobody placed.
 fn bounds(file: &SceneFile, model: &Model) -> Aabb {
+    let particles = Aabb::around(file.particles.iter().map(|p| p.position));
+    let all = boxes(model).into_iter().fold(particles, Aabb::join);
+    if all.radius().is_finite() && all.radius() > 0.0 {
+        return all;
+    }
+    let center = if all.center().is_finite() { all.center() } else { Vec3::ZERO };
+    Aabb { min: center - 0.5, max: center + 0.5 }
+}
+
+/// Boxes around scenery, sources and sinks, of those that end somewhere.
+pub(crate) fn boxes(model: &Model) -> Vec<Aabb> {
     let corners = |shape: &Shape<Arc<MeshBuf>>, to_world: &Affine| {
         let Aabb { min, max } = shape.bounds();
         let corner = |i: u8| Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z));
@@ -147,13 +169,7 @@ fn bounds(file: &SceneFile, model: &Model) -> Aabb {
     let scenery = model.scenery.iter().map(|s| corners(&s.shape, &s.to_world));
     let sources = model.emitters.iter().map(|e| corners(&e.shape, &Affine::IDENTITY));
     let sinks = model.forces.1.iter().map(|s| corners(&s.shape, &Affine::IDENTITY));
-    let particles = Aabb::around(file.particles.iter().map(|p| p.position));
-    let all = scenery.chain(sources).chain(sinks).fold(particles, Aabb::join);
-    if all.radius().is_finite() && all.radius() > 0.0 {
-        return all;
-    }
-    let center = if all.center().is_finite() { all.center() } else { Vec3::ZERO };
-    Aabb { min: center - 0.5, max: center + 0.5 }
+    scenery.chain(sources).chain(sinks).filter(|all| all.min.is_finite() && all.max.is_finite()).collect()
 }
 
 fn pick(i: u8, bit: u8, low: f32, high: f32) -> f32 {
