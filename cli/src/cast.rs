@@ -3,6 +3,7 @@
 use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
 use crate::stage::{look, tessellate};
 use crate::style::{Style, Styled};
+use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::draw::{
     Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, solid, springs, sprite, surface,
@@ -11,6 +12,9 @@ use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
 use pointmass::{Color, Heap, System};
 use std::collections::HashMap;
+
+/// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
+const DOT: f32 = 0.009;
 
 /// The places that are remembered of each trail.
 const KNOTS: usize = 48;
@@ -67,8 +71,8 @@ impl Memory {
 }
 
 impl<'m> Cast<'m> {
-    /// Nobody has been seen yet. `dot` is the diameter of points whose material has none \[m\].
-    pub(crate) fn new(model: &Model, style: Option<Style>, view: View, dot: f32, memory: &'m mut Memory) -> Self {
+    /// Nobody has been seen yet.
+    pub(crate) fn new(model: &Model, style: Option<Style>, from: &Viewpoint, memory: &'m mut Memory) -> Self {
         let mut covered = vec![false; model.particles.len()];
         for PatchBuf { first, count, .. } in model.patches.iter().filter(|_| style.is_none()) {
             covered[*first as usize..][..*count as usize].fill(true);
@@ -77,7 +81,15 @@ impl<'m> Cast<'m> {
         let forms = model.shapes.iter().map(form).collect();
         let Memory { rings, knots } = memory;
         let trails = (!rings.is_empty()).then(|| Trails::new(rings, knots, None));
-        Self { before: HashMap::new(), size: dot, view, style, trails, covered, forms }
+        let Viewpoint { camera, middle } = from;
+        let size = DOT * 2.0 * (middle - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
+        let view = View { eye: camera.eye, up: camera.up };
+        Self { before: HashMap::new(), size, view, style, trails, covered, forms }
+    }
+
+    /// Looks from elsewhere from now on; points keep their size.
+    pub(crate) fn look(&mut self, camera: &draw::Camera) {
+        self.view = View { eye: camera.eye, up: camera.up };
     }
 
     /// Whether there are shapes or surfaces, so that light and shadow change from picture to picture.
@@ -87,7 +99,7 @@ impl<'m> Cast<'m> {
     }
 
     /// Looks on after a step: trails remember.
-    pub(crate) fn look(&mut self, system: &System<Heap>, model: &Model) {
+    pub(crate) fn remember(&mut self, system: &System<Heap>, model: &Model) {
         let Some(trails) = &mut self.trails else { return };
         let scene = model.scene();
         styled(&system.state(&scene), self.style, self.size, |state| {

@@ -30,8 +30,16 @@ pub(crate) enum RecordFormat {
 /// A format of pictures.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum PictureFormat {
-    /// An animation.
+    /// An animation in few colours.
     Gif,
+    /// An animation in all colours.
+    Apng,
+    /// A video, by ffmpeg.
+    Mp4,
+    /// Another, by ffmpeg.
+    Webm,
+    /// A film for other programs.
+    Y4m,
     /// A picture, or one of many.
     Png,
 }
@@ -88,6 +96,11 @@ pub(crate) fn named<F: ValueEnum>(text: &str) -> Result<(PathBuf, F), String> {
             Err(format!("expected a name that ends in {} or {last}", others.join(", ")))
         }
     }
+}
+
+/// A file for pictures, or `-` for standard output.
+pub(crate) fn pictures(text: &str) -> Result<(PathBuf, PictureFormat), String> {
+    if text == "-" { Ok((PathBuf::from(text), PictureFormat::Y4m)) } else { named(text) }
 }
 
 /// Everything as one line of JSON, in which numbers that are not finite are null.

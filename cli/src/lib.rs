@@ -28,6 +28,7 @@ mod statistics;
 mod style;
 mod substeps;
 mod temporary;
+mod viewpoint;
 mod whole;
 mod world;
 
@@ -46,6 +47,7 @@ use std::process::ExitCode;
     after_help = "\
 Examples:
   pointmass render scenes/fountain.json --out fountain.gif
+  pointmass render scenes/pour.json --out pour.mp4 --orbit 1
   pointmass run scenes/rope.scn --duration 10 --dt 0.001 --out rope.csv
   pointmass run scenes/fountain.json --report json | jq .died
   pointmass check scenes/rope.scn --dt 1/30

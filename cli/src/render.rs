@@ -1,15 +1,23 @@
 //! `pointmass render`: steps a scene and draws it.
 
 use crate::cast::{Cast, Memory, Seen};
-use crate::draw::{Moving, Piece, Renderer, Sink};
-use crate::formats::{PictureFormat, named};
-use crate::outcome::{Failure, Outcome};
+use crate::draw::{Camera, Flipbook, Moving, Piece, Renderer, Sink, Stage};
+use crate::formats::{PictureFormat, pictures as format};
+use crate::outcome::{Failure, Outcome, print, tell};
 use crate::progress::Progress;
-use crate::stage::{moves, pictures, stage, view};
+use crate::stage::{boxes, moves, pictures, stage, viewpoint};
 use crate::style::Style;
+use crate::viewpoint::{Crowd, Looking, Viewpoint};
 use crate::world::{Settings, World};
+use image::RgbImage;
+use indicatif::DecimalBytes;
 use pointmass::Time;
-use std::path::PathBuf;
+use pointmass::scene::{Model, SceneFile};
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Arguments of `render`.
 #[derive(Debug, clap::Args)]
@@ -17,8 +25,9 @@ pub(crate) struct Render {
     /// How the scene is run.
     #[command(flatten)]
     pub(crate) world: Settings,
-    /// FILE.gif, an animation; FILE.png, the last picture; or DIR/%04d.png, all pictures
-    #[arg(long, value_name = "FILE", value_parser = named::<PictureFormat>)]
+    /// FILE.gif, .apng, .mp4 or .webm (these two by ffmpeg), a film; .y4m or `-`, one for other programs; FILE.png, the last
+    /// picture; or DIR/%04d.png, all pictures
+    #[arg(long, value_name = "FILE", value_parser = format)]
     pub(crate) out: (PathBuf, PictureFormat),
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
@@ -26,6 +35,9 @@ pub(crate) struct Render {
     /// Pictures per second of the scene's time
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) fps: u32,
+    /// From where it is seen.
+    #[command(flatten)]
+    pub(crate) looking: Looking,
     /// Draw particles in one of the lecture's styles, not as the scene says
     #[arg(long, value_name = "NAME")]
     pub(crate) style: Option<Style>,
@@ -37,48 +49,210 @@ pub(crate) struct Render {
 /// Draws a scene as the arguments say. Files are written whole, at the end, or not at all.
 pub(crate) fn render(args: &Render) -> Outcome {
     let mut world = World::load(&args.world)?;
-    let mut sink = Sink::create(&args.out.0, f64::from(args.fps)).map_err(Failure::new)?;
-    let frame_time = 1.0 / f64::from(args.fps);
-    let frames = (world.duration / frame_time + 1e-6) as u64;
-    // Between two pictures lie equal steps, none longer than the step of the run.
-    let substeps = ((frame_time / world.dt - 1e-6).ceil() as u64).max(1);
+    let timing = Timing::new(&world, args.fps);
+    let frames = u32::try_from(timing.frames + 1).unwrap_or(u32::MAX);
+    let mut sink = Sink::create(&args.out.0, f64::from(args.fps), frames).map_err(Failure::new)?;
+    world.warn_of_steps(timing.step(), world.duration);
+    let pool = args.world.threads.map(pool).transpose()?;
 
-    world.warn_of_steps(frame_time / substeps as f64, world.duration);
+    let fits = args.looking.needs_run(world.file.camera.is_some());
+    let drawn = if sink.keeps_only_last() { 1 } else { timing.frames + 1 };
+    let passes = if fits { 2 } else { 1 };
+    let mut progress = Progress::of_work(passes * timing.frames * timing.substeps + drawn * timing.substeps);
+    let from = look(args, &mut world, &timing, &mut progress);
+    let mut draw = || film(args, &mut world, &timing, &from, &mut sink, &mut progress);
+    match &pool {
+        Some(pool) => pool.install(draw)?,
+        None => draw()?,
+    }
+    sink.finish().map_err(Failure::new)?;
+    drop(progress);
+    say(args, drawn)
+}
 
-    let pictures = pictures(&world.file, &args.world.scene, args.style)?;
-    let renderer = |world: &World, pieces: Vec<Piece>| {
-        let mut stage = stage(&world.file, &world.model, args.show_sources, world.system.time());
-        stage.pictures = pictures.clone();
-        stage.pieces.extend(pieces);
-        Renderer::new(&stage, args.size.0, args.size.1)
-    };
-    let (view, dot) = view(&world.file, &world.model);
-    let mut memory = Memory::new(&world.file, args.style, world.system.capacity());
-    let mut cast = Cast::new(&world.model, args.style, view, dot, &mut memory);
-    // What stands still is brought before the lens but once.
-    let changes = moves(&world.model) || cast.has_pieces(&world.model);
-    let mut still = renderer(&world, Vec::new());
-    let mut progress = Progress::new(frames * substeps);
-    for frame in 0..=frames {
-        if frame > 0 {
-            for substep in 1..=substeps {
-                let elapsed = (frame - 1) as f64 + substep as f64 / substeps as f64;
-                world.step_to(Time::from_seconds_f64(elapsed * frame_time));
-                cast.look(&world.system, &world.model);
+/// When there are pictures.
+#[derive(Clone, Copy, Debug)]
+struct Timing {
+    /// Seconds between two pictures.
+    frame_time: f64,
+    /// How many there are after the first.
+    frames: u64,
+    /// Between two pictures lie equal steps, none longer than the step of the run.
+    substeps: u64,
+}
+
+impl Timing {
+    fn new(world: &World, fps: u32) -> Self {
+        let frame_time = 1.0 / f64::from(fps);
+        let frames = (world.duration / frame_time + 1e-6) as u64;
+        let substeps = ((frame_time / world.dt - 1e-6).ceil() as u64).max(1);
+        Self { frame_time, frames, substeps }
+    }
+
+    /// The length of a step \[s\].
+    fn step(&self) -> f64 {
+        self.frame_time / self.substeps as f64
+    }
+
+    /// Steps from the picture before to picture `frame`, if there is one before.
+    fn step_to(&self, frame: u64, world: &mut World, progress: &mut Progress, mut look_on: impl FnMut(&World)) {
+        for substep in 1..=self.substeps {
+            if frame > 0 {
+                let elapsed = (frame - 1) as f64 + substep as f64 / self.substeps as f64;
+                world.step_to(Time::from_seconds_f64(elapsed * self.frame_time));
+                look_on(world);
                 progress.step(world.system.len());
             }
         }
+    }
+
+    /// The part of the film that is over at a picture.
+    fn part(&self, frame: u64) -> f64 {
+        frame as f64 / self.frames.max(1) as f64
+    }
+}
+
+/// From where the film is seen; where that depends on the run, runs it.
+fn look(args: &Render, world: &mut World, timing: &Timing, progress: &mut Progress) -> Viewpoint {
+    let from = viewpoint(&world.file, &world.model);
+    if let Some(seat) = args.looking.camera {
+        return from.from(seat);
+    }
+    if !args.looking.needs_run(world.file.camera.is_some()) {
+        return from;
+    }
+    let begin = (world.system.clone(), world.pace.clone());
+    let mut crowd = Crowd::new();
+    for frame in 0..=timing.frames {
+        timing.step_to(frame, world, progress, |_| ());
+        crowd.meet(&world.system);
+    }
+    (world.system, world.pace) = begin;
+    let aspect = args.size.0 as f32 / args.size.1 as f32;
+    crowd.view(from.camera, &boxes(&world.model), aspect, args.looking.orbit.is_some())
+}
+
+/// Runs and draws the whole film. While some pictures are drawn, those before are written.
+fn film(
+    args: &Render,
+    world: &mut World,
+    timing: &Timing,
+    from: &Viewpoint,
+    sink: &mut Sink,
+    progress: &mut Progress,
+) -> Outcome {
+    let mut memory = Memory::new(&world.file, args.style, world.system.capacity());
+    let mut cast = Cast::new(&world.model, args.style, from, &mut memory);
+    let studio = Studio::new(args, world, from, cast.has_pieces(&world.model))?;
+    let (mut shots, mut drawn) = (Vec::new(), Vec::new());
+    for frame in 0..=timing.frames {
+        timing.step_to(frame, world, progress, |world| cast.remember(&world.system, &world.model));
+        let camera = from.turned(args.looking.orbit.unwrap_or(0.0) * timing.part(frame));
+        cast.look(&camera);
         // Every picture remembers where things were in the one before, drawn or not.
-        let Seen { dots, billboards, segments, ribbons, pieces } = cast.see(&world.system, &world.file, &world.model);
-        if frame == frames || !sink.keeps_only_last() {
-            if changes {
-                still = renderer(&world, pieces);
-            }
-            let moving = Moving { dots: &dots, billboards: &billboards, segments: &segments, ribbons: &ribbons };
-            sink.push(&still.frame(&moving)).map_err(Failure::new)?;
+        let seen = cast.see(&world.system, &world.file, &world.model);
+        if frame < timing.frames && sink.keeps_only_last() {
+            continue;
+        }
+        shots.push(Shot { instant: world.system.time(), camera, seen });
+        if shots.len() == studio.batch || frame == timing.frames {
+            let draw = || shots.par_iter().map(|shot| studio.draw(shot)).collect();
+            let (next, written) = rayon::join(draw, || write(&drawn, sink));
+            written?;
+            progress.advance(shots.len() as u64 * timing.substeps, || format!("{} particles", world.system.len()));
+            drawn = next;
+            shots.clear();
         }
     }
-    sink.finish().map_err(Failure::new)
+    write(&drawn, sink)
+}
+
+fn write(pictures: &[RgbImage], sink: &mut Sink) -> Outcome {
+    pictures.iter().try_for_each(|picture| sink.push(picture)).map_err(Failure::new)
+}
+
+/// What moves at an instant, and from where it is seen.
+struct Shot {
+    instant: Time,
+    camera: Camera,
+    seen: Seen,
+}
+
+/// Everything that pictures have in common.
+struct Studio {
+    file: SceneFile,
+    model: Model,
+    pictures: Arc<[Flipbook]>,
+    size: (u32, u32),
+    show_sources: bool,
+    /// What stands still is brought before the lens but once, if that stands still as well.
+    still: Option<Renderer>,
+    /// How many pictures are drawn side by side.
+    batch: usize,
+}
+
+impl Studio {
+    fn new(args: &Render, world: &World, from: &Viewpoint, has_pieces: bool) -> Outcome<Self> {
+        /// How many pixels are in the making at once, so that large pictures do not need all memory.
+        const PIXELS: usize = 1 << 24;
+        let World { file, model, .. } = world;
+        let batch = (PIXELS / (args.size.0 as usize * args.size.1 as usize)).clamp(1, rayon::current_num_threads());
+        let mut studio = Self {
+            pictures: pictures(file, &args.world.scene, args.style)?,
+            file: file.clone(),
+            model: model.clone(),
+            size: args.size,
+            show_sources: args.show_sources,
+            still: None,
+            batch,
+        };
+        if !moves(model) && !has_pieces && args.looking.orbit.is_none() {
+            studio.still = Some(studio.renderer(world.system.time(), from.camera, &[]));
+        }
+        Ok(studio)
+    }
+
+    /// The scenery at an instant, with what else is solid, seen by a camera.
+    fn renderer(&self, instant: Time, camera: Camera, pieces: &[Piece]) -> Renderer {
+        let mut stage = stage(&self.file, &self.model, self.show_sources, instant);
+        stage.pieces.extend_from_slice(pieces);
+        let stage = Stage { camera, pictures: self.pictures.clone(), ..stage };
+        Renderer::new(&stage, self.size.0, self.size.1)
+    }
+
+    fn draw(&self, shot: &Shot) -> RgbImage {
+        let Seen { dots, billboards, segments, ribbons, pieces } = &shot.seen;
+        let moving = Moving { dots, billboards, segments, ribbons };
+        match &self.still {
+            Some(renderer) => renderer.frame(&moving),
+            None => self.renderer(shot.instant, shot.camera, pieces).frame(&moving),
+        }
+    }
+}
+
+/// As many threads as were asked for.
+fn pool(threads: u16) -> Outcome<ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
+    pool.map_err(|error| Failure::new(format!("--threads {threads}: {error}")))
+}
+
+/// Says what was written, on standard output unless that is where the film went.
+fn say(args: &Render, pictures: u64) -> Outcome {
+    let ((path, _), (width, height)) = (&args.out, args.size);
+    let what = match pictures {
+        1 => format!("one picture of {width} x {height} pixels"),
+        _ => {
+            let seconds = pictures as f64 / f64::from(args.fps);
+            format!("{pictures} pictures of {width} x {height} pixels, {seconds:.2} s")
+        }
+    };
+    if path == Path::new("-") {
+        tell("written", &what);
+        return Ok(());
+    }
+    let bytes = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let bytes = bytes.map_or(String::new(), |facts| format!(", {}", DecimalBytes(facts.len())));
+    print(&format!("{}: {what}{bytes}\n", path.display()))
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

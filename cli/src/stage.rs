@@ -3,9 +3,9 @@
 use crate::draw::{self, Flipbook, Line, Piece, Stage, Surface, shapes};
 use crate::outcome::{Failure, Outcome};
 use crate::style::Style;
+use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::Time;
-use pointmass::draw::View;
 use pointmass::material::Blend;
 use pointmass::motion::Script;
 use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
@@ -65,17 +65,6 @@ pub(crate) fn pictures(file: &SceneFile, path: &Path, style: Option<Style>) -> O
     file.materials.iter().enumerate().map(picture).chain([Ok(otherwise.clone())]).collect()
 }
 
-/// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
-const DOT: f32 = 0.009;
-
-/// The place that a scene is seen from, and the diameter of points in it whose material has none \[m\].
-pub(crate) fn view(file: &SceneFile, model: &Model) -> (View, f32) {
-    let bounds = bounds(file, model);
-    let camera = camera(file.camera.as_ref(), bounds);
-    let width = 2.0 * (bounds.center() - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
-    (View { eye: camera.eye, up: camera.up }, DOT * width)
-}
-
 /// Whether some of the scenery moves.
 pub(crate) fn moves(model: &Model) -> bool {
     model.scenery.iter().any(|solid| !solid.motion.is_still())
@@ -86,8 +75,25 @@ pub(crate) fn size(file: &SceneFile, model: &Model) -> f64 {
     f64::from(bounds(file, model).radius())
 }
 
+/// The scene's view of itself: by its camera, or by one that looks down −z at all that stays put.
+pub(crate) fn viewpoint(file: &SceneFile, model: &Model) -> Viewpoint {
+    let bounds = bounds(file, model);
+    Viewpoint::new(camera(file.camera.as_ref(), bounds), bounds.center())
+}
+
 /// A box around all that stays put, for a camera that nobody placed.
 fn bounds(file: &SceneFile, model: &Model) -> Aabb {
+    let particles = Aabb::around(file.particles.iter().map(|p| p.position));
+    let all = boxes(model).into_iter().fold(particles, Aabb::join);
+    if all.radius().is_finite() && all.radius() > 0.0 {
+        return all;
+    }
+    let center = if all.center().is_finite() { all.center() } else { Vec3::ZERO };
+    Aabb { min: center - 0.5, max: center + 0.5 }
+}
+
+/// Boxes around scenery, sources and sinks, of those that end somewhere.
+pub(crate) fn boxes(model: &Model) -> Vec<Aabb> {
     let corners = |shape: &Shape<Arc<MeshBuf>>, to_world: &Affine| {
         let Aabb { min, max } = shape.bounds();
         let corner = |i: u8| Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z));
@@ -96,13 +102,7 @@ fn bounds(file: &SceneFile, model: &Model) -> Aabb {
     let scenery = model.scenery.iter().map(|s| corners(&s.shape, &s.to_world));
     let sources = model.emitters.iter().map(|e| corners(&e.shape, &Affine::IDENTITY));
     let sinks = model.forces.1.iter().map(|s| corners(&s.shape, &Affine::IDENTITY));
-    let particles = Aabb::around(file.particles.iter().map(|p| p.position));
-    let all = scenery.chain(sources).chain(sinks).fold(particles, Aabb::join);
-    if all.radius().is_finite() && all.radius() > 0.0 {
-        return all;
-    }
-    let center = if all.center().is_finite() { all.center() } else { Vec3::ZERO };
-    Aabb { min: center - 0.5, max: center + 0.5 }
+    scenery.chain(sources).chain(sinks).filter(|all| all.min.is_finite() && all.max.is_finite()).collect()
 }
 
 fn pick(i: u8, bit: u8, low: f32, high: f32) -> f32 {

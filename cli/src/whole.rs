@@ -39,6 +39,11 @@ impl WholeFile {
         &self.path
     }
 
+    /// What it is called until it is complete, for programs that write it.
+    pub(crate) fn passing(&self) -> &Path {
+        self.temporary.path()
+    }
+
     /// Opens the file once more, for those who have to own what they write to.
     pub(crate) fn reopen(&self) -> io::Result<File> {
         self.file.get_ref().try_clone()

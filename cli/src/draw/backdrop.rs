@@ -6,9 +6,7 @@ use super::model::{Facet, Model};
 use super::raster::{Band, SAMPLES, Sample, Triangle};
 use super::shade::Shader;
 use glam::Vec3;
-use std::num::NonZero;
-use std::sync::Mutex;
-use std::thread;
+use rayon::prelude::*;
 
 /// How many rows are drawn at a time; all samples of so many fit into the processor's cache.
 const BAND: usize = 16;
@@ -25,7 +23,7 @@ pub(super) struct Backdrop {
 }
 
 impl Backdrop {
-    /// Draws a model, on all processors. Bands know nothing of each other, so the picture does not
+    /// Draws a model, on all threads of the pool that it is called in. Bands know nothing of each other, so the picture does not
     /// depend on how many there are.
     pub(super) fn new(lens: &Lens, model: &Model, shader: &Shader) -> Self {
         let count = lens.width * lens.height;
@@ -34,31 +32,21 @@ impl Backdrop {
 
         let visible = in_order(lens, model);
         let size = (BAND * lens.width).max(1);
-        let bands = Mutex::new(colors.chunks_mut(size).zip(depths.chunks_mut(size)).enumerate());
-        let next = || bands.lock().ok()?.next();
-        let work = || {
-            while let Some((number, (colors, depths))) = next() {
-                let rows = colors.len() / lens.width;
-                let sky = |y| shader.sky.at(y as f32 + 0.5);
-                let mut band = Band::new(BAND * number, rows, lens.width, sky);
-                let opaque = visible.iter().filter(|(facet, _)| model.skins[facet.skin].opacity >= 1.0);
-                opaque.for_each(|(_, triangle)| band.hide(triangle));
-                for (facet, triangle) in &visible {
-                    let skin = &model.skins[facet.skin];
-                    band.paint(triangle, skin.opacity, |part| shader.color(facet, skin, part));
-                }
-                for ((color, depth), samples) in colors.iter_mut().zip(depths).zip(&band.samples) {
-                    *color = mean(samples);
-                    *depth = std::array::from_fn(|at| samples[at].depth);
-                }
+        let bands = colors.par_chunks_mut(size).zip(depths.par_chunks_mut(size)).enumerate();
+        bands.for_each(|(number, (colors, depths))| {
+            let rows = colors.len() / lens.width;
+            let sky = |y| shader.sky.at(y as f32 + 0.5);
+            let mut band = Band::new(BAND * number, rows, lens.width, sky);
+            let opaque = visible.iter().filter(|(facet, _)| model.skins[facet.skin].opacity >= 1.0);
+            opaque.for_each(|(_, triangle)| band.hide(triangle));
+            for (facet, triangle) in &visible {
+                let skin = &model.skins[facet.skin];
+                band.paint(triangle, skin.opacity, |part| shader.color(facet, skin, part));
             }
-        };
-        thread::scope(|scope| {
-            for _ in 1..thread::available_parallelism().map_or(1, NonZero::get) {
-                // Where no thread is to be had, the work gets done all the same.
-                let _ = thread::Builder::new().spawn_scoped(scope, work);
+            for ((color, depth), samples) in colors.iter_mut().zip(depths).zip(&band.samples) {
+                *color = mean(samples);
+                *depth = std::array::from_fn(|at| samples[at].depth);
             }
-            work();
         });
         Self { colors, depths }
     }

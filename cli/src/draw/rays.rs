@@ -2,7 +2,16 @@
 
 use super::camera::Lens;
 use super::model::{Facet, Model, Role};
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3, Vec3Swizzles};
+
+/// How many walls are not worth a box each.
+const LEAF: usize = 4;
+
+/// From this depth on walls are halved, which leaves a tree that is no deeper than twice as much, however many there are.
+const HALVING: usize = 48;
+
+/// The deepest that a tree can be.
+const DEPTH: usize = 2 * HALVING;
 
 /// The triangles of a model.
 ///
@@ -54,7 +63,7 @@ impl Rays {
         let (endless, solid) = (walls(Role::Endless), walls(Role::Solid));
         let mut rays = Self { upright, endless, solid, nodes: Vec::new() };
         if !rays.solid.is_empty() {
-            rays.sort(0, rays.solid.len());
+            rays.sort(0, rays.solid.len(), 0);
         }
         rays
     }
@@ -109,8 +118,8 @@ impl Rays {
 
     /// Visits the solid walls that rays may meet, in no particular order. The visitor may shorten the rays.
     fn walk<const N: usize>(&self, mut packet: Packet<N>, mut visit: impl FnMut(&Wall, &mut Packet<N>)) {
-        // Halving leaves a tree too shallow to fill this, however many walls there are.
-        let mut open = [0; 64];
+        // One child of each node waits; trees are no deeper than this.
+        let mut open = [0; DEPTH + 2];
         let mut count = usize::from(!self.nodes.is_empty());
         while count > 0 {
             count -= 1;
@@ -130,8 +139,8 @@ impl Rays {
         }
     }
 
-    /// Puts a box around some walls, and boxes around both halves of them.
-    fn sort(&mut self, first: usize, end: usize) {
+    /// Puts a box around some walls, and boxes around both parts of them.
+    fn sort(&mut self, first: usize, end: usize, depth: usize) {
         let walls = &mut self.solid[first..end];
         let mut node = Node { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, walls: (first, end), second_child: 0 };
         for place in walls.iter().flat_map(Wall::corners) {
@@ -139,19 +148,97 @@ impl Rays {
             node.high = node.high.max(place);
         }
         let at = self.nodes.len();
-        if walls.len() > 4 {
-            let longest = (node.high - node.low).max_position();
-            let middle = |wall: &Wall| wall.corners().iter().map(|corner| corner[longest]).sum::<f32>();
-            let half = walls.len() / 2;
-            walls.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
+        let low_half = match walls.len() {
+            0..=LEAF => 0,
+            count if depth >= HALVING => count / 2,
+            _ => split(walls),
+        };
+        if low_half > 0 {
             node.walls = (0, 0);
             self.nodes.push(node);
-            self.sort(first, first + half);
+            self.sort(first, first + low_half, depth + 1);
             self.nodes[at].second_child = self.nodes.len();
-            self.sort(first + half, end);
+            self.sort(first + low_half, end, depth + 1);
         } else {
             self.nodes.push(node);
         }
+    }
+}
+
+/// Parts walls so that rays are likely to miss the boxes of most: the chance to meet a box goes with its surface. Tells how
+/// many come first.
+fn split(walls: &mut [Wall]) -> usize {
+    const BINS: usize = 16;
+    let middles = walls.iter().map(Wall::middle);
+    let (low, high) = middles.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let bin = |wall: &Wall, axis: usize| {
+        let part = (wall.middle()[axis] - low[axis]) / (high[axis] - low[axis]);
+        ((part * BINS as f32) as usize).min(BINS - 1)
+    };
+    let mut best = (f32::INFINITY, 0, 0);
+    for axis in 0..3 {
+        let mut bins = [Bounds::default(); BINS];
+        walls.iter().for_each(|wall| bins[bin(wall, axis)].add(wall));
+        let mut below = [0.0; BINS];
+        let mut sum = Bounds::default();
+        for at in 0..BINS {
+            below[at] = sum.cost();
+            sum = sum.join(&bins[at]);
+        }
+        let mut sum = Bounds::default();
+        for at in (1..BINS).rev() {
+            sum = sum.join(&bins[at]);
+            let cost = below[at] + sum.cost();
+            if cost < best.0 {
+                best = (cost, axis, at);
+            }
+        }
+    }
+    let (_, axis, border) = best;
+    let mut count = 0;
+    for at in 0..walls.len() {
+        if bin(&walls[at], axis) < border {
+            walls.swap(count, at);
+            count += 1;
+        }
+    }
+    if (1..walls.len()).contains(&count) {
+        return count;
+    }
+    // All in one place.
+    walls.len() / 2
+}
+
+/// A box around some walls.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+    count: usize,
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, count: 0 }
+    }
+}
+
+impl Bounds {
+    fn add(&mut self, wall: &Wall) {
+        for corner in wall.corners() {
+            (self.low, self.high) = (self.low.min(corner), self.high.max(corner));
+        }
+        self.count += 1;
+    }
+
+    fn join(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high), count: self.count + other.count }
+    }
+
+    /// How many walls rays are tried on, times how many of the rays.
+    fn cost(&self) -> f32 {
+        let sides = (self.high - self.low).max(Vec3::ZERO);
+        if self.count == 0 { 0.0 } else { self.count as f32 * (sides * sides.yzx()).element_sum() }
     }
 }
 
@@ -203,6 +290,12 @@ impl Wall {
     fn new(facet: &Facet, upright: Mat3, opacity: f32) -> Self {
         let [a, b, c] = facet.corners.map(|corner| upright * corner.place);
         Self { corner: a, sides: [b - a, c - a], flat: upright * facet.flat, opacity }
+    }
+
+    /// The middle of its box.
+    fn middle(&self) -> Vec3 {
+        let [a, b, c] = self.corners();
+        0.5 * (a.min(b).min(c) + a.max(b).max(c))
     }
 
     fn corners(&self) -> [Vec3; 3] {

@@ -34,9 +34,6 @@ struct Reel {
 
 impl Animation {
     pub(super) fn create(path: &Path, fps: f64) -> Result<Self, String> {
-        if !(fps.is_finite() && fps > 0.0) {
-            return Err(format!("cannot write {}: {fps} frames per second make no film", path.display()));
-        }
         let file = WholeFile::create(path).map_err(|failure| failure.to_string())?;
         Ok(Self { file, size: Size::default(), fps, count: 0, reel: None })
     }

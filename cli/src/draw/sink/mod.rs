@@ -1,22 +1,30 @@
-//! Where the pictures go: a GIF, a PNG or a numbered sequence of PNGs, by the name of the file.
+//! Where the pictures go: a film, a PNG or a numbered sequence of PNGs, by the name of the file.
 //!
 //! What is written appears whole or not at all. It is put together under a passing name in the
 //! same folder and renamed at the end; a rendering that is broken off leaves nothing behind.
 
 mod animation;
+mod apng;
 mod common;
 mod palette;
 mod pattern;
+mod raw;
 mod screen;
 mod sequence;
 mod still;
+mod thrift;
+mod video;
+mod yuv;
 
 use animation::Animation;
+use apng::Apng;
 use image::RgbImage;
 use pattern::Pattern;
+use raw::Raw;
 use sequence::Sequence;
 use std::path::Path;
 use still::Still;
+use video::{Packing, Video};
 
 /// Takes the frames of a rendering, and writes them.
 ///
@@ -27,6 +35,9 @@ pub struct Sink(Kind);
 #[derive(Debug)]
 enum Kind {
     Animation(Animation),
+    Apng(Apng),
+    Raw(Raw),
+    Video(Video),
     Still(Still),
     Sequence(Sequence),
 }
@@ -34,28 +45,39 @@ enum Kind {
 impl Sink {
     /// Prepares to write `path`, one of
     ///
-    /// - `FILE.gif`, an animation that repeats for ever,
+    /// - `FILE.gif`, an animation that repeats for ever, in about the right colours,
+    /// - `FILE.apng`, the same to the bit, in a larger file,
+    /// - `FILE.mp4` or `FILE.webm`, a video, where the program ffmpeg is installed,
+    /// - `FILE.y4m`, a film for other programs, or `-`, the same on standard output,
     /// - `FILE.png`, a single picture, the last one pushed,
     /// - `DIR/%04d.png` (or `%d`, or any width), a sequence numbered from 0. The last folder is
     ///   created if it is missing.
     ///
-    /// `fps` is how many frames there are to a second.
-    pub fn create(path: &Path, fps: f64) -> Result<Self, String> {
+    /// There are `fps` frames to a second, and `frames` in all.
+    pub fn create(path: &Path, fps: f64, frames: u32) -> Result<Self, String> {
         let shown = path.display();
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-        let is = |wanted| extension.eq_ignore_ascii_case(wanted);
-        let pattern = Pattern::parse(path)?;
-        match pattern {
-            Some(pattern) if is("png") => {
-                Sequence::create(path, pattern).map(|sequence| Self(Kind::Sequence(sequence)))
-            }
-            Some(_) => Err(format!("cannot write {shown}: numbered pictures must end in .png")),
-            None if is("png") => Still::create(path).map(|still| Self(Kind::Still(still))),
-            None if is("gif") => Animation::create(path, fps).map(|animation| Self(Kind::Animation(animation))),
-            None => {
-                Err(format!("cannot write {shown}: a picture's name must be like FILE.gif, FILE.png or DIR/%04d.png"))
-            }
+        if !(fps.is_finite() && fps > 0.0) {
+            return Err(format!("cannot write {shown}: {fps} frames per second make no film"));
         }
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+        let kind = match (Pattern::parse(path)?, extension.to_ascii_lowercase().as_str()) {
+            (Some(pattern), "png") => Kind::Sequence(Sequence::create(path, pattern)?),
+            (Some(_), _) => return Err(format!("cannot write {shown}: numbered pictures must end in .png")),
+            (None, "png") => Kind::Still(Still::create(path)?),
+            (None, "gif") => Kind::Animation(Animation::create(path, fps)?),
+            (None, "apng") => Kind::Apng(Apng::create(path, fps, frames)?),
+            (None, "y4m") => Kind::Raw(Raw::create(path, fps)?),
+            (None, "mp4") => Kind::Video(Video::create(path, fps, Packing::Mp4)?),
+            (None, "webm") => Kind::Video(Video::create(path, fps, Packing::Webm)?),
+            (None, _) if path == Path::new("-") => Kind::Raw(Raw::create(path, fps)?),
+            (None, _) => {
+                return Err(format!(
+                    "cannot write {shown}: its name must end in .gif, .apng, .mp4, .webm, .y4m or .png, or be like \
+                     DIR/%04d.png"
+                ));
+            }
+        };
+        Ok(Self(kind))
     }
 
     /// Whether only the last frame counts, so that the others need not be drawn.
@@ -67,6 +89,9 @@ impl Sink {
     pub fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
         match &mut self.0 {
             Kind::Animation(animation) => animation.push(frame),
+            Kind::Apng(apng) => apng.push(frame),
+            Kind::Raw(raw) => raw.push(frame),
+            Kind::Video(video) => video.push(frame),
             Kind::Still(still) => still.push(frame),
             Kind::Sequence(sequence) => sequence.push(frame),
         }
@@ -76,6 +101,9 @@ impl Sink {
     pub fn finish(self) -> Result<(), String> {
         match self.0 {
             Kind::Animation(animation) => animation.finish(),
+            Kind::Apng(apng) => apng.finish(),
+            Kind::Raw(raw) => raw.finish(),
+            Kind::Video(video) => video.finish(),
             Kind::Still(still) => still.finish(),
             Kind::Sequence(sequence) => sequence.finish(),
         }

@@ -9,12 +9,14 @@ pub(super) const MOST: usize = 255;
 /// How many answers are remembered.
 const REMEMBERED: usize = 1 << 14;
 
-type Color = [u8; 3];
+pub(super) type Color = [u8; 3];
 
 /// A choice of colours, and a quick way to the nearest one.
 #[derive(Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
+    /// The same, one array for each channel, filled up with what is far from any colour.
+    channels: [[f32; MOST + 1]; 3],
     /// How far apart neighbours are, in the mean.
     step: f32,
     /// Colours asked for before, and the answers.
@@ -40,7 +42,9 @@ impl Palette {
         let mut heaps = heaps(pixels);
         let groups = groups(&mut heaps);
         let colors: Vec<Color> = groups.iter().map(|group| group.mean.map(|channel| (channel + 0.5) as u8)).collect();
-        let mut palette = Self { step: step(&colors), colors, remembered: Vec::new() };
+        let channels = [0, 1, 2]
+            .map(|at| std::array::from_fn(|index| colors.get(index).map_or(1e6, |color: &Color| f32::from(color[at]))));
+        let mut palette = Self { step: step(&colors), colors, channels, remembered: Vec::new() };
         let black = ([0; 3], palette.search([0; 3]));
         palette.remembered = vec![black; REMEMBERED];
         palette
@@ -69,15 +73,27 @@ impl Palette {
         self.remembered[slot].1
     }
 
+    /// The distances from a colour to all of the palette; those of indices beyond it are immense.
+    pub(super) fn distances(&self, color: Color) -> [f32; MOST + 1] {
+        let [red, green, blue] = color.map(f32::from);
+        let [reds, greens, blues] = &self.channels;
+        std::array::from_fn(|at| {
+            let (red, green, blue) = (reds[at] - red, greens[at] - green, blues[at] - blue);
+            3.0 * red * red + 5.0 * green * green + 2.0 * blue * blue
+        })
+    }
+
     fn search(&self, color: Color) -> u8 {
-        let distances = self.colors.iter().map(|&other| distance(color, other));
+        let distances = self.distances(color);
+        let least = distances.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
         // The palette has no more colours than a byte has values.
-        distances.enumerate().min_by_key(|&(_, distance)| distance).map_or(0, |(at, _)| at as u8)
+        distances.iter().position(|&distance| distance == least).map_or(0, |at| at as u8)
     }
 }
 
-/// How different two colours look, roughly: the eye is keenest on green, and dullest on blue.
-fn distance(a: Color, b: Color) -> i32 {
+/// How different two colours look, roughly: the eye is keenest on green, and dullest on blue. Ten
+/// times the square of a difference that is the same in each channel.
+pub(super) fn distance(a: Color, b: Color) -> i32 {
     let [red, green, blue] = [0, 1, 2].map(|at| i32::from(a[at]) - i32::from(b[at]));
     3 * red * red + 5 * green * green + 2 * blue * blue
 }

@@ -2,23 +2,36 @@
 //!
 //! A frame only holds the pixels that changed, with colours chosen for just those; the rest shows
 //! through from the frames before. So what stands still is drawn once, does not flicker and costs
-//! nothing, and what moves has a whole palette to itself.
+//! nothing, and what moves has a whole palette to itself. Where much changes from one frame to the
+//! next the eye does not see small differences, and of colours that look alike the one that packs
+//! well is taken; what comes to rest is drawn once more, with care.
 
 use super::palette::Palette;
+use super::thrift::{Wish, fulfil};
 use gif::{DisposalMethod, Frame};
 use image::{Rgb, RgbImage};
 use std::borrow::Cow;
 
-/// How far a channel may be from what it should be before a pixel counts as changed.
-const TOLERANCE: u8 = 1;
+/// How far a channel may be from what it should be where nothing moves.
+const TOLERANCE: u8 = 2;
+
+/// How much farther it may be for each step that it has changed since the frame before, and how
+/// far at most.
+const FORGIVENESS: f32 = 0.4;
+const MOST: u8 = 20;
 
 /// What someone who watches the animation sees.
 #[derive(Debug)]
 pub(super) struct Screen {
-    /// What each pixel should have been when it was last drawn; `None` before the first frame.
+    /// What each pixel should have been when it was last drawn with care, else what was drawn; `None`
+    /// before the first frame.
     meant: Option<RgbImage>,
     /// What was drawn, with the palette's colours.
     drawn: RgbImage,
+    /// How far each pixel's channels may be off now.
+    slack: Vec<u8>,
+    /// The picture before.
+    before: Option<RgbImage>,
 }
 
 /// The part of a frame that holds all changes.
@@ -32,40 +45,33 @@ struct Window {
 
 impl Screen {
     pub(super) fn new(width: u32, height: u32) -> Self {
-        Self { meant: None, drawn: RgbImage::new(width, height) }
+        Self { meant: None, drawn: RgbImage::new(width, height), slack: Vec::new(), before: None }
     }
 
     /// What has to be drawn to show a picture. The frame's duration is left open.
     pub(super) fn show(&mut self, picture: &RgbImage) -> Frame<'static> {
+        self.slack = slack(self.before.as_ref(), picture);
         let window = self.changes(picture);
         let changed = window.pixels().filter(|&(x, y)| self.is_changed(picture, x, y));
         let mut palette = Palette::new(changed.map(|(x, y)| picture.get_pixel(x, y).0));
-        let unchanged = palette.colors().len() as u8;
+        let wishes: Vec<Wish> = window.pixels().map(|(x, y)| self.wish(picture, x, y, &mut palette)).collect();
+        let indices = fulfil(&wishes, &palette);
 
-        let mut indices = Vec::with_capacity((window.width * window.height) as usize);
-        for (x, y) in window.pixels() {
-            if self.is_changed(picture, x, y) {
-                let color = picture.get_pixel(x, y);
-                let roughness = palette.roughness(color.0);
-                let index = palette.nearest(dither(color, x, y, roughness));
-                self.drawn.put_pixel(x, y, Rgb(palette.colors()[usize::from(index)]));
-                if let Some(meant) = &mut self.meant {
-                    meant.put_pixel(x, y, *color);
-                }
-                indices.push(index);
-            } else {
-                indices.push(unchanged);
-            }
+        let meant = self.meant.get_or_insert_with(|| picture.clone());
+        for (((x, y), &index), wish) in window.pixels().zip(&indices).zip(wishes) {
+            // What shows through has no colour.
+            let Some(&color) = palette.colors().get(usize::from(index)) else { continue };
+            self.drawn.put_pixel(x, y, Rgb(color));
+            let careful = matches!(wish, Wish::Exactly(_));
+            meant.put_pixel(x, y, if careful { *picture.get_pixel(x, y) } else { Rgb(color) });
         }
-        if self.meant.is_none() {
-            self.meant = Some(picture.clone());
-        }
+        self.before = Some(picture.clone());
 
         let mut colors = palette.colors().concat();
         colors.extend([0; 3]);
         Frame {
             dispose: DisposalMethod::Keep,
-            transparent: Some(unchanged),
+            transparent: Some(palette.colors().len() as u8),
             left: window.left as u16,
             top: window.top as u16,
             width: window.width as u16,
@@ -76,11 +82,25 @@ impl Screen {
         }
     }
 
+    /// What may stand for a pixel.
+    fn wish(&self, picture: &RgbImage, x: u32, y: u32, palette: &mut Palette) -> Wish {
+        let color = picture.get_pixel(x, y);
+        let slack = i32::from(self.slack[(y * picture.width() + x) as usize]);
+        if !self.is_changed(picture, x, y) {
+            Wish::Exactly(palette.colors().len() as u8)
+        } else if slack >= 2 * i32::from(TOLERANCE) {
+            Wish::About(color.0, 10 * slack * slack)
+        } else {
+            let roughness = palette.roughness(color.0);
+            Wish::Exactly(palette.nearest(dither(color, x, y, roughness)))
+        }
+    }
+
     fn is_changed(&self, picture: &RgbImage, x: u32, y: u32) -> bool {
         let wanted = picture.get_pixel(x, y);
-        self.meant
-            .as_ref()
-            .is_none_or(|meant| differ(wanted, meant.get_pixel(x, y)) && differ(wanted, self.drawn.get_pixel(x, y)))
+        let slack = self.slack[(y * picture.width() + x) as usize];
+        let differs = |other: &Rgb<u8>| difference(wanted, other) > slack;
+        self.meant.as_ref().is_none_or(|meant| differs(meant.get_pixel(x, y)) && differs(self.drawn.get_pixel(x, y)))
     }
 
     /// The smallest window around all changes. A frame must have a pixel even if nothing changed.
@@ -106,8 +126,17 @@ impl Window {
     }
 }
 
-fn differ(a: &Rgb<u8>, b: &Rgb<u8>) -> bool {
-    a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > TOLERANCE)
+/// How far each pixel's channels may be off after the picture before: the farther the more has changed.
+fn slack(before: Option<&RgbImage>, picture: &RgbImage) -> Vec<u8> {
+    let Some(before) = before else { return vec![0; picture.pixels().len()] };
+    let changes = before.pixels().zip(picture.pixels()).map(|(before, now)| difference(before, now));
+    changes.map(|change| (TOLERANCE + (FORGIVENESS * f32::from(change)) as u8).min(MOST)).collect()
+}
+
+/// By how much the channel differs that differs most.
+fn difference(a: &Rgb<u8>, b: &Rgb<u8>) -> u8 {
+    let [red, green, blue] = [0, 1, 2].map(|at| a.0[at].abs_diff(b.0[at]));
+    red.max(green).max(blue)
 }
 
 /// Makes a colour a little lighter or darker in a fixed pattern, so that a mixture of the two

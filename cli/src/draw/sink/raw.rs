@@ -1,0 +1,62 @@
+//! Films for other programs, in a file or on standard output.
+
+use super::common::{Size, cannot_write, no_frames};
+use super::yuv::Yuv;
+use crate::whole::WholeFile;
+use image::RgbImage;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A film in the making.
+#[derive(Debug)]
+pub(super) struct Raw {
+    path: PathBuf,
+    /// Nothing on standard output, which gets the pictures as they come.
+    file: Option<WholeFile>,
+    size: Size,
+    fps: f64,
+    reel: Option<Yuv<Box<dyn Write + Send>>>,
+}
+
+impl Raw {
+    /// A film in a file, or on standard output for `-`.
+    pub(super) fn create(path: &Path, fps: f64) -> Result<Self, String> {
+        let is_file = path != Path::new("-");
+        let file = is_file.then(|| WholeFile::create(path)).transpose().map_err(|failure| failure.to_string())?;
+        let path = if is_file { path } else { Path::new("standard output") };
+        Ok(Self { path: path.to_owned(), file, size: Size::default(), fps, reel: None })
+    }
+
+    pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
+        self.size.check(frame, &self.path)?;
+        self.add(frame).map_err(|error| cannot_write(&self.path, &error))
+    }
+
+    fn add(&mut self, frame: &RgbImage) -> io::Result<()> {
+        let mut reel = match self.reel.take() {
+            Some(reel) => reel,
+            None => Yuv::begin(self.output()?, frame, self.fps)?,
+        };
+        reel.push(frame)?;
+        self.reel = Some(reel);
+        Ok(())
+    }
+
+    fn output(&self) -> io::Result<Box<dyn Write + Send>> {
+        Ok(match &self.file {
+            // Planes are large; there is nothing to gather.
+            Some(file) => Box::new(file.reopen()?),
+            None => Box::new(io::stdout()),
+        })
+    }
+
+    pub(super) fn finish(self) -> Result<(), String> {
+        if self.reel.is_none() {
+            return Err(no_frames(&self.path));
+        }
+        match self.file {
+            Some(file) => file.complete().map_err(|failure| failure.to_string()),
+            None => io::stdout().flush().map_err(|error| cannot_write(&self.path, &error)),
+        }
+    }
+}

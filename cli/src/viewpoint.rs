@@ -1,0 +1,218 @@
+//! Where a film is seen from.
+
+use crate::draw::Camera;
+use crate::parse::number;
+use glam::{Quat, Vec3};
+use pointmass::shape::Aabb;
+use pointmass::{Heap, System};
+use std::f64::consts::TAU;
+
+/// How a film is looked at.
+#[derive(Debug, Default, clap::Args)]
+pub(crate) struct Looking {
+    /// Look from X,Y,Z, in metres, at TX,TY,TZ; without these at the middle of the scene
+    #[arg(long, value_name = "X,Y,Z[:TX,TY,TZ]", conflicts_with = "fit", allow_hyphen_values = true, value_parser = seat)]
+    pub(crate) camera: Option<Seat>,
+    /// Go round the middle of the picture so often while the film lasts, such as 1 or -0.25
+    #[arg(long, value_name = "TURNS", allow_hyphen_values = true, value_parser = turns)]
+    pub(crate) orbit: Option<f64>,
+    /// Stand where the whole run fits into the picture, but for stray particles, and look as the scene's camera does; what
+    /// is done where a scene has no camera
+    #[arg(long)]
+    pub(crate) fit: bool,
+}
+
+/// An eye, and what it looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Seat {
+    eye: Vec3,
+    target: Option<Vec3>,
+}
+
+/// A camera, and the place that is in the middle of its picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Viewpoint {
+    pub(crate) camera: Camera,
+    pub(crate) middle: Vec3,
+}
+
+impl Looking {
+    /// Whether the run has to be known before it can be looked at.
+    pub(crate) fn needs_run(&self, has_camera: bool) -> bool {
+        self.fit || self.camera.is_none() && !has_camera
+    }
+}
+
+impl Viewpoint {
+    /// A camera that looks at a scene, given the scene's middle.
+    pub(crate) fn new(camera: Camera, middle: Vec3) -> Self {
+        Self { camera, middle }
+    }
+
+    /// The same as seen from a seat.
+    pub(crate) fn from(self, seat: Seat) -> Self {
+        let middle = seat.target.unwrap_or(self.middle);
+        let up = if self.camera.up.cross(middle - seat.eye).length_squared() > 0.0 { self.camera.up } else { Vec3::Z };
+        let distance = seat.eye.distance(middle);
+        let (near, far) = (self.camera.near.min(0.01 * distance), self.camera.far.max(100.0 * distance));
+        Self { camera: Camera { eye: seat.eye, towards: middle - seat.eye, up, near, far, ..self.camera }, middle }
+    }
+
+    /// The camera after a part of a turn around the upright line through what it looks at.
+    pub(crate) fn turned(&self, turns: f64) -> Camera {
+        let camera = self.camera;
+        let angle = (turns.fract() * TAU) as f32;
+        let (Some(axis), Some(ahead)) = (camera.up.try_normalize(), camera.towards.try_normalize()) else {
+            return camera;
+        };
+        if angle == 0.0 {
+            return camera;
+        }
+        // The place on the line of sight that is nearest to the middle.
+        let distance = (self.middle - camera.eye).dot(ahead);
+        let pivot = if distance > 0.0 { camera.eye + distance * ahead } else { self.middle };
+        let turn = Quat::from_axis_angle(axis, angle);
+        Camera { eye: pivot + turn * (camera.eye - pivot), towards: turn * camera.towards, ..camera }
+    }
+}
+
+/// Places that a run comes by, a bounded number of them.
+#[derive(Debug)]
+pub(crate) struct Crowd {
+    balls: Vec<(Vec3, f32)>,
+    /// One of so many places is kept.
+    every: usize,
+    met: usize,
+}
+
+impl Crowd {
+    /// How many are kept at most.
+    const MOST: usize = 1 << 17;
+
+    pub(crate) fn new() -> Self {
+        Self { balls: Vec::new(), every: 1, met: 0 }
+    }
+
+    /// Takes note of where particles are.
+    pub(crate) fn meet(&mut self, system: &System<Heap>) {
+        let particles = system.particles();
+        for (&place, &radius) in particles.position.iter().zip(particles.radius) {
+            if self.met.is_multiple_of(self.every) {
+                self.balls.push((place, radius));
+            }
+            self.met += 1;
+            if self.balls.len() > Self::MOST {
+                self.balls = self.balls.iter().copied().step_by(2).collect();
+                self.every *= 2;
+            }
+        }
+    }
+
+    /// The view of all that was met and of the boxes of scenery, in the direction of a camera and with its angle, for
+    /// pictures `aspect` times as wide as high. `around` is whether it has to be so from all sides.
+    pub(crate) fn view(mut self, camera: Camera, scenery: &[Aabb], aspect: f32, around: bool) -> Viewpoint {
+        let reach = Aabb::around(self.balls.iter().map(|&(place, _)| place)).radius();
+        let is_small = |scenery: &&Aabb| !(reach > 0.0) || scenery.radius() <= 4.0 * reach;
+        let corners = scenery.iter().filter(is_small).flat_map(|&Aabb { min, max }| {
+            (0..8).map(move |i| Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), min, max))
+        });
+        let mut fixed: Vec<(Vec3, f32)> = corners.map(|corner| (corner, 0.0)).collect();
+        if fixed.is_empty() && self.balls.is_empty() {
+            fixed.extend([(Vec3::splat(-0.5), 0.0), (Vec3::splat(0.5), 0.0)]);
+        }
+        if around {
+            let axis = camera.up.try_normalize().unwrap_or(Vec3::Y);
+            let all = self.balls.iter().chain(&fixed).map(|&(place, _)| place);
+            let pivot = Aabb::around(all).center();
+            self.balls = round(&self.balls, pivot, axis);
+            fixed = round(&fixed, pivot, axis);
+        }
+        fit(camera, &self.balls, &fixed, aspect)
+    }
+}
+
+/// The same balls after all parts of a turn.
+fn round(balls: &[(Vec3, f32)], pivot: Vec3, axis: Vec3) -> Vec<(Vec3, f32)> {
+    const PARTS: u16 = 16;
+    let turn = |part: u16| Quat::from_axis_angle(axis, f32::from(part) / f32::from(PARTS) * TAU as f32);
+    let turned = |turn: Quat| balls.iter().map(move |&(place, radius)| (pivot + turn * (place - pivot), radius));
+    (0..PARTS).map(turn).flat_map(turned).collect()
+}
+
+/// Moves a camera to where the four sides of its picture just hold everything: loose balls but for stray ones, and fixed
+/// ones whatever they are.
+fn fit(camera: Camera, loose: &[(Vec3, f32)], fixed: &[(Vec3, f32)], aspect: f32) -> Viewpoint {
+    /// How much is left free at the edges.
+    const MARGIN: f32 = 1.06;
+    let back = -camera.towards.try_normalize().unwrap_or(Vec3::NEG_Z);
+    let right = camera.up.cross(back).try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
+    let up = back.cross(right);
+    let slope = camera.xfov.clamp(0.01, 1.5).tan() / MARGIN;
+    // A ball is on the inner side of a side's plane as long as this is less than the eye's.
+    let side = |way: Vec3, slope: f32| {
+        let height = |&(place, radius): &(Vec3, f32)| {
+            place.dot(way) + slope * place.dot(back) + radius * (1.0 + slope * slope).sqrt()
+        };
+        let fixed = fixed.iter().map(height).fold(f32::NEG_INFINITY, f32::max);
+        fixed.max(most(loose.iter().map(height).collect()))
+    };
+    let [left_most, right_most] = [-right, right].map(|way| side(way, slope));
+    let [low_most, high_most] = [-up, up].map(|way| side(way, slope / aspect));
+    let across = 0.5 * (right_most - left_most);
+    let upright = 0.5 * (high_most - low_most);
+    let wide = 0.5 * (right_most + left_most) / slope;
+    let high = 0.5 * (high_most + low_most) / slope * aspect;
+    let depths = loose.iter().chain(fixed).map(|&(place, _)| place.dot(back)).collect::<Vec<_>>();
+    let middle_depth = median(depths);
+    // A single point is looked at from a metre away.
+    let distance = (wide.max(high) - middle_depth).max(1e-3);
+    let distance = if distance > 2e-3 { distance } else { 1.0 };
+    let middle = across * right + upright * up + middle_depth * back;
+    let camera = Camera {
+        eye: middle + distance * back,
+        towards: -back,
+        near: (0.01 * distance).min(camera.near.max(1e-3 * distance)),
+        far: camera.far.max(100.0 * distance),
+        ..camera
+    };
+    Viewpoint { camera, middle }
+}
+
+/// The largest value, but for those that are far beyond nearly all others.
+fn most(mut values: Vec<f32>) -> f32 {
+    values.retain(|value| value.is_finite());
+    let last = values.len().saturating_sub(1);
+    values.sort_unstable_by(f32::total_cmp);
+    let at = |part: f32| values.get((part * last as f32) as usize).copied();
+    let (Some(middle), Some(nearly), Some(&largest)) = (at(0.5), at(0.99), values.last()) else {
+        return f32::NEG_INFINITY;
+    };
+    // With few values, no one is a stray.
+    if values.len() < 200 { largest } else { largest.min(nearly + (nearly - middle)) }
+}
+
+fn median(mut values: Vec<f32>) -> f32 {
+    values.retain(|value| value.is_finite());
+    values.sort_unstable_by(f32::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn seat(text: &str) -> Result<Seat, String> {
+    const EXPECTED: &str = "expected X,Y,Z or X,Y,Z:TX,TY,TZ in metres, such as 0,2,10:0,1,0";
+    let place = |text: &str| {
+        let numbers: Vec<f32> = text.split(',').map(|n| Ok(number(n)? as f32)).collect::<Result<_, String>>().ok()?;
+        let place = Vec3::from_array(numbers.try_into().ok()?);
+        (place.abs().max_element() <= 1e9).then_some(place)
+    };
+    let (eye, target) = match text.split_once(':') {
+        Some((eye, target)) => (place(eye), Some(place(target).ok_or(EXPECTED)?)),
+        None => (place(text), None),
+    };
+    let eye = eye.ok_or(EXPECTED)?;
+    if target == Some(eye) { Err("the eye cannot look at where it is".into()) } else { Ok(Seat { eye, target }) }
+}
+
+fn turns(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value.abs() <= 1e6 { Ok(value) } else { Err("expected turns, such as 1 or -0.25".into()) }
+}
