@@ -155,6 +155,7 @@ fn grow_old(
 }
 
 /// The list of sprites, the farthest first.
+#[inline(never)]
 fn hash_sprites(state: &State<'_>, hash: &mut Fnv) {
     let view = View { eye: Vec3::new(1.0, 2.0, 3.0), up: Vec3::Y };
     let (mut drawn, mut order, mut scratch) = ([Sprite::NONE; PARTICLES], [0; PARTICLES], [0; PARTICLES]);
