@@ -72,7 +72,7 @@ pub(crate) fn check(args: &Check) -> Outcome {
     let run = &mut file.run;
     run.integrator = args.integrator.unwrap_or(run.integrator);
     run.dt = args.dt.unwrap_or(run.dt);
-    let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
+    let model = Model::load(&file, &load::name(&args.scene), &mut Disk)?;
     let outs = Outs::create(&args.out, [&args.scene])?;
     let (mut study, spectra) = Study::of(&args.scene, &model, &file.run);
     study.advice = advice::advise(&study, &model);

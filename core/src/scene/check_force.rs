@@ -34,9 +34,40 @@ impl SceneFile {
 }
 
 /// The names in recordings of the engine's own attributes.
-const OWN: [&str; 19] = [
-    "step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age", "radius", "species", "pos", "velo", "red",
-    "green", "blue", "alpha",
+const OWN: [&str; 33] = [
+    "step",
+    "time",
+    "id",
+    "x",
+    "y",
+    "z",
+    "vx",
+    "vy",
+    "vz",
+    "mass",
+    "age",
+    "radius",
+    "species",
+    "pos",
+    "velo",
+    "red",
+    "green",
+    "blue",
+    "alpha",
+    "remaining",
+    "fixed",
+    "drag",
+    "charge",
+    "elasticity",
+    "material",
+    "velocity",
+    "color",
+    "transparency",
+    "faces",
+    "edges",
+    "steps",
+    "times",
+    "position",
 ];
 
 impl SceneFile {

@@ -6,14 +6,13 @@
 mod animation;
 mod common;
 mod palette;
-mod pattern;
 mod screen;
 mod sequence;
 mod still;
 
+use crate::pattern::{self, Pattern};
 use animation::Animation;
 use image::RgbImage;
-use pattern::Pattern;
 use sequence::Sequence;
 use std::path::Path;
 use still::Still;
