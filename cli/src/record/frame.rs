@@ -116,16 +116,15 @@ impl std::fmt::Display for Value {
 }
 
 impl Value {
-    /// It in single precision; what has no end is the largest number that there is.
+    /// It in single precision.
     pub(super) fn single(self) -> f32 {
-        let value = match self {
+        match self {
             Self::Single(value) => value,
             Self::Double(value) => value as f32,
             Self::Unsigned(value) => value as f32,
             Self::Signed(value) => value as f32,
             Self::Byte(value) => f32::from(value),
-        };
-        value.clamp(f32::MIN, f32::MAX)
+        }
     }
 
     /// Its bytes, from the lowest on.
@@ -186,6 +185,9 @@ impl Frame {
     }
 }
 
+/// What remains to those who do not die of age \[s\], as scenes say it.
+const FOR_EVER: f64 = -1.0;
+
 /// The rows of a system in the order of a frame.
 struct Rows<'a> {
     order: &'a [usize],
@@ -202,7 +204,7 @@ impl Rows<'_> {
         let axes = |column: &[Vec3], axis: usize| Values::Single(self.pick(|row| column[row][axis]));
         let single = |column: &[f32]| Values::Single(self.pick(|row| column[row]));
         let seconds = |of: &dyn Fn(usize) -> Time| self.pick(|row| nanoseconds(of(row).seconds_f64()));
-        let remaining = |row: usize| if dies[row] == Time::NEVER { f64::INFINITY } else { left(now, dies[row]) };
+        let remaining = |row: usize| if dies[row] == Time::NEVER { FOR_EVER } else { left(now, dies[row]) };
         let channel = |channel: usize| Values::Byte(colors.iter().map(|color| color[channel]).collect());
         let own = self.system.custom(self.scene);
         let number = |row: usize| i32::from(material[row]) - 1;
