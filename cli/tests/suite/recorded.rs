@@ -718,7 +718,8 @@ fn cloths_are_triangles_for_as_long_as_they_hold() {
     let sheet = r#"{"sheet": {"corner": [0, 0, 0], "sides": [[2, 0, 0], [0, 0, 2]], "cells": [2, 2]}}"#;
     let scene = |form: &str, breaks: &str| {
         format!(
-            r#"{{"run": {{"dt": 0.01, "integrator": "symplectic"}}, "forces": [{{"gravity": {{"acceleration": [0, -50, 0]}}}}],
+            r#"{{"run": {{"dt": 0.01, "integrator": "symplectic"}},
+            "forces": [{{"gravity": {{"acceleration": [0, -50, 0]}}}}],
             "cloths": [{{"form": {form}, "mass": 1, "fixed": [0], {breaks}
             "springs": {{"structural": {{"ks": 3}}}}}}]}}"#
         )
