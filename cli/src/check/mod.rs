@@ -46,7 +46,7 @@ use study::Study;
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Check {
-    /// The scene: .json or .scn
+    /// The scene: .json or .scn, or - for standard input
     pub(crate) scene: PathBuf,
     /// How the scene is read.
     #[command(flatten)]

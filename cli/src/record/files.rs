@@ -40,6 +40,8 @@ pub(super) struct Apart {
     format: RecordFormat,
     pattern: Pattern,
     series: Series,
+    /// The index of them, where the format has one.
+    index: Option<WholeFile>,
     /// The instant of each record \[s\], and what its file is called.
     records: Vec<(f64, String)>,
 }
@@ -49,18 +51,16 @@ impl Apart {
     pub(super) fn create(path: &Path, pattern: Option<Pattern>, format: RecordFormat) -> Outcome<Self> {
         let series = Series::create(path, pattern.is_some())?;
         let pattern = pattern.unwrap_or_else(|| Pattern::numbered(path));
-        Ok(Self { path: path.to_path_buf(), format, pattern, series, records: Vec::new() })
-    }
-
-    fn beside(&self, name: &str) -> PathBuf {
-        folder_of(&self.path).join(name)
+        let index = || WholeFile::create(&folder_of(path).join(pattern.common("pvd")));
+        let index = matches!(format, RecordFormat::Vtp).then(index).transpose()?;
+        Ok(Self { path: path.to_path_buf(), format, pattern, series, index, records: Vec::new() })
     }
 }
 
 impl Sink for Apart {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let name = self.pattern.name(self.records.len());
-        let path = self.beside(&name);
+        let path = folder_of(&self.path).join(&name);
         self.records.push((frame.time, name));
         if let RecordFormat::Npy = self.format {
             let file = |array: &str| self.series.next(numpy::named(&path, array));
@@ -72,13 +72,11 @@ impl Sink for Apart {
     }
 
     fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
-        let mut written = Vec::new();
-        if let RecordFormat::Vtp = self.format {
-            let mut file = WholeFile::create(&self.beside(&self.pattern.common("pvd")))?;
-            vtk::index(&mut file, &self.records).map_err(|error| Failure::io(file.path(), &error))?;
-            written.push(file.close()?);
+        let mut written = self.series.close()?;
+        if let Some(mut index) = self.index {
+            vtk::index(&mut index, &self.records).map_err(|error| Failure::io(index.path(), &error))?;
+            written.push(index.close()?);
         }
-        written.extend(self.series.close()?);
         Ok(written)
     }
 }

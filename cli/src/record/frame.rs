@@ -148,8 +148,7 @@ impl Frame {
         let state = system.state(scene);
         let color = |&row: &usize| appearance(&state, row).map_or(WHITE, |look| look.color);
         let colors: Vec<Color> = order.iter().map(color).collect();
-        let mut columns = Rows { order: &order, system, scene }.columns(plan, &colors);
-        columns.shrink_to_fit();
+        let columns = Rows { order: &order, system, scene }.columns(plan, &colors);
         let mut place = vec![0; order.len()];
         (0..).zip(&order).for_each(|(at, &row)| place[row] = at);
         let time = nanoseconds(system.time().seconds_f64());

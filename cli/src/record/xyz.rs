@@ -15,9 +15,9 @@ impl Writer for Xyz {
         let out = &mut self.0;
         let is_colored = frame.columns.iter().any(|column| column.name == "alpha");
         let ids = frame.columns.iter().find(|column| column.name == "id");
-        let others: Vec<&Column> = frame.others(&OWN).filter(|column| column.name != "age").collect();
-        let age: Vec<&Column> = frame.others(&OWN).filter(|column| column.name == "age").collect();
-        let others: Vec<&Column> = others.into_iter().chain(age).collect();
+        let mut others: Vec<&Column> = frame.others(&OWN).collect();
+        // Last, since it once was not told here.
+        others.sort_by_key(|column| column.name == "age");
         let names: String =
             others.iter().map(|column| format!(":{}:{}:1", column.name, kind(&column.values))).collect();
         let color = if is_colored { ":color:R:3:transparency:R:1" } else { "" };
