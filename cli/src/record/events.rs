@@ -105,6 +105,7 @@ impl Chronicle {
 }
 
 impl Lines {
+    /// Writes an event.
     fn write(&mut self, line: &Line) -> io::Result<()> {
         match self {
             Self::Csv(table) => Ok(table.serialize(line)?),
@@ -117,11 +118,13 @@ impl Lines {
 }
 
 impl Line {
+    /// An event of a kind at an instant, at a place \[m\] and with a velocity \[m/s\].
     fn new(event: &'static str, time: Time, place: Vec3, velocity: Vec3) -> Self {
         let ([x, y, z], [vx, vy, vz]) = (place.to_array(), velocity.to_array());
         Self { time: nanoseconds(time.seconds_f64()), event, x, y, z, vx, vy, vz, ..Self::default() }
     }
 
+    /// The meeting of a particle with a collider or another particle.
     fn met(event: &'static str, impact: &Impact) -> Self {
         let [nx, ny, nz] = impact.normal.to_array();
         let (id, other) = (Some(impact.id.serial()), impact.other.map(pointmass::Id::serial));
@@ -129,6 +132,7 @@ impl Line {
         Self { id, other, nx, ny, nz, speed: Some(impact.closing), ..at }
     }
 
+    /// A birth or a death.
     fn life(event: &'static str, life: &LifeEvent) -> Self {
         Self { id: Some(life.id.serial()), ..Self::new(event, life.time, life.place, life.velocity) }
     }

@@ -195,6 +195,7 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
+    /// The columns that the plan asks for, in the order of tables.
     fn columns(&self, plan: &Plan, colors: &[Color]) -> Vec<Column> {
         let Columns { serial, position, velocity, mass, inverse_mass, radius, drag, charge, elasticity, .. } =
             self.system.particles();
@@ -230,6 +231,7 @@ impl Rows<'_> {
         columns
     }
 
+    /// One value for each row.
     fn pick<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
         self.order.iter().map(|&row| value(row)).collect()
     }

@@ -7,12 +7,15 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
-/// Kinds of numbers, as the format counts them.
+/// The kind of single-precision numbers, as the format counts them.
 const FLOAT: u32 = 5126;
+/// The kind of whole numbers, likewise.
 const INDEX: u32 = 5125;
-/// Kinds of primitives, likewise.
+/// The kind of primitives that are single vertices, likewise.
 const POINTS: u32 = 0;
+/// Pairs of vertices, likewise.
 const LINES: u32 = 1;
+/// Triples of vertices, likewise.
 const TRIANGLES: u32 = 4;
 
 /// One file of all records.
@@ -53,6 +56,7 @@ impl Gltf {
         self.add(bytes, json!({"componentType": INDEX, "count": indices.len(), "type": "SCALAR"}))
     }
 
+    /// Puts in the bytes of an accessor, and returns its number.
     fn add(&mut self, bytes: impl Iterator<Item = u8>, mut accessor: Value) -> usize {
         let start = self.bytes.len();
         self.bytes.extend(bytes);
@@ -87,11 +91,11 @@ impl Gltf {
         attributes.insert("COLOR_0".into(), self.numbers("VEC4", 4, &colors).into());
         let [vx, vy, vz] = frame.singles(["vx", "vy", "vz"]);
         let velocities: Vec<f32> = (0..frame.len).flat_map(|row| [vx[row], vy[row], vz[row]]).collect();
-        attributes.insert("_VELOCITY".into(), self.numbers("VEC3", 3, &velocities).into());
+        attributes.insert("_velocity".into(), self.numbers("VEC3", 3, &velocities).into());
         for column in frame.others(&PARTS) {
             let values: Vec<f32> = (0..frame.len).map(|row| column.values.at(row).single()).collect();
             let number = self.numbers("SCALAR", 1, &values);
-            attributes.insert(format!("_{}", column.name.to_uppercase()), number.into());
+            attributes.insert(format!("_{}", column.name), number.into());
         }
         attributes.into()
     }

@@ -16,6 +16,7 @@ pub(super) struct Npz {
 }
 
 impl Npz {
+    /// An archive with nothing in it.
     pub(super) fn new(out: Out) -> Self {
         Self { archive: ZipWriter::new(out), steps: Vec::new(), times: Vec::new() }
     }
@@ -64,6 +65,7 @@ enum Array<'a> {
 }
 
 impl Array<'_> {
+    /// Writes it as an array of one column, three or two.
     fn write(&self, out: impl Write) -> io::Result<()> {
         match self {
             Self::Faces(faces) => write(out, &[faces.len() as u64, 3], faces.as_flattened().iter().copied()),
@@ -77,6 +79,7 @@ impl Array<'_> {
     }
 }
 
+/// Writes an array of a shape, row by row.
 fn write<T: AutoSerialize>(mut out: impl Write, shape: &[u64], values: impl Iterator<Item = T>) -> io::Result<()> {
     let mut array = WriteOptions::new().default_dtype().shape(shape).writer(&mut out).begin_nd()?;
     array.extend(values)?;

@@ -36,6 +36,7 @@ impl Writer for Ply {
     }
 }
 
+/// The header of a record, whose columns come first and behind the colours.
 fn header(frame: &Frame, first: &[&Column], rest: &[&Column]) -> Header {
     let column = |column: &&Column| scalar(&column.name, kind(&column.values));
     let color = CHANNELS.iter().map(|name| scalar(name, ScalarType::UChar));
@@ -55,6 +56,7 @@ fn header(frame: &Frame, first: &[&Column], rest: &[&Column]) -> Header {
     header
 }
 
+/// A list of so many things with these properties.
 fn element(name: &str, count: usize, properties: impl IntoIterator<Item = PropertyDef>) -> ElementDef {
     let mut element = ElementDef::new(name.into());
     element.count = count;
@@ -62,10 +64,12 @@ fn element(name: &str, count: usize, properties: impl IntoIterator<Item = Proper
     element
 }
 
+/// A property that is one number.
 fn scalar(name: &str, kind: ScalarType) -> PropertyDef {
     PropertyDef::new(name.into(), PropertyType::Scalar(kind))
 }
 
+/// The kind of a column's numbers.
 fn kind(values: &Values) -> ScalarType {
     match values {
         Values::Single(_) => ScalarType::Float,

@@ -12,6 +12,7 @@ pub(super) struct Csv {
 }
 
 impl Csv {
+    /// A table without its head.
     pub(super) fn new(out: Out) -> Self {
         // The head is written by hand, so that a recording of nothing has one.
         Self { writer: csv::WriterBuilder::new().has_headers(false).from_writer(out), begun: false }

@@ -44,6 +44,7 @@ impl Writer for Vtp {
     }
 }
 
+/// Writes the points, their columns, and what joins them.
 fn piece<W: Write>(xml: &mut Xml<W>, frame: &Frame) -> io::Result<()> {
     let points: Vec<[u32; 1]> = frame.singletons().map(|row| [row]).collect();
     let counts = [
@@ -74,6 +75,7 @@ fn piece<W: Write>(xml: &mut Xml<W>, frame: &Frame) -> io::Result<()> {
     Ok(())
 }
 
+/// The array of a column.
 fn of_column(column: &Column) -> Array<'_> {
     let kind = match column.values {
         Values::Single(_) => "Float32",
@@ -85,12 +87,14 @@ fn of_column(column: &Column) -> Array<'_> {
     Array { name: &column.name, kind, components: 1, bytes: column.values.bytes() }
 }
 
+/// The array of three columns together.
 fn vector<'a>(frame: &Frame, name: &'a str, axes: [&str; 3]) -> Array<'a> {
     let axes = frame.singles(axes);
     let bytes = (0..frame.len).flat_map(|row| axes.map(|axis| axis[row])).flat_map(f32::to_le_bytes).collect();
     Array { name, kind: "Float32", components: 3, bytes }
 }
 
+/// The array of colours.
 fn color(frame: &Frame) -> Array<'static> {
     Array { name: "color", kind: "UInt8", components: 4, bytes: frame.colors.as_flattened().to_vec() }
 }

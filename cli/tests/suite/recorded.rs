@@ -74,7 +74,8 @@ impl Varied {
         };
         scene["particles"] = (0..self.particles).map(particle).collect();
         if self.own {
-            scene["custom"] = json!([{"name": "heat", "start": [80.1], "newborn": 20}, {"name": "worn"}]);
+            scene["custom"] =
+                json!([{"name": "heat", "start": [80.1], "newborn": 20}, {"name": "Heat"}, {"name": "X"}]);
         }
         if self.springs {
             scene["springs"] = json!([{"ends": [0, 1], "rest_length": 0.5, "ks": 10, "breaks_at": 1.9}]);
@@ -482,14 +483,14 @@ fn gltf(document: &Value, buffer: &[u8]) -> Vec<Record> {
         let mut add = |names: &[&str], numbers: &[f64]| {
             for (i, name) in names.iter().enumerate() {
                 let column = numbers.iter().skip(i).step_by(names.len()).copied().collect();
-                record.columns.insert(name.to_lowercase(), column);
+                record.columns.insert(name.to_string(), column);
             }
         };
         for (name, number) in primitives[0]["attributes"].as_object().expect("attributes") {
             let numbers = accessor(number);
             match name.as_str() {
                 "POSITION" => add(&["x", "y", "z"], &numbers),
-                "_VELOCITY" => add(&["vx", "vy", "vz"], &numbers),
+                "_velocity" => add(&["vx", "vy", "vz"], &numbers),
                 "COLOR_0" => {
                     let channel = |(i, x): (usize, &f64)| if i % 4 < 3 { encode(*x) } else { (x * 255.0).round() };
                     let channels: Vec<f64> = numbers.iter().enumerate().map(channel).collect();
@@ -712,6 +713,38 @@ fn a_record_without_anybody_is_a_whole_file_too() {
     assert_eq!(glb(&fs::read(folder.path("a.glb")).expect("it is there")).len(), 2);
     assert!(vtp(&folder.read("a_000001.vtp")).columns["x"].is_empty());
     assert!(npy(&folder, "a_000001").columns["mass"].is_empty());
+}
+
+/// No column of a user's own can be taken for one of ours, in any format.
+#[test]
+fn names_of_columns_are_taken() {
+    let varied = Varied {
+        particles: 3,
+        balls: true,
+        charged: true,
+        own: false,
+        springs: true,
+        cells: [1, 1],
+        rate: 9,
+        lifetime: true,
+        materials: true,
+    };
+    let mut scene = varied.json();
+    let folder = Folder::with("a.json", scene.to_string());
+    folder.run("run a.json --steps 1 --line record --out a.jsonl --out a.vtp --out a.xyz").fine();
+    let object: serde_json::Map<String, Value> =
+        serde_json::from_str(folder.read("a.jsonl").lines().next().expect("a line")).expect("an object");
+    let arrays = vtk(&folder.read("a_000000.vtp")).into_keys();
+    let arrays = arrays.filter(|(at, _)| at == "PointData").map(|(_, name)| name);
+    let atoms = folder.read("a.xyz");
+    let atoms =
+        atoms.split_once("Properties=").and_then(|(_, rest)| rest.split_once(' ')).expect("a list").0.split(':');
+    for name in object.into_iter().map(|(name, _)| name).chain(arrays).chain(atoms.step_by(3).map(String::from)) {
+        scene["custom"] = json!([{"name": name}]);
+        folder.write("a.json", scene.to_string());
+        let answer = folder.run("run a.json --steps 1");
+        assert!(answer.error().contains(&format!("there is a \"{name}\" already")), "{name}: {answer:?}");
+    }
 }
 
 /// A torn cloth loses the triangles beside what is torn, and a mesh is one as its file says.
