@@ -10,7 +10,8 @@ use std::path::PathBuf;
 
 /// The recordings of a run, in the making. Dropped, they are gone.
 pub(super) struct Recordings {
-    plan: Plan,
+    /// What states hold, if they are asked for.
+    plan: Option<Plan>,
     recorders: Vec<Recorder>,
     chronicle: Option<Chronicle>,
 }
@@ -25,20 +26,16 @@ impl Recordings {
             RecordFormat::Jsonl if args.line == Line::Record => Recorder::create(path, RecordFormat::Frames),
             format => Recorder::create(path, format),
         };
+        let plan = || Plan::of(&world.file, &world.model, &args.world.scene);
+        let plan = (!args.out.is_empty()).then(plan).transpose()?;
         let chronicle = args.events.as_ref().map(|(path, format)| Chronicle::create(path, *format)).transpose()?;
-        Ok(Self {
-            plan: Plan::of(&world.file, &world.model, &args.world.scene)?,
-            recorders: args.out.iter().map(recorder).collect::<Outcome<_>>()?,
-            chronicle,
-        })
+        Ok(Self { plan, recorders: args.out.iter().map(recorder).collect::<Outcome<_>>()?, chronicle })
     }
 
     /// Takes the state after a step.
     pub(super) fn record(&mut self, step: u64, world: &World) -> Outcome {
-        if self.recorders.is_empty() {
-            return Ok(());
-        }
-        let frame = Frame::of(step, &world.system, &world.model.scene(), &self.plan);
+        let Some(plan) = &self.plan else { return Ok(()) };
+        let frame = Frame::of(step, &world.system, &world.model.scene(), plan);
         self.recorders.iter_mut().try_for_each(|recorder| recorder.record(&frame))
     }
 
