@@ -512,6 +512,28 @@ fn gltf(document: &Value, buffer: &[u8]) -> Vec<Record> {
     document["nodes"].as_array().expect("a list").iter().map(record).collect()
 }
 
+/// The nodes that the animation of a glTF shows at an instant.
+fn shown(document: &Value, buffer: &[u8], time: f64) -> Vec<u64> {
+    let numbers = |number: &Value| {
+        let accessor = &document["accessors"][number.as_u64().expect("a number") as usize];
+        let view = &document["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
+        let [start, len] = ["byteOffset", "byteLength"].map(|key| view[key].as_u64().expect("bytes") as usize);
+        wide("Float32", &buffer[start..start + len])
+    };
+    let animation = &document["animations"][0];
+    let is_shown = |channel: &&Value| {
+        let sampler = &animation["samplers"][channel["sampler"].as_u64().expect("a number") as usize];
+        assert_eq!((&sampler["interpolation"], &channel["target"]["path"]), (&"STEP".into(), &"scale".into()));
+        let (times, scales) = (numbers(&sampler["input"]), numbers(&sampler["output"]));
+        assert!(times.is_sorted_by(|a, b| a < b) && scales.len() == 3 * times.len());
+        // Before the first instant counts what is there at it.
+        let key = times.iter().rposition(|start| *start <= time).unwrap_or(0);
+        scales[3 * key..3 * key + 3] == [1.0; 3]
+    };
+    let channels = animation["channels"].as_array().expect("a list").iter().filter(is_shown);
+    channels.filter_map(|channel| channel["target"]["node"].as_u64()).collect()
+}
+
 fn glb(bytes: &[u8]) -> Vec<Record> {
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
     assert_eq!((&bytes[..4], word(4), word(8)), (&b"glTF"[..], 2, bytes.len()));
@@ -545,6 +567,10 @@ proptest! {
         let document: Value = serde_json::from_str(&folder.read("a.gltf")).expect("JSON");
         let inside = document["buffers"][0]["uri"].as_str().map(|uri| uri.split_once(',').expect("a comma").1);
         let buffer = STANDARD.decode(inside.unwrap_or_default()).expect("base 64");
+        for (node, time) in (0..).zip(truth.iter().map(|record| record.time)) {
+            prop_assert_eq!(shown(&document, &buffer, time), [node]);
+            prop_assert_eq!(shown(&document, &buffer, time + 0.9 * DT), [node]);
+        }
         let many = [
             ("jsonl", frames(&folder.read("a.jsonl"))),
             ("npz", npz(&folder, "a.npz")),
