@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `convert`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Convert {
-    /// The scene to read: .scn or .json
+    /// The scene to read: .scn or .json, or - for standard input
     pub(crate) from: PathBuf,
     /// How the scene is read.
     #[command(flatten)]
@@ -24,7 +24,7 @@ pub(crate) struct Convert {
 /// Converts a scene; warns of what the other format cannot say.
 pub(crate) fn convert(args: &Convert) -> Outcome {
     let mut scene = load::declared(&args.from, args.reading.unknown())?;
-    scene.check().map_err(|error| error.in_file(&args.from.to_string_lossy()))?;
+    scene.check().map_err(|error| error.in_file(&load::name(&args.from)))?;
     rebase(&mut scene, folder(&args.from)?, folder(&args.to.0)?);
     let outs = Outs::create(std::slice::from_ref(&args.to), None)?;
     outs.write(|format| match format {

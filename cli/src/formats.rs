@@ -1,6 +1,7 @@
 //! Formats of files, by the end of their names, and of what is said on standard output.
 
 use crate::outcome::{Failure, Outcome};
+use crate::whole::STANDARD;
 use clap::ValueEnum;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -21,10 +22,50 @@ pub(crate) enum RecordFormat {
     Csv,
     /// The same, each line a JSON object.
     Jsonl,
-    /// Point clouds, one file a record.
-    Ply,
+    /// Each record a line of JSON, with a list for each column.
+    #[value(skip)]
+    Frames,
     /// Atoms, all records in one file.
     Xyz,
+    /// Arrays for NumPy, one a column and record, in one archive.
+    Npz,
+    /// The same, one file each.
+    Npy,
+    /// Points, faces and edges, one file a record.
+    Ply,
+    /// The same as text.
+    Obj,
+    /// The same for ParaView, with an index of the records (.pvd).
+    Vtp,
+    /// The same for viewers, all records in one animation.
+    Glb,
+    /// The same as text.
+    Gltf,
+}
+
+impl RecordFormat {
+    /// Whether one file can hold all records.
+    pub(crate) fn holds_many(self) -> bool {
+        !matches!(self, Self::Npy | Self::Ply | Self::Obj | Self::Vtp)
+    }
+}
+
+/// What a line of `.jsonl` holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Line {
+    /// A particle in a record
+    Particle,
+    /// A record, with a list for each column
+    Record,
+}
+
+/// A format of events.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum EventsFormat {
+    /// A table with a head line.
+    Csv,
+    /// The same, each line a JSON object.
+    Jsonl,
 }
 
 /// A format of pictures.
@@ -100,7 +141,12 @@ pub(crate) fn named<F: ValueEnum>(text: &str) -> Result<(PathBuf, F), String> {
 
 /// A file for pictures, or `-` for standard output.
 pub(crate) fn pictures(text: &str) -> Result<(PathBuf, PictureFormat), String> {
-    if text == "-" { Ok((PathBuf::from(text), PictureFormat::Y4m)) } else { named(text) }
+    if text == STANDARD { Ok((PathBuf::from(text), PictureFormat::Y4m)) } else { named(text) }
+}
+
+/// A recording's file with the format that its name ends in; `-` is standard output, in a format of its own.
+pub(crate) fn recording(text: &str) -> Result<(PathBuf, Option<RecordFormat>), String> {
+    if text == STANDARD { Ok((text.into(), None)) } else { named(text).map(|(path, format)| (path, Some(format))) }
 }
 
 /// Everything as one line of JSON, in which numbers that are not finite are null.

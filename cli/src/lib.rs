@@ -16,6 +16,7 @@ pub mod load;
 pub mod meshes;
 mod outcome;
 mod parse;
+mod pattern;
 mod progress;
 mod record;
 mod render;

@@ -3,8 +3,10 @@
 use crate::formats::{SceneFormat, format_of};
 use crate::meshes::{self, MAX_BYTES};
 use crate::outcome::{Failure, Outcome, alike, warn};
+use crate::whole::is_standard;
 use pointmass::scene::{self, Files, SceneError, SceneFile, Unknown, read_scn_with};
 use pointmass::shape::MeshBuf;
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -75,14 +77,19 @@ pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
     Ok(scene)
 }
 
+/// What a scene is called in messages.
+pub(crate) fn name(path: &Path) -> Cow<'_, str> {
+    if is_standard(path) { "standard input".into() } else { path.to_string_lossy() }
+}
+
 fn read(path: &Path, unknown: Unknown) -> Outcome<scene::Reading> {
     let format = format_of::<SceneFormat>(path);
-    if format.is_none() && path.is_file() {
+    if format.is_none() && path.is_file() && !is_standard(path) {
         let path = path.display();
         return Err(Failure::new(format!("{path}: expected a scene, whose name ends in .json or .scn")));
     }
-    let (text, name) = (text(path)?, path.to_string_lossy());
-    // A pipe has no name to tell by.
+    let (text, name) = (text(path)?, name(path));
+    // A pipe and standard input have no name to tell by.
     let is_json = format.map_or_else(|| text.trim_start().starts_with('{'), |format| format == SceneFormat::Json);
     if !is_json {
         return Ok(read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?);
@@ -101,27 +108,32 @@ fn hinted(error: SceneError) -> SceneError {
 }
 
 fn text(path: &Path) -> Outcome<String> {
-    let fail = |error: std::io::Error| Failure::io(path, &error);
-    if path.is_dir() {
+    let fail = |error: std::io::Error| Failure::io(Path::new(&*name(path)), &error);
+    if path.is_dir() && !is_standard(path) {
         return Err(Failure::new(format!("{}: is a directory, expected a scene file", path.display())));
     }
     let too_large = || {
         let limit = MAX_BYTES >> 20;
-        Failure::new(format!("{}: larger than {limit} MB, which no scene should be; it was not read", path.display()))
+        Failure::new(format!("{}: larger than {limit} MB, which no scene should be; it was not read", name(path)))
     };
-    let file = File::open(path).map_err(fail)?;
-    if file.metadata().map_err(fail)?.len() > MAX_BYTES {
-        return Err(too_large());
-    }
+    let source: Box<dyn Read> = if is_standard(path) {
+        Box::new(std::io::stdin())
+    } else {
+        let file = File::open(path).map_err(fail)?;
+        if file.metadata().map_err(fail)?.len() > MAX_BYTES {
+            return Err(too_large());
+        }
+        Box::new(file)
+    };
     // What is no plain file has no length beforehand.
     let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(fail)?;
+    source.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(fail)?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large());
     }
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes()[..good].iter().filter(|&&b| b == b'\n').count();
-        Failure::new(format!("{}:{line}: not a text: byte {good} is not UTF-8", path.display()))
+        Failure::new(format!("{}:{line}: not a text: byte {good} is not UTF-8", name(path)))
     })
 }

@@ -109,6 +109,13 @@ pub(crate) fn print(text: &str) -> Outcome {
     }
 }
 
+/// Prints to standard error what would be on standard output, were that not taken.
+pub(crate) fn mention(text: &str) {
+    use std::io::Write;
+    // As below.
+    let _ = write!(std::io::stderr(), "{}", harmless(text));
+}
+
 /// Prints warnings to standard error, the first hundred of them.
 pub(crate) fn warn(warnings: &[String]) {
     const MOST: usize = 100;

@@ -9,6 +9,14 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+/// The name by which standard output goes.
+pub(crate) const STANDARD: &str = "-";
+
+/// Whether a path is standard output, or standard input.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
 /// A file in the making. Dropped, it is gone.
 #[derive(Debug)]
 pub(crate) struct WholeFile {
@@ -22,6 +30,7 @@ impl WholeFile {
     /// Begins a file under a passing name in the folder of `path`, or of what that links to.
     pub(crate) fn create(path: &Path) -> Outcome<Self> {
         let target = target_of(path)?;
+        let path = if is_standard(path) { Path::new("standard output") } else { path };
         // Nothing can lie beside a pipe in /dev.
         let folder = if is_special(&target) { std::env::temp_dir() } else { folder_of(&target).to_path_buf() };
         let mut builder = tempfile::Builder::new();
@@ -164,6 +173,9 @@ pub(crate) fn publish(files: &[Written]) -> Outcome {
 impl Written {
     /// Brings it to the disk, with the mode of what it replaces.
     fn prepare(&self) -> io::Result<()> {
+        if is_standard(&self.target) {
+            return Ok(());
+        }
         if self.target.is_dir() {
             return Err(io::Error::other("is a directory, and in the way of a file"));
         }
@@ -174,8 +186,15 @@ impl Written {
 
     /// Copies it into what is no plain file. That its reader has gone away is no error.
     fn pour(&self) -> io::Result<()> {
-        let mut target = fs::OpenOptions::new().write(true).open(&self.target)?;
-        match io::copy(&mut File::open(&self.passing)?, &mut target) {
+        let mut source = File::open(&self.passing)?;
+        let poured = if is_standard(&self.target) {
+            let mut out = io::stdout().lock();
+            io::copy(&mut source, &mut out).and_then(|_| out.flush())
+        } else {
+            let mut target = fs::OpenOptions::new().write(true).open(&self.target)?;
+            io::copy(&mut source, &mut target).map(|_| ())
+        };
+        match poured {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
             _ => Ok(()),
         }
@@ -213,6 +232,9 @@ impl<F: Copy> Outs<F> {
 fn target_of(path: &Path) -> Outcome<PathBuf> {
     /// Links that are followed; more are taken for a circle.
     const MOST: usize = 40;
+    if is_standard(path) {
+        return Ok(path.to_path_buf());
+    }
     if path.is_dir() {
         return Err(Failure::new(format!("{}: is a directory, expected the name of a file", path.display())));
     }
@@ -231,9 +253,9 @@ fn target_of(path: &Path) -> Outcome<PathBuf> {
     Err(Failure::new(format!("{}: links to itself", path.display())))
 }
 
-/// Whether it is there and no plain file: a pipe, a terminal, a device.
+/// Whether it is there and no plain file: standard output, a pipe, a terminal, a device.
 fn is_special(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|facts| !facts.is_file() && !facts.is_dir())
+    is_standard(path) || fs::metadata(path).is_ok_and(|facts| !facts.is_file() && !facts.is_dir())
 }
 
 /// The folder a path is in, as it is named.

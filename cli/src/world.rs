@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-4;
 /// The arguments of a command that runs a scene.
 #[derive(Debug, Default, clap::Args)]
 pub(crate) struct Settings {
-    /// The scene: .json or .scn
+    /// The scene: .json or .scn, or - for standard input
     pub(crate) scene: PathBuf,
     /// How the scene is read.
     #[command(flatten)]
@@ -122,7 +122,7 @@ impl World {
         if let Some(name) = args.response.as_deref() {
             file.contacts = respond(&file, name, dt);
         }
-        let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
+        let model = Model::load(&file, &load::name(&args.scene), &mut Disk)?;
         if !model.has_balls() && file.contacts.is_some() {
             let said = if args.response.is_some() { "--response" } else { "contacts" };
             warn(&[format!("{said} does nothing: no particle of the scene has a radius")]);

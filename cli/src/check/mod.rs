@@ -46,7 +46,7 @@ use study::Study;
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Check {
-    /// The scene: .json or .scn
+    /// The scene: .json or .scn, or - for standard input
     pub(crate) scene: PathBuf,
     /// How the scene is read.
     #[command(flatten)]
@@ -72,7 +72,7 @@ pub(crate) fn check(args: &Check) -> Outcome {
     let run = &mut file.run;
     run.integrator = args.integrator.unwrap_or(run.integrator);
     run.dt = args.dt.unwrap_or(run.dt);
-    let model = Model::load(&file, &args.scene.to_string_lossy(), &mut Disk)?;
+    let model = Model::load(&file, &load::name(&args.scene), &mut Disk)?;
     let outs = Outs::create(&args.out, [&args.scene])?;
     let (mut study, spectra) = Study::of(&args.scene, &model, &file.run);
     study.advice = advice::advise(&study, &model);

@@ -93,7 +93,7 @@ impl Study {
         let spectra: Vec<_> = corners.iter().filter_map(|corner| Spectrum::of(corner, &model.springs)).collect();
         let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, dt)).collect();
         let study = Self {
-            scene: path.display().to_string(),
+            scene: crate::load::name(path).into_owned(),
             dt,
             integrator: model.integrator.method.to_string(),
             particles: model.particles.len(),

@@ -1,107 +1,102 @@
 //! State to files: one file a format. What is written shows only when it is complete.
 
+mod events;
+mod files;
+mod frame;
+mod gltf;
+mod numpy;
+mod obj;
+mod plan;
 mod ply;
 mod table;
+mod vtk;
 mod xyz;
+
+pub(crate) use events::{Both, Chronicle, Notes};
+pub(crate) use frame::Frame;
+pub(crate) use plan::Plan;
 
 use crate::formats::RecordFormat;
 use crate::outcome::{Failure, Outcome};
-use crate::schedule::nanoseconds;
-use crate::whole::{WholeFile, Written, publish};
-use pointmass::draw::appearance;
-use pointmass::{Color, Columns, Heap, Scene, System};
-use serde::Serialize;
+use crate::pattern::Pattern;
+use crate::whole::{Written, is_standard};
+use files::{Apart, Together};
+use std::fs::File;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
-
-/// A particle in a recording.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Row {
-    step: u64,
-    time: f64,
-    id: u32,
-    x: f32,
-    y: f32,
-    z: f32,
-    vx: f32,
-    vy: f32,
-    vz: f32,
-    mass: f32,
-    age: f64,
-    /// In recordings of balls only.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    radius: Option<f32>,
-}
-
-/// The state after a step, by id.
-pub(crate) struct Frame {
-    step: u64,
-    time: f64,
-    rows: Vec<Row>,
-    /// True if rows have radii.
-    balls: bool,
-    /// Names of columns of a user's own, and the values of each row in them.
-    names: Vec<String>,
-    custom: Vec<Vec<f32>>,
-    /// Their colours at that instant.
-    colors: Vec<Color>,
-}
-
-impl Frame {
-    /// That of a system; of balls with their radii.
-    pub(crate) fn of(step: u64, system: &System<Heap>, scene: &Scene<'_>, balls: bool) -> Self {
-        let now = system.time();
-        let time = nanoseconds(now.seconds_f64());
-        let Columns { serial, position, velocity, mass, radius, born, .. } = system.particles();
-        let mut order: Vec<usize> = (0..serial.len()).collect();
-        order.sort_unstable_by_key(|&row| serial[row]);
-        let row = |&i: &usize| {
-            let ([x, y, z], [vx, vy, vz]) = (position[i].to_array(), velocity[i].to_array());
-            let age = nanoseconds((now - born[i]).seconds_f64());
-            let radius = balls.then(|| radius[i]);
-            Row { step, time, id: serial[i], x, y, z, vx, vy, vz, mass: mass[i], age, radius }
-        };
-        let state = system.state(scene);
-        let colors = order.iter().filter_map(|&i| appearance(&state, i)).map(|look| look.color).collect();
-        let own = system.custom(scene);
-        let numbers = 0..own.count();
-        let names = numbers.clone().filter_map(|number| own.name(number)).map(str::to_string).collect();
-        let custom = order.iter().map(|&i| numbers.clone().map(|number| own.column(number)[i]).collect()).collect();
-        Self { step, time, rows: order.iter().map(row).collect(), balls, names, custom, colors }
-    }
-}
 
 /// A recording in the making. Dropped, it is gone.
 pub(crate) struct Recorder {
     path: PathBuf,
-    writer: Box<dyn Writer>,
+    sink: Box<dyn Sink>,
 }
 
-/// A writer of one format.
-trait Writer {
-    fn record(&mut self, frame: &Frame) -> std::io::Result<()>;
+/// Where records go: one file or many.
+trait Sink {
+    /// Takes a record.
+    fn record(&mut self, frame: &Frame) -> io::Result<()>;
 
     /// The files that were recorded, to be put where they belong.
     fn close(self: Box<Self>) -> Outcome<Vec<Written>>;
 }
 
+/// A writer of one file in one format.
+trait Writer {
+    /// Writes a record.
+    fn record(&mut self, frame: &Frame) -> io::Result<()>;
+
+    /// Writes what comes last.
+    fn close(self: Box<Self>) -> io::Result<()>;
+}
+
+/// The file that a writer owns.
+type Out = BufWriter<File>;
+
 impl Recorder {
+    /// Begins a recording: in one file if the format can hold many records and the name has no place for a number.
     pub(crate) fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
-        let writer: Box<dyn Writer> = match format {
-            RecordFormat::Csv => Box::new(table::Csv::new(WholeFile::create(path)?)),
-            RecordFormat::Jsonl => Box::new(table::Jsonl(WholeFile::create(path)?)),
-            RecordFormat::Ply => Box::new(ply::Ply::new(path)?),
-            RecordFormat::Xyz => Box::new(xyz::Xyz(WholeFile::create(path)?)),
+        let pattern = Pattern::parse(path).map_err(Failure::new)?;
+        let sink: Box<dyn Sink> = match pattern {
+            None if format.holds_many() => Box::new(Together::create(path, format)?),
+            None if is_standard(path) => return Err(one_stream(format)),
+            pattern => Box::new(Apart::create(path, pattern, format)?),
         };
-        Ok(Self { path: path.to_path_buf(), writer })
+        Ok(Self { path: path.to_path_buf(), sink })
     }
 
+    /// Takes a record.
     pub(crate) fn record(&mut self, frame: &Frame) -> Outcome {
-        self.writer.record(frame).map_err(|error| Failure::io(&self.path, &error))
+        self.sink.record(frame).map_err(|error| Failure::io(&self.path, &error))
     }
 
-    /// Puts all that was recorded where it belongs, or none of it.
-    pub(crate) fn finish(recorders: Vec<Self>) -> Outcome {
-        let written = recorders.into_iter().map(|recorder| recorder.writer.close()).collect::<Outcome<Vec<_>>>()?;
-        publish(&written.into_iter().flatten().collect::<Vec<_>>())
+    /// The files that were recorded, to be put where they belong.
+    pub(crate) fn close(self) -> Outcome<Vec<Written>> {
+        self.sink.close()
+    }
+}
+
+/// The failure to write many files to standard output.
+fn one_stream(format: RecordFormat) -> Failure {
+    use clap::ValueEnum;
+    let name = |format: &RecordFormat| format.to_possible_value().map(|value| value.get_name().to_string());
+    let many: Vec<_> = RecordFormat::value_variants().iter().filter(|other| other.holds_many()).collect();
+    let many: Vec<_> = many.into_iter().filter_map(name).collect();
+    let (name, many) = (name(&format).unwrap_or_default(), many.join(", "));
+    Failure::new(format!("standard output: {name} is one file a record; choose --format {many}, or name a file"))
+}
+
+/// A writer of a format to a file that is going to be complete when the writer is closed.
+fn writer(format: RecordFormat, out: Out) -> Box<dyn Writer> {
+    match format {
+        RecordFormat::Csv => Box::new(table::Csv::new(out)),
+        RecordFormat::Jsonl => Box::new(table::Jsonl { out, whole: false }),
+        RecordFormat::Frames => Box::new(table::Jsonl { out, whole: true }),
+        RecordFormat::Xyz => Box::new(xyz::Xyz(out)),
+        RecordFormat::Npz | RecordFormat::Npy => Box::new(numpy::Npz::new(out)),
+        RecordFormat::Ply => Box::new(ply::Ply(out)),
+        RecordFormat::Obj => Box::new(obj::Obj(out)),
+        RecordFormat::Vtp => Box::new(vtk::Vtp(out)),
+        RecordFormat::Glb => Box::new(gltf::Gltf::new(out, true)),
+        RecordFormat::Gltf => Box::new(gltf::Gltf::new(out, false)),
     }
 }

@@ -1,66 +1,112 @@
 //! Tables: CSV and lines of JSON, with the same columns.
 
-use super::{Frame, Row, Writer};
-use crate::outcome::{Failure, Outcome};
-use crate::whole::{WholeFile, Written};
+use super::{Frame, Out, Writer};
+use serde::ser::{SerializeMap, SerializeSeq};
 use serde::{Serialize, Serializer};
 use std::io::{self, Write};
 
+/// A table with a head line, one row a particle and record.
 pub(super) struct Csv {
-    writer: csv::Writer<WholeFile>,
+    writer: csv::Writer<Out>,
+    begun: bool,
 }
 
 impl Csv {
-    pub(super) fn new(file: WholeFile) -> Self {
+    /// A table without its head.
+    pub(super) fn new(out: Out) -> Self {
         // The head is written by hand, so that a recording of nothing has one.
-        Self { writer: csv::WriterBuilder::new().has_headers(false).from_writer(file) }
+        Self { writer: csv::WriterBuilder::new().has_headers(false).from_writer(out), begun: false }
     }
 }
 
 impl Writer for Csv {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
-        if frame.step == 0 {
-            let head = ["step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age"];
-            let head = head.into_iter().chain(frame.balls.then_some("radius"));
-            self.writer.write_record(head.chain(frame.names.iter().map(String::as_str)))?;
+        if !self.begun {
+            let names = frame.columns.iter().map(|column| column.name.as_str());
+            self.writer.write_record(["step", "time"].into_iter().chain(names))?;
+            self.begun = true;
         }
-        let mut rows = frame.rows.iter().zip(&frame.custom);
-        rows.try_for_each(|row| self.writer.serialize(row)).map_err(io::Error::from)
+        let mut rows = 0..frame.len;
+        rows.try_for_each(|row| self.writer.serialize(Cells(Row { frame, row }))).map_err(io::Error::from)
     }
 
-    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
-        let file = self.writer.into_inner();
-        let file = file.map_err(|error| Failure::new(format!("the table cannot be written: {}", error.error())))?;
-        Ok(vec![file.close()?])
+    fn close(mut self: Box<Self>) -> io::Result<()> {
+        self.writer.flush()
     }
 }
 
-/// A particle with what columns of a user's own are called.
-#[derive(Serialize)]
-struct Line<'a> {
-    #[serde(flatten)]
-    row: &'a Row,
-    #[serde(flatten, serialize_with = "as_map")]
-    custom: Vec<(&'a String, &'a f32)>,
+/// A particle of a frame as an object: the names of columns with its values.
+struct Row<'a> {
+    frame: &'a Frame,
+    row: usize,
 }
 
-fn as_map<S: Serializer>(pairs: &[(&String, &f32)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(pairs.iter().copied())
+/// The same as a list of values.
+struct Cells<'a>(Row<'a>);
+
+impl Serialize for Row<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { frame, row } = *self;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("step", &frame.step)?;
+        map.serialize_entry("time", &frame.time)?;
+        frame.columns.iter().try_for_each(|column| map.serialize_entry(&column.name, &column.values.at(row)))?;
+        map.end()
+    }
 }
 
-pub(super) struct Jsonl(pub(super) WholeFile);
+impl Serialize for Cells<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Row { frame, row } = self.0;
+        let mut cells = serializer.serialize_seq(None)?;
+        cells.serialize_element(&frame.step)?;
+        cells.serialize_element(&frame.time)?;
+        frame.columns.iter().try_for_each(|column| cells.serialize_element(&column.values.at(row)))?;
+        cells.end()
+    }
+}
+
+/// A frame as an object: the names of columns with lists of their values, and triangles and edges where there are any.
+struct Whole<'a>(&'a Frame);
+
+impl Serialize for Whole<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Frame { step, time, columns, faces, edges, .. } = self.0;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("step", step)?;
+        map.serialize_entry("time", time)?;
+        columns.iter().try_for_each(|column| map.serialize_entry(&column.name, &column.values))?;
+        if !faces.is_empty() {
+            map.serialize_entry("faces", faces)?;
+        }
+        if !edges.is_empty() {
+            map.serialize_entry("edges", edges)?;
+        }
+        map.end()
+    }
+}
+
+/// Lines of JSON: one a particle and record, or one a record.
+pub(super) struct Jsonl {
+    pub(super) out: Out,
+    /// True if a line is a whole record.
+    pub(super) whole: bool,
+}
 
 impl Writer for Jsonl {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
-        for (row, custom) in frame.rows.iter().zip(&frame.custom) {
-            let custom = frame.names.iter().zip(custom).collect();
-            serde_json::to_writer(&mut self.0, &Line { row, custom })?;
-            self.0.write_all(b"\n")?;
+        if self.whole {
+            serde_json::to_writer(&mut self.out, &Whole(frame))?;
+            return self.out.write_all(b"\n");
+        }
+        for row in 0..frame.len {
+            serde_json::to_writer(&mut self.out, &Row { frame, row })?;
+            self.out.write_all(b"\n")?;
         }
         Ok(())
     }
 
-    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
-        Ok(vec![self.0.close()?])
+    fn close(mut self: Box<Self>) -> io::Result<()> {
+        self.out.flush()
     }
 }

@@ -1,30 +1,50 @@
 //! XYZ, as molecule viewers read it: all records one behind the other, in the extended form that names its columns.
 
-use super::{Frame, Row, Writer};
-use crate::outcome::Outcome;
-use crate::whole::{WholeFile, Written};
+use super::frame::{Column, Values};
+use super::{Frame, Out, Writer};
 use std::io::{self, Write};
 
-pub(super) struct Xyz(pub(super) WholeFile);
+/// Atoms; their colours are numbers from 0 to 1, as viewers of the format take them.
+pub(super) struct Xyz(pub(super) Out);
+
+/// The columns that the format has names of its own for, or has in another order.
+const OWN: [&str; 12] = ["id", "x", "y", "z", "vx", "vy", "vz", "mass", "red", "green", "blue", "alpha"];
 
 impl Writer for Xyz {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let out = &mut self.0;
-        writeln!(out, "{}", frame.rows.len())?;
-        let radius = if frame.balls { ":radius:R:1" } else { "" };
-        let own: String = frame.names.iter().map(|name| format!(":{name}:R:1")).collect();
-        let columns = format!("species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1{radius}{own}");
+        let is_colored = frame.columns.iter().any(|column| column.name == "alpha");
+        let ids = frame.columns.iter().find(|column| column.name == "id");
+        let mut others: Vec<&Column> = frame.others(&OWN).collect();
+        // Last, since it once was not told here.
+        others.sort_by_key(|column| column.name == "age");
+        let names: String =
+            others.iter().map(|column| format!(":{}:{}:1", column.name, kind(&column.values))).collect();
+        let color = if is_colored { ":color:R:3:transparency:R:1" } else { "" };
+        let columns = format!("species:S:1:pos:R:3:velo:R:3:mass:R:1:id:I:1{names}{color}");
+        writeln!(out, "{}", frame.len)?;
         writeln!(out, "Properties={columns} Time={} Step={}", frame.time, frame.step)?;
-        for (Row { id, x, y, z, vx, vy, vz, mass, radius, .. }, custom) in frame.rows.iter().zip(&frame.custom) {
-            write!(out, "X {x} {y} {z} {vx} {vy} {vz} {mass} {id}")?;
-            radius.map_or(Ok(()), |radius| write!(out, " {radius}"))?;
-            custom.iter().try_for_each(|value| write!(out, " {value}"))?;
+        let numbers = frame.singles(["x", "y", "z", "vx", "vy", "vz", "mass"]);
+        for row in 0..frame.len {
+            write!(out, "X")?;
+            numbers.iter().try_for_each(|column| write!(out, " {}", column[row]))?;
+            let others = ids.into_iter().chain(others.iter().copied());
+            others.into_iter().try_for_each(|column| write!(out, " {}", column.values.at(row)))?;
+            if is_colored {
+                let [red, green, blue, alpha] = frame.colors[row].map(|channel| f32::from(channel) / 255.0);
+                write!(out, " {red} {green} {blue} {}", 1.0 - alpha)?;
+            }
             writeln!(out)?;
         }
         Ok(())
     }
 
-    fn close(self: Box<Self>) -> Outcome<Vec<Written>> {
-        Ok(vec![self.0.close()?])
+    fn close(mut self: Box<Self>) -> io::Result<()> {
+        self.0.flush()
     }
+}
+
+/// The letter of a column's kind: a real number or an integer.
+fn kind(values: &Values) -> char {
+    if matches!(values, Values::Single(_) | Values::Double(_)) { 'R' } else { 'I' }
 }

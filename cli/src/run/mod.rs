@@ -1,16 +1,19 @@
 //! `pointmass run`: steps a scene, records it, reports.
 
 mod groups;
+mod recordings;
 mod summary;
 
-use crate::formats::{RecordFormat, Said, line, named};
-use crate::outcome::{Outcome, print, warn};
+use crate::formats::{EventsFormat, Line, RecordFormat, Said, line, named, recording};
+use crate::outcome::{Outcome, mention, print, warn};
 use crate::progress::Progress;
-use crate::record::{Frame, Recorder};
+use crate::record::Both;
 use crate::schedule::Schedule;
 use crate::stall;
+use crate::whole::is_standard;
 use crate::world::{Settings, World};
 use pointmass::Ledger;
+use recordings::Recordings;
 use std::path::PathBuf;
 use std::time::Instant;
 use summary::{Effort, Summary};
@@ -27,9 +30,20 @@ pub(crate) struct Run {
     /// Record every K-th step (step 0 and the last always)
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) every: u64,
-    /// Record into FILE: .csv, .jsonl, .xyz, or .ply for one file a record; may be given several times
-    #[arg(long, value_name = "FILE", value_parser = named::<RecordFormat>)]
-    pub(crate) out: Vec<(PathBuf, RecordFormat)>,
+    /// Record into FILE: .csv, .jsonl, .xyz, .npz, .glb or .gltf; or .npy, .ply, .obj or .vtp for one file a record, as
+    /// every name with a place for a number has it, such as DIR/%04d.csv. Or into -, standard output, at the end; what
+    /// happened is told on standard error then. May be given several times
+    #[arg(long, value_name = "FILE", value_parser = recording)]
+    pub(crate) out: Vec<(PathBuf, Option<RecordFormat>)>,
+    /// The format of --out -
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = RecordFormat::Csv)]
+    pub(crate) format: RecordFormat,
+    /// What a line of .jsonl holds
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t = Line::Particle)]
+    pub(crate) line: Line,
+    /// Record births, hits, touches and deaths, one a line, into FILE: .csv or .jsonl
+    #[arg(long, value_name = "FILE", value_parser = named::<EventsFormat>)]
+    pub(crate) events: Option<(PathBuf, EventsFormat)>,
     /// Keep account of energy and say where it went
     #[arg(long)]
     pub(crate) ledger: bool,
@@ -50,34 +64,29 @@ pub(crate) fn run(args: &Run) -> Outcome {
         None => Schedule::new(world.duration, world.dt),
     };
     world.warn_of_steps(world.dt, schedule.end(schedule.steps()).seconds_f64());
-    let mut recorders =
-        args.out.iter().map(|(path, format)| Recorder::create(path, *format)).collect::<Outcome<Vec<_>>>()?;
-    let mut record = |step: u64, world: &World| {
-        if recorders.is_empty() {
-            return Ok(());
-        }
-        let frame = Frame::of(step, &world.system, &world.model.scene(), world.model.has_balls());
-        recorders.iter_mut().try_for_each(|recorder| recorder.record(&frame))
-    };
-
+    let mut recordings = Recordings::create(args, &world)?;
     // Of its own, since stepping borrows the world.
     let model = world.model.clone();
     let mut ledger = args.ledger.then(|| Ledger::new(&world.system, &model.scene()));
     let mut effort = Effort::default();
     let mut progress = Progress::new(schedule.steps());
-    record(0, &world)?;
+    recordings.record(0, &world)?;
     for step in 1..=schedule.steps() {
         let begun = Instant::now();
-        match &mut ledger {
-            Some(ledger) => world.step_observed(schedule.end(step), ledger),
-            None => world.step_to(schedule.end(step)),
+        let end = schedule.end(step);
+        match (&mut ledger, recordings.notes()) {
+            (Some(ledger), Some(notes)) => world.step_observed(end, &mut Both(ledger, notes)),
+            (Some(ledger), None) => world.step_observed(end, ledger),
+            (None, Some(notes)) => world.step_observed(end, notes),
+            (None, None) => world.step_to(end),
         };
         effort.seconds += begun.elapsed().as_secs_f64();
         effort.steps = step;
         effort.particle_steps += world.system.len() as u64;
         if step % args.every == 0 || step == schedule.steps() {
-            record(step, &world)?;
+            recordings.record(step, &world)?;
         }
+        recordings.happened(step)?;
         progress.step(world.system.len());
     }
     drop(progress);
@@ -88,9 +97,14 @@ pub(crate) fn run(args: &Run) -> Outcome {
     let mut summary = Summary::of(&args.world.scene, &world, effort);
     summary.group_errors = args.group_error.then(|| groups::errors(&world));
     summary.ledger = ledger.map(|ledger| ledger.books().clone());
-    Recorder::finish(recorders)?;
-    match args.report {
-        Said::Text => print(&summary.text()),
-        Said::Json => print(&line(&summary)?),
+    recordings.finish()?;
+    let said = match args.report {
+        Said::Text => summary.text(),
+        Said::Json => line(&summary)?,
+    };
+    if args.out.iter().any(|(path, _)| is_standard(path)) {
+        mention(&said);
+        return Ok(());
     }
+    print(&said)
 }

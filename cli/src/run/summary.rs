@@ -65,7 +65,7 @@ impl Summary {
     /// Sums up the world as it is.
     pub(crate) fn of(scene: &std::path::Path, world: &World, effort: Effort) -> Self {
         Self {
-            scene: scene.display().to_string(),
+            scene: crate::load::name(scene).into_owned(),
             integrator: world.integrator().to_string(),
             dt: world.dt,
             seed: world.system.seed(),

@@ -12,6 +12,7 @@ mod lab;
 #[cfg(unix)]
 mod outputs;
 mod random;
+mod recorded;
 mod recordings;
 mod remarks;
 mod robustness;

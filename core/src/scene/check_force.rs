@@ -34,10 +34,8 @@ impl SceneFile {
 }
 
 /// The names in recordings of the engine's own attributes.
-const OWN: [&str; 19] = [
-    "step", "time", "id", "x", "y", "z", "vx", "vy", "vz", "mass", "age", "radius", "species", "pos", "velo", "red",
-    "green", "blue", "alpha",
-];
+const OWN: &str = "step time id x y z vx vy vz mass age radius remaining fixed drag charge elasticity material red green \
+    blue alpha color velocity transparency species pos velo faces edges";
 
 impl SceneFile {
     /// Checks columns of a user's own, and that forces name those that are there.
@@ -54,7 +52,7 @@ impl SceneFile {
                     "has to begin with a letter and go on with letters, digits and _, not \"{name}\""
                 ));
             }
-            if OWN.contains(&name.as_str()) || self.custom[..i].iter().any(|other| other.name == *name) {
+            if OWN.split(' ').any(|own| own == name) || self.custom[..i].iter().any(|other| other.name == *name) {
                 return refuse(format!("there is a \"{name}\" already: choose another name"));
             }
             finite(&format!("{at}.newborn"), &[custom.newborn])?;

@@ -1,0 +1,58 @@
+//! The files that a run was asked for: its states, and what happened in it.
+
+use super::Run;
+use crate::formats::{Line, RecordFormat};
+use crate::outcome::{Failure, Outcome};
+use crate::record::{Chronicle, Frame, Notes, Plan, Recorder};
+use crate::whole::{is_standard, publish};
+use crate::world::World;
+use std::path::PathBuf;
+
+/// The recordings of a run, in the making. Dropped, they are gone.
+pub(super) struct Recordings {
+    /// What states hold, if they are asked for.
+    plan: Option<Plan>,
+    recorders: Vec<Recorder>,
+    chronicle: Option<Chronicle>,
+}
+
+impl Recordings {
+    /// Begins all of them.
+    pub(super) fn create(args: &Run, world: &World) -> Outcome<Self> {
+        if args.out.iter().filter(|(path, _)| is_standard(path)).count() > 1 {
+            return Err(Failure::new("standard output takes one recording, not several: name files for the others"));
+        }
+        let recorder = |(path, format): &(PathBuf, Option<RecordFormat>)| match format.unwrap_or(args.format) {
+            RecordFormat::Jsonl if args.line == Line::Record => Recorder::create(path, RecordFormat::Frames),
+            format => Recorder::create(path, format),
+        };
+        let plan = || Plan::of(&world.file, &world.model, &args.world.scene);
+        let plan = (!args.out.is_empty()).then(plan).transpose()?;
+        let chronicle = args.events.as_ref().map(|(path, format)| Chronicle::create(path, *format)).transpose()?;
+        Ok(Self { plan, recorders: args.out.iter().map(recorder).collect::<Outcome<_>>()?, chronicle })
+    }
+
+    /// Takes the state after a step.
+    pub(super) fn record(&mut self, step: u64, world: &World) -> Outcome {
+        let Some(plan) = &self.plan else { return Ok(()) };
+        let frame = Frame::of(step, &world.system, &world.model.scene(), plan);
+        self.recorders.iter_mut().try_for_each(|recorder| recorder.record(&frame))
+    }
+
+    /// Who notes what happens in a step, if that was asked.
+    pub(super) fn notes(&mut self) -> Option<&mut Notes> {
+        self.chronicle.as_mut().map(|chronicle| &mut chronicle.notes)
+    }
+
+    /// Takes what was noted in a step.
+    pub(super) fn happened(&mut self, step: u64) -> Outcome {
+        self.chronicle.as_mut().map_or(Ok(()), |chronicle| chronicle.write(step))
+    }
+
+    /// Puts all files where they belong, or none of them.
+    pub(super) fn finish(self) -> Outcome {
+        let states = self.recorders.into_iter().map(Recorder::close).collect::<Outcome<Vec<_>>>()?;
+        let events = self.chronicle.map(Chronicle::close).transpose()?;
+        publish(&states.into_iter().flatten().chain(events).collect::<Vec<_>>())
+    }
+}
