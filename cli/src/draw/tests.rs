@@ -297,3 +297,83 @@ fn billboards_are_soft_where_they_stand_in_a_wall() {
     assert!(all[0] > 0.99 && all[40] < 0.01 && (all[20] - 0.5).abs() < 0.05, "{all:?}");
     assert!(all.windows(2).all(|two| two[1] <= two[0] + 0.01 && two[0] - two[1] < 0.1), "{all:?}");
 }
+
+/// How much of a black picture is covered, in pixels: red over what red alone is.
+fn covered(image: &RgbImage) -> f32 {
+    let linear = |byte: u8| color::decode(Vec3::splat(f32::from(byte) / 255.0)).x;
+    image.pixels().map(|pixel| linear(pixel[0])).sum()
+}
+
+#[test]
+fn balls_boxes_and_ribbons_cover_what_geometry_has_them_cover() {
+    let black = stage(vec![]);
+    let lens = camera::Lens::new(&black.camera, WIDTH as usize, HEIGHT as usize);
+    let scale = lens.pixels_per_metre(2.0);
+    let empty = covered(&frame(&black, &[], &[]));
+    let is_near = |image: &RgbImage, exact: f32| {
+        let area = covered(image) - empty;
+        assert!((area - exact).abs() < 0.01 * exact, "{area} pixels, not {exact}");
+    };
+    // A box whose front is two metres away, of its own light.
+    let (width, height) = (0.7, 0.4);
+    let surface = shapes::cuboid(Vec3::new(0.02, -0.01, -2.5), Vec3::new(width, height, 1.0));
+    let piece = Piece { surface, material: glowing(Vec3::X, 1.0), endless: false, lift: 0.0 };
+    let front = width * height * scale * scale;
+    is_near(&frame(&stage(vec![piece.clone()]), &[], &[]), front);
+    // The same ball as a piece and as a dot: its outline is that of the cone around it.
+    let radius: f32 = 0.3;
+    let surface = shapes::sphere(2.0 * Vec3::NEG_Z, radius);
+    let seen = std::f32::consts::PI * (radius * scale).powi(2) / (1.0 - (radius / 2.0).powi(2));
+    is_near(&frame(&stage(vec![Piece { surface, ..piece }]), &[], &[]), seen);
+    // Ribbons of any width, whole or in parts, getting narrower or not.
+    for (from, to) in [(0.1, 0.1), (0.1, 0.02), (0.03, 0.1)] {
+        let ends = [Vec3::new(-0.5, -0.2, -2.0), Vec3::new(0.45, 0.31, -2.0)];
+        let exact = 0.5 * (from + to) * ends[0].distance(ends[1]) * scale * scale;
+        for parts in [1u16, 7, 40] {
+            let at = |i: u16| f32::from(i) / f32::from(parts);
+            let line = |i: u16| Line {
+                ends: [at(i), at(i + 1)].map(|t| ends[0].lerp(ends[1], t)),
+                widths: [at(i), at(i + 1)].map(|t| from + t * (to - from)),
+                colors: [[255, 0, 0, 255]; 2],
+            };
+            let ribbons: Vec<_> = (0..parts).map(line).collect();
+            let drawn = Renderer::new(&black, WIDTH, HEIGHT).frame(&Moving { ribbons: &ribbons, ..Moving::default() });
+            is_near(&drawn, exact);
+        }
+    }
+}
+
+#[test]
+fn a_ribbon_in_parts_looks_as_in_one_though_it_lets_light_through() {
+    let black = stage(vec![]);
+    let ends = [Vec3::new(-0.4, 0.3, -2.0), Vec3::new(0.5, -0.2, -3.0)];
+    let drawn = |parts: u16| {
+        let at = |i: u16| f32::from(i) / f32::from(parts);
+        let alpha = |t: f32| [255, 0, 0, (200.0 * (1.0 - t)) as u8];
+        let line = |i: u16| Line {
+            ends: [at(i), at(i + 1)].map(|t| ends[0].lerp(ends[1], t)),
+            widths: [0.2; 2],
+            colors: [at(i), at(i + 1)].map(alpha),
+        };
+        let ribbons: Vec<_> = (0..parts).map(line).collect();
+        Renderer::new(&black, WIDTH, HEIGHT).frame(&Moving { ribbons: &ribbons, ..Moving::default() })
+    };
+    let (whole, parts) = (drawn(1), drawn(50));
+    // In the picture colours and widths of one line go evenly, which perspective does not.
+    let differ = whole.pixels().zip(parts.pixels()).filter(|(a, b)| a[0].abs_diff(b[0]) > 24).count();
+    assert!(differ * 100 < covered(&whole) as usize + 100, "{differ} pixels");
+    // Nothing is painted twice: neither is more opaque than its own colour.
+    let most = parts.pixels().map(|pixel| pixel[0]).max().unwrap_or(0);
+    let own = whole.pixels().map(|pixel| pixel[0]).max().unwrap_or(0);
+    assert!(most <= own.saturating_add(3), "{most} and {own}");
+}
+
+#[test]
+fn what_is_lifted_shows_on_what_it_lies_behind_by_less() {
+    let cloth = |lift| Piece { lift, ..wall(2.01, glowing(Vec3::X, 1.0)) };
+    let ball = wall(2.0, glowing(Vec3::Z, 1.0));
+    for (lift, shows) in [(0.0, false), (0.005, false), (0.02, true)] {
+        let image = frame(&stage(vec![ball.clone(), cloth(lift)]), &[], &[]);
+        assert_eq!(middle(&image)[0] > 200, shows, "{lift}");
+    }
+}

@@ -22,5 +22,6 @@ mod scn;
 mod sinks;
 mod sprites;
 mod stall;
+mod styles;
 mod tool;
 mod touching;

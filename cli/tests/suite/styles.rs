@@ -1,0 +1,65 @@
+//! Any scene in the lecture's styles: what is drawn, and what is not.
+
+use crate::tool::Folder;
+use image::RgbImage;
+
+/// A cloth, a ball, a point with a trail, a box, a spring that is far too long.
+const SCENE: &str = r#"{
+    "run": {"duration": 0.4, "dt": 0.02},
+    "camera": {"eye": [0, 0, 6], "towards": [0, 0, -1], "up": [0, 1, 0], "xfov": 0.5},
+    "background": [0, 0, 0],
+    "materials": [
+        {"diffuse": [1, 0, 0], "trail": {"seconds": 0.3, "width": 0.05}},
+        {"diffuse": [0, 1, 0], "shape": {"form": {"box": {"min": [-1, -1, -1], "max": [1, 1, 1]}}}}
+    ],
+    "particles": [
+        {"position": [-2, 1, 0], "velocity": [3, 0, 0], "material": 0},
+        {"position": [-1, -1, 0], "radius": 0.3, "material": 1},
+        {"position": [0, -1, 0], "radius": 0.2},
+        {"position": [1, 1.5, 0], "fixed": true}, {"position": [2, 1.5, 0], "fixed": true}
+    ],
+    "springs": [{"ends": [3, 4], "rest_length": 0.5, "ks": 1}],
+    "cloths": [{
+        "form": {"sheet": {"corner": [0.5, -1.5, 0], "sides": [[1.5, 0, 0], [0, 1.5, 0]], "cells": [6, 6]}},
+        "mass": 1, "springs": {"structural": {"ks": 10}}, "color": [0, 0, 255, 255]
+    }]
+}"#;
+
+fn drawn(folder: &Folder, args: &str) -> RgbImage {
+    folder.run(&format!("render a.json --out a.png --size 200x150 {args}")).fine();
+    image::open(folder.path("a.png")).expect("a picture").into_rgb8()
+}
+
+/// The pixels that have much of one channel and little of the others.
+fn count(image: &RgbImage, channel: usize) -> usize {
+    let is = |pixel: &&image::Rgb<u8>| {
+        (0..3).all(|other| other == channel || u16::from(pixel[channel]) > 2 * u16::from(pixel[other]) + 40)
+    };
+    image.pixels().filter(is).count()
+}
+
+#[test]
+fn every_style_draws_what_it_says() {
+    let folder = Folder::with("a.json", SCENE);
+    let pictures = ["", "--style points", "--style sprites", "--style shapes", "--style trails", "--style lines"];
+    let [own, points, sprites, shapes, trails, lines] = pictures.map(|args| drawn(&folder, args));
+    // A surface: 1.5 m of a picture of 6.5 m on 200 pixels.
+    assert!((1500..2600).contains(&count(&own, 2)), "{}", count(&own, 2));
+    for image in [&points, &trails, &lines] {
+        assert!(count(image, 2) < 1500 && count(image, 2) > 20, "{}", count(image, 2));
+    }
+    // A trail of 0.9 m, and of all the way in its own style.
+    assert!(count(&own, 0) > 20 && count(&trails, 0) > 20, "{} {}", count(&own, 0), count(&trails, 0));
+    assert!(count(&points, 0) < 12 && count(&shapes, 0) < 60);
+    // A box of 0.6 m, and a puff instead.
+    assert!((250..500).contains(&count(&own, 1)) && count(&shapes, 1) == count(&own, 1), "{}", count(&own, 1));
+    assert!(count(&points, 1) < 12 && count(&sprites, 1) > 60);
+    // The spring is drawn by its strain only where lines are asked for.
+    assert!(count(&lines, 0) > 30, "{}", count(&lines, 0));
+}
+
+#[test]
+fn a_style_that_is_none_is_told() {
+    let folder = Folder::with("a.json", SCENE);
+    folder.misuse("render a.json --out a.png", &[("--style blobs", "points, sprites, shapes, trails, lines")]);
+}
