@@ -128,7 +128,12 @@ fn look(args: &Render, world: &mut World, timing: &Timing, progress: &mut Progre
 
 /// Runs and draws the whole film. While some pictures are drawn, those before are written.
 fn film(
-    args: &Render, world: &mut World, timing: &Timing, from: &Viewpoint, sink: &mut Sink, progress: &mut Progress,
+    args: &Render,
+    world: &mut World,
+    timing: &Timing,
+    from: &Viewpoint,
+    sink: &mut Sink,
+    progress: &mut Progress,
 ) -> Outcome {
     let studio = Studio::new(args, world, from)?;
     let mut cast = Cast::new(from);

@@ -42,9 +42,8 @@ impl Palette {
         let mut heaps = heaps(pixels);
         let groups = groups(&mut heaps);
         let colors: Vec<Color> = groups.iter().map(|group| group.mean.map(|channel| (channel + 0.5) as u8)).collect();
-        let channels = [0, 1, 2].map(|at| {
-            std::array::from_fn(|index| colors.get(index).map_or(1e6, |color: &Color| f32::from(color[at])))
-        });
+        let channels = [0, 1, 2]
+            .map(|at| std::array::from_fn(|index| colors.get(index).map_or(1e6, |color: &Color| f32::from(color[at]))));
         let mut palette = Self { step: step(&colors), colors, channels, remembered: Vec::new() };
         let black = ([0; 3], palette.search([0; 3]));
         palette.remembered = vec![black; REMEMBERED];
