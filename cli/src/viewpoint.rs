@@ -97,7 +97,7 @@ impl Crowd {
     pub(crate) fn meet(&mut self, system: &System<Heap>) {
         let particles = system.particles();
         for (&place, &radius) in particles.position.iter().zip(particles.radius) {
-            if self.met.is_multiple_of(self.every) {
+            if place.is_finite() && self.met.is_multiple_of(self.every) {
                 self.balls.push((place, radius));
             }
             self.met += 1;
@@ -122,8 +122,7 @@ impl Crowd {
         }
         if around {
             let axis = camera.up.try_normalize().unwrap_or(Vec3::Y);
-            let all = self.balls.iter().chain(&fixed).map(|&(place, _)| place);
-            let pivot = Aabb::around(all).center();
+            let pivot = fit(camera, &self.balls, &fixed, aspect).middle;
             self.balls = round(&self.balls, pivot, axis);
             fixed = round(&fixed, pivot, axis);
         }
@@ -181,14 +180,14 @@ fn fit(camera: Camera, loose: &[(Vec3, f32)], fixed: &[(Vec3, f32)], aspect: f32
 /// The largest value, but for those that are far beyond nearly all others.
 fn most(mut values: Vec<f32>) -> f32 {
     values.retain(|value| value.is_finite());
-    let last = values.len().saturating_sub(1);
     values.sort_unstable_by(f32::total_cmp);
-    let at = |part: f32| values.get((part * last as f32) as usize).copied();
-    let (Some(middle), Some(nearly), Some(&largest)) = (at(0.5), at(0.99), values.last()) else {
-        return f32::NEG_INFINITY;
+    let at = |part: f32| values.get((part * values.len() as f32) as usize).copied();
+    let stray = match (at(0.5), at(0.99)) {
+        // Of few, no one is a stray.
+        (Some(middle), Some(nearly)) if values.len() >= 200 => nearly + (nearly - middle),
+        _ => f32::INFINITY,
     };
-    // With few values, no one is a stray.
-    if values.len() < 200 { largest } else { largest.min(nearly + (nearly - middle)) }
+    values.into_iter().rfind(|&value| value <= stray).unwrap_or(f32::NEG_INFINITY)
 }
 
 fn median(mut values: Vec<f32>) -> f32 {
@@ -215,4 +214,86 @@ fn seat(text: &str) -> Result<Seat, String> {
 fn turns(text: &str) -> Result<f64, String> {
     let value = number(text)?;
     if value.abs() <= 1e6 { Ok(value) } else { Err("expected turns, such as 1 or -0.25".into()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a place is in the picture: −1 and 1 are its edges.
+    fn seen(camera: &Camera, place: Vec3, aspect: f32) -> [f32; 2] {
+        let ahead = camera.towards.normalize();
+        let right = ahead.cross(camera.up).normalize();
+        let way = place - camera.eye;
+        let depth = way.dot(ahead);
+        assert!((camera.near..camera.far).contains(&depth), "{depth}");
+        let scale = 1.0 / (depth * camera.xfov.tan());
+        [scale * way.dot(right), scale * aspect * way.dot(right.cross(ahead))]
+    }
+
+    /// A cloud of balls somewhere, longer than it is wide.
+    fn crowd() -> Crowd {
+        let mut crowd = Crowd::new();
+        let part = |i: u32, k: u32| (i.wrapping_mul(k) >> 8) as f32 / 8_388_608.0 - 1.0;
+        let ball =
+            |i: u32| (Vec3::new(40.0 * part(i, 1_664_525), 3.0 * part(i, 22_695_477), part(i, 134_775_813)), 0.1);
+        crowd.balls = (0..2000).map(|i| (Vec3::new(100.0, -7.0, 3.0) + ball(i).0, ball(i).1)).collect();
+        crowd
+    }
+
+    #[test]
+    fn everything_fits_and_the_picture_is_full() {
+        let askew = Camera { towards: Vec3::new(0.3, -0.4, -1.0), xfov: 0.4, ..Camera::default() };
+        for (camera, aspect) in [(Camera::default(), 4.0 / 3.0), (askew, 1.0), (askew, 0.3)] {
+            let balls = crowd().balls;
+            let Viewpoint { camera, .. } = crowd().view(camera, &[], aspect, false);
+            let seen = || balls.iter().map(|&(place, _)| seen(&camera, place, aspect));
+            assert!(seen().flatten().all(|at| at.abs() < 1.0), "{camera:?}");
+            let edge = seen().flatten().fold(0.0, |most: f32, at| most.max(at.abs()));
+            assert!(edge > 0.85, "{edge}");
+        }
+    }
+
+    #[test]
+    fn everything_fits_from_all_sides() {
+        let balls = crowd().balls;
+        let from = crowd().view(Camera::default(), &[], 1.5, true);
+        for step in 0..50 {
+            let camera = from.turned(0.02 * f64::from(step));
+            let mut seen = balls.iter().flat_map(|&(place, _)| seen(&camera, place, 1.5));
+            assert!(seen.all(|at| at.abs() < 1.0), "{step}");
+        }
+    }
+
+    #[test]
+    fn strays_and_horizons_do_not_count() {
+        let calm = crowd().view(Camera::default(), &[], 1.5, false).camera;
+        let mut stray = crowd();
+        stray.balls.push((Vec3::new(1e6, 1e6, 0.0), 0.1));
+        let stray = stray.view(Camera::default(), &[], 1.5, false).camera;
+        assert!(stray.eye.distance(calm.eye) < 0.3 * calm.eye.z, "{stray:?} {calm:?}");
+        let horizon = Aabb { min: Vec3::splat(-1e5), max: Vec3::splat(1e5) };
+        assert_eq!(crowd().view(Camera::default(), &[horizon], 1.5, false).camera, calm);
+        let shelf = Aabb { min: Vec3::new(100.0, 10.0, 0.0), max: Vec3::new(101.0, 60.0, 1.0) };
+        let camera = crowd().view(Camera::default(), &[shelf], 1.5, false).camera;
+        assert!(seen(&camera, shelf.max, 1.5)[1] < 1.0 && seen(&camera, shelf.max, 1.5)[1] > 0.85);
+    }
+
+    #[test]
+    fn nothing_at_all_can_be_looked_at() {
+        for balls in [vec![], vec![(Vec3::ONE, 0.0)]] {
+            let mut crowd = Crowd::new();
+            crowd.balls = balls;
+            let Viewpoint { camera, .. } = crowd.view(Camera::default(), &[], 1.0, true);
+            assert!(camera.eye.is_finite() && camera.near > 0.0 && camera.near < camera.far, "{camera:?}");
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_changes_nothing_and_half_a_turn_looks_back() {
+        let from = Viewpoint::new(Camera { eye: Vec3::new(0.0, 2.0, 5.0), ..Camera::default() }, Vec3::ZERO);
+        assert_eq!([from.turned(0.0), from.turned(-3.0)], [from.camera; 2]);
+        let behind = from.turned(0.5);
+        assert!(behind.eye.distance(Vec3::new(0.0, 2.0, -5.0)) < 1e-5 && behind.towards.distance(Vec3::Z) < 1e-5);
+    }
 }

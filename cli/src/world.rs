@@ -62,7 +62,7 @@ pub(crate) struct Settings {
     #[arg(long, value_name = "M", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// On how many threads many particles are stepped, to the same bits: whole steps where they have nothing to do with each
-    /// other, else the sums of their forces; by default as many as the machine has
+    /// other, else the sums of their forces; and pictures drawn, to the same bits too; by default as many as the machine has
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 }

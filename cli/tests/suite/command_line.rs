@@ -11,7 +11,7 @@ const WORLD: [&str; 7] = ["--duration", "--dt", "--integrator", "--seed", "--cap
 fn help_names_every_flag() {
     let folder = Folder::new();
     let run = ["--steps", "--every", "--out", "--report", "text", "json", ".csv", ".jsonl", ".ply", ".xyz", "rk4"];
-    let render = ["--out", "--size", "--fps", ".gif", ".png"];
+    let render = ["--out", "--size", "--fps", "--camera", "--orbit", "--fit", ".gif", ".png", ".mp4"];
     let cases: [(&str, Vec<&str>); 5] = [
         ("", vec!["run", "render", "convert", "check", "--help", "--version"]),
         ("run", [&WORLD[..], &run].concat()),

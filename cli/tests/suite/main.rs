@@ -7,6 +7,7 @@ mod compare;
 mod compare_rays;
 mod conversion;
 mod course;
+mod films;
 mod fuzz;
 mod lab;
 #[cfg(unix)]

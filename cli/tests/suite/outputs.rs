@@ -9,11 +9,13 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// What every kind of output is written by; each file's name is that of an option's.
-const OUTPUTS: [(&str, &str); 8] = [
+const OUTPUTS: [(&str, &str); 10] = [
     ("run a.scn --steps 2 --out F", "o.csv"),
     ("run a.scn --steps 2 --out F", "o.jsonl"),
     ("run a.scn --steps 2 --out F", "o.xyz"),
     ("render a.scn --duration 0.1 --size 8x8 --out F", "o.gif"),
+    ("render a.scn --duration 0.1 --size 8x8 --out F", "o.apng"),
+    ("render a.scn --duration 0.1 --size 8x8 --out F", "o.y4m"),
     ("render a.scn --duration 0.1 --size 8x8 --out F", "o.png"),
     ("convert a.scn F", "o.json"),
     ("check a.scn --plot F", "o.svg"),

@@ -124,13 +124,13 @@ mod tests {
     #[test]
     fn nothing_is_left_of_what_is_not_finished() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["a.gif", "a.png", "frames/%d.png"] {
+        for name in ["a.gif", "a.apng", "a.y4m", "a.png", "frames/%d.png"] {
             let path = folder.path().join(name);
-            let mut sink = Sink::create(&path, 25.0).unwrap();
+            let mut sink = Sink::create(&path, 25.0, 1).unwrap();
             sink.push(&RgbImage::new(8, 6)).unwrap();
             drop(sink);
             assert_eq!(names(folder.path()), [""; 0], "{name}");
-            let error = Sink::create(&path, 25.0).unwrap().finish().unwrap_err();
+            let error = Sink::create(&path, 25.0, 1).unwrap().finish().unwrap_err();
             assert!(error.contains(name), "{error}");
             assert_eq!(names(folder.path()), [""; 0], "{name}");
         }
@@ -141,7 +141,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("a.gif"), "an older file").unwrap();
         for name in ["a.gif", "a.PNG", "frames/%02d.png"] {
-            let mut sink = Sink::create(&folder.path().join(name), 25.0).unwrap();
+            let mut sink = Sink::create(&folder.path().join(name), 25.0, 2).unwrap();
             assert_eq!(sink.keeps_only_last(), name == "a.PNG");
             for shade in [10, 200] {
                 sink.push(&RgbImage::from_pixel(8, 6, image::Rgb([shade; 3]))).unwrap();
@@ -159,16 +159,26 @@ mod tests {
     #[test]
     fn errors_name_the_path() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["nowhere/a.gif", "nowhere/a.png", "no/where/%d.png", "a.mp4", "a", "%d.gif", "%s.png"] {
-            let error = Sink::create(&folder.path().join(name), 25.0).unwrap_err();
+        for name in [
+            "nowhere/a.gif",
+            "nowhere/a.apng",
+            "nowhere/a.mp4",
+            "nowhere/a.png",
+            "no/where/%d.png",
+            "a.avi",
+            "a",
+            "%d.gif",
+            "%s.png",
+        ] {
+            let error = Sink::create(&folder.path().join(name), 25.0, 2).unwrap_err();
             assert!(error.contains(name), "{error}");
         }
         let path = folder.path().join("a.gif");
         for fps in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(Sink::create(&path, fps).is_err());
+            assert!(Sink::create(&path, fps, 1).is_err());
         }
-        for name in ["a.gif", "%d.png"] {
-            let mut sink = Sink::create(&folder.path().join(name), 25.0).unwrap();
+        for name in ["a.gif", "a.apng", "a.y4m", "%d.png"] {
+            let mut sink = Sink::create(&folder.path().join(name), 25.0, 2).unwrap();
             sink.push(&RgbImage::new(8, 6)).unwrap();
             assert!(sink.push(&RgbImage::new(6, 8)).unwrap_err().contains(name));
         }

@@ -178,6 +178,8 @@ mod tests {
         assert_eq!((next.left, next.top, next.width, next.height), (20, 10, 6, 4));
         let kept = next.buffer.iter().filter(|&&index| Some(index) == next.transparent);
         assert_eq!(kept.count(), 2 * 4);
+        // What has come to rest is drawn with care, and then no more.
+        screen.show(&picture(22));
         let same = screen.show(&picture(22));
         assert_eq!((same.width, same.height, same.buffer.to_vec()), (1, 1, vec![0]));
     }
