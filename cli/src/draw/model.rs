@@ -65,7 +65,7 @@ impl Model {
             let role = if piece.endless { Role::Endless } else { Role::Solid };
             let skin = model.skin(&piece.material, stage.ambient, role);
             let seen = piece.surface.transformed(lens.turn, lens.shift());
-            let lifted = |place: Vec3| place * (1.0 - piece.lift / place.length().max(2.0 * piece.lift)).max(0.5);
+            let lifted = |place: Vec3| place * (1.0 - piece.lift / Lens::depth(place).max(2.0 * piece.lift));
             let lifted = |corners: [Vec3; 3]| if piece.lift > 0.0 { corners.map(lifted) } else { corners };
             model.facets.extend(seen.corners().map(|(corners, normals)| Facet::new(lifted(corners), normals, skin)));
         }
