@@ -6,7 +6,7 @@
 //!    [`Piece`]s made of [`Surface`]s ([`shapes`] makes the usual ones).
 //! 2. Hand it to [`Renderer::new`], which draws it once, carefully, with antialiasing and shadows.
 //! 3. For every frame call [`Renderer::frame`] with what moves ([`Moving`]), and give the
-//!    picture to a [`Sink`], which writes a GIF, a PNG or a numbered sequence.
+//!    picture to a [`Sink`], which writes a film, a PNG or a numbered sequence.
 //!
 //! Colours are written as people write them in scene files and see them on a screen (sRGB, 0 to 1
 //! or 0 to 255). They are decoded on the way in, and all arithmetic happens in linear light.
