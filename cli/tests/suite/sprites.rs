@@ -49,13 +49,20 @@ fn what_scn_cannot_say_of_them_is_warned_of() {
         "a.json",
         format!(
             r#"{{"particles": [{{}}], "constraints": [{{"attach": {{"particles": [0], "motion": {motion}}}}}],
-                "materials": [{{"sprite": {{"picture": "puff"}}}}], "scenery": [{{"shape": {sphere}, "motion": {motion}}}],
+                "materials": [{{"sprite": {{"picture": "puff"}}}}, {{"shape": {{"form": {sphere}}}, "trail": {{"seconds": 1}}}}], "scenery": [{{"shape": {sphere}, "motion": {motion}}}],
                 "emitters": [{{"shape": {sphere}, "motion": {motion}}}]}}"#
         ),
     );
     let answer = folder.run("convert a.json a.scn");
     let warnings = answer.warnings();
-    for left_out in ["constraints: ", "materials: .scn has no sprites", "scenery[0].motion: ", "emitters[0]: "] {
+    for left_out in [
+        "constraints: ",
+        "materials: .scn has no sprites",
+        "materials: .scn has no shapes",
+        "materials: .scn has no trails",
+        "scenery[0].motion: ",
+        "emitters[0]: ",
+    ] {
         let about = warnings.iter().filter(|warning| warning.starts_with(left_out) && warning.contains("left out"));
         assert_eq!(about.count(), 1, "{left_out}: {warnings:#?}");
     }

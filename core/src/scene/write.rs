@@ -139,6 +139,12 @@ impl Writer {
         if material.sprite.is_some() {
             self.warn("materials: .scn has no sprites; they are left out");
         }
+        if material.shape.is_some() {
+            self.warn("materials: .scn has no shapes of particles; they are left out");
+        }
+        if material.trail.is_some() {
+            self.warn("materials: .scn has no trails; they are left out");
+        }
         if !material.life.is_plain() {
             self.warn("materials: .scn has no lives of particles; they are left out");
         }
