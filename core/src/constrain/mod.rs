@@ -11,6 +11,7 @@ mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
+mod rope;
 
 pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
@@ -19,6 +20,7 @@ pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
+pub use rope::Rope;
 
 pub use crate::memory::{Demand, Kept, Words};
 
