@@ -25,6 +25,7 @@ mod lives;
 #[path = "rays/main.rs"]
 mod rays;
 mod reapers;
+mod ropes;
 mod rounding;
 mod sampling;
 mod scripted;

@@ -1,6 +1,6 @@
 //! The constraints that a scene file names.
 
-use super::{Attach, Bodies, Constraint, Demand, Distance, Rope, Share};
+use super::{Attach, Bodies, Constraint, Demand, Distance, Rope, ShapeMatching, Share};
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
 
@@ -13,6 +13,8 @@ pub enum ConstraintKind {
     Distance(Distance),
     /// A chain of links.
     Rope(Rope<Vec<u32>, Vec<f32>>),
+    /// A cluster that keeps its shape.
+    Cluster(ShapeMatching<Vec<u32>>),
     /// Particles that go where a script says.
     Attach(Attach<Vec<u32>, MotionBuf>),
 }
@@ -23,6 +25,7 @@ impl ConstraintKind {
         match self {
             Self::Distance(distance) => distance,
             Self::Rope(rope) => rope,
+            Self::Cluster(cluster) => cluster,
             Self::Attach(attach) => attach,
         }
     }
@@ -33,6 +36,7 @@ impl ConstraintKind {
         match self {
             Self::Distance(distance) => distance.fault(),
             Self::Rope(rope) => rope.fault().or_else(|| twice(&rope.particles)),
+            Self::Cluster(cluster) => cluster.fault().or_else(|| twice(&cluster.particles)),
             Self::Attach(attach) => attach.motion.fault().map(|why| ("motion", why)),
         }
     }
@@ -43,6 +47,7 @@ impl ConstraintKind {
         match self {
             Self::Distance(distance) => &distance.ends,
             Self::Rope(rope) => &rope.particles,
+            Self::Cluster(cluster) => &cluster.particles,
             Self::Attach(attach) => &attach.particles,
         }
     }

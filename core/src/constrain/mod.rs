@@ -12,6 +12,7 @@ mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
 mod rope;
+mod shape_matching;
 
 pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
@@ -21,6 +22,7 @@ pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
 pub use rope::Rope;
+pub use shape_matching::ShapeMatching;
 
 pub use crate::memory::{Demand, Kept, Words};
 
