@@ -1,7 +1,7 @@
 //! Clusters that keep their shape: rigid bodies and jellies of particles.
 
 use super::{Bodies, Constraint, Demand, Share, Words};
-use crate::math::{dot, sqrt};
+use crate::math::{dot, max, sqrt};
 use glam::{Mat3, Vec3};
 
 /// Keeps a cluster of particles in the shape that it had when the constraint first acted, moved and turned as a whole: a rigid body,
@@ -59,8 +59,6 @@ pub struct ShapeMatching<P> {
 
 /// Words kept before the places in the shape: whether they are known, and the rotation.
 const HEAD: usize = 5;
-/// How much more than all others together whoever is fixed weighs in rotations.
-const HEAVY: f32 = 1e4;
 /// Rounds of Newton's method, and of the search for the nearest rotation, at the most.
 const ROUNDS: [u32; 2] = [8, 40];
 /// An angle \[rad\] that is rounding.
@@ -130,7 +128,7 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         if !(mass > 0.0 && mass < f32::INFINITY) {
             return None;
         }
-        let mut body = Body { origin, mass, center: Vec3::ZERO, rest: Vec3::ZERO, drift };
+        let mut body = Body { origin, mass, fixed, hold: Hold::Free, center: Vec3::ZERO, rest: Vec3::ZERO, drift };
         // Means of what is left of the last ones: shares of the mass that rounding keeps from adding up to one would brake, ever so slightly.
         for _ in 0..2 {
             let (mut center, mut rest, mut drift) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
@@ -149,6 +147,41 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
             body.drift += drift;
         }
         Some(body)
+    }
+
+    /// What those that are fixed leave of its freedom to turn; there are two of them at least. The last rotation is brought to agree.
+    fn hold(&self, bodies: &mut Bodies<'_>, kept: &[u32], body: &Body, last: &mut Turn) -> Hold {
+        let (mut arm, mut far) = (None, 0.0);
+        self.each(bodies, kept, &mut |_, member| {
+            let place = member.place - body.rest;
+            let square = dot(place, place);
+            if member.fixed && square > far {
+                (arm, far) = (Some((member.row, place)), square);
+            }
+        });
+        let Some((row, place)) = arm else { return Hold::Free };
+        let (mut wide, mut to, mut spread, mut spin) = (0.0, Mat3::ZERO, Mat3::ZERO, Vec3::ZERO);
+        self.each(bodies, kept, &mut |bodies, member| {
+            if member.fixed {
+                let (q, r) = (member.place - body.rest, body.place(bodies, member.row));
+                let aside = q.cross(place);
+                wide = max(wide, dot(aside, aside));
+                to += outer(r, q);
+                spread += outer(r, r);
+                spin += r.cross(bodies.velocity[member.row] - body.drift);
+            }
+        });
+        if wide > 1e-6 * far * far {
+            *last = nearest(*last, to, None);
+            return Hold::Fast { omega: solve(spread, spin) };
+        }
+        let (r, v) = (body.place(bodies, row), bodies.velocity[row] - body.drift);
+        let square = dot(r, r);
+        if !(square > 0.0) {
+            return Hold::Free;
+        }
+        *last = last.bring(place, r);
+        Hold::About { axis: r / sqrt(square), omega: r.cross(v) / square }
     }
 
     /// Its angular momentum about its centre over its mass, and the sum of r rᵀ likewise.
@@ -177,7 +210,12 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
             to += outer(x, q);
             torque += y.cross(x) * weight;
         });
-        keeping(last, from, torque).unwrap_or_else(|| nearest(last, to))
+        let axis = match body.hold {
+            Hold::Free => None,
+            Hold::About { axis, .. } => Some(axis),
+            Hold::Fast { .. } => return last,
+        };
+        keeping(last, from, torque, axis).unwrap_or_else(|| nearest(last, to, axis))
     }
 }
 
@@ -197,12 +235,15 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let (h, kept) = (bodies.substep.seconds(), &mut *share.kept.fixed);
-        let Some(body) = self.body(bodies, kept) else { return };
+        let Some(mut body) = self.body(bodies, kept) else { return };
         if !(h > 0.0) {
             return;
         }
         let (spin, _) = self.spin(bodies, kept, &body);
-        let last = Turn([1, 2, 3, 4].map(|word| f32::from_bits(kept[word])));
+        let mut last = Turn::kept(kept);
+        if body.fixed > 1 {
+            body.hold = self.hold(bodies, kept, &body, &mut last);
+        }
         let turn = self.turn(bodies, kept, &body, last);
         kept[1..HEAD].copy_from_slice(&turn.0.map(f32::to_bits));
         let (rotation, give) = (turn.matrix(), 1.0 / (1.0 + self.compliance * body.mass / (h * h)));
@@ -216,7 +257,12 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         // What rounding has changed of the momenta, or turning too far, is given back.
         let Some(now) = self.body(bodies, kept) else { return };
         let (left, spread) = self.spin(bodies, kept, &now);
-        let (omega, drift) = (solve(spread, spin - left), body.drift - now.drift);
+        let omega = match body.hold {
+            Hold::Free => solve(spread, spin - left),
+            Hold::About { axis, .. } => axis * about(axis, spread, spin - left),
+            Hold::Fast { .. } => Vec3::ZERO,
+        };
+        let drift = body.drift - now.drift;
         self.each(bodies, kept, &mut |bodies, member| {
             let by = drift + omega.cross(now.place(bodies, member.row));
             if !member.fixed && by.is_finite() {
@@ -234,7 +280,15 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
             return;
         }
         let (spin, spread) = self.spin(bodies, kept, &body);
-        let omega = solve(spread, spin);
+        let hold = match body.fixed {
+            0 | 1 => Hold::Free,
+            _ => self.hold(bodies, kept, &body, &mut Turn::kept(kept)),
+        };
+        let omega = match hold {
+            Hold::Free => solve(spread, spin),
+            Hold::About { axis, omega } => omega + axis * about(axis, spread, spin - moment(spread, omega)),
+            Hold::Fast { omega } => omega,
+        };
         self.each(bodies, kept, &mut |bodies, member| {
             let rigid = body.drift + omega.cross(body.place(bodies, member.row));
             let by = (rigid - bodies.velocity[member.row]) * taken;
@@ -253,12 +307,25 @@ struct Member {
     fixed: bool,
 }
 
+/// How a cluster is held by those that are fixed.
+#[derive(Clone, Copy)]
+enum Hold {
+    /// It can turn about its centre.
+    Free,
+    /// It can turn about an axis, which itself turns so fast \[rad/s\].
+    About { axis: Vec3, omega: Vec3 },
+    /// It turns with those that are fixed \[rad/s\].
+    Fast { omega: Vec3 },
+}
+
 /// A cluster as a whole.
 struct Body {
     /// The place of its first particle, from which all others are told: far from the world's origin differences are exact.
     origin: Vec3,
-    /// The mass of all that move \[kg\].
+    /// The mass of all that move \[kg\], the number of those that are fixed, and how these hold it.
     mass: f32,
+    fixed: u32,
+    hold: Hold,
     /// The centre: of mass, or of those that are fixed; its place in the shape, and its velocity.
     center: Vec3,
     rest: Vec3,
@@ -273,7 +340,7 @@ impl Body {
 
     /// What it weighs in rotations, a share of the mass.
     fn weight(&self, bodies: &Bodies<'_>, member: &Member) -> f32 {
-        if member.fixed { HEAVY } else { bodies.mass[member.row] / self.mass }
+        if member.fixed { 0.0 } else { bodies.mass[member.row] / self.mass }
     }
 }
 
@@ -283,6 +350,20 @@ struct Turn([f32; 4]);
 
 impl Turn {
     const NONE: Self = Self([0.0, 0.0, 0.0, 1.0]);
+
+    /// The one that is kept.
+    fn kept(kept: &[u32]) -> Self {
+        Self([1, 2, 3, 4].map(|word| f32::from_bits(kept[word])))
+    }
+
+    /// Turned on the shortest way so that a place in the shape gets into a direction.
+    fn bring(self, place: Vec3, to: Vec3) -> Self {
+        let from = self.matrix() * place;
+        let lengths = sqrt(dot(from, from)) * sqrt(dot(to, to));
+        // The tangent of half the angle, along the axis.
+        let half = from.cross(to) / (lengths + dot(from, to));
+        if half.is_finite() { self.on(half * 2.0) } else { self }
+    }
 
     /// Turned on by about an angle \[rad\] about a direction: by 2 atan(|angle| / 2), for which no sine is needed (Cayley).
     fn on(self, angle: Vec3) -> Self {
@@ -309,7 +390,7 @@ impl Turn {
 }
 
 /// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
-fn keeping(last: Turn, from: Mat3, torque: Vec3) -> Option<Turn> {
+fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
     let (mut turn, mut before) = (last, f32::INFINITY);
     for _ in 0..ROUNDS[0] {
         // Σ m y (R q)ᵀ, and of it what is antisymmetric: Σ m y × R q.
@@ -319,7 +400,8 @@ fn keeping(last: Turn, from: Mat3, torque: Vec3) -> Option<Turn> {
             return None;
         }
         let has = Vec3::new(z.y - y.z, x.z - z.x, y.x - x.y);
-        let angle = solve(sum.transpose(), torque - has);
+        let (sum, lack) = (sum.transpose(), torque - has);
+        let angle = axis.map_or_else(|| solve(sum, lack), |axis| axis * about(axis, sum, lack));
         let size = dot(angle, angle);
         if !(size < before && size < 4.0) {
             // Rounding goes to and fro.
@@ -334,7 +416,7 @@ fn keeping(last: Turn, from: Mat3, torque: Vec3) -> Option<Turn> {
 }
 
 /// The rotation nearest to Σ m x qᵀ, found from the last one on: one column pulls another round by r × a / |Σ r · a|.
-fn nearest(last: Turn, to: Mat3) -> Turn {
+fn nearest(last: Turn, to: Mat3, axis: Option<Vec3>) -> Turn {
     let mut turn = last;
     for _ in 0..ROUNDS[1] {
         let rotation = turn.matrix();
@@ -343,6 +425,7 @@ fn nearest(last: Turn, to: Mat3) -> Turn {
             pull += r.cross(a);
             along += dot(r, a);
         }
+        let pull = axis.map_or(pull, |axis| axis * dot(axis, pull));
         let angle = pull / along.abs();
         let size = dot(angle, angle);
         if !(size < f32::INFINITY) {
@@ -361,27 +444,43 @@ fn outer(a: Vec3, b: Vec3) -> Mat3 {
     Mat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// The angle x for which (tr(B) − B) x = b, by Cramer's rule: how far to turn, or how fast, for a change of the moment. About an axis on
-/// which all lies there is no moment, and it does not turn.
-fn solve(b: Mat3, moment: Vec3) -> Vec3 {
+/// (tr(B) − B) x: the moment that turning by x, or so fast, is.
+fn moment(b: Mat3, x: Vec3) -> Vec3 {
+    system(b) * x
+}
+
+/// tr(B) − B, without what would cancel.
+fn system(b: Mat3) -> Mat3 {
+    let [x, y, z] = [b.x_axis, b.y_axis, b.z_axis];
+    Mat3::from_cols(
+        Vec3::new(y.y + z.z, -x.y, -x.z),
+        Vec3::new(-y.x, x.x + z.z, -y.z),
+        Vec3::new(-z.x, -z.y, x.x + y.y),
+    )
+}
+
+/// How far to turn, or how fast, about an axis for a change of the moment.
+fn about(axis: Vec3, b: Mat3, change: Vec3) -> f32 {
+    let by = dot(axis, change) / dot(axis, moment(b, axis));
+    if by.is_finite() { by } else { 0.0 }
+}
+
+/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by Cramer's rule. About an axis on which all
+/// lies there is no moment, and it does not turn.
+fn solve(b: Mat3, change: Vec3) -> Vec3 {
     let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
     if !(trace > 0.0 && trace < f32::INFINITY) {
         return Vec3::ZERO;
     }
     // In units of the trace nothing underflows, however small the cluster.
-    let (scaled, moment) = ([b.x_axis, b.y_axis, b.z_axis].map(|column| column / trace), moment / trace);
-    let columns = |ridge: f32| {
-        let diagonal = 1.0 + ridge;
-        [Vec3::X * diagonal - scaled[0], Vec3::Y * diagonal - scaled[1], Vec3::Z * diagonal - scaled[2]]
-    };
+    let change = change / trace;
+    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
+    let plain = [x / trace, y / trace, z / trace];
     let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
-    let mut system = columns(0.0);
-    if !(determinant(system) > THIN) {
-        system = columns(THIN);
-    }
-    let [x, y, z] = system;
-    let answer =
-        Vec3::new(dot(moment, y.cross(z)), dot(moment, z.cross(x)), dot(moment, x.cross(y))) / determinant(system);
+    let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
+    let columns = if determinant(plain) > THIN { plain } else { ridged };
+    let [x, y, z] = columns;
+    let answer = Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
 
