@@ -1,8 +1,11 @@
 //! Clusters that keep their shape against the mechanics of rigid bodies: how they turn, fall, swing, tumble and rest.
 
+use pointmass::force::Friction;
 use pointmass::scene::SceneFile;
 use pointmass::shape::Plane;
-use pointmass::{Contacts, Drag, Gravity, Measures, Method, Particle, Scene, ShapeMatching, Time, Vec3};
+use pointmass::{
+    ContactMaterial, Contacts, Drag, Gravity, Measures, Method, Particle, Scene, ShapeMatching, Time, Vec3,
+};
 use pointmass_tests::{Random, f64s, gap, often, run, started};
 
 const G: f64 = 9.81;
@@ -98,7 +101,8 @@ fn a_body_turns_by_eulers_equations() {
         let (seconds, parts) = (4.0, 40_000);
         let h = seconds / f64::from(parts);
         for _ in 0..parts {
-            let shift = |d: ([f64; 3], [[f64; 3]; 3]), h: f64| (add(w, d.0, h), [0, 1, 2].map(|k| add(axes[k], d.1[k], h)));
+            let shift =
+                |d: ([f64; 3], [[f64; 3]; 3]), h: f64| (add(w, d.0, h), [0, 1, 2].map(|k| add(axes[k], d.1[k], h)));
             let slope = |(w, axes)| (rate(w), axes_rate(w, axes));
             let a = slope((w, axes));
             let b = slope(shift(a, h / 2.0));
@@ -135,7 +139,9 @@ fn a_body_turns_by_eulers_equations() {
 #[test]
 fn a_free_cluster_falls_as_a_point_does_and_keeps_its_momenta() {
     let mut random = Random::new(5);
-    for (scale, far, compliance) in [(1.0f32, 0.0f32, 0.0f32), (1e-6, 0.0, 0.0), (2000.0, 0.0, 0.0), (1.0, 50.0, 0.0), (1.0, 0.0, 1e-3)] {
+    for (scale, far, compliance) in
+        [(1.0f32, 0.0f32, 0.0f32), (1e-6, 0.0, 0.0), (2000.0, 0.0, 0.0), (1.0, 50.0, 0.0), (1.0, 0.0, 1e-3)]
+    {
         let start: Vec<Particle> = (0..14)
             .map(|_| {
                 let r = random.vector(0.5);
@@ -144,7 +150,11 @@ fn a_free_cluster_falls_as_a_point_does_and_keeps_its_momenta() {
                 Particle { position: (r + Vec3::X * far) * scale, velocity, mass, ..Particle::REST }
             })
             .collect();
-        let body = ShapeMatching { compliance: compliance / scale, damping: 0.1, ..ShapeMatching::rigid((0..14).collect::<Vec<u32>>()) };
+        let body = ShapeMatching {
+            compliance: compliance / scale,
+            damping: 0.1,
+            ..ShapeMatching::rigid((0..14).collect::<Vec<u32>>())
+        };
         let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
         for method in Method::ALL {
             let integrator = method.integrator();
@@ -174,10 +184,15 @@ fn a_free_cluster_falls_as_a_point_does_and_keeps_its_momenta() {
         }
         // And falls as one falls.
         let heavy = Gravity { acceleration: Vec3::NEG_Y * scale };
-        let point = [Particle { position: start[0].position, velocity: Vec3::from_array(middle_velocity(&start)), ..Particle::REST }];
+        let point = [Particle {
+            position: start[0].position,
+            velocity: Vec3::from_array(middle_velocity(&start)),
+            ..Particle::REST
+        }];
         for method in Method::ALL {
             let integrator = method.integrator();
-            let scene = Scene { start: &start, forces: &heavy, constraints: &body, substeps: 16, integrator, ..Scene::EMPTY };
+            let scene =
+                Scene { start: &start, forces: &heavy, constraints: &body, substeps: 16, integrator, ..Scene::EMPTY };
             let alone = Scene { start: &point, constraints: &(), ..scene };
             let [mut a, mut b] = [started(&scene, 14, 0), started(&alone, 1, 0)];
             let from = middle(&start, a.particles().position);
@@ -200,7 +215,8 @@ fn middle_velocity(start: &[Particle]) -> [f32; 3] {
 #[test]
 fn who_is_fixed_is_a_pivot() {
     // A board that hangs by its upper edge: I = Σ m r² about the edge, at a distance d of the middle of those that move.
-    let at = |x: f32, y: f32, fixed: bool| Particle { position: Vec3::new(x, y, 0.0), fixed, mass: 0.3, ..Particle::REST };
+    let at =
+        |x: f32, y: f32, fixed: bool| Particle { position: Vec3::new(x, y, 0.0), fixed, mass: 0.3, ..Particle::REST };
     let tilt = 0.05f32;
     let hang = |parts: &[(f32, f32, bool)]| -> Vec<Particle> {
         let turn = |p: Particle| {
@@ -214,14 +230,19 @@ fn who_is_fixed_is_a_pivot() {
         hang(&[(-0.5, 0.0, true), (0.5, 0.0, true), (-0.5, -0.5, false), (0.5, -0.5, false), (0.0, -1.0, false)]),
     ];
     for start in cases {
-        let free: Vec<f64> = start.iter().filter(|p| !p.fixed).map(|p| f64::from(p.position.length_squared() - p.position.x * p.position.x)).collect();
+        let free: Vec<f64> = start
+            .iter()
+            .filter(|p| !p.fixed)
+            .map(|p| f64::from(p.position.length_squared() - p.position.x * p.position.x))
+            .collect();
         let (moment, first) = (free.iter().sum::<f64>(), free.iter().map(|r| r.sqrt()).sum::<f64>());
         let omega = (G * first / moment).sqrt() * (1.0 - f64::from(tilt * tilt) / 16.0);
         let numbers: Vec<u32> = (0..start.len() as u32).collect();
         let body = ShapeMatching::rigid(numbers);
         for method in [Method::Symplectic, Method::Verlet, Method::Rk4] {
             let integrator = method.integrator();
-            let scene = Scene { start: &start, forces: &DOWN, constraints: &body, substeps: 20, integrator, ..Scene::EMPTY };
+            let scene =
+                Scene { start: &start, forces: &DOWN, constraints: &body, substeps: 20, integrator, ..Scene::EMPTY };
             let mut system = started(&scene, start.len(), 0);
             let last = start.len() - 1;
             for frame in 1..=180 {
@@ -274,7 +295,11 @@ fn a_soft_cluster_gives_way_by_its_compliance() {
 
 #[test]
 fn nothing_breaks_a_cluster() {
-    let at = |x: f32, y: f32, z: f32| Particle { position: Vec3::new(x, y, z), velocity: Vec3::new(y, z, x), ..Particle::REST };
+    let at = |x: f32, y: f32, z: f32| Particle {
+        position: Vec3::new(x, y, z),
+        velocity: Vec3::new(y, z, x),
+        ..Particle::REST
+    };
     let brief = |p: Particle| Particle { lifetime: 0.2, ..p };
     let fixed = |p: Particle| Particle { fixed: true, velocity: Vec3::ZERO, ..p };
     let starts: [Vec<Particle>; 9] = [
@@ -286,7 +311,11 @@ fn nothing_breaks_a_cluster() {
         vec![at(0.0, 0.0, 0.0); 4],
         vec![at(0.0, 0.0, 0.0), brief(at(1.0, 0.0, 0.0)), at(0.0, 1.0, 0.0), brief(at(0.0, 0.0, 1.0))],
         vec![fixed(at(0.0, 0.0, 0.0)), fixed(at(1.0, 0.0, 0.0)), brief(at(0.0, 1.0, 0.0))],
-        vec![Particle { mass: 1e-9, ..at(0.0, 0.0, 0.0) }, Particle { mass: 1e9, ..at(1.0, 0.0, 0.0) }, at(0.0, 1.0, 1.0)],
+        vec![
+            Particle { mass: 1e-9, ..at(0.0, 0.0, 0.0) },
+            Particle { mass: 1e9, ..at(1.0, 0.0, 0.0) },
+            at(0.0, 1.0, 1.0),
+        ],
     ];
     for start in &starts {
         let numbers: Vec<u32> = (0..start.len() as u32).collect();
@@ -350,10 +379,12 @@ fn it_is_rigid_however_fast_it_turns() {
 fn dice_come_to_rest_on_the_ground() {
     let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let mut random = Random::new(3);
-    for (method, substeps) in [(Method::Symplectic, 20), (Method::Verlet, 30), (Method::Rk4, 20), (Method::Implicit, 40)] {
+    for (method, substeps) in
+        [(Method::Symplectic, 20), (Method::Verlet, 30), (Method::Rk4, 20), (Method::Implicit, 40)]
+    {
         let (mut start, mut dice) = (Vec::new(), Vec::new());
         for i in 0..3u32 {
-            let part = Particle { radius: 0.05, mass: 0.02, elasticity: 0.3, ..Particle::REST };
+            let part = Particle { radius: 0.05, mass: 0.02, elasticity: 0.3, material: Some(0), ..Particle::REST };
             let place = Vec3::new(0.6 * i as f32, 0.7, 0.0);
             let velocity = Vec3::new(0.5, -1.0, 0.3);
             start.extend(corners(place, Vec3::splat(0.07), random.direction() * 9.0, velocity, part));
@@ -365,7 +396,8 @@ fn dice_come_to_rest_on_the_ground() {
         }
         let constraints = (dice.as_slice(), Contacts::HARD);
         let integrator = method.integrator();
-        let parts = Scene { start: &start, forces: &forces, colliders: &ground, ..Scene::EMPTY };
+        let materials = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
+        let parts = Scene { start: &start, forces: &forces, colliders: &ground, materials: &materials, ..Scene::EMPTY };
         let scene = Scene { constraints: &constraints, substeps, integrator, ..parts };
         let mut system = started(&scene, start.len(), 0);
         for frame in 1..=480 {
@@ -376,8 +408,9 @@ fn dice_come_to_rest_on_the_ground() {
             }
             for die in 0..3 {
                 let rows = 8 * die..8 * die + 8;
+                // Who hits the ground hands the blow on within some eight sub-steps.
                 let bent = bent(&start[rows.clone()], &there.position[rows]);
-                assert!(bent < 0.06, "{method}, frame {frame}: {bent}");
+                assert!(bent < 0.15, "{method}, frame {frame}: {bent}");
             }
         }
         let fastest = system.particles().velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
@@ -394,10 +427,14 @@ fn dice_come_to_rest_on_the_ground() {
 fn files_name_clusters_and_say_what_is_wrong_with_them() {
     let file = |cluster: &str| {
         let particles = r#"[{"position": [0, 0, 0]}, {"position": [1, 0, 0]}, {"position": [2, 0, 0]}]"#;
-        SceneFile::from_json("it", &format!(r#"{{"particles": {particles}, "constraints": [{{"cluster": {cluster}}}]}}"#))
-            .and_then(|scene| scene.check().map(|()| scene))
+        SceneFile::from_json(
+            "it",
+            &format!(r#"{{"particles": {particles}, "constraints": [{{"cluster": {cluster}}}]}}"#),
+        )
+        .and_then(|scene| scene.check().map(|()| scene))
     };
-    let sound = file(r#"{"particles": [0, 1, 2], "compliance": 1e-4, "damping": 2}"#).unwrap_or_else(|error| panic!("{error}"));
+    let sound =
+        file(r#"{"particles": [0, 1, 2], "compliance": 1e-4, "damping": 2}"#).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(SceneFile::from_json("again", &sound.to_json()), Ok(sound));
     for (cluster, what) in [
         (r#"{"particles": [0]}"#, "constraints[0].particles"),

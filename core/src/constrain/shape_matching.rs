@@ -480,7 +480,8 @@ fn solve(b: Mat3, change: Vec3) -> Vec3 {
     let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
     let columns = if determinant(plain) > THIN { plain } else { ridged };
     let [x, y, z] = columns;
-    let answer = Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
+    let answer =
+        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
 
