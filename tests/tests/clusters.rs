@@ -286,8 +286,8 @@ fn a_soft_cluster_gives_way_by_its_compliance() {
         let scene = Scene { start: &start, forces: &forces, constraints: &body, substeps, ..Scene::EMPTY };
         let mut system = started(&scene, 8, 0);
         run(&mut system, &scene, 1.0 / 60.0, 1500);
-        for i in 4..8 {
-            let fallen = f64::from(start[i].position.y - system.particles().position[i].y);
+        for (p, x) in start.iter().zip(system.particles().position).filter(|(p, _)| !p.fixed) {
+            let fallen = f64::from(p.position.y - x.y);
             assert!((fallen / longer(compliance) - 1.0).abs() < 0.01, "{compliance} in {substeps}: {fallen}");
         }
     }

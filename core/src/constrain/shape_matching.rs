@@ -21,6 +21,9 @@ use glam::{Mat3, Vec3};
 /// of m / (M α). A damping β takes from their speeds against the rigid motion what a force β times that speed does, shared likewise.
 /// Both hold whatever the sub-steps, as the step that takes them is implicit (Macklin, Müller and Chentanez, "XPBD", MIG 2016).
 ///
+/// What holds single particles back (contacts, links) is listed behind it: velocities are shared among all at the sub-step's end, and places
+/// in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
+///
 /// Whoever is fixed stays: about one that is fixed the others swing, about two they turn, and three hold all of them. Whoever has died is
 /// left out. Lines and planes of particles are bodies as good as any; one particle alone, or all in one place, are not bound.
 ///
