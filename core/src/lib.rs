@@ -59,7 +59,7 @@ pub use cloth::{ClothSprings, Sheet, SpringParams};
 pub use collide::{Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
-pub use constrain::{Attach, Constraint, Contacts, Distance};
+pub use constrain::{Attach, Constraint, Contacts, Distance, Rope, ShapeMatching};
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
 pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};

@@ -4,6 +4,7 @@ mod adaptive;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;
 mod births;
+mod clusters;
 mod collisions;
 mod constraints;
 #[path = "contacts/main.rs"]
@@ -26,6 +27,7 @@ mod looks;
 #[path = "rays/main.rs"]
 mod rays;
 mod reapers;
+mod ropes;
 mod rounding;
 mod sampling;
 mod scripted;

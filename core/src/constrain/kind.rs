@@ -1,6 +1,6 @@
 //! The constraints that a scene file names.
 
-use super::{Attach, Bodies, Constraint, Demand, Distance, Share};
+use super::{Attach, Bodies, Constraint, Demand, Distance, Rope, ShapeMatching, Share};
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
 
@@ -11,6 +11,10 @@ use alloc::vec::Vec;
 pub enum ConstraintKind {
     /// Two particles at a distance.
     Distance(Distance),
+    /// A chain of links.
+    Rope(Rope<Vec<u32>, Vec<f32>>),
+    /// A cluster that keeps its shape.
+    Cluster(ShapeMatching<Vec<u32>>),
     /// Particles that go where a script says.
     Attach(Attach<Vec<u32>, MotionBuf>),
 }
@@ -20,6 +24,8 @@ impl ConstraintKind {
     fn get(&self) -> &dyn Constraint {
         match self {
             Self::Distance(distance) => distance,
+            Self::Rope(rope) => rope,
+            Self::Cluster(cluster) => cluster,
             Self::Attach(attach) => attach,
         }
     }
@@ -29,6 +35,8 @@ impl ConstraintKind {
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::Distance(distance) => distance.fault(),
+            Self::Rope(rope) => rope.fault().or_else(|| twice(&rope.particles)),
+            Self::Cluster(cluster) => cluster.fault().or_else(|| twice(&cluster.particles)),
             Self::Attach(attach) => attach.motion.fault().map(|why| ("motion", why)),
         }
     }
@@ -38,9 +46,19 @@ impl ConstraintKind {
     pub fn ends(&self) -> &[u32] {
         match self {
             Self::Distance(distance) => &distance.ends,
+            Self::Rope(rope) => &rope.particles,
+            Self::Cluster(cluster) => &cluster.particles,
             Self::Attach(attach) => &attach.particles,
         }
     }
+}
+
+/// What is wrong with a list that names a particle twice.
+fn twice(particles: &[u32]) -> Option<(&'static str, &'static str)> {
+    let mut sorted = particles.to_vec();
+    sorted.sort_unstable();
+    let twice = sorted.windows(2).any(|pair| pair[0] == pair[1]);
+    twice.then_some(("particles", "must not name a particle twice"))
 }
 
 impl Constraint for ConstraintKind {

@@ -11,6 +11,8 @@ mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
+mod rope;
+mod shape_matching;
 
 pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
@@ -19,6 +21,8 @@ pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
+pub use rope::Rope;
+pub use shape_matching::ShapeMatching;
 
 pub use crate::memory::{Demand, Kept, Words};
 

@@ -1,0 +1,492 @@
+//! Clusters that keep their shape: rigid bodies and jellies of particles.
+
+use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::math::{dot, max, sqrt};
+use glam::{Mat3, Vec3};
+
+/// Keeps a cluster of particles in the shape that it had when the constraint first acted, moved and turned as a whole: a rigid body,
+/// or with a compliance a soft one.
+///
+/// Every particle goes to its goal, its place in the shape turned by R about the common centre (Müller, Heidelberger, Teschner and Gross,
+/// "Meshless Deformations Based on Shape Matching", SIGGRAPH 2005). R is the rotation that keeps the angular momentum: Σ m y × (R q − x)
+/// = 0, where x is where the method has moved a particle, q its place in the shape, both from the centre, and y = x − v h where its path of
+/// this sub-step comes from. Solved by Newton's method from the last rotation on, this is the equation of Moser and Veselov for a rigid body
+/// (McLachlan and Zanna, "The Discrete Moser-Veselov Algorithm for the Free Rigid Body, Revisited", Found. Comput. Math. 5, 2005): what flies
+/// freely follows Euler's equations, with an error that falls with the square of the sub-step. Where it has no solution, since the cluster
+/// turns by more than a radian or is far out of shape, R is that which comes nearest (Müller, Bender, Chentanez and Macklin, "A
+/// Robust Method to Extract the Rotational Part of Deformations", MIG 2016). At the sub-step's end velocities become those of the
+/// rigid motion with the same momenta, v + ω × r with ω = I⁻¹ L. Linear and angular momentum are kept to rounding either way.
+///
+/// With a compliance α the whole of the cluster gives way by α times a force: particles share it as they share the mass, each held by a spring
+/// of m / (M α). A damping β takes from their speeds against the rigid motion what a force β times that speed does, shared likewise.
+/// Both hold whatever the sub-steps, as the step that takes them is implicit (Macklin, Müller and Chentanez, "XPBD", MIG 2016).
+///
+/// What holds single particles back (contacts, links) is listed behind it: velocities are shared among all at the sub-step's end, and places
+/// in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
+///
+/// Whoever is fixed stays: about one that is fixed the others swing, about two they turn, and three hold all of them. Whoever has died is
+/// left out. Lines and planes of particles are bodies as good as any; one particle alone, or all in one place, are not bound.
+///
+/// ```
+/// use pointmass::constrain::ShapeMatching;
+/// use pointmass::{Heap, Particle, Scene, System, Time, Vec3};
+///
+/// // Four corners that spin about z once in 2π seconds.
+/// let corner = |position: Vec3| Particle { position, velocity: Vec3::Z.cross(position), ..Particle::REST };
+/// let start = [corner(Vec3::X), corner(Vec3::Y), corner(Vec3::NEG_X), corner(Vec3::NEG_Y)];
+/// let body = ShapeMatching::rigid([0, 1, 2, 3]);
+/// let scene = Scene { start: &start, constraints: &body, substeps: 20, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// for frame in 1..=60 {
+///     system.step_to(&scene, Time::frame(frame, 60));
+/// }
+/// let x = system.particles().position;
+/// assert!(x[0].distance(Vec3::new(1f32.cos(), 1f32.sin(), 0.0)) < 1e-4);
+/// assert!(x[0].distance(-x[2]) < 1e-5);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ShapeMatching<P> {
+    /// The particles, by their place in the scene's start.
+    pub particles: P,
+    /// α: how far the whole of it gives way to a force \[m/N\]; zero is rigid.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub compliance: f32,
+    /// β: the force of the whole of it against being deformed, for the speed of that \[N s/m\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub damping: f32,
+}
+
+/// Words kept before the places in the shape: whether they are known, and the rotation.
+const HEAD: usize = 5;
+/// Rounds of Newton's method, and of the search for the nearest rotation, at the most.
+const ROUNDS: [u32; 2] = [8, 40];
+/// An angle \[rad\] that is rounding.
+const ROUNDING: f32 = 5e-7;
+
+impl<P> ShapeMatching<P> {
+    /// A rigid body.
+    #[must_use]
+    pub const fn rigid(particles: P) -> Self {
+        Self { particles, compliance: 0.0, damping: 0.0 }
+    }
+}
+
+impl<P: AsRef<[u32]>> ShapeMatching<P> {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        let faults = [
+            (self.particles.as_ref().len() < 2, "particles", "has to name two particles or more"),
+            (!not_negative(self.compliance), "compliance", "must not be below zero, in m/N"),
+            (!not_negative(self.damping), "damping", "must not be below zero, in N s/m"),
+        ];
+        faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))
+    }
+
+    /// Takes the places of all as they are at the first sub-step's beginning.
+    fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
+        let Some((head, places)) = kept.split_at_mut_checked(HEAD) else { return };
+        if head[0] != 0 {
+            return;
+        }
+        head[0] = 1;
+        head[1..].copy_from_slice(&Turn::NONE.0.map(f32::to_bits));
+        let mut first = None;
+        for (&number, place) in self.particles.as_ref().iter().zip(places.chunks_exact_mut(3)) {
+            if let Some(row) = bodies.row_of_start(number) {
+                let x = bodies.position[row];
+                place.copy_from_slice(&(x - *first.get_or_insert(x)).to_array().map(f32::to_bits));
+            }
+        }
+    }
+
+    /// Visits all that live.
+    fn each(&self, bodies: &mut Bodies<'_>, kept: &[u32], visit: &mut dyn FnMut(&mut Bodies<'_>, Member)) {
+        let places = kept.get(HEAD..).unwrap_or_default().chunks_exact(3);
+        for (&number, place) in self.particles.as_ref().iter().zip(places) {
+            if let Some(row) = bodies.row_of_start(number) {
+                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
+                let fixed = !(bodies.inverse_mass[row] > 0.0);
+                visit(bodies, Member { row, place: Vec3::new(x, y, z), fixed });
+            }
+        }
+    }
+
+    /// Where it is as a whole, and how fast; none if there is nothing to move or to keep.
+    fn body(&self, bodies: &mut Bodies<'_>, kept: &[u32]) -> Option<Body> {
+        let (mut mass, mut fixed, mut first) = (0.0, 0u32, None);
+        self.each(bodies, kept, &mut |bodies, member| {
+            first.get_or_insert((bodies.position[member.row], bodies.velocity[member.row]));
+            match member.fixed {
+                true => fixed += 1,
+                false => mass += bodies.mass[member.row],
+            }
+        });
+        let (origin, drift) = first?;
+        if !(mass > 0.0 && mass < f32::INFINITY) {
+            return None;
+        }
+        let mut body = Body { origin, mass, fixed, hold: Hold::Free, center: Vec3::ZERO, rest: Vec3::ZERO, drift };
+        // Means of what is left of the last ones: shares of the mass that rounding keeps from adding up to one would brake, ever so slightly.
+        for _ in 0..2 {
+            let (mut center, mut rest, mut drift) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+            self.each(bodies, kept, &mut |bodies, member| {
+                let weight = match (fixed, member.fixed) {
+                    (0, _) => bodies.mass[member.row] / mass,
+                    (_, true) => 1.0 / fixed as f32,
+                    (_, false) => return,
+                };
+                center += body.place(bodies, member.row) * weight;
+                rest += (member.place - body.rest) * weight;
+                drift += (bodies.velocity[member.row] - body.drift) * weight;
+            });
+            body.center += center;
+            body.rest += rest;
+            body.drift += drift;
+        }
+        Some(body)
+    }
+
+    /// What those that are fixed leave of its freedom to turn; there are two of them at least. The last rotation is brought to agree.
+    fn hold(&self, bodies: &mut Bodies<'_>, kept: &[u32], body: &Body, last: &mut Turn) -> Hold {
+        let (mut arm, mut far) = (None, 0.0);
+        self.each(bodies, kept, &mut |_, member| {
+            let place = member.place - body.rest;
+            let square = dot(place, place);
+            if member.fixed && square > far {
+                (arm, far) = (Some((member.row, place)), square);
+            }
+        });
+        let Some((row, place)) = arm else { return Hold::Free };
+        let (mut wide, mut to, mut spread, mut spin) = (0.0, Mat3::ZERO, Mat3::ZERO, Vec3::ZERO);
+        self.each(bodies, kept, &mut |bodies, member| {
+            if member.fixed {
+                let (q, r) = (member.place - body.rest, body.place(bodies, member.row));
+                let aside = q.cross(place);
+                wide = max(wide, dot(aside, aside));
+                to += outer(r, q);
+                spread += outer(r, r);
+                spin += r.cross(bodies.velocity[member.row] - body.drift);
+            }
+        });
+        if wide > 1e-6 * far * far {
+            *last = nearest(*last, to, None);
+            return Hold::Fast { omega: solve(spread, spin) };
+        }
+        let (r, v) = (body.place(bodies, row), bodies.velocity[row] - body.drift);
+        let square = dot(r, r);
+        if !(square > 0.0) {
+            return Hold::Free;
+        }
+        *last = last.bring(place, r);
+        Hold::About { axis: r / sqrt(square), omega: r.cross(v) / square }
+    }
+
+    /// Its angular momentum about its centre over its mass, and the sum of r rᵀ likewise.
+    fn spin(&self, bodies: &mut Bodies<'_>, kept: &[u32], body: &Body) -> (Vec3, Mat3) {
+        let (mut spin, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+        self.each(bodies, kept, &mut |bodies, member| {
+            let (r, v) = (body.place(bodies, member.row), bodies.velocity[member.row] - body.drift);
+            let weight = body.weight(bodies, &member);
+            spin += r.cross(v) * weight;
+            spread += outer(r * weight, r);
+        });
+        (spin, spread)
+    }
+
+    /// The rotation that keeps the angular momentum, or else the nearest one.
+    fn turn(&self, bodies: &mut Bodies<'_>, kept: &[u32], body: &Body, last: Turn) -> Turn {
+        let h = bodies.substep.seconds();
+        // Σ m y qᵀ, Σ m x qᵀ and Σ m y × x.
+        let (mut from, mut to, mut torque) = (Mat3::ZERO, Mat3::ZERO, Vec3::ZERO);
+        self.each(bodies, kept, &mut |bodies, member| {
+            let x = body.place(bodies, member.row);
+            let y = x - (bodies.velocity[member.row] - body.drift) * h;
+            let weight = body.weight(bodies, &member);
+            let q = (member.place - body.rest) * weight;
+            from += outer(y, q);
+            to += outer(x, q);
+            torque += y.cross(x) * weight;
+        });
+        let axis = match body.hold {
+            Hold::Free => None,
+            Hold::About { axis, .. } => Some(axis),
+            Hold::Fast { .. } => return last,
+        };
+        keeping(last, from, torque, axis).unwrap_or_else(|| nearest(last, to, axis))
+    }
+}
+
+impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
+    fn demand(&self) -> Demand {
+        let places = self.particles.as_ref().len().saturating_mul(3);
+        Demand { kept: Words { per_row: 0, fixed: places.saturating_add(HEAD) }, ..Demand::NONE }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.particles.as_ref().len() < 2
+    }
+
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.learn(bodies, share.kept.fixed);
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let (h, kept) = (bodies.substep.seconds(), &mut *share.kept.fixed);
+        let Some(mut body) = self.body(bodies, kept) else { return };
+        if !(h > 0.0) {
+            return;
+        }
+        let (spin, _) = self.spin(bodies, kept, &body);
+        let mut last = Turn::kept(kept);
+        if body.fixed > 1 {
+            body.hold = self.hold(bodies, kept, &body, &mut last);
+        }
+        let turn = self.turn(bodies, kept, &body, last);
+        kept[1..HEAD].copy_from_slice(&turn.0.map(f32::to_bits));
+        let (rotation, give) = (turn.matrix(), 1.0 / (1.0 + self.compliance * body.mass / (h * h)));
+        self.each(bodies, kept, &mut |bodies, member| {
+            let goal = body.center + rotation * (member.place - body.rest);
+            let by = (goal - (bodies.position[member.row] - body.origin)) * give;
+            if !member.fixed && by.is_finite() {
+                bodies.shift(member.row, by);
+            }
+        });
+        // What rounding has changed of the momenta, or turning too far, is given back.
+        let Some(now) = self.body(bodies, kept) else { return };
+        let (left, spread) = self.spin(bodies, kept, &now);
+        let omega = match body.hold {
+            Hold::Free => solve(spread, spin - left),
+            Hold::About { axis, .. } => axis * about(axis, spread, spin - left),
+            Hold::Fast { .. } => Vec3::ZERO,
+        };
+        let drift = body.drift - now.drift;
+        self.each(bodies, kept, &mut |bodies, member| {
+            let by = drift + omega.cross(now.place(bodies, member.row));
+            if !member.fixed && by.is_finite() {
+                bodies.velocity[member.row] += by;
+            }
+        });
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let kept = &*share.kept.fixed;
+        let Some(body) = self.body(bodies, kept) else { return };
+        let brake = self.damping * bodies.substep.seconds() / body.mass;
+        let taken = if self.compliance > 0.0 { brake / (1.0 + brake) } else { 1.0 };
+        if !(taken > 0.0) {
+            return;
+        }
+        let (spin, spread) = self.spin(bodies, kept, &body);
+        let hold = match body.fixed {
+            0 | 1 => Hold::Free,
+            _ => self.hold(bodies, kept, &body, &mut Turn::kept(kept)),
+        };
+        let omega = match hold {
+            Hold::Free => solve(spread, spin),
+            Hold::About { axis, omega } => omega + axis * about(axis, spread, spin - moment(spread, omega)),
+            Hold::Fast { omega } => omega,
+        };
+        self.each(bodies, kept, &mut |bodies, member| {
+            let rigid = body.drift + omega.cross(body.place(bodies, member.row));
+            let by = (rigid - bodies.velocity[member.row]) * taken;
+            if !member.fixed && by.is_finite() {
+                bodies.velocity[member.row] += by;
+            }
+        });
+    }
+}
+
+/// A particle of a cluster.
+struct Member {
+    row: usize,
+    /// Its place in the shape.
+    place: Vec3,
+    fixed: bool,
+}
+
+/// How a cluster is held by those that are fixed.
+#[derive(Clone, Copy)]
+enum Hold {
+    /// It can turn about its centre.
+    Free,
+    /// It can turn about an axis, which itself turns so fast \[rad/s\].
+    About { axis: Vec3, omega: Vec3 },
+    /// It turns with those that are fixed \[rad/s\].
+    Fast { omega: Vec3 },
+}
+
+/// A cluster as a whole.
+struct Body {
+    /// The place of its first particle, from which all others are told: far from the world's origin differences are exact.
+    origin: Vec3,
+    /// The mass of all that move \[kg\], the number of those that are fixed, and how these hold it.
+    mass: f32,
+    fixed: u32,
+    hold: Hold,
+    /// The centre: of mass, or of those that are fixed; its place in the shape, and its velocity.
+    center: Vec3,
+    rest: Vec3,
+    drift: Vec3,
+}
+
+impl Body {
+    /// Where a particle is, from the centre.
+    fn place(&self, bodies: &Bodies<'_>, row: usize) -> Vec3 {
+        bodies.position[row] - self.origin - self.center
+    }
+
+    /// What it weighs in rotations, a share of the mass.
+    fn weight(&self, bodies: &Bodies<'_>, member: &Member) -> f32 {
+        if member.fixed { 0.0 } else { bodies.mass[member.row] / self.mass }
+    }
+}
+
+/// A rotation: a unit quaternion x, y, z, w.
+#[derive(Clone, Copy)]
+struct Turn([f32; 4]);
+
+impl Turn {
+    const NONE: Self = Self([0.0, 0.0, 0.0, 1.0]);
+
+    /// The one that is kept.
+    fn kept(kept: &[u32]) -> Self {
+        Self([1, 2, 3, 4].map(|word| f32::from_bits(kept[word])))
+    }
+
+    /// Turned on the shortest way so that a place in the shape gets into a direction.
+    fn bring(self, place: Vec3, to: Vec3) -> Self {
+        let from = self.matrix() * place;
+        let lengths = sqrt(dot(from, from)) * sqrt(dot(to, to));
+        // The tangent of half the angle, along the axis.
+        let half = from.cross(to) / (lengths + dot(from, to));
+        if half.is_finite() { self.on(half * 2.0) } else { self }
+    }
+
+    /// Turned on by about an angle \[rad\] about a direction: by 2 atan(|angle| / 2), for which no sine is needed (Cayley).
+    fn on(self, angle: Vec3) -> Self {
+        let ([x, y, z, w], half) = (self.0, angle * 0.5);
+        let v = Vec3::new(x, y, z);
+        let turned = half * w + v + half.cross(v);
+        let real = w - dot(half, v);
+        let norm = 1.0 / sqrt(dot(turned, turned) + real * real);
+        if norm > 0.0 && norm < f32::INFINITY {
+            Self([turned.x * norm, turned.y * norm, turned.z * norm, real * norm])
+        } else {
+            self
+        }
+    }
+
+    fn matrix(self) -> Mat3 {
+        let [x, y, z, w] = self.0;
+        Mat3::from_cols(
+            Vec3::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
+            Vec3::new(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
+            Vec3::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
+        )
+    }
+}
+
+/// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
+fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
+    let (mut turn, mut before) = (last, f32::INFINITY);
+    for _ in 0..ROUNDS[0] {
+        // Σ m y (R q)ᵀ, and of it what is antisymmetric: Σ m y × R q.
+        let sum = from * turn.matrix().transpose();
+        let [x, y, z] = [sum.x_axis, sum.y_axis, sum.z_axis];
+        if !(x.x + y.y + z.z >= 0.0) {
+            return None;
+        }
+        let has = Vec3::new(z.y - y.z, x.z - z.x, y.x - x.y);
+        let (sum, lack) = (sum.transpose(), torque - has);
+        let angle = axis.map_or_else(|| solve(sum, lack), |axis| axis * about(axis, sum, lack));
+        let size = dot(angle, angle);
+        if !(size < before && size < 4.0) {
+            // Rounding goes to and fro.
+            return (before < 1e-8).then_some(turn);
+        }
+        (turn, before) = (turn.on(angle), size);
+        if size < ROUNDING * ROUNDING {
+            return Some(turn);
+        }
+    }
+    (before < 1e-8).then_some(turn)
+}
+
+/// The rotation nearest to Σ m x qᵀ, found from the last one on: one column pulls another round by r × a / |Σ r · a|.
+fn nearest(last: Turn, to: Mat3, axis: Option<Vec3>) -> Turn {
+    let mut turn = last;
+    for _ in 0..ROUNDS[1] {
+        let rotation = turn.matrix();
+        let (mut pull, mut along) = (Vec3::ZERO, 0.0);
+        for (r, a) in [(rotation.x_axis, to.x_axis), (rotation.y_axis, to.y_axis), (rotation.z_axis, to.z_axis)] {
+            pull += r.cross(a);
+            along += dot(r, a);
+        }
+        let pull = axis.map_or(pull, |axis| axis * dot(axis, pull));
+        let angle = pull / along.abs();
+        let size = dot(angle, angle);
+        if !(size < f32::INFINITY) {
+            break;
+        }
+        turn = turn.on(angle);
+        if size < ROUNDING * ROUNDING {
+            break;
+        }
+    }
+    turn
+}
+
+/// a bᵀ.
+fn outer(a: Vec3, b: Vec3) -> Mat3 {
+    Mat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+/// (tr(B) − B) x: the moment that turning by x, or so fast, is.
+fn moment(b: Mat3, x: Vec3) -> Vec3 {
+    system(b) * x
+}
+
+/// tr(B) − B, without what would cancel.
+fn system(b: Mat3) -> Mat3 {
+    let [x, y, z] = [b.x_axis, b.y_axis, b.z_axis];
+    Mat3::from_cols(
+        Vec3::new(y.y + z.z, -x.y, -x.z),
+        Vec3::new(-y.x, x.x + z.z, -y.z),
+        Vec3::new(-z.x, -z.y, x.x + y.y),
+    )
+}
+
+/// How far to turn, or how fast, about an axis for a change of the moment.
+fn about(axis: Vec3, b: Mat3, change: Vec3) -> f32 {
+    let by = dot(axis, change) / dot(axis, moment(b, axis));
+    if by.is_finite() { by } else { 0.0 }
+}
+
+/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by Cramer's rule. About an axis on which all
+/// lies there is no moment, and it does not turn.
+fn solve(b: Mat3, change: Vec3) -> Vec3 {
+    let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
+    if !(trace > 0.0 && trace < f32::INFINITY) {
+        return Vec3::ZERO;
+    }
+    // In units of the trace nothing underflows, however small the cluster.
+    let change = change / trace;
+    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
+    let plain = [x / trace, y / trace, z / trace];
+    let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
+    let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
+    let columns = if determinant(plain) > THIN { plain } else { ridged };
+    let [x, y, z] = columns;
+    let answer =
+        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
+    if answer.is_finite() { answer } else { Vec3::ZERO }
+}
+
+/// The share of a cluster's largest moment of inertia below which the least is rounding.
+const THIN: f32 = 1e-6;
