@@ -34,7 +34,7 @@ pub struct Piece {
     /// Whether the shape stands in for something endless, such as the ground. An endless piece
     /// melts into the background towards its horizon, and casts no shadow.
     pub endless: bool,
-    /// How far toward the eye it is drawn [m], so that what lies on another surface shows whole.
+    /// How far toward the eye it is drawn \[m\], so that what lies on another surface shows whole.
     pub lift: f32,
 }
 

@@ -176,7 +176,7 @@ fn hash_lines(list: impl FnOnce(&mut [Line]) -> (usize, usize), hash: &mut Fnv) 
     let (count, left_out) = list(&mut drawn);
     hash.long(left_out as u64);
     for Line { ends, widths, colors } in &drawn[..count] {
-        ends.iter().flat_map(|end| end.to_array()).chain(*widths).for_each(|x| hash.float(x));
+        ends.iter().flat_map(Vec3::to_array).chain(*widths).for_each(|x| hash.float(x));
         hash.bytes(colors.as_flattened());
     }
 }
