@@ -6,11 +6,12 @@ use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::draw::{
-    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, solid, springs, sprite, surface,
+    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, links, solid, springs, sprite,
+    surface,
 };
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
-use pointmass::{Color, Heap, System};
+use pointmass::{Color, ConstraintKind, Heap, System};
 use std::collections::HashMap;
 
 /// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
@@ -18,6 +19,9 @@ const DOT: f32 = 0.009;
 
 /// The places that are remembered of each trail.
 const KNOTS: usize = 48;
+
+/// The colour of the links of constraints.
+const LINK: Color = [170, 170, 180, 255];
 
 /// The strain at which springs are all red, or blue, where they are drawn by it.
 const FULL_STRAIN: f32 = 0.1;
@@ -112,7 +116,7 @@ impl<'m> Cast<'m> {
         let (mut seen, scene) = (Seen::default(), model.scene());
         styled(&system.state(&scene), self.style, self.size, |state| {
             self.particles(state, system.particles().serial, file, &mut seen);
-            seen.segments = self.springs(state);
+            seen.segments = self.springs(state, model);
             if let Some(trails) = &self.trails {
                 seen.ribbons = vec![Line::NONE; state.position.len() * (KNOTS + 1)];
                 let (count, _) = trails.lines(state, &mut seen.ribbons);
@@ -169,8 +173,8 @@ impl<'m> Cast<'m> {
         (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })
     }
 
-    /// The springs as they are now, but for those of surfaces.
-    fn springs(&self, state: &State<'_>) -> Vec<Line> {
+    /// The springs as they are now, but for those of surfaces, and the links of constraints.
+    fn springs(&self, state: &State<'_>, model: &Model) -> Vec<Line> {
         if self.style.is_some_and(|style| style != Style::Lines) {
             return Vec::new();
         }
@@ -178,8 +182,14 @@ impl<'m> Cast<'m> {
         let mut lines = vec![Line::NONE; state.springs.springs.len()];
         let (count, _) = springs(state, full, &mut lines);
         let is_covered = |number: &u32| self.covered.get(*number as usize).is_some_and(|&covered| covered);
-        let held = state.springs.held().zip(lines.into_iter().take(count));
-        held.filter(|(held, _)| !held.spring.ends.iter().all(is_covered)).map(|(_, line)| line).collect()
+        let held = state.springs.held().zip(lines.iter().copied().take(count));
+        let mut drawn: Vec<_> =
+            held.filter(|(held, _)| !held.spring.ends.iter().all(is_covered)).map(|(_, line)| line).collect();
+        let pairs = || model.constraints.0.iter().flat_map(ConstraintKind::links);
+        lines = vec![Line::NONE; pairs().count()];
+        let (count, _) = links(state, pairs(), LINK, &mut lines);
+        drawn.extend_from_slice(&lines[..count]);
+        drawn
     }
 }
 

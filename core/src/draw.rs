@@ -10,7 +10,7 @@ mod sprite;
 mod surface;
 mod trail;
 
-pub use line::{Line, edges, springs, velocities};
+pub use line::{Line, edges, links, springs, velocities};
 pub use solid::{Instance, solid, solids};
 pub use sprite::{Sprite, View, back_to_front, sprite, sprites};
 pub use surface::{Patch, Vertex, surface};

@@ -173,3 +173,40 @@ test("views cover the capacity and outlive steps", () => {
   for (const other of others) other.free();
   world.free();
 });
+
+test("what there is to draw is in lists of numbers", () => {
+  const world = new World({
+    materials: [
+      { size: 0.2, sprite: { picture: "puff", blend: "additive" }, trail: { seconds: 0.5, width: 0.1 } },
+      { size: 2, shape: { form: { box: { min: [-1, -1, -1], max: [1, 1, 1] } } } },
+    ],
+    particles: [
+      { position: [0, 0, 0], velocity: [3, 0, 0], material: 0, color: [255, 0, 51, 255] },
+      { position: [0, 0, -4], velocity: [0, 1, 0], material: 0 },
+      { position: [0, 5, 0], material: 1 },
+      { position: [0, 7.2, 0] },
+    ],
+    springs: [{ ends: [2, 3], rest_length: 2, ks: 0, kd: 0 }],
+  });
+  for (let frame = 1; frame <= 60; frame++) world.stepTo(frame / 60);
+  const near = (a, b) => assert.ok(a.length === b.length && a.every((x, i) => Math.abs(x - b[i]) < 1e-5), `${a} ${b}`);
+  const sprites = world.sprites([3, 0, 9]);
+  assert.equal(sprites.length, 2 * 16);
+  near([...sprites.slice(0, 3)], [0, 1, -4]); // The farthest comes first.
+  near([...sprites.slice(16)], [3, 0, 0, 0.1, 0, 0, 0, 0.1, 0, 1, 0, 0.2, 1, 0, 0, 2]);
+  near([...world.shapes().slice(0, 12)], [0, 5, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]);
+  const spring = world.springs();
+  near([...spring.slice(0, 8)], [0, 5, 0, 0, 7.2, 0, 0, 0]);
+  assert.ok(spring[8] > 0.9 && spring[10] < 0.25, "longer by a tenth is red");
+  const trails = world.trails();
+  let way = 0;
+  for (let at = 0; at < trails.length; at += 16) way += Math.hypot(...[0, 1, 2].map((i) => trails[at + i] - trails[at + 3 + i]));
+  assert.ok(Math.abs(way - 0.5 * (3 + 1)) < 0.02, `${way} m`);
+  world.restart();
+  const begun = world.trails();
+  for (let at = 0; at < begun.length; at += 16) near([...begun.slice(at, at + 3)], [...begun.slice(at + 3, at + 6)]);
+  for (const eye of [undefined, null, 7, [], [1, 2], [1, 2, NaN], [1, 2, 3, 4], "abc", {}])
+    refuses(() => world.sprites(eye), /^eye has to be three finite numbers/);
+  refuses(() => world.sprites([0, 0, 9], [0, 1]), /^up has to be three finite numbers/);
+  world.free();
+});

@@ -1,10 +1,12 @@
 //! What there is to draw: trails, lines, shapes and surfaces as plain lists.
 
-use pointmass::draw::{Instance, Knot, Line, Patch, Ring, Trails, Vertex, solids, springs, surface, velocities};
+use pointmass::constrain::{Distance, Rope};
+use pointmass::draw::{Instance, Knot, Line, Patch, Ring, Trails, Vertex, links, solids, springs, surface, velocities};
 use pointmass::material::{Heading, TrailMaterial};
 use pointmass::shape::Sphere;
 use pointmass::{
-    ContactMaterial, Emitter, Gravity, Material, Method, Particle, Scene, Sheet, Spread, Spring, Time, Varied, Vec3,
+    ConstraintKind, ContactMaterial, Emitter, Gravity, Material, Method, Particle, Scene, Sheet, Spread, Spring, Time,
+    Varied, Vec3,
 };
 use pointmass_tests::started;
 use std::collections::HashMap;
@@ -152,6 +154,33 @@ fn springs_that_hold_are_drawn_in_the_colour_of_their_strain() {
     assert_eq!(springs(&system.state(&scene), 0.2, &mut lines[..1]), (1, 2));
     assert_eq!(velocities(&system.state(&scene), 2.0, &mut lines), (4, 0));
     assert!(lines.iter().all(|line| line.ends[0] == line.ends[1]), "nothing moves");
+}
+
+#[test]
+fn constraints_are_drawn_by_the_links_between_those_who_live() {
+    let start: Vec<_> = (0..6)
+        .map(|i| Particle { position: Vec3::X * i as f32, lifetime: if i == 2 { 0.1 } else { 9.0 }, ..Particle::REST })
+        .collect();
+    let rope = |closed| ConstraintKind::Rope(Rope { closed, ..Rope::rigid(vec![0, 1, 2, 3], vec![1.0]) });
+    let distance = ConstraintKind::Distance(Distance::rod([4, 5], 1.0));
+    for (list, pairs) in [
+        (vec![rope(false), distance.clone()], vec![[0, 1], [1, 2], [2, 3], [4, 5]]),
+        (vec![distance, rope(true)], vec![[4, 5], [0, 1], [1, 2], [2, 3], [3, 0]]),
+    ] {
+        let all = || list.iter().flat_map(ConstraintKind::links);
+        assert_eq!(all().collect::<Vec<_>>(), pairs);
+        let scene = Scene { start: &start, ..Scene::EMPTY };
+        let mut system = started(&scene, 6, 1);
+        let mut lines = [Line::NONE; 5];
+        assert_eq!(links(&system.state(&scene), all(), [9; 4], &mut lines), (pairs.len(), 0));
+        for (line, [a, b]) in lines.iter().zip(&pairs) {
+            assert_eq!(line.ends.map(|end| end.x as u32), [*a, *b]);
+        }
+        assert_eq!(links(&system.state(&scene), all(), [9; 4], &mut lines[..1]), (1, pairs.len() - 1));
+        system.step(&scene, Time::from_seconds(0.2));
+        let living = pairs.iter().filter(|pair| !pair.contains(&2)).count();
+        assert_eq!(links(&system.state(&scene), all(), [9; 4], &mut lines), (living, 0));
+    }
 }
 
 #[test]

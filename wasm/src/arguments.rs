@@ -2,7 +2,7 @@
 
 use crate::files::{Files, long};
 use js_sys::{BigInt, JSON, JsString};
-use pointmass::Time;
+use pointmass::{Time, Vec3};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
 
@@ -45,6 +45,19 @@ pub(crate) fn files(files: &JsValue) -> Result<Files, JsError> {
     }
     let copy = files.is_object().then(|| files.unchecked_ref::<JsFiles>().clone().ok()).flatten();
     copy.ok_or_else(|| JsError::new("files have to be Files of this package that have not been freed"))
+}
+
+/// A place or a direction: three numbers in an array of any kind.
+///
+/// # Errors
+/// If it is something else, or they are not finite.
+pub(crate) fn place(name: &str, value: &JsValue) -> Result<Vec3, JsError> {
+    let numbers = js_sys::try_iter(value).ok().flatten().map(|list| list.take(4).map(|n| n.ok()?.as_f64()));
+    let numbers: Option<Vec<f32>> = numbers.and_then(|list| list.map(|n| n.map(|n| n as f32)).collect());
+    let place = numbers.and_then(|list| <[f32; 3]>::try_from(list).ok()).map(Vec3::from_array);
+    place
+        .filter(|place| place.is_finite())
+        .ok_or_else(|| JsError::new(&format!("{name} has to be three finite numbers")))
 }
 
 /// The number of particles that may live at once, if it is said.

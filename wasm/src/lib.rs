@@ -13,16 +13,17 @@
 //! ```
 
 mod arguments;
+mod draw;
 mod files;
 mod memory;
 
 pub use files::Files;
 
-use arguments::{capacity, seconds, seed, text};
+use arguments::{capacity, place, seconds, seed, text};
 use js_sys::{Float32Array, JsString, Uint8Array, Uint32Array};
-use pointmass::draw::{Appearance, appearance};
+use pointmass::draw::{Appearance, Knot, Line, Ring, Trails, View, appearance};
 use pointmass::scene::{Model, SceneFile, read_scn};
-use pointmass::{Heap, Storage, System};
+use pointmass::{Heap, Storage, System, Vec3};
 use wasm_bindgen::prelude::*;
 
 /// The version of this package.
@@ -40,7 +41,13 @@ pub struct World {
     system: System<Heap>,
     seed: u64,
     warnings: Vec<String>,
+    /// The memory of trails, where some material leaves one.
+    rings: Vec<Ring>,
+    knots: Vec<Knot>,
 }
+
+/// The places that are remembered of each trail.
+const KNOTS: usize = 48;
 
 impl World {
     /// Something of how each of the living looks.
@@ -48,6 +55,15 @@ impl World {
         let scene = self.model.scene();
         let state = self.system.state(&scene);
         (0..self.system.len()).filter_map(|row| appearance(&state, row)).map(of).collect()
+    }
+
+    /// Lets trails remember where everybody is.
+    fn remember(&mut self) {
+        if self.rings.is_empty() {
+            return;
+        }
+        let scene = self.model.scene();
+        Trails::new(&mut self.rings, &mut self.knots, None).look(&self.system.state(&scene));
     }
 }
 
@@ -82,7 +98,12 @@ impl World {
         let heap = Heap::try_new(model.size(capacity as usize)).map_err(|_| {
             JsError::new(&format!("there is not enough memory for {capacity} particles: take a smaller capacity"))
         })?;
-        let mut world = Self { model, system: System::with(heap), seed: seed.unwrap_or(file.run.seed), warnings };
+        let has_trails = model.materials.iter().any(|material| material.trail.is_some());
+        let slots = if has_trails { capacity as usize } else { 0 };
+        memory::room(slots.saturating_mul(size_of::<[Knot; KNOTS]>() + size_of::<Ring>()), "the trails of the scene")?;
+        let (rings, knots) = (vec![Ring::NONE; slots], vec![Knot::NONE; slots * KNOTS]);
+        let seed = seed.unwrap_or(file.run.seed);
+        let mut world = Self { model, system: System::with(heap), seed, warnings, rings, knots };
         world.restart()?;
         Ok(world)
     }
@@ -92,7 +113,10 @@ impl World {
     /// # Errors
     /// None that a loaded scene can meet.
     pub fn restart(&mut self) -> Result<(), JsError> {
-        Ok(self.system.start(&self.model.scene(), self.seed)?)
+        self.system.start(&self.model.scene(), self.seed)?;
+        self.rings.fill(Ring::NONE);
+        self.remember();
+        Ok(())
     }
 
     /// Moves the world on by `seconds`.
@@ -102,6 +126,7 @@ impl World {
     pub fn step(&mut self, seconds: f64) -> Result<(), JsError> {
         let dt = self::seconds("step", seconds)?;
         self.system.step(&self.model.scene(), dt);
+        self.remember();
         Ok(())
     }
 
@@ -113,6 +138,7 @@ impl World {
     pub fn step_to(&mut self, seconds: f64) -> Result<(), JsError> {
         let dt = self::seconds("stepTo", seconds)? - self.system.time();
         self.system.step(&self.model.scene(), dt);
+        self.remember();
         Ok(())
     }
 
@@ -187,6 +213,48 @@ impl World {
     pub fn looks(&self) -> Float32Array {
         let looks: Vec<_> = self.appearances(|look| [look.diameter, look.scale, look.glow, look.rotation]);
         Float32Array::from(looks.as_flattened())
+    }
+
+    /// The pictures of the living whose material has a sprite, seen from `eye` with `up` upright (`[0, 1, 0]`, where nothing is said), the
+    /// farthest first, 16 numbers each: centre, the ways to the middles of the right side and of the top \[m\], red, green, blue, opacity from
+    /// 0 to 1, the material's number, the frame of its flipbook, and how it is laid on: 0 alpha, 1 premultiplied, 2 additive, 3 opaque. A copy.
+    ///
+    /// # Errors
+    /// If these are not three finite numbers each.
+    pub fn sprites(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "ArrayLike<number> | null")] up: &JsValue,
+    ) -> Result<Float32Array, JsError> {
+        let up = if up.is_undefined() || up.is_null() { Vec3::Y } else { place("up", up)? };
+        let (view, scene) = (View { eye: place("eye", eye)?, up }, self.model.scene());
+        Ok(draw::sprites_of(&self.system.state(&scene), &view))
+    }
+
+    /// The living whose material has a shape, 17 numbers each: where the shape's origin is, the images of its three axes \[m\], red, green,
+    /// blue, opacity from 0 to 1, the material's number. A copy.
+    #[must_use]
+    pub fn shapes(&self) -> Float32Array {
+        draw::shapes_of(&self.system.state(&self.model.scene()))
+    }
+
+    /// The springs that hold, as lines of 16 numbers each: both ends \[m\], the widths there \[m\], zero for about a pixel, and the colours there,
+    /// red, green, blue, opacity from 0 to 1: the redder the longer and the bluer the shorter than at rest, altogether at a strain of
+    /// `full`, which is 0.1 where nothing is said. A copy.
+    #[must_use]
+    pub fn springs(&self, full: Option<f32>) -> Float32Array {
+        draw::springs_of(&self.system.state(&self.model.scene()), full.unwrap_or(0.1))
+    }
+
+    /// The trails that particles have left since `restart`, from step to step, as lines like `springs`, each trail from its particle
+    /// backward. A copy.
+    #[must_use]
+    pub fn trails(&mut self) -> Float32Array {
+        let mut list = vec![Line::NONE; self.knots.len() + self.rings.len()];
+        let scene = self.model.scene();
+        let trails = Trails::new(&mut self.rings, &mut self.knots, None);
+        let (count, _) = trails.lines(&self.system.state(&scene), &mut list);
+        draw::lines(&list[..count])
     }
 
     /// Which of the living is in which row: numbers unique over the run, from 0. A copy.

@@ -41,6 +41,17 @@ impl ConstraintKind {
         }
     }
 
+    /// The pairs of particles that it joins by a straight link, to be drawn as a line each.
+    pub fn links(&self) -> impl Iterator<Item = [u32; 2]> {
+        let (list, closed) = match self {
+            Self::Distance(distance) => (&distance.ends[..], false),
+            Self::Rope(rope) => (&rope.particles[..], rope.closed),
+            Self::Cluster(_) | Self::Attach(_) => (&[][..], false),
+        };
+        let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
+        list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
+    }
+
     /// The particles of the scene's start that it binds.
     #[must_use]
     pub fn ends(&self) -> &[u32] {

@@ -62,6 +62,18 @@ pub fn springs(state: &State<'_>, full: f32, into: &mut [Line]) -> (usize, usize
     fill(state.springs.held().map(line), into)
 }
 
+/// Writes lines between pairs of particles, by their numbers in the scene's start, as far as both live and there is room: the links of
+/// constraints, say. Returns their number and how many were left out.
+pub fn links(
+    state: &State<'_>,
+    pairs: impl Iterator<Item = [u32; 2]>,
+    color: Color,
+    into: &mut [Line],
+) -> (usize, usize) {
+    let place = |number: u32| state.springs.row(number).map(|row| state.position[row]);
+    fill(pairs.filter_map(|[a, b]| Some(Line::plain([place(a)?, place(b)?], color))), into)
+}
+
 /// The colour of a share of the full strain, −1 to 1.
 fn strained(share: f32) -> Color {
     let share = clamp(share, -1.0, 1.0);

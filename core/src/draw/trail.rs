@@ -71,11 +71,11 @@ pub struct Trails<'m> {
 }
 
 impl<'m> Trails<'m> {
-    /// No trails yet, in memory of which each of as many slots as there are rings gets its share: at least three knots, better thirty.
-    /// Particles whose material says nothing of a trail leave the one for `others`, if there is any.
+    /// The trails that lie in memory, none where it is filled with [`Ring::NONE`] and [`Knot::NONE`]. Each of as many slots as there are rings
+    /// has its share of the knots: at least three, better thirty. Particles whose material says nothing of a trail leave the one for
+    /// `others`, if there is any.
     #[must_use]
-    pub fn new(rings: &'m mut [Ring], knots: &'m mut [Knot], others: Option<TrailMaterial>) -> Self {
-        rings.fill(Ring::NONE);
+    pub const fn new(rings: &'m mut [Ring], knots: &'m mut [Knot], others: Option<TrailMaterial>) -> Self {
         Self { rings, knots, others }
     }
 
