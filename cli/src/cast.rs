@@ -1,4 +1,4 @@
-//! What moves, as the renderer sees it: particles in the looks of their materials, or in a style of the lecture's.
+//! The moving things, as the renderer sees them: particles in the looks of their materials, or in a style of the lecture's.
 
 use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
 use crate::stage::{look, tessellate};

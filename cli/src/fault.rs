@@ -1,4 +1,4 @@
-//! What is wrong with a file of points or triangles.
+//! Faults of a file of points or triangles.
 
 use crate::outcome::Failure;
 

@@ -50,7 +50,7 @@ impl RecordFormat {
     }
 }
 
-/// What a line of `.jsonl` holds.
+/// The unit that a line of `.jsonl` holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Line {
     /// A particle in a record

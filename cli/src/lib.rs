@@ -83,7 +83,7 @@ enum Command {
     Schema,
 }
 
-/// What the command does: parses its arguments, does what they say, and turns the outcome into an exit code.
+/// Runs the command: parses its arguments, does what they say, and turns the outcome into an exit code.
 #[must_use]
 pub fn main(peers: compare::Peers) -> ExitCode {
     temporary::clean_up_when_interrupted();

@@ -20,7 +20,7 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
-    /// What becomes of a command that `.scn` does not have.
+    /// The answer to a command that `.scn` does not have.
     pub(crate) fn unknown(self) -> Unknown {
         if self.skip_unknown { Unknown::Skip } else { Unknown::Refuse }
     }
@@ -77,7 +77,7 @@ pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
     Ok(scene)
 }
 
-/// What a scene is called in messages.
+/// The name of a scene in messages.
 pub(crate) fn name(path: &Path) -> Cow<'_, str> {
     if is_standard(path) { "standard input".into() } else { path.to_string_lossy() }
 }

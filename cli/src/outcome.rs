@@ -1,11 +1,11 @@
-//! What a command comes to, and how it is said.
+//! The outcome of a command, and how it is said.
 
 use std::path::{Path, PathBuf};
 
-/// What a command comes to.
+/// The outcome of a command.
 pub type Outcome<T = ()> = Result<T, Failure>;
 
-/// What went wrong, as one line for a person.
+/// A fault, as one line for a person.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure(String);
 

@@ -31,7 +31,7 @@ pub(crate) fn step(text: &str) -> Result<f64, String> {
     if value >= 1e-9 { Ok(value) } else { Err("expected a step of at least 1e-9 s".into()) }
 }
 
-/// Those that a list names, or all, each once and in the order in which they are listed everywhere.
+/// The entries that a list names, or all, each once and in the order in which they are listed everywhere.
 pub(crate) fn chosen<T>(text: &str, all: &[T]) -> Result<Vec<T>, String>
 where
     T: Copy + PartialEq + FromStr<Err: Display>,
@@ -46,7 +46,7 @@ where
     Ok(all.iter().copied().filter(|one| chosen.contains(one)).collect())
 }
 
-/// What a list names, each once and in order; if it is empty, what is usual.
+/// The entries that a list names, each once and in order; if it is empty, what is usual.
 pub(crate) fn sorted<T: Clone + Ord>(list: &[T], usual: &[T]) -> Vec<T> {
     let mut sorted = if list.is_empty() { usual.to_vec() } else { list.to_vec() };
     sorted.sort_unstable();

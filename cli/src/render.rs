@@ -171,7 +171,7 @@ fn write(pictures: &[RgbImage], sink: &mut Sink) -> Outcome {
     pictures.iter().try_for_each(|picture| sink.push(picture)).map_err(Failure::new)
 }
 
-/// What moves at an instant, and from where it is seen.
+/// The moving things at an instant, and from where they are seen.
 struct Shot {
     instant: Time,
     camera: Camera,
@@ -185,7 +185,7 @@ struct Studio {
     pictures: Arc<[Flipbook]>,
     size: (u32, u32),
     show_sources: bool,
-    /// What stands still is brought before the lens but once, if that stands still as well.
+    /// The scenery, brought before the lens but once, if that stands still as well.
     still: Option<Renderer>,
     /// How many pictures are drawn side by side.
     batch: usize,

@@ -1,6 +1,6 @@
 //! Figures from samples: medians, spreads, growth, crossings.
 
-/// What samples come to.
+/// The statistics of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Summary {
     pub(crate) median: f64,
@@ -10,7 +10,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// Of samples in any order; zero of none.
+    /// The statistics of samples in any order; zero of none.
     pub(crate) fn of(samples: &[f64]) -> Self {
         let mut sorted = samples.to_vec();
         sorted.sort_by(f64::total_cmp);

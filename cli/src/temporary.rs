@@ -22,7 +22,7 @@ pub(crate) fn uninterrupted() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 pub(crate) struct Temporary(PathBuf);
 
 impl Temporary {
-    /// What `make` makes, and its path.
+    /// The value that `make` makes, and its path.
     pub(crate) fn new<T, E>(make: impl FnOnce() -> Result<(T, PathBuf), E>) -> Result<(T, Self), E> {
         let mut all = uninterrupted();
         let (made, path) = make()?;

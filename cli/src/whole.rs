@@ -43,12 +43,12 @@ impl WholeFile {
         Ok(Self { path: path.to_path_buf(), file: BufWriter::new(file), temporary, target })
     }
 
-    /// What the file will be called.
+    /// The name that the file will have.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What it is called until it is complete, for programs that write it.
+    /// The name that it has until it is complete, for programs that write it.
     pub(crate) fn passing(&self) -> &Path {
         self.temporary.path()
     }
@@ -88,7 +88,7 @@ pub(crate) struct Written {
     passing: PathBuf,
     /// Where it will be.
     target: PathBuf,
-    /// What it is called in messages.
+    /// The name that it has in messages.
     path: PathBuf,
     _kept: Vec<Temporary>,
 }

@@ -83,7 +83,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
 /// A scene made ready and the system it is done to.
 #[derive(Debug)]
 pub(crate) struct World {
-    /// What the file says.
+    /// The scene as the file says it.
     pub(crate) file: SceneFile,
     /// The scene.
     pub(crate) model: Model,

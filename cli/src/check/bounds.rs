@@ -44,7 +44,7 @@ impl Bounds {
         self.lasting_step(method).and(self.contact_step(method))
     }
 
-    /// That of springs, drag and goals, which act for long.
+    /// The bound of springs, drag and goals, which act for long.
     fn lasting_step(&self, method: Method) -> Limit {
         self.poses_step(method).and(self.drag_step(method)).and(self.goal_step(method))
     }

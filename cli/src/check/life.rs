@@ -12,7 +12,7 @@ pub(super) struct Ages {
 }
 
 impl Ages {
-    /// Those of particles that live so long.
+    /// The extremes of particles that live so long.
     pub(super) fn of(lifetime: Varied) -> Self {
         let longest = lifetime.mean + lifetime.half_width.abs();
         let is_endless = lifetime.mean - lifetime.half_width.abs() <= 0.0;

@@ -38,7 +38,7 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// That of a scene's start, in which drag acts. None if no spring holds what can move.
+    /// The spectrum of a scene's start, in which drag acts. None if no spring holds what can move.
     pub(crate) fn of(particles: &[Particle], springs: &[Spring]) -> Option<Self> {
         let net = Net::of(particles, springs);
         if net.bars.is_empty() {
@@ -80,7 +80,7 @@ impl Spectrum {
         }
     }
 
-    /// That of the whole step's matrix, unless it is too large.
+    /// The longest step by the whole step's matrix, unless that is too large.
     fn verlet_step(&self, method: Method) -> Limit {
         let estimate = self.net.critical_step(method).and(self.of_all(method));
         match estimate {

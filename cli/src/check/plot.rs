@@ -143,7 +143,7 @@ impl Scenery {
         Chart::of_lines("", "Stable below the line: hω against damping".into(), lines, axes)
     }
 
-    /// Those dots that can be seen, and words on the others.
+    /// The dots that can be seen, and words on the others.
     fn dots(&self, dots: &[Dot], is_seen: impl Fn((f64, f64)) -> bool) -> Vec<Line<'static>> {
         if self.modes.is_empty() {
             return vec![Line::new("no oscillations", 0, Vec::new())];

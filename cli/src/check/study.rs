@@ -86,7 +86,7 @@ pub(crate) struct Stand {
 }
 
 impl Study {
-    /// That of a scene, without advice, and the modes of its springs, at each of the extremes that lives come to.
+    /// The study of a scene, without advice, and the modes of its springs, at each of the extremes that lives come to.
     pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Vec<Spectrum>) {
         let (dt, bounds) = (run.dt, Bounds::of(model));
         let corners = extremes(&bounds.bodies[..model.particles.len()]);

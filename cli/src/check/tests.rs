@@ -76,7 +76,7 @@ fn holds(model: &Model, expected: How, methods: &[Method]) {
     }
 }
 
-/// Those that take steps as they come, and have a longest; and those of them that need no damping.
+/// The methods that take steps as they come, and have a longest; and those of them that need no damping.
 const ALL: [Method; 6] =
     [Method::Euler, Method::Symplectic, Method::Midpoint, Method::LectureMidpoint, Method::Verlet, Method::Rk4];
 const LASTING: [Method; 3] = [Method::Symplectic, Method::Verlet, Method::Rk4];

@@ -25,7 +25,7 @@ fn radius(m: DMatrix<f64>) -> Option<f64> {
     Some(eigenvalues(&m)?.iter().map(|value| value.norm()).fold(0.0, f64::max))
 }
 
-/// What a step does to (x, h v), for x'' = −K x − C x'.
+/// The matrix of a step of (x, h v), for x'' = −K x − C x'.
 fn step(k: &DMatrix<f64>, c: &DMatrix<f64>, h: f64) -> DMatrix<f64> {
     let n = k.nrows();
     let one = DMatrix::identity(n, n);

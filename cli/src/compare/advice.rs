@@ -1,4 +1,4 @@
-//! What to use, and why: sentences made of measured figures.
+//! Advice what to use, and why: sentences made of measured figures.
 
 use super::study::{Advice, Case, Contestant, Figure, Subject, line, series, workloads};
 use super::workload::Workload;

@@ -82,7 +82,7 @@ pub(crate) struct Compare {
 }
 
 impl Compare {
-    /// What the arguments are about.
+    /// The subject of the arguments.
     pub(crate) fn subject(&self) -> Outcome<Subject> {
         let of_points = [
             ("--points", self.points.is_some()),
@@ -119,7 +119,7 @@ impl Compare {
         }
     }
 
-    /// What is asked of points, each once.
+    /// The queries of points, each once.
     pub(crate) fn queries(&self) -> Vec<Workload> {
         sorted(&self.queries, &Workload::OF_POINTS)
     }

@@ -1,4 +1,4 @@
-//! Those who take part: our structures, and other libraries where the program has them.
+//! The contenders: our structures, and other libraries where the program has them.
 
 use super::workload::Workload;
 use crate::outcome::{Failure, Outcome};

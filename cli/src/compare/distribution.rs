@@ -30,12 +30,12 @@ const CLUSTERS: f32 = 32.0;
 const CENTERS: u32 = 1 << 16;
 
 impl Distribution {
-    /// What it is called.
+    /// Its name.
     pub(crate) fn name(self) -> &'static str {
         self.told()[0]
     }
 
-    /// What it is, for those who read a report.
+    /// Its description for those who read a report.
     pub(crate) fn describe(self) -> &'static str {
         self.told()[1]
     }

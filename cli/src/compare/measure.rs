@@ -20,12 +20,12 @@ const FEWEST: usize = 3;
 /// Fewer than this are gone through several times.
 const FEW: usize = 2000;
 
-/// What an entrant does in a case.
+/// The part of an entrant in a case.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Share {
-    /// What is asked of it; of those who do not take part, nothing.
+    /// The workloads that are asked of it; of those who do not take part, none.
     pub(crate) queries: Vec<Workload>,
-    /// What it does not do, and why.
+    /// The workloads that it does not do, and why.
     pub(crate) left_out: Option<String>,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Plan<'a> {
     pub(crate) repeat: Option<u32>,
 }
 
-/// What one entrant's measurements came to.
+/// The outcome of one entrant's measurements.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Measured {
     pub(crate) build: Build,
@@ -63,7 +63,7 @@ impl Measured {
         self.series.iter().map(|(_, samples, _)| samples.len()).max().unwrap_or(0)
     }
 
-    /// What it came to.
+    /// Its outcome.
     pub(crate) fn contestant(self, name: &str, left_out: Option<String>) -> Contestant {
         let series = self.series.into_iter();
         let mut figures: Vec<_> =

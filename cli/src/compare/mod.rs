@@ -75,7 +75,7 @@ fn text(study: &Study, detail: bool) -> Outcome<String> {
     Terminal::told(|terminal| report::tell(study, detail, terminal))
 }
 
-/// Those who take part, in the order of every table.
+/// The contenders, in the order of every table.
 fn entrants(args: &Compare, peers: Vec<Box<dyn Peer>>) -> Vec<Entrant> {
     let own = args.structures.0.iter().map(|structure| Entrant::Own(*structure));
     own.chain(peers.into_iter().map(|peer| Entrant::Peer(Foreign::new(peer)))).collect()

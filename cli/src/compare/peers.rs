@@ -65,7 +65,7 @@ pub struct Peers {
 }
 
 impl Peers {
-    /// Those that take part: all if they were asked for, else none.
+    /// The peers that take part: all if they were asked for, else none.
     pub(super) fn asked(self, asked: bool) -> Outcome<Self> {
         match asked {
             false => Ok(Self::default()),

@@ -5,7 +5,7 @@
 
 use std::time::Duration;
 
-/// What the clock shows, for those who read a report.
+/// The kind of time that the clock shows, for those who read a report.
 pub(crate) const SHOWS: &str = if cfg!(any(target_os = "linux", target_os = "macos")) {
     "processor time of one thread, so that waiting for other programs does not count"
 } else {

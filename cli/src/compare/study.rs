@@ -1,4 +1,4 @@
-//! What a comparison came to, as every report tells it.
+//! The outcome of a comparison, as every report tells it.
 
 use super::contender::Build;
 use super::workload::Workload;
@@ -6,7 +6,7 @@ use crate::report::origin::Origin;
 use crate::statistics::{Summary, crossing, growth};
 use serde::Serialize;
 
-/// What structures are compared on.
+/// The points or meshes that structures are compared on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Subject {
@@ -24,7 +24,7 @@ impl Subject {
         }
     }
 
-    /// What is sorted in.
+    /// The name of what is sorted in.
     pub(crate) fn thing(self) -> &'static str {
         self.choose("point", "triangle")
     }
@@ -34,17 +34,17 @@ impl Subject {
         self.choose("points", "triangles")
     }
 
-    /// What times and counters of queries are those of.
+    /// The unit of queries whose times and counters are told.
     pub(crate) fn query(self) -> &'static str {
         self.choose("point", "query")
     }
 
-    /// What is computed to find out.
+    /// The work that is done to find out.
     pub(crate) fn tests(self) -> &'static str {
         self.choose("distances", "triangles")
     }
 
-    /// What times are given in, such as `ns a point`.
+    /// The unit that times are given in, such as `ns a point`.
     pub(crate) fn unit(self, workload: Workload) -> &'static str {
         self.choose("ns a point", if workload.is_query() { "ns a query" } else { "ns a triangle" })
     }
@@ -58,7 +58,7 @@ impl Subject {
 /// A comparison.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Study {
-    /// What it comes from.
+    /// Its origin.
     #[serde(flatten)]
     pub(crate) origin: Origin,
     /// The seed of all randomness.
@@ -71,9 +71,9 @@ pub(crate) struct Study {
     pub(crate) growth: Vec<Growth>,
     /// Where one overtakes another.
     pub(crate) crossovers: Vec<Crossover>,
-    /// What to use, and why.
+    /// The advice what to use, and why.
     pub(crate) advice: Vec<Advice>,
-    /// What a reader should know before believing any of it.
+    /// The remarks that a reader should know before believing any of it.
     pub(crate) notes: Vec<String>,
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct Case {
     pub(crate) subject: Subject,
     /// The name of the distribution, surface, file or scene.
     pub(crate) of: String,
-    /// What it is.
+    /// Its description.
     pub(crate) about: String,
     /// How many points or triangles.
     pub(crate) n: usize,
@@ -107,20 +107,20 @@ pub(crate) struct Case {
 pub(crate) struct Contestant {
     /// Its name.
     pub(crate) name: String,
-    /// What it did not do, and why.
+    /// The workloads that it did not do, and why.
     pub(crate) left_out: Option<String>,
     /// How many of another library's first hits differ from ours by more than rounding.
     pub(crate) mismatches: Option<usize>,
-    /// What it built.
+    /// The structure that it built.
     pub(crate) build: Build,
-    /// What was measured.
+    /// The measurements.
     pub(crate) figures: Vec<Figure>,
 }
 
 /// A measurement; times are in nanoseconds for each point, or of a mesh for each query, but for each triangle if built.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Figure {
-    /// What was measured.
+    /// The workload that was measured.
     pub(crate) workload: Workload,
     /// In the middle of all samples.
     pub(crate) median: f64,
@@ -145,7 +145,7 @@ pub(crate) struct Figure {
 /// How a contestant's time grows with the number of points or triangles.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Growth {
-    /// Of which points or mesh.
+    /// The points or mesh that it is of.
     pub(crate) of: String,
     /// Doing what.
     pub(crate) workload: Workload,
@@ -158,7 +158,7 @@ pub(crate) struct Growth {
 /// Where one contestant overtakes another.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Crossover {
-    /// Of which points or mesh.
+    /// The points or mesh that it is of.
     pub(crate) of: String,
     /// Doing what.
     pub(crate) workload: Workload,
@@ -181,7 +181,7 @@ pub(crate) struct Advice {
     pub(crate) of: String,
     /// For what; none: for all of it.
     pub(crate) workload: Option<Workload>,
-    /// What to use.
+    /// The structure to use.
     pub(crate) best: String,
     /// The advice and its reason.
     pub(crate) text: String,
@@ -191,7 +191,7 @@ pub(crate) struct Advice {
 pub(crate) const INDISTINCT: f64 = 0.03;
 
 impl Figure {
-    /// Of samples; ratio and ties are filled in once all are known.
+    /// The figures of samples; ratio and ties are filled in once all are known.
     pub(crate) fn new(workload: Workload, samples: Vec<f64>, counters: Option<[f64; 3]>) -> Self {
         let Summary { median, min, spread } = Summary::of(&samples);
         let [visits, tests, found] = [0, 1, 2].map(|i| counters.map(|counters| counters[i]));
@@ -212,21 +212,21 @@ impl Figure {
 }
 
 impl Study {
-    /// What it is about.
+    /// Its subject.
     pub(crate) fn subject(&self) -> Subject {
         self.cases.first().map_or(Subject::Points, |case| case.subject)
     }
 }
 
 impl Contestant {
-    /// What it did, if it was measured.
+    /// Its measurements, if there are any.
     pub(crate) fn figure(&self, workload: Workload) -> Option<&Figure> {
         self.figures.iter().find(|figure| figure.workload == workload)
     }
 }
 
 impl Case {
-    /// What was measured, in order.
+    /// The workloads that were measured, in order.
     pub(crate) fn workloads(&self) -> Vec<Workload> {
         workloads([self])
     }
@@ -277,7 +277,7 @@ pub(crate) fn names<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<&'a st
     names
 }
 
-/// What was measured in any of the cases, in order.
+/// The workloads that were measured in any of the cases, in order.
 pub(crate) fn workloads<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<Workload> {
     let contestants = cases.into_iter().flat_map(|case| &case.contestants);
     let mut workloads: Vec<_> = contestants.flat_map(|one| &one.figures).map(|figure| figure.workload).collect();

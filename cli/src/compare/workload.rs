@@ -1,9 +1,9 @@
-//! What is measured.
+//! Workloads are what is measured.
 
 use clap::ValueEnum;
 use serde::Serialize;
 
-/// What is measured: building, or what is asked of a structure once it is built: of points from `Count` on, of a mesh from
+/// A workload that is measured: building, or what is asked of a structure once it is built: of points from `Count` on, of a mesh from
 /// `Short` on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
@@ -41,19 +41,19 @@ pub enum Workload {
 }
 
 impl Workload {
-    /// What is asked of points if nobody says.
+    /// The queries of points if nobody says.
     pub const OF_POINTS: [Self; 5] = [Self::Count, Self::Within, Self::Nearest, Self::Pairs, Self::Moving];
 
     /// All that is asked of a mesh.
     pub const OF_MESHES: [Self; 4] = [Self::Short, Self::Sorted, Self::Long, Self::Balls];
 
-    /// What it is called.
+    /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.told()[0]
     }
 
-    /// What it is, for those who read a report.
+    /// Its description for those who read a report.
     #[must_use]
     pub fn describe(self) -> &'static str {
         self.told()[1]

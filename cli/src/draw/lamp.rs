@@ -46,7 +46,7 @@ impl Lamp {
         }))
     }
 
-    /// What reaches `place` if nothing stands in the way.
+    /// The light that reaches `place` if nothing stands in the way.
     pub(super) fn beam(&self, place: Vec3) -> Option<Beam> {
         match self.0 {
             Light::Directional { color, direction } => Some(Beam { from: -direction, distance: f32::INFINITY, color }),

@@ -25,16 +25,16 @@ pub(super) struct Facet {
     pub(super) corners: [Vertex; 3],
     /// The normal of the flat triangle, on the outside.
     pub(super) flat: Vec3,
-    /// What it is made of: an index into the model's skins.
+    /// Its material: an index into the model's skins.
     pub(super) skin: usize,
 }
 
 /// A material in linear light, and how its piece takes part in the picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Skin {
-    /// What it sends out whatever the lamps do.
+    /// The light that it sends out whatever the lamps do.
     pub(super) emission: Vec3,
-    /// What it returns of the stage's ambient light.
+    /// The light that it returns of the stage's ambient light.
     pub(super) ambient: Vec3,
     pub(super) diffuse: Vec3,
     pub(super) specular: Vec3,

@@ -20,7 +20,7 @@ pub(super) const SAMPLES: [Vec2; 8] = [
 /// Surfaces whose depths differ by less than this share lie in the same plane.
 const COPLANAR: f32 = 1e-5;
 
-/// What one of a pixel's samples sees.
+/// The colour and depth that one of a pixel's samples sees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub(super) color: Vec3,

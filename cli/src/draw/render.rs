@@ -77,7 +77,7 @@ impl Renderer {
         canvas.develop(&bloom, &self.codec)
     }
 
-    /// What can be seen of the moving things, the farthest first.
+    /// The moving things that can be seen, the farthest first.
     fn back_to_front(&self, moving: &Moving<'_>) -> Vec<Mover<'_>> {
         let Self { lens, frustum, codec, pictures, .. } = self;
         let sprites = moving.dots.iter().filter_map(|dot| Sprite::new(dot, lens, frustum, codec));

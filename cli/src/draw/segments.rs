@@ -75,7 +75,7 @@ impl Thread {
 }
 
 impl End {
-    /// That of the visible part of a line, a share of the way along it.
+    /// The end of the visible part of a line, a share of the way along it.
     fn new(line: &Line, place: Vec3, share: f32, lens: &Lens, codec: &Codec) -> Self {
         let [(from, opaque), (to, faint)] = line.colors.map(|color| codec.decode(color));
         let depth = Lens::depth(place);

@@ -1,4 +1,4 @@
-//! What colour a place on a surface has.
+//! The colour of a place on a surface.
 
 use super::clip::Vertex;
 use super::color::{grain, soften};

@@ -111,7 +111,7 @@ struct Rib {
 }
 
 impl Surface {
-    /// What a lathe makes of an outline given from top to bottom.
+    /// The surface that a lathe makes of an outline given from top to bottom.
     fn turned(center: Vec3, outline: impl IntoIterator<Item = Rib>) -> Self {
         let mut surface = Self::default();
         for (row, rib) in outline.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What is seen where there is nothing.
+//! The sky is seen where there is nothing.
 
 use super::color::{decode, luminance};
 use glam::Vec3;

@@ -1,4 +1,4 @@
-//! What there is to draw, in plain types.
+//! The things that there are to draw, in plain types.
 
 use super::{Camera, Flipbook, Surface};
 use glam::Vec3;
@@ -10,11 +10,11 @@ use std::sync::Arc;
 pub struct Stage {
     /// Where the picture is taken from.
     pub camera: Camera,
-    /// What shines on the pieces.
+    /// The lamps that shine on the pieces.
     pub lights: Vec<Light>,
     /// Light that comes from everywhere.
     pub ambient: Vec3,
-    /// What is seen where there is nothing.
+    /// The colour where there is nothing.
     pub background: Vec3,
     /// The solid things.
     pub pieces: Vec<Piece>,
@@ -29,7 +29,7 @@ pub struct Stage {
 pub struct Piece {
     /// The shape, in world coordinates.
     pub surface: Surface,
-    /// What it is made of.
+    /// Its material.
     pub material: Material,
     /// Whether the shape stands in for something endless, such as the ground. An endless piece
     /// melts into the background towards its horizon, and casts no shadow.
@@ -45,7 +45,7 @@ pub struct Line {
     pub a: Vec3,
     /// The other end.
     pub b: Vec3,
-    /// What it is made of.
+    /// Its material.
     pub material: Material,
 }
 

@@ -1,4 +1,4 @@
-//! What is in the pictures.
+//! Pictures hold what the scene says.
 
 use super::*;
 use glam::Vec3;

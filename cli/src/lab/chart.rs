@@ -3,7 +3,7 @@
 use super::study::{Case, Point, Row, Steps, Study};
 use crate::report::plot::{Axis, Chart, Line, look};
 
-/// What the line of floors is called.
+/// The name of the line of floors.
 const ROUNDING: &str = "rounding";
 
 /// All charts, in the order in which they should be looked at.
@@ -58,7 +58,7 @@ fn push<'a>(lines: &mut Vec<Line<'a>>, name: &'a str, looks: &[&str], dots: Vec<
     }
 }
 
-/// What rounding may be of errors: in the middle of all methods, by step.
+/// The share of errors that rounding may be: in the middle of all methods, by step.
 fn rounding(case: &Case) -> Option<Line<'static>> {
     let fixed = || case.rows.iter().filter(|row| row.steps == Steps::Fixed);
     let at = |i: usize| {

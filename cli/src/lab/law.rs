@@ -4,7 +4,7 @@ use core::ops::Range;
 use pointmass::force::{Force, Perturbation, State};
 use pointmass::{Particle, Vec3};
 
-/// What pulls every particle along x, told by the acceleration \[m/s²\]. Computed in double precision, so that all
+/// The pull on every particle along x, told by the acceleration \[m/s²\]. Computed in double precision, so that all
 /// rounding is the engine's.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Law {
@@ -14,7 +14,7 @@ pub(crate) struct Law {
     pub(crate) slope: fn(f64) -> f64,
     /// The energy whose slope it is \[J/kg\].
     pub(crate) energy: fn(f64) -> f64,
-    /// What comes on top of it at an instant \[s\], everywhere.
+    /// The acceleration that comes on top of it at an instant \[s\], everywhere.
     pub(crate) push: Option<fn(f64) -> f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What is solved: reference problems, and scenes from files.
+//! Problems that are solved: reference problems, and scenes from files.
 
 use super::args::{Lab, Named};
 use super::exact::{self, Exact};
@@ -20,7 +20,7 @@ pub(crate) struct Problem {
     /// How many particles may live at once.
     capacity: usize,
     seed: u64,
-    /// What methods with settings are set to.
+    /// The settings of methods that have some.
     pub(crate) tuning: Tuning,
     /// When errors are taken \[s\].
     pub(crate) duration: f64,

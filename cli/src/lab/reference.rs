@@ -1,4 +1,4 @@
-//! What solutions are held against.
+//! References are what solutions are held against.
 
 use super::problem::Problem;
 use super::trial::{Outturn, Places, Trial, apart};
@@ -15,7 +15,7 @@ pub(crate) struct Reference {
     pub(crate) error: f64,
     /// The largest coordinate \[m\].
     pub(crate) extent: f64,
-    /// What errors of energy are a share of \[J\], and what that is.
+    /// The energy that errors of energy are a share of \[J\], and what that is.
     pub(crate) energy: f64,
     pub(crate) energy_about: &'static str,
 }

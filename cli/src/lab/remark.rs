@@ -1,4 +1,4 @@
-//! What the figures mean, in words.
+//! The meaning of the figures, in words.
 
 use super::study::{Case, Energy, Point, Row, Steps};
 use crate::report::words::{counted, digits, short};
@@ -26,7 +26,7 @@ pub(crate) fn remarked(mut case: Case) -> Case {
     case
 }
 
-/// What stands out in a row.
+/// The findings that stand out in a row.
 fn of_row(row: &Row, case: &Case) -> String {
     let mut words: Vec<String> = Vec::new();
     if let Some(worst) =
@@ -89,7 +89,7 @@ impl Case {
         row.integrator == Method::Implicit && symplectic.is_some_and(all_like)
     }
 
-    /// What a reader should know.
+    /// The remarks that a reader should know.
     fn notes(&self) -> Vec<String> {
         let points = || self.rows.iter().flat_map(|row| &row.points);
         let most = |count: fn(&Point) -> u64| points().map(count).max().unwrap_or(0);

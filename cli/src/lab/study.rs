@@ -1,4 +1,4 @@
-//! What the laboratory found, as every report tells it.
+//! The findings of the laboratory, as every report tells them.
 
 use super::problem::Problem;
 use super::reference::Reference;
@@ -12,7 +12,7 @@ use serde::Serialize;
 /// All of it.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Study {
-    /// What it comes from.
+    /// Its origin.
     #[serde(flatten)]
     pub(crate) origin: Origin,
     pub(crate) cases: Vec<Case>,
@@ -25,26 +25,26 @@ pub(crate) struct Case {
     pub(crate) about: String,
     /// When errors are taken \[s\].
     pub(crate) duration: f64,
-    /// What they are held against, and how far that may be off \[m\].
+    /// The reference that they are held against, and how far that may be off \[m\].
     pub(crate) reference: String,
     pub(crate) reference_error: f64,
     /// Its largest coordinate \[m\].
     pub(crate) extent: f64,
-    /// What errors of energy are a share of \[J\], and what that is.
+    /// The energy that errors of energy are a share of \[J\], and what that is.
     pub(crate) energy_scale: f64,
     pub(crate) energy_scale_is: String,
     /// How long energies are followed, in steps of what length \[s\].
     pub(crate) energy_duration: f64,
     pub(crate) energy_dt: f64,
     pub(crate) rows: Vec<Row>,
-    /// What a reader should know.
+    /// The remarks that a reader should know.
     pub(crate) notes: Vec<String>,
 }
 
 /// A method on a problem.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Row {
-    /// What it is called in tables.
+    /// Its name in tables.
     pub(crate) name: String,
     pub(crate) integrator: Method,
     pub(crate) steps: Steps,
@@ -140,7 +140,7 @@ const FITTED: usize = 3;
 const FAR: f64 = 1000.0;
 
 impl Case {
-    /// Of rows, without remarks.
+    /// The study of these rows, without remarks.
     pub(crate) fn new(problem: &Problem, reference: &Reference, rows: Vec<Row>) -> Self {
         Self {
             problem: problem.name.clone(),

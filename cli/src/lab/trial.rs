@@ -23,7 +23,7 @@ pub(crate) struct Trial<'a> {
     pub(crate) limit: f64,
 }
 
-/// What that came to.
+/// The outcome of that.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outturn {
     pub(crate) places: Places,

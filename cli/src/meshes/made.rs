@@ -16,7 +16,7 @@ pub enum Made {
 }
 
 impl Made {
-    /// What it is called.
+    /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -25,7 +25,7 @@ impl Made {
         }
     }
 
-    /// What it is, for those who read a report.
+    /// Its description for those who read a report.
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {

@@ -56,7 +56,7 @@ fn counts<'a>(lines: &mut impl Iterator<Item = Line<'a>>) -> Result<Counts, Faul
     }
 }
 
-/// What follows `OFF`, `COFF`, `NOFF` and the like; also `OFF8 6 12`, as a widespread collection of models has it.
+/// The rest of the line after `OFF`, `COFF`, `NOFF` and the like; also `OFF8 6 12`, as a widespread collection of models has it.
 fn after_keyword<'a>(header: &Line<'a>) -> Result<Line<'a>, Fault> {
     let not_off = || header.fault("`OFF` (or COFF, NOFF, STOFF), as an OFF file begins");
     let (prefix, rest) = header.content.split_once("OFF").ok_or_else(not_off)?;

@@ -103,7 +103,7 @@ fn area(mesh: &MeshData) -> f32 {
     areas.sum()
 }
 
-/// What [`MeshData`] promises, wherever it comes from.
+/// Holds a mesh against what [`MeshData`] promises, wherever it comes from.
 fn assert_sound(mesh: &MeshData) {
     assert!(!mesh.triangles.is_empty());
     assert!(mesh.vertices.as_flattened().iter().all(|x| x.is_finite()));

@@ -1,4 +1,4 @@
-//! What the text formats share: numbered lines of words, `#` comments, points of three coordinates.
+//! The text formats share this: numbered lines of words, `#` comments, points of three coordinates.
 
 use std::borrow::Cow;
 use std::str::SplitWhitespace;

@@ -1,4 +1,4 @@
-//! What happens to particles, one line an event: births, hits, touches, deaths.
+//! The events in the lives of particles, one line an event: births, hits, touches, deaths.
 
 use crate::formats::EventsFormat;
 use crate::outcome::{Failure, Outcome};

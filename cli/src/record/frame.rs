@@ -140,7 +140,7 @@ impl Value {
 }
 
 impl Frame {
-    /// That of a system after so many steps.
+    /// The frame of a system after so many steps.
     pub(crate) fn of(step: u64, system: &System<Heap>, scene: &Scene<'_>, plan: &Plan) -> Self {
         let serial = system.particles().serial;
         let mut order: Vec<usize> = (0..serial.len()).collect();
@@ -184,7 +184,7 @@ impl Frame {
     }
 }
 
-/// What remains to those who do not die of age \[s\], as scenes say it.
+/// The time that remains to those who do not die of age \[s\], as scenes say it.
 const FOR_EVER: f64 = -1.0;
 
 /// The rows of a system in the order of a frame.

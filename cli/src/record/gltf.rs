@@ -80,7 +80,7 @@ impl Gltf {
         json!({"name": frame.step.to_string(), "primitives": primitives})
     }
 
-    /// What is told of each particle: numbers in single precision, names of ours behind an underscore.
+    /// The attributes of each particle: numbers in single precision, names of ours behind an underscore.
     fn attributes(&mut self, frame: &Frame) -> Value {
         const PARTS: [&str; 10] = ["x", "y", "z", "vx", "vy", "vz", "red", "green", "blue", "alpha"];
         let mut attributes = Map::new();

@@ -1,4 +1,4 @@
-//! What a recording holds of each particle, decided by the scene, so that it is the same in every record.
+//! The columns that a recording holds of each particle, decided by the scene, so that they are the same in every record.
 
 use crate::load::{Disk, name};
 use crate::outcome::{Failure, Outcome};
@@ -27,7 +27,7 @@ pub(crate) struct Plan {
     pub(super) color: bool,
     /// The triangles of cloths, by their particles' numbers in the scene's start.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Of each spring of the scene, whether it is an edge; those of cloths with triangles are not.
+    /// Whether each spring of the scene is an edge; those of cloths with triangles are not.
     pub(super) edges: Vec<bool>,
 }
 

@@ -1,28 +1,28 @@
-//! What findings come from: the program, what was typed, and the machine.
+//! The origin of findings: the program, what was typed, and the machine.
 
 use serde::Serialize;
 use std::fs;
 
-/// What findings come from.
+/// The origin of findings.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Origin {
     /// The version of this program.
     pub(crate) version: String,
-    /// What to type to have it all again.
+    /// The command that has it all again.
     pub(crate) command: String,
-    /// What it ran on.
+    /// The machine that it ran on.
     pub(crate) machine: Machine,
 }
 
 impl Origin {
-    /// That of this run.
+    /// The origin of this run's findings.
     pub(crate) fn this() -> Self {
         let (version, command) = (env!("CARGO_PKG_VERSION").into(), command(std::env::args()));
         Self { version, command, machine: Machine::this() }
     }
 }
 
-/// What was typed, as a shell takes it.
+/// The command line, as a shell takes it.
 pub(crate) fn command(args: impl Iterator<Item = String>) -> String {
     let plain =
         |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || "-_=.,/:+%@".contains(c));
@@ -40,7 +40,7 @@ pub(crate) struct Machine {
     pub(crate) cores: usize,
     /// The operating system.
     pub(crate) os: String,
-    /// What the program was compiled for, and how.
+    /// The machine that the program was compiled for, and how.
     pub(crate) build: String,
 }
 

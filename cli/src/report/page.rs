@@ -51,7 +51,7 @@ fn sentence(words: &str) -> String {
 }
 
 impl Page {
-    /// What is told, under a title and what made it.
+    /// The body of the page, under a title and what made it.
     pub(crate) fn told(title: &str, origin: &Origin, tell: impl FnOnce(&mut dyn Report) -> Outcome) -> Outcome<String> {
         let mut page = Self("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">".into());
         page.add("<meta name=\"viewport\" content=\"width=device-width\">");

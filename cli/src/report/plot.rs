@@ -21,7 +21,7 @@ const PANEL: (u32, u32) = (560 * FINE, 330 * FINE);
 const BAR: u32 = 22 * FINE;
 const AROUND_BARS: u32 = 44 * FINE;
 const NUMBERS: u32 = 18 * FINE;
-/// What surrounds a plot: above, beside and below, and at the axes.
+/// The margins of a plot: above, beside and below, and at the axes.
 const TITLE: u32 = 36 * FINE;
 const MARGIN: u32 = 7 * FINE;
 const AXES: (u32, u32) = (40 * FINE, 62 * FINE);
@@ -60,14 +60,14 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// A chart of its own.
 pub(crate) struct Chart<'a> {
-    /// What it is about: the part of a report in which it stands.
+    /// Its subject: the part of a report in which it stands.
     pub(crate) of: String,
     pub(crate) title: String,
     pub(crate) kind: Kind<'a>,
     size: (u32, u32),
 }
 
-/// What a chart shows.
+/// The contents of a chart.
 pub(crate) enum Kind<'a> {
     /// One quantity against another.
     Lines(Vec<Line<'a>>, Box<[Axis; 2]>),
@@ -117,7 +117,7 @@ pub(crate) struct Bar<'a> {
 
 /// A scale with its numbers.
 pub(crate) struct Axis {
-    /// What is counted, with its unit.
+    /// The quantity that is counted, with its unit.
     pub(crate) name: &'static str,
     /// Whether equal lengths are equal factors; else it begins at zero.
     pub(crate) is_log: bool,
@@ -362,7 +362,7 @@ impl Line<'_> {
         }
     }
 
-    /// What marks a line's dots, so that lines are told apart without colours too.
+    /// The sign that marks a line's dots, so that lines are told apart without colours too.
     fn mark(&self, area: &Area<'_>, at: (i32, i32)) -> Outcome {
         let color = self.color();
         let drawn = match (self.style, self.look % 4) {

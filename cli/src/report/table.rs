@@ -15,7 +15,7 @@ pub(crate) struct Column {
     pub(crate) cells: Vec<Cell>,
 }
 
-/// What stands in a table; nothing, where there is nothing to say.
+/// The contents of a cell; nothing, where there is nothing to say.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
     text: Option<String>,
@@ -96,7 +96,7 @@ impl Table {
 }
 
 impl Column {
-    /// What stands where there is nothing.
+    /// The sign that stands where there is nothing.
     pub(crate) fn shown<'a>(&self, cell: &'a Cell) -> &'a str {
         cell.text.as_deref().unwrap_or(if self.has_words { "" } else { "-" })
     }

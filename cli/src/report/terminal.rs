@@ -13,7 +13,7 @@ use textwrap::{Options, WordSplitter};
 pub(crate) struct Terminal(String);
 
 impl Terminal {
-    /// What is told.
+    /// The report that is told.
     pub(crate) fn told(tell: impl FnOnce(&mut dyn Report) -> Outcome) -> Outcome<String> {
         let mut terminal = Self::default();
         tell(&mut terminal)?;

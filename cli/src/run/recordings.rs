@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// The recordings of a run, in the making. Dropped, they are gone.
 pub(super) struct Recordings {
-    /// What states hold, if they are asked for.
+    /// The contents of states, if they are asked for.
     plan: Option<Plan>,
     recorders: Vec<Recorder>,
     chronicle: Option<Chronicle>,

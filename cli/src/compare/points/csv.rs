@@ -7,7 +7,7 @@ use super::{Fault, Lines, Rows, number};
 use crate::fault::excerpt;
 use std::io::BufRead;
 
-/// What columns of coordinates are called, by axis, the likeliest first; units in brackets may follow.
+/// The names of columns of coordinates, by axis, the likeliest first; units in brackets may follow.
 const NAMES: [&[&str]; 3] = [
     &["x", "position.x", "position_x", "pos.x", "pos_x", "px", "easting", "east"],
     &["y", "position.y", "position_y", "pos.y", "pos_y", "py", "northing", "north"],
@@ -33,7 +33,7 @@ struct Table {
     is_begun: bool,
     delimiter: Option<u8>,
     columns: Option<Columns>,
-    /// What a comment before the first row calls its columns, and how many these are.
+    /// The names that a comment before the first row gives its columns, and how many these are.
     comment: Option<(Columns, usize)>,
     /// Where the fields of a line end; kept for its memory.
     ends: Vec<usize>,
@@ -82,7 +82,7 @@ impl Table {
     }
 }
 
-/// What parts the fields of a line.
+/// The sign that parts the fields of a line.
 fn delimiter_of(line: &[u8]) -> u8 {
     [b';', b'\t', b',', b' '].into_iter().find(|delimiter| line.contains(delimiter)).unwrap_or(b',')
 }
@@ -221,7 +221,7 @@ impl Columns {
     }
 }
 
-/// What the first row looked like, where nothing but that says which columns are coordinates; others have to look alike,
+/// The look of the first row, where nothing but that says which columns are coordinates; others have to look alike,
 /// or a slip in the first row would be taken for a column of words.
 struct Guess {
     line: u64,

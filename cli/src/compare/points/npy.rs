@@ -46,7 +46,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Rows, Fault> {
     Ok(rows)
 }
 
-/// What the array is.
+/// The form of the array.
 #[derive(Debug, PartialEq)]
 struct Head {
     big_endian: bool,

@@ -81,7 +81,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|byte| byte.is_ascii_whitespace() || *byte == b',').filter(|word| !word.is_empty())
 }
 
-/// What a bare line has: a species before the numbers, and but two of these.
+/// The words of a bare line: a species before the numbers, and but two of these.
 #[derive(Clone, Copy, PartialEq)]
 struct Shape {
     has_species: bool,

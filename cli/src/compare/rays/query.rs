@@ -79,7 +79,7 @@ fn long(surface: &Surface, serial: u32, seed: u64) -> Segment {
 fn sorted(segments: &[Segment]) -> Vec<Segment> {
     let ends = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let (low, high) = segments.iter().fold(ends, |(low, high), one| (low.min(one.from), high.max(one.from)));
-    /// Of each coordinate.
+    /// The range of each coordinate.
     const DIGITS: u32 = 20;
     let scale = ((1u32 << DIGITS) - 1) as f32 / (high - low).max_element().max(f32::MIN_POSITIVE);
     let code = |segment: &Segment| {

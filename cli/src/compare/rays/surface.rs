@@ -15,9 +15,9 @@ pub(super) const TRIANGLES: usize = 60_000;
 /// A mesh to be compared on.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its description.
     pub about: String,
     /// Its triangles, without an index.
     pub mesh: MeshBuf,

@@ -1,4 +1,4 @@
-//! What a comparison on a mesh makes of segments and answers that are known beforehand.
+//! Comparisons on a mesh are tried with segments and answers that are known beforehand.
 
 use super::super::contender::Build;
 use super::super::workload::Workload;

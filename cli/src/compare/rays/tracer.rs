@@ -20,14 +20,14 @@ pub(crate) struct Answers {
     pub(crate) rounded: Vec<FirstHit>,
 }
 
-/// What has been built and answers.
+/// A structure that has been built and answers.
 pub(crate) trait Tracer {
     fn built(&self) -> Build;
 
     /// The first hits of the first `asked` segments, what is timed; false if it has no such query.
     fn trace(&self, query: &Query, asked: usize, answers: &mut Answers) -> bool;
 
-    /// What these took in all, if it says.
+    /// The work that these took in all, if it says.
     fn cost(&self, query: &Query, asked: usize) -> Option<Cost>;
 }
 

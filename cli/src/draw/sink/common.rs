@@ -1,4 +1,4 @@
-//! What the kinds of files have in common.
+//! The kinds of files have this in common.
 
 use image::codecs::png::PngEncoder;
 use image::{ImageError, RgbImage};

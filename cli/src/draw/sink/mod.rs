@@ -1,6 +1,6 @@
 //! Where the pictures go: a film, a PNG or a numbered sequence of PNGs, by the name of the file.
 //!
-//! What is written appears whole or not at all. It is put together under a passing name in the
+//! Files appear whole or not at all. It is put together under a passing name in the
 //! same folder and renamed at the end; a rendering that is broken off leaves nothing behind.
 
 mod animation;

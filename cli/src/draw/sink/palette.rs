@@ -130,7 +130,7 @@ fn heaps(pixels: impl Iterator<Item = Color>) -> Vec<Heap> {
     heaps
 }
 
-/// What tells a channel from others: everything in the dark, where faint gradients show every
+/// The number that tells a channel from others: everything in the dark, where faint gradients show every
 /// step, and every fourth value in the light.
 fn shade(channel: u8) -> usize {
     const DARK: usize = 64;

@@ -20,13 +20,13 @@ const TOLERANCE: u8 = 2;
 const FORGIVENESS: f32 = 0.4;
 const MOST: u8 = 20;
 
-/// What someone who watches the animation sees.
+/// The picture that someone who watches the animation sees.
 #[derive(Debug)]
 pub(super) struct Screen {
-    /// What each pixel should have been when it was last drawn with care, else what was drawn; `None`
+    /// The colour that each pixel should have had when it was last drawn with care, else what was drawn; `None`
     /// before the first frame.
     meant: Option<RgbImage>,
-    /// What was drawn, with the palette's colours.
+    /// The picture that was drawn, with the palette's colours.
     drawn: RgbImage,
     /// How far each pixel's channels may be off now.
     slack: Vec<u8>,
@@ -48,7 +48,7 @@ impl Screen {
         Self { meant: None, drawn: RgbImage::new(width, height), slack: Vec::new(), before: None }
     }
 
-    /// What has to be drawn to show a picture. The frame's duration is left open.
+    /// The frame that has to be drawn to show a picture. The frame's duration is left open.
     pub(super) fn show(&mut self, picture: &RgbImage) -> Frame<'static> {
         self.slack = slack(self.before.as_ref(), picture);
         let window = self.changes(picture);
@@ -82,7 +82,7 @@ impl Screen {
         }
     }
 
-    /// What may stand for a pixel.
+    /// The colours that may stand for a pixel.
     fn wish(&self, picture: &RgbImage, x: u32, y: u32, palette: &mut Palette) -> Wish {
         let color = picture.get_pixel(x, y);
         let slack = i32::from(self.slack[(y * picture.width() + x) as usize]);

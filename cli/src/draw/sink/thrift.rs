@@ -15,7 +15,7 @@ const LONGEST: usize = 256;
 /// No run: that of the first index is no other's child.
 const NONE: u16 = 0;
 
-/// What may stand for a pixel.
+/// The colours that may stand for a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wish {
     /// This index alone.
@@ -54,7 +54,7 @@ struct Run {
 }
 
 impl Runs {
-    /// What there is at the beginning: every index by itself, and two codes for the packing's own ends.
+    /// The table at the beginning: every index by itself, and two codes for the packing's own ends.
     fn new() -> Self {
         let single = |index: usize| Run { index: index as u8, first_child: NONE, next_sibling: NONE };
         Self { known: (0..258).map(single).collect(), last: None }

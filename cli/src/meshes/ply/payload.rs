@@ -1,4 +1,4 @@
-//! What follows the header of a PLY file, element by element.
+//! The payload follows the header of a PLY file, element by element.
 
 use std::io::ErrorKind;
 
@@ -10,11 +10,11 @@ use super::{Fault, excerpt, text};
 /// How long a line of the text kind may be: the library takes eight times as much to split it into words.
 const LONGEST: usize = 1 << 20;
 
-/// What follows the header.
+/// The part that follows the header.
 pub(crate) struct Payload<'a> {
     encoding: Encoding,
     unread: &'a [u8],
-    /// Of a text, the line that was read last.
+    /// The line that was read last, of a text.
     line: usize,
 }
 
