@@ -1,4 +1,18 @@
 //! Newton's second law, stepped through time: one file a method.
+//!
+//! | method | order | evaluations a step | energy of an undamped oscillation | choose it for |
+//! |---|---|---|---|---|
+//! | [`Euler`] | 1 | 1 | grows at any step | comparison alone |
+//! | [`Symplectic`] | 1 | 1 | stays bounded for h ω ≤ 2 | effects with many particles |
+//! | [`Midpoint`] | 2 | 2 | grows at any step, slowly | smooth motion, cheaply |
+//! | [`LectureMidpoint`] | 1 or 2 | 2 | grows at any step, slowly | comparison alone |
+//! | [`Verlet`] | 2 | 2 | stays bounded for h ω ≤ 2 | orbits and undamped springs over long times |
+//! | [`Rk4`] | 4 | 4 | falls slightly for h ω ≤ 2√2 | accuracy; forces across the velocity |
+//! | [`Adaptive`] | of the method inside | three times its | as inside | what is calm for long and wild at times |
+//! | [`Embedded`] | 3 | 3, in steps of its own | within its tolerance | smooth forces, where nobody knows the step |
+//! | [`Implicit`] | 1 | 1 a Newton step, and products with Jacobians | falls at any step | what is stiff and may look soft |
+//!
+//! With a force across the velocity (magnetic, Coriolis) both Euler methods and `Verlet` gain energy: take `Rk4` there.
 
 mod adaptive;
 mod embedded;
