@@ -201,7 +201,7 @@ fn seat(text: &str) -> Result<Seat, String> {
     let place = |text: &str| {
         let numbers: Vec<f32> = text.split(',').map(|n| Ok(number(n)? as f32)).collect::<Result<_, String>>().ok()?;
         let place = Vec3::from_array(numbers.try_into().ok()?);
-        (place.abs().max_element() <= 1e9).then_some(place)
+        (place.is_finite() && place.abs().max_element() <= 1e9).then_some(place)
     };
     let (eye, target) = match text.split_once(':') {
         Some((eye, target)) => (place(eye), Some(place(target).ok_or(EXPECTED)?)),

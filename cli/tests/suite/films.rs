@@ -156,6 +156,7 @@ fn cameras_are_where_they_are_put() {
         &[
             ("--camera 1,2", "expected X,Y,Z or X,Y,Z:TX,TY,TZ in metres"),
             ("--camera 1,2,3:4", "expected X,Y,Z or X,Y,Z:TX,TY,TZ in metres"),
+            ("--camera nan,2,3", "expected X,Y,Z or X,Y,Z:TX,TY,TZ in metres"),
             ("--camera 1,2,nan", "expected X,Y,Z or X,Y,Z:TX,TY,TZ in metres"),
             ("--camera 1,2,1e30", "expected X,Y,Z or X,Y,Z:TX,TY,TZ in metres"),
             ("--camera 1,2,3:1,2,3", "the eye cannot look at where it is"),
