@@ -166,8 +166,8 @@ impl<'m> Cast<'m> {
         };
         let previous = self.before.get(&serial).copied().unwrap_or(position);
         let (previous, glow) = match self.style {
-            Some(Style::Shapes) => (position, 0.0),
-            Some(_) => (position, glow),
+            Some(Style::Sprites) => (position, glow),
+            Some(_) => (position, 0.0),
             None => (previous, glow),
         };
         (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })

@@ -149,11 +149,11 @@ impl Model {
             let motion = item.motion.clone().unwrap_or_default();
             scenery.push(Solid { shape, to_world: placement(file, item.group), material, motion });
         }
-        let mut shapes = Vec::with_capacity(file.materials.len());
-        for (i, material) in file.materials.iter().enumerate() {
+        let shapes = file.materials.iter().enumerate().map(|(i, material)| {
             let form = material.shape.as_ref().map(|shape| &shape.form);
-            shapes.push(form.map(|form| meshes.shape(&format!("materials[{i}].shape.form"), form)).transpose()?);
-        }
+            form.map(|form| meshes.shape(&format!("materials[{i}].shape.form"), form)).transpose()
+        });
+        let shapes = shapes.collect::<Result<_, _>>()?;
         let pushes = file.contacts.iter().filter_map(|response| match response {
             Response::Force(penalty) => Some(penalty.reaching(2.0 * widest(&start.particles, &file.emitters))),
             _ => None,
