@@ -37,7 +37,7 @@ pub(crate) struct Cast<'m> {
     view: View,
     style: Option<Style>,
     trails: Option<Trails<'m>>,
-    /// Whether a particle of the start is a surface's corner, which is drawn instead.
+    /// True for each particle of the start that is a corner of a surface, which is drawn instead.
     covered: Vec<bool>,
     /// The shapes of particles, by their materials, about the origin.
     forms: Vec<Surface>,
@@ -61,7 +61,7 @@ pub(crate) struct Seen {
     pub(crate) pieces: Vec<Piece>,
 }
 
-/// Whether particles leave trails.
+/// Tells whether particles leave trails.
 fn has_trails(file: &SceneFile, style: Option<Style>) -> bool {
     style == Some(Style::Trails) || style.is_none() && file.materials.iter().any(|material| material.trail.is_some())
 }
@@ -96,7 +96,7 @@ impl<'m> Cast<'m> {
         self.view = View { eye: camera.eye, up: camera.up };
     }
 
-    /// Whether there are shapes or surfaces, so that light and shadow change from picture to picture.
+    /// Tells whether there are shapes or surfaces, so that light and shadow change from picture to picture.
     pub(crate) fn has_pieces(&self, model: &Model) -> bool {
         let shapes = self.forms.iter().any(|form| !form.triangles.is_empty());
         shapes && matches!(self.style, None | Some(Style::Shapes)) || self.style.is_none() && !model.patches.is_empty()

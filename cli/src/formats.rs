@@ -44,7 +44,7 @@ pub(crate) enum RecordFormat {
 }
 
 impl RecordFormat {
-    /// Whether one file can hold all records.
+    /// Tells whether one file can hold all records.
     pub(crate) fn holds_many(self) -> bool {
         !matches!(self, Self::Npy | Self::Ply | Self::Obj | Self::Vtp)
     }

@@ -4,7 +4,7 @@ use super::camera::Lens;
 use super::model::{Facet, Model, Role};
 use glam::{Mat3, Vec2, Vec3, Vec3Swizzles};
 
-/// How many walls are not worth a box each.
+/// The number of walls that are not worth a box each.
 const LEAF: usize = 4;
 
 /// From this depth on walls are halved, which leaves a tree that is no deeper than twice as much, however many there are.
@@ -235,7 +235,7 @@ impl Bounds {
         Self { low: self.low.min(other.low), high: self.high.max(other.high), count: self.count + other.count }
     }
 
-    /// How many walls rays are tried on, times how many of the rays.
+    /// The number of walls that rays are tried on, times that of the rays.
     fn cost(&self) -> f32 {
         let sides = (self.high - self.low).max(Vec3::ZERO);
         if self.count == 0 { 0.0 } else { self.count as f32 * (sides * sides.yzx()).element_sum() }

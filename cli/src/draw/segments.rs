@@ -21,7 +21,7 @@ pub(super) struct Thread {
     /// How far away its farther end is, so that a dot on either end lies on top.
     pub(super) depth: f32,
     ends: [End; 2],
-    /// Whether another line goes on from either end, so that it has none.
+    /// True if another line goes on from either end, so that it has none.
     joined: bool,
 }
 

@@ -116,28 +116,19 @@ impl Model {
         file.check_corners(start.particles.len()).map_err(|error| error.in_file(path))?;
         let mut emitters = Vec::with_capacity(file.emitters.len());
         for (i, emitter) in file.emitters.iter().enumerate() {
-            let shape = meshes.shape(&format!("emitters[{i}].shape"), &emitter.shape)?;
             let to_world = placement(file, emitter.group);
-            let shape = shape.moved(&to_world, file.run.collision_index);
-            let shape =
-                shape.map_err(|message| SceneError::value(format!("emitters[{i}].group"), message).in_file(path))?;
+            let shape = meshes.moved(&format!("emitters[{i}]"), &emitter.shape, &to_world)?;
             emitters.push(with_shape(emitter, shape, &to_world, file));
         }
         let mut sinks = Vec::with_capacity(file.sinks.len());
         for (i, sink) in file.sinks.iter().enumerate() {
-            let shape = meshes.shape(&format!("sinks[{i}].shape"), &sink.shape)?;
-            let shape = shape.moved(&placement(file, sink.group), file.run.collision_index);
-            let shape =
-                shape.map_err(|message| SceneError::value(format!("sinks[{i}].group"), message).in_file(path))?;
+            let shape = meshes.moved(&format!("sinks[{i}]"), &sink.shape, &placement(file, sink.group))?;
             let Sink { intensity, ca, la, qa, softening, .. } = *sink;
             sinks.push(Sink { shape, group: None, intensity, ca, la, qa, softening });
         }
         let mut goals = Vec::with_capacity(file.goals.len());
         for (i, goal) in file.goals.iter().enumerate() {
-            let shape = meshes.shape(&format!("goals[{i}].shape"), &goal.shape)?;
-            let shape = shape.moved(&placement(file, goal.group), file.run.collision_index);
-            let shape =
-                shape.map_err(|message| SceneError::value(format!("goals[{i}].group"), message).in_file(path))?;
+            let shape = meshes.moved(&format!("goals[{i}]"), &goal.shape, &placement(file, goal.group))?;
             let against = goal.against.or_else(|| Some(gravity(file)));
             let Goal { start, arrive, release, settle, material, .. } = *goal;
             goals.push(Goal { shape, group: None, start, arrive, release, settle, against, material });
@@ -267,6 +258,12 @@ struct Meshes<'a> {
 impl Meshes<'_> {
     fn shape(&mut self, at: &str, shape: &Shape<String>) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
         shape.with_mesh(|name| self.load(at, name))
+    }
+
+    /// The shape of what stands at a place in the file, where its groups take it.
+    fn moved(&mut self, at: &str, shape: &Shape<String>, to_world: &Affine) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
+        let moved = self.shape(&format!("{at}.shape"), shape)?.moved(to_world, self.index);
+        moved.map_err(|message| SceneError::value(format!("{at}.group"), message).in_file(self.path))
     }
 
     fn load(&mut self, at: &str, name: &str) -> Result<Arc<MeshBuf>, SceneError> {

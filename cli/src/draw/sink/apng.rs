@@ -16,7 +16,7 @@ pub(super) struct Apng {
     size: Size,
     /// The part of a second that a frame is shown, as numerator and denominator.
     delay: (u16, u16),
-    /// How many frames there are going to be; the file begins with that.
+    /// The number of frames that there are going to be; the file begins with that.
     frames: u32,
     reel: Option<Reel>,
 }
