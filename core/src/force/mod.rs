@@ -46,6 +46,7 @@ pub use sink::Sink;
 pub(crate) use spring::is_broken;
 pub use spring::{Drive, Held, Spring, SpringCode, SpringList, Springs};
 pub use state::State;
+pub(crate) use steady::Inertia;
 pub use steady::Steady;
 pub use viscosity::Viscosity;
 pub use wind::Wind;

@@ -1,7 +1,7 @@
 //! Forces that one pass over the columns can work out: what falls, and is braked by the air.
 
 use crate::lanes::run;
-use crate::rows::Fall;
+use crate::rows::{Accelerate, Fall, Leap};
 use glam::Vec3;
 
 /// The sum of forces that are no more than a steady acceleration of all and each particle's own linear drag.
@@ -23,22 +23,42 @@ impl Steady {
     }
 
     /// The accelerations \[m/s²\] that it gives rows, to the bits of the forces' sums over the masses.
-    pub(crate) fn accelerate(
-        self,
-        velocity: &[Vec3],
-        mass: &[f32],
-        drag: &[f32],
-        inverse_mass: &[f32],
-        acceleration: &mut [Vec3],
-    ) {
-        let g = self.acceleration.unwrap_or(Vec3::ZERO);
-        match (self.acceleration.is_some(), self.drags) {
-            (false, false) => run(Fall::<false, false> { g, mass, velocity, drag, inverse_mass, acceleration }),
-            (true, false) => run(Fall::<true, false> { g, mass, velocity, drag, inverse_mass, acceleration }),
-            (false, true) => run(Fall::<false, true> { g, mass, velocity, drag, inverse_mass, acceleration }),
-            (true, true) => run(Fall::<true, true> { g, mass, velocity, drag, inverse_mass, acceleration }),
+    pub(crate) fn accelerate(self, rows: Inertia<'_>, velocity: &[Vec3], acceleration: &mut [Vec3]) {
+        let Self { acceleration: g, drags } = self;
+        match (g.is_some(), drags) {
+            (false, false) => run(Accelerate { fall: self.fall::<false, false>(rows), velocity, acceleration }),
+            (true, false) => run(Accelerate { fall: self.fall::<true, false>(rows), velocity, acceleration }),
+            (false, true) => run(Accelerate { fall: self.fall::<false, true>(rows), velocity, acceleration }),
+            (true, true) => run(Accelerate { fall: self.fall::<true, true>(rows), velocity, acceleration }),
         }
     }
+
+    /// Moves rows by a step of `h` \[s\] of the symplectic or the explicit Euler method, to the bits of doing it with their accelerations.
+    pub(crate) fn leap(self, rows: Inertia<'_>, ends: [&mut [Vec3]; 2], h: f32, is_symplectic: bool) {
+        if is_symplectic { self.leap_by::<true>(rows, ends, h) } else { self.leap_by::<false>(rows, ends, h) }
+    }
+
+    fn leap_by<const SYMPLECTIC: bool>(self, rows: Inertia<'_>, ends: [&mut [Vec3]; 2], h: f32) {
+        match (self.acceleration.is_some(), self.drags) {
+            (false, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, false>(rows), ends, h }),
+            (true, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, false>(rows), ends, h }),
+            (false, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, true>(rows), ends, h }),
+            (true, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, true>(rows), ends, h }),
+        }
+    }
+
+    fn fall<const FALLS: bool, const DRAGS: bool>(self, rows: Inertia<'_>) -> Fall<'_, FALLS, DRAGS> {
+        let Inertia { mass, drag, inverse_mass } = rows;
+        Fall { g: self.acceleration.unwrap_or(Vec3::ZERO), mass, drag, inverse_mass }
+    }
+}
+
+/// The columns of some rows that tell how they fall.
+#[derive(Clone, Copy)]
+pub(crate) struct Inertia<'a> {
+    pub(crate) mass: &'a [f32],
+    pub(crate) drag: &'a [f32],
+    pub(crate) inverse_mass: &'a [f32],
 }
 
 #[cfg(test)]
@@ -46,11 +66,18 @@ mod tests {
     use super::*;
     use crate::force::{Drag, Force, Gravity, QuadraticDrag, State};
     use crate::rng::Stream;
+    use crate::rows::{add_scaled, flat};
 
     /// Numbers of all kinds, those that are none among them.
     fn strange(i: u32) -> f32 {
         let [u, _] = Stream::new(9, 0, i).units(0);
         [u - 0.5, 0.0, -0.0, 1e30 * u, f32::NAN, f32::INFINITY, 1e-40, -3.0 * u][i as usize % 8]
+    }
+
+    /// Bits, of whatever is a number.
+    fn is_same(a: &[Vec3], b: &[Vec3]) -> bool {
+        let bits = |x: &f32| if x.is_nan() { None } else { Some(x.to_bits()) };
+        flat(a).iter().map(bits).eq(flat(b).iter().map(bits))
     }
 
     #[test]
@@ -69,13 +96,20 @@ mod tests {
             for forces in [&() as &dyn Force, &g, &Drag {}, &(g, Drag {}), &(Drag {}, g), &((), (g, ()), [Drag {}])] {
                 let steady = forces.steady().expect("it is steady");
                 let (mut once, mut sum) = (std::vec![Vec3::ONE; len], std::vec![Vec3::ZERO; len]);
-                steady.accelerate(&velocity, &mass, &drag, &inverse_mass, &mut once);
+                let rows = Inertia { mass: &mass, drag: &drag, inverse_mass: &inverse_mass };
+                steady.accelerate(rows, &velocity, &mut once);
                 forces.add_to(&state, 0..len, &mut sum);
-                for ((once, sum), &inverse) in once.iter().zip(sum).zip(&inverse_mass) {
-                    let expected = sum.to_array().map(|f| if inverse == 0.0 { 0.0 } else { f * inverse });
-                    for (a, b) in once.to_array().into_iter().zip(expected) {
-                        assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{a} {b}");
-                    }
+                for (sum, &inverse) in sum.iter_mut().zip(&inverse_mass) {
+                    *sum = if inverse == 0.0 { Vec3::ZERO } else { *sum * inverse };
+                }
+                assert!(is_same(&once, &sum), "{once:?} {sum:?}");
+                for is_symplectic in [false, true] {
+                    let (mut x, mut v) = (velocity.clone(), velocity.clone());
+                    steady.leap(rows, [&mut x, &mut v], 0.3, is_symplectic);
+                    let (mut place, mut after) = (velocity.clone(), velocity.clone());
+                    add_scaled(&mut after, 0.3, &once);
+                    add_scaled(&mut place, 0.3, if is_symplectic { &after } else { &velocity });
+                    assert!(is_same(&x, &place) && is_same(&v, &after), "{len} {is_symplectic}");
                 }
             }
         }

@@ -28,10 +28,12 @@ impl Integrator for Euler {
     }
 
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
-        let [a] = motion.work.take();
-        world.accelerations(time, motion.position, motion.velocity, a);
-        add_scaled(motion.position, step.seconds(), motion.velocity);
-        add_scaled(motion.velocity, step.seconds(), a);
+        let ([a], h) = (motion.work.take(), step.seconds());
+        if !world.euler(motion.position, motion.velocity, h, false) {
+            world.accelerations(time, motion.position, motion.velocity, a);
+            add_scaled(motion.position, h, motion.velocity);
+            add_scaled(motion.velocity, h, a);
+        }
     }
 }
 
@@ -45,9 +47,11 @@ impl Integrator for Symplectic {
     }
 
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
-        let [a] = motion.work.take();
-        world.accelerations(time, motion.position, motion.velocity, a);
-        add_scaled(motion.velocity, step.seconds(), a);
-        add_scaled(motion.position, step.seconds(), motion.velocity);
+        let ([a], h) = (motion.work.take(), step.seconds());
+        if !world.euler(motion.position, motion.velocity, h, true) {
+            world.accelerations(time, motion.position, motion.velocity, a);
+            add_scaled(motion.velocity, h, a);
+            add_scaled(motion.position, h, motion.velocity);
+        }
     }
 }

@@ -46,6 +46,13 @@ pub trait Dynamics {
     /// All slices are equally long. Costs one evaluation of all forces.
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]);
 
+    /// Moves all by a step of `h` \[s\] of the explicit or the symplectic Euler method in one pass, to the bits of doing so by
+    /// their [`accelerations`](Self::accelerations). Returns false, and does nothing, where no such pass is known.
+    fn euler(&mut self, position: &mut [Vec3], velocity: &mut [Vec3], h: f32, is_symplectic: bool) -> bool {
+        let _ = (position, velocity, h, is_symplectic);
+        false
+    }
+
     /// Calls `then` with the forces about a state, to be asked how they change near it.
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>));
 

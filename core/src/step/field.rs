@@ -1,7 +1,7 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use crate::custom::CustomColumns;
-use crate::force::{BuildTrees, Force, Needs, State, Then};
+use crate::force::{BuildTrees, Force, Inertia, Needs, State, Steady, Then};
 use crate::index::{BarnesHut, Found, ListMemory, Search};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
@@ -40,7 +40,7 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// Rows that look at all others for less than it takes to make an index and to look up all in it.
+/// Inertia that look at all others for less than it takes to make an index and to look up all in it.
 const FEW: usize = 64;
 
 /// The scene's forces over the masses, from row `first` on.
@@ -99,18 +99,27 @@ impl Field<'_> {
     }
 }
 
+impl<'a> Field<'a> {
+    /// What one pass over the columns works out, if the forces are no more, and the columns for it.
+    fn steady(&self, len: usize) -> Option<(Steady, Inertia<'a>)> {
+        let Attributes { lives, inverse_mass, .. } = self.attributes;
+        let rows = self.first..len;
+        let plain = BLOCKS
+            && lives.springs.force().is_none()
+            && !lives.materials.code().is_some_and(|code| (code.floats)(lives.materials));
+        let steady = if plain { self.scene.forces.steady()? } else { return None };
+        let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
+        Some((steady, Inertia { mass, drag, inverse_mass }))
+    }
+}
+
 impl Dynamics for Field<'_> {
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
         let rows = self.first..position.len();
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
-        let lives = &self.attributes.lives;
-        let plain = BLOCKS
-            && lives.springs.force().is_none()
-            && !lives.materials.code().is_some_and(|code| (code.floats)(lives.materials));
-        if let Some(steady) = if plain { forces.steady() } else { None } {
+        if let Some((steady, columns)) = self.steady(position.len()) {
             self.effort.evaluations += u64::from(!position.is_empty());
-            let (mass, drag) = (&lives.mass[rows.clone()], &lives.drag[rows.clone()]);
-            return steady.accelerate(&velocity[rows], mass, drag, inverse_mass, acceleration);
+            return steady.accelerate(columns, &velocity[rows], acceleration);
         }
         self.with_state(time, position, velocity, &mut |state| {
             acceleration.fill(Vec3::ZERO);
@@ -120,6 +129,13 @@ impl Dynamics for Field<'_> {
             }
         });
         divide_by_masses(acceleration, inverse_mass);
+    }
+
+    fn euler(&mut self, position: &mut [Vec3], velocity: &mut [Vec3], h: f32, is_symplectic: bool) -> bool {
+        let Some((steady, columns)) = self.steady(position.len()) else { return false };
+        self.effort.evaluations += u64::from(!position.is_empty());
+        steady.leap(columns, [position, velocity].map(|column| &mut column[self.first..]), h, is_symplectic);
+        true
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
@@ -148,7 +164,7 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
     });
 }
 
-/// Rows that are worth a thread's while.
+/// Inertia that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 2048;
 

@@ -21,7 +21,6 @@ use crate::observe::{Attention, Observer, Phase};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
-use tile::TILE;
 
 /// True if there may be a cache that a few rows fit into: chips without an operating system are spared the code.
 const TILED: bool = !cfg!(target_os = "none");
@@ -98,7 +97,7 @@ impl Workspace<'_> {
         observer: &mut dyn Observer,
     ) {
         let h = span[1].seconds() / scene.pieces() as f32;
-        let capacity = self.capacity().min(TILE);
+        let capacity = self.capacity().min(scene.tile_rows());
         // Tiles work in the memory of lists as well.
         self.status.listed = Listed::NONE;
         for rows in [0..old, old..self.len()] {

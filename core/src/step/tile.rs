@@ -21,7 +21,10 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// Rows of a tile: enough to share the cost of the calls, few enough for the innermost cache.
-pub(super) const TILE: usize = 640;
+const TILE: usize = 640;
+
+/// The same where a step goes over them hardly more than once: the second cache will do.
+const ONE_PASS: usize = 8 * TILE;
 
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
@@ -47,6 +50,12 @@ pub(crate) struct Tile<'a> {
 }
 
 impl Scene<'_> {
+    /// Rows of a tile.
+    pub(super) fn tile_rows(&self) -> usize {
+        let is_one_pass = !self.is_swept() && self.integrator.columns() == 1 && self.forces.steady().is_some();
+        if is_one_pass { ONE_PASS } else { TILE }
+    }
+
     /// Tells whether a step takes each row through all its phases without a look at the others, so that rows can go a
     /// few at a time.
     pub(super) fn is_local(&self) -> bool {
@@ -173,12 +182,12 @@ impl<'a> Tile<'a> {
     /// after the other are evaluated once.
     pub(super) fn pass(self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
         let (mut rest, mut hint, mut listed) = (self, Time::ZERO, Listed::NONE);
-        let is_swept = rest.scene.is_swept();
+        let (is_swept, most) = (rest.scene.is_swept(), rest.scene.tile_rows());
         let before = report.effort.evaluations;
         let mut evaluations = 0;
         while !rest.position.is_empty() {
             report.effort.evaluations = before;
-            let rows = rest.position.len().min(TILE);
+            let rows = rest.position.len().min(most);
             // Memory that is in the cache goes from tile to tile.
             let work = core::mem::take(&mut rest.work);
             let [mut tile, others] = rest.split_at(rows, [work, &mut []]);
