@@ -1,5 +1,7 @@
 //! The programs that the firmware runs, on the host: the same hashes on every target.
 
+#[path = "../firmware/src/bonds.rs"]
+mod bonds;
 #[path = "../firmware/src/contacts.rs"]
 mod contacts;
 #[path = "../firmware/src/expected.rs"]
@@ -29,6 +31,11 @@ fn every_method_has_its_hash() {
 #[test]
 fn every_response_has_its_hash() {
     as_expected("tests/contacts.txt", contacts::EXPECTED, |out| contacts::run(&mut contacts::Memory::new(), out));
+}
+
+#[test]
+fn every_bond_has_its_hash() {
+    as_expected("tests/bonds.txt", bonds::EXPECTED, |out| bonds::run(&mut bonds::Memory::new(), out));
 }
 
 fn as_expected(file: &str, list: &'static str, run: impl FnOnce(&mut dyn FnMut(&str, u64))) {

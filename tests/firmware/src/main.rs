@@ -1,9 +1,9 @@
-//! Runs the hash scenes on a microcontroller and compares them with `tests/hashes.txt`; where there is memory enough, the
-//! indices, the methods of motion and the responses of balls as well, with `tests/indices.txt`, `tests/motion.txt` and
-//! `tests/contacts.txt`.
+//! Runs the hash scenes on a microcontroller, or in WebAssembly, and compares them with `tests/hashes.txt`; where there is memory enough, the
+//! indices, the methods of motion, the responses of balls and what holds together as well, with `tests/indices.txt`,
+//! `tests/motion.txt`, `tests/contacts.txt` and `tests/bonds.txt`.
 //!
-//! Prints a line `name hash` each over semihosting, in the format of those files, and exits with 0 if all are as
-//! expected, else with 1.
+//! Prints a line `name hash` each over semihosting, or by the functions that `page.mjs` lends, in the format of those files, and
+//! exits with 0 if all are as expected, else with 1.
 
 #![no_std]
 #![no_main]
@@ -13,14 +13,21 @@
 use cortex_m as _;
 
 #[cfg(roomy)]
+mod bonds;
+#[cfg(roomy)]
 mod contacts;
 mod expected;
 #[cfg(roomy)]
 mod indices;
 #[cfg(roomy)]
 mod motion;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod scenes;
 
+#[cfg(target_arch = "wasm32")]
+use page::{println, process};
+#[cfg(not(target_arch = "wasm32"))]
 use semihosting::{println, process};
 use static_cell::ConstStaticCell;
 
@@ -29,12 +36,15 @@ static SCENES: ConstStaticCell<scenes::Memory> = ConstStaticCell::new(scenes::Me
 #[cfg(roomy)]
 static INDICES: ConstStaticCell<indices::Memory> = ConstStaticCell::new(indices::Memory::new());
 #[cfg(roomy)]
+static BONDS: ConstStaticCell<bonds::Memory> = ConstStaticCell::new(bonds::Memory::new());
+#[cfg(roomy)]
 static CONTACTS: ConstStaticCell<contacts::Memory> = ConstStaticCell::new(contacts::Memory::new());
 #[cfg(roomy)]
 static MOTION: ConstStaticCell<motion::Memory> = ConstStaticCell::new(motion::Memory::new());
 
 #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
 #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+#[cfg_attr(target_arch = "wasm32", unsafe(export_name = "main"))]
 fn main() -> ! {
     #[allow(unused_mut)]
     let mut right = as_expected(scenes::EXPECTED, |out| scenes::run(SCENES.take(), out));
@@ -42,6 +52,7 @@ fn main() -> ! {
     {
         right &= as_expected(indices::EXPECTED, |out| indices::run(INDICES.take(), out));
         right &= as_expected(contacts::EXPECTED, |out| contacts::run(CONTACTS.take(), out));
+        right &= as_expected(bonds::EXPECTED, |out| bonds::run(BONDS.take(), out));
         right &= as_expected(motion::EXPECTED, |out| motion::run(MOTION.take(), out));
     }
     process::exit(i32::from(!right))

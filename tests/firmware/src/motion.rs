@@ -146,6 +146,8 @@ fn grow_old(
             hash.long(trails.look(&state) as u64);
             hash_lines(|into| trails.lines(&state, into), &mut hash);
             hash_lines(|into| draw::springs(&state, 0.2, into), &mut hash);
+            hash_lines(|into| draw::velocities(&state, 0.1, into), &mut hash);
+            hash_lines(|into| draw::links(&state, EDGES.into_iter(), [255; 4], into), &mut hash);
             hash_solids(&state, &mut hash);
             hash_surface(&state, &mut hash);
         }

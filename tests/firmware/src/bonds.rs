@@ -1,0 +1,112 @@
+//! What holds together, computed alike by every target: the firmware here, the host in `tests/tests/hashes.rs`.
+//!
+//! A rope that hangs from a nail, a ring of soft links, a die and a jelly are thrown onto the floor, one after the other and
+//! all at once.
+
+use pointmass::constrain::{Attach, Contacts, Distance, Rope, ShapeMatching};
+use pointmass::index::Structure;
+use pointmass::motion::Motion;
+use pointmass::shape::Plane;
+use pointmass::{Constraint, Drag, Gravity, Inline, Particle, Scene, System, Time, Vec3, Verlet};
+
+/// The hashes in the form of `all` in `expected.rs`.
+pub(crate) const EXPECTED: &str = include_str!("../../bonds.txt");
+
+const ROPE: [u32; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
+const RING: [u32; 8] = [12, 13, 14, 15, 16, 17, 18, 19];
+const DIE: [u32; 8] = [20, 21, 22, 23, 24, 25, 26, 27];
+const JELLY: [u32; 8] = [28, 29, 30, 31, 32, 33, 34, 35];
+const PARTICLES: usize = 36;
+const COLUMNS: usize = 64;
+const KEPT: usize = 4;
+
+/// Everything that they need, none of it on the stack.
+pub(crate) struct Memory {
+    start: [Particle; PARTICLES],
+    system: System<Inline<PARTICLES, 0, 0, COLUMNS, KEPT>>,
+}
+
+impl Memory {
+    pub(crate) const fn new() -> Self {
+        Self {
+            start: [Particle { mass: 0.0, elasticity: 0.0, ..Particle::REST }; PARTICLES],
+            system: System::with(Inline::new()),
+        }
+    }
+}
+
+/// Calls `out` with the name of each and the hash after a second and a half.
+pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
+    let Memory { start, system } = memory;
+    throw(start);
+    let rope = Rope { damping: 0.02, ..Rope::rigid(ROPE, [0.1]) };
+    let ring = Rope { compliance: 1e-4, closed: true, ..Rope::rigid(RING, [0.12]) };
+    let die = ShapeMatching::rigid(DIE);
+    let jelly = ShapeMatching { compliance: 2e-3, damping: 0.5, ..ShapeMatching::rigid(JELLY) };
+    let leash = Distance { compliance: 1e-3, ..Distance::string([11, 20], 0.3) };
+    let hand = Attach {
+        particles: [0],
+        motion: Motion { spin: 0.7, pivot: Vec3::new(0.0, 1.0, 0.1), axis: Vec3::Y, ..Motion::STILL },
+    };
+    let all = &(hand, (leash, rope, ring), (die, jelly), Contacts::HARD);
+    let bonds: [(&str, &dyn Constraint); 6] =
+        [("rope", &rope), ("ring", &ring), ("die", &die), ("jelly", &jelly), ("leash", &leash), ("bonds", all)];
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for (name, constraints) in bonds {
+        let scene = Scene {
+            start,
+            forces: &(Gravity::EARTH, Drag {}),
+            colliders: &floor,
+            constraints,
+            substeps: 6,
+            integrator: &Verlet,
+            index: &Structure::Grid,
+            ..Scene::EMPTY
+        };
+        if system.start(&scene, 1).is_ok() {
+            for frame in 1..=90 {
+                system.step(&scene, Time::frame(frame, 60) - system.time());
+            }
+        }
+        out(name, system.hash());
+    }
+}
+
+/// A rope from its nail, a ring, and two lots of the corners of a box, all a little different.
+fn throw(start: &mut [Particle]) {
+    for (i, place) in start.iter_mut().enumerate() {
+        let odd = (i * 7 % 10) as f32 * 0.1;
+        let (position, velocity) = match i {
+            0..12 => (Vec3::new(0.1 * i as f32, 1.3, 0.0), Vec3::ZERO),
+            12..20 => {
+                let round = [
+                    [1.0, 0.0],
+                    [0.7, 0.7],
+                    [0.0, 1.0],
+                    [-0.7, 0.7],
+                    [-1.0, 0.0],
+                    [-0.7, -0.7],
+                    [0.0, -1.0],
+                    [0.7, -0.7],
+                ];
+                let [x, z] = round[i - 12];
+                (Vec3::new(0.15 * x + 1.5, 0.8 + 0.1 * x, 0.15 * z), Vec3::new(-1.0, 1.0 + z, 0.3))
+            }
+            _ => {
+                let corner = Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32) * 0.2;
+                let place = if i < 28 { Vec3::new(0.4, 0.5, 0.5) } else { Vec3::new(-0.6, 0.7, -0.2) };
+                (place + corner, Vec3::new(1.0, 0.5, -1.0).cross(corner) * 12.0)
+            }
+        };
+        *place = Particle {
+            position,
+            velocity,
+            radius: 0.03 + 0.01 * odd,
+            mass: 0.1 + 0.05 * odd,
+            drag: 0.01 * odd,
+            elasticity: 0.2 + 0.3 * odd,
+            fixed: i == 0,
+            ..Particle::REST
+        };
+    }
+}
