@@ -26,3 +26,4 @@ mod stall;
 mod styles;
 mod tool;
 mod touching;
+mod worlds;

@@ -4,7 +4,6 @@ use pointmass::force::{Friction, Perturbation, State};
 use pointmass::index::Structure;
 use pointmass::scene::{Model, SceneFile};
 use pointmass::{Force, Ledger, Particle, Penalty, Rk4, Scene, Time, Vec3};
-use pointmass_cli::load::Disk;
 use pointmass_tests::{Random, f64s, often, started};
 
 const PENALTY: Penalty =
@@ -172,7 +171,7 @@ fn a_scene_says_how_far_it_reaches() {
         { "position": [0.9, 0, 0], "velocity": [-1, 0, 0], "radius": 0.7, "mass": 1 }],
         "contacts": { "force": { "stiffness": 10000 } } }"#;
     let file = SceneFile::from_json("balls.json", text).expect("a scene");
-    let model = Model::load(&file, "balls.json", &mut Disk).expect("a model");
+    let model = Model::load(&file, "balls.json", &mut ()).expect("a model");
     let scene = model.scene();
     let mut system = started(&scene, 2, 1);
     for _ in 0..1000 {
