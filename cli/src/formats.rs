@@ -1,6 +1,7 @@
 //! Formats of files, by the end of their names, and of what is said on standard output.
 
 use crate::outcome::{Failure, Outcome};
+use crate::pattern::Pattern;
 use crate::whole::STANDARD;
 use clap::ValueEnum;
 use serde::Serialize;
@@ -141,12 +142,33 @@ pub(crate) fn named<F: ValueEnum>(text: &str) -> Result<(PathBuf, F), String> {
 
 /// A file for pictures, or `-` for standard output.
 pub(crate) fn pictures(text: &str) -> Result<(PathBuf, PictureFormat), String> {
-    if text == STANDARD { Ok((PathBuf::from(text), PictureFormat::Y4m)) } else { named(text) }
+    if text == STANDARD {
+        return Ok((PathBuf::from(text), PictureFormat::Y4m));
+    }
+    let (path, format) = named(text)?;
+    match Pattern::parse(&path)? {
+        Some(_) if !matches!(format, PictureFormat::Png) => Err("numbered pictures end in .png".into()),
+        _ => Ok((path, format)),
+    }
 }
 
 /// A recording's file with the format that its name ends in; `-` is standard output, in a format of its own.
 pub(crate) fn recording(text: &str) -> Result<(PathBuf, Option<RecordFormat>), String> {
-    if text == STANDARD { Ok((text.into(), None)) } else { named(text).map(|(path, format)| (path, Some(format))) }
+    if text == STANDARD {
+        return Ok((text.into(), None));
+    }
+    let (path, format) = named(text)?;
+    Pattern::parse(&path)?;
+    Ok((path, Some(format)))
+}
+
+/// A file of events, which is one.
+pub(crate) fn events(text: &str) -> Result<(PathBuf, EventsFormat), String> {
+    let (path, format) = named(text)?;
+    match Pattern::parse(&path)? {
+        Some(_) => Err("events are one file; name it without a place for a number".into()),
+        None => Ok((path, format)),
+    }
 }
 
 /// Everything as one line of JSON, in which numbers that are not finite are null.

@@ -18,10 +18,7 @@ impl Pattern {
         let place = rest.split_once('d').filter(|(_, after)| !after.contains('%'));
         match place.and_then(|(width, after)| Some((digits(width)?, after))) {
             Some((digits, after)) => Ok(Some(Self { before: before.to_owned(), digits, after: after.to_owned() })),
-            None => Err(format!(
-                "cannot write {}: a % in a name must be the place of the number, as in %04d or %d",
-                path.display()
-            )),
+            None => Err("a % in a name must be the place of the number, as in %04d or %d".into()),
         }
     }
 
@@ -95,7 +92,7 @@ mod tests {
     fn other_percent_signs_are_errors() {
         for name in ["%.png", "%4d.png", "%s.png", "%%d.png", "%d%d.png", "%0d.png", "%0x4d.png", "%099d.png"] {
             let error = Pattern::parse(Path::new(name)).unwrap_err();
-            assert!(error.contains(name), "{error}");
+            assert!(error.contains("%04d"), "{name}: {error}");
         }
     }
 }

@@ -65,8 +65,12 @@ pub(crate) fn render(args: &Render) -> Outcome {
         Some(pool) => pool.install(draw)?,
         None => draw()?,
     }
+    let is_read = !sink.is_abandoned();
     sink.finish().map_err(Failure::new)?;
     drop(progress);
+    if !is_read {
+        return Ok(());
+    }
     say(args, drawn)
 }
 
@@ -159,6 +163,9 @@ fn film(
             let draw = || shots.par_iter().map(|shot| studio.draw(shot)).collect();
             let (next, written) = rayon::join(draw, || write(&drawn, sink));
             written?;
+            if sink.is_abandoned() {
+                return Ok(());
+            }
             progress.advance(shots.len() as u64 * timing.substeps, || format!("{} particles", world.system.len()));
             drawn = next;
             shots.clear();

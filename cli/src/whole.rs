@@ -38,8 +38,8 @@ impl WholeFile {
         // Temporary files are for their owner's eyes only, but this one is going to stay.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let made = Temporary::new(|| builder.tempfile_in(folder)?.keep().map_err(|error| error.error));
-        let (file, temporary) = made.map_err(|error| Failure::io(path, &error))?;
+        let made = Temporary::new(|| builder.tempfile_in(&folder)?.keep().map_err(|error| error.error));
+        let (file, temporary) = made.map_err(|error| cannot_begin(path, &folder, &error))?;
         Ok(Self { path: path.to_path_buf(), file: BufWriter::new(file), temporary, target })
     }
 
@@ -116,7 +116,7 @@ impl Series {
         }
         let folder = existing_folder_of(path)?;
         let make = || Ok(((), tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder)?.keep()));
-        let ((), waiting) = Temporary::new(make).map_err(|error| Failure::io(path, &error))?;
+        let ((), waiting) = Temporary::new(make).map_err(|error| cannot_begin(path, folder, &error))?;
         Ok(Self { waiting, _made: made.map(|(_, made)| made), paths: Vec::new() })
     }
 
@@ -226,6 +226,13 @@ impl<F: Copy> Outs<F> {
         };
         publish(&self.0.into_iter().map(write).collect::<Outcome<Vec<_>>>()?)
     }
+}
+
+/// The failure to begin a file in a folder. What the system says names the passing file, which is nobody's business, so that only the
+/// kind of the failure is told.
+fn cannot_begin(path: &Path, folder: &Path, error: &io::Error) -> Failure {
+    let (path, folder) = (path.display(), folder.display());
+    Failure::new(format!("{path}: no file can be made in {folder}: {}", io::Error::from(error.kind())))
 }
 
 /// Where what is written to `path` goes: links are followed, also those to what is not there yet.

@@ -2,7 +2,6 @@
 
 use crate::formats::EventsFormat;
 use crate::outcome::{Failure, Outcome};
-use crate::pattern::Pattern;
 use crate::schedule::nanoseconds;
 use crate::whole::{WholeFile, Written};
 use pointmass::force::State;
@@ -70,10 +69,6 @@ const HEAD: [&str; 17] = [
 impl Chronicle {
     /// Begins a file.
     pub(crate) fn create(path: &Path, format: EventsFormat) -> Outcome<Self> {
-        if Pattern::parse(path).map_err(Failure::new)?.is_some() {
-            let path = path.display();
-            return Err(Failure::new(format!("{path}: events are one file; name it without a place for a number")));
-        }
         let file = WholeFile::create(path)?;
         let mut lines = match format {
             EventsFormat::Csv => Lines::Csv(Box::new(csv::WriterBuilder::new().has_headers(false).from_writer(file))),

@@ -55,7 +55,7 @@ type Out = BufWriter<File>;
 impl Recorder {
     /// Begins a recording: in one file if the format can hold many records and the name has no place for a number.
     pub(crate) fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
-        let pattern = Pattern::parse(path).map_err(Failure::new)?;
+        let pattern = Pattern::parse(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
         let sink: Box<dyn Sink> = match pattern {
             None if format.holds_many() => Box::new(Together::create(path, format)?),
             None if is_standard(path) => return Err(one_stream(format)),

@@ -4,7 +4,7 @@ mod groups;
 mod recordings;
 mod summary;
 
-use crate::formats::{EventsFormat, Line, RecordFormat, Said, line, named, recording};
+use crate::formats::{EventsFormat, Line, RecordFormat, Said, events, line, recording};
 use crate::outcome::{Outcome, mention, print, warn};
 use crate::progress::Progress;
 use crate::record::Both;
@@ -42,7 +42,7 @@ pub(crate) struct Run {
     #[arg(long, value_enum, value_name = "WHAT", default_value_t = Line::Particle)]
     pub(crate) line: Line,
     /// Record births, hits, touches and deaths, one a line, into FILE: .csv or .jsonl
-    #[arg(long, value_name = "FILE", value_parser = named::<EventsFormat>)]
+    #[arg(long, value_name = "FILE", value_parser = events)]
     pub(crate) events: Option<(PathBuf, EventsFormat)>,
     /// Keep account of energy and say where it went
     #[arg(long)]

@@ -105,6 +105,12 @@ fn films_go_into_pipes_and_other_programs() {
     assert_eq!(answer.stderr, "written: 6 pictures of 64 x 48 pixels, 0.60 s\n");
     assert_eq!(fs::read(folder.path("piped")).ok().as_ref(), Some(&film));
 
+    // A reader that goes away is no error, and nothing is said.
+    let long = "--duration 400 --fps 10 --size 64x48";
+    let answer = folder.shell(&format!("{{ $POINTMASS render a.scn {long} --out -; echo $? > code; }} | head -c 9"));
+    assert_eq!((answer.stdout.as_str(), answer.stderr.as_str()), ("YUV4MPEG2", ""));
+    assert_eq!(folder.read("code"), "0\n");
+
     // What packs them is whatever is called ffmpeg.
     let packer = |script: &str| {
         folder.write("bin/ffmpeg", format!("#!/bin/sh\n{script}\n"));
@@ -165,6 +171,31 @@ fn cameras_are_where_they_are_put() {
             ("--orbit inf", "expected turns"),
         ],
     );
+}
+
+#[test]
+fn names_that_no_film_can_have_are_told() {
+    let folder = Folder::with("a.scn", STILL);
+    let cases = [
+        ("--out f/%s.png", "a % in a name must be the place of the number, as in %04d or %d"),
+        ("--out %d%d.png", "a % in a name must be the place of the number, as in %04d or %d"),
+        ("--out %d.gif", "numbered pictures end in .png"),
+        ("--out f.avi", "expected a name that ends in"),
+    ];
+    folder.misuse("render a.scn", &cases);
+    assert_eq!(folder.names(), ["a.scn"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_place_where_no_file_can_be_made_is_told_without_the_passing_name() {
+    let folder = Folder::with("a.scn", STILL);
+    for name in ["/proc/x.gif", "/proc/%d.png"] {
+        let answer = folder.run(&format!("render a.scn {SHORT} --out {name}"));
+        let error = answer.error();
+        assert!(error.starts_with(&format!("{name}: no file can be made in /proc: ")), "{error}");
+        assert!(!error.contains(".pointmass"), "{error}");
+    }
 }
 
 #[test]

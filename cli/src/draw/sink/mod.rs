@@ -59,7 +59,8 @@ impl Sink {
             return Err(format!("cannot write {shown}: {fps} frames per second make no film"));
         }
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-        let kind = match (Pattern::parse(path)?, extension.to_ascii_lowercase().as_str()) {
+        let pattern = Pattern::parse(path).map_err(|error| format!("cannot write {shown}: {error}"))?;
+        let kind = match (pattern, extension.to_ascii_lowercase().as_str()) {
             (Some(pattern), "png") => Kind::Sequence(Sequence::create(path, pattern)?),
             (Some(_), _) => return Err(format!("cannot write {shown}: numbered pictures must end in .png")),
             (None, "png") => Kind::Still(Still::create(path)?),
@@ -82,6 +83,11 @@ impl Sink {
     /// Whether only the last frame counts, so that the others need not be drawn.
     pub fn keeps_only_last(&self) -> bool {
         matches!(self.0, Kind::Still(_))
+    }
+
+    /// Tells whether nobody reads what is written any more, so that no further frame need be drawn.
+    pub fn is_abandoned(&self) -> bool {
+        matches!(&self.0, Kind::Raw(raw) if raw.is_abandoned())
     }
 
     /// Takes the next frame. All frames must have the same size.

@@ -4,7 +4,7 @@ use super::common::{Size, cannot_write, no_frames};
 use super::yuv::Yuv;
 use crate::whole::WholeFile;
 use image::RgbImage;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// A film in the making.
@@ -15,6 +15,8 @@ pub(super) struct Raw {
     file: Option<WholeFile>,
     size: Size,
     fps: f64,
+    /// True once nobody reads standard output any more.
+    abandoned: bool,
     reel: Option<Yuv<Box<dyn Write + Send>>>,
 }
 
@@ -24,12 +26,21 @@ impl Raw {
         let is_file = path != Path::new("-");
         let file = is_file.then(|| WholeFile::create(path)).transpose().map_err(|failure| failure.to_string())?;
         let path = if is_file { path } else { Path::new("standard output") };
-        Ok(Self { path: path.to_owned(), file, size: Size::default(), fps, reel: None })
+        Ok(Self { path: path.to_owned(), file, size: Size::default(), fps, abandoned: false, reel: None })
     }
 
     pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
         self.size.check(frame, &self.path)?;
-        self.add(frame).map_err(|error| cannot_write(&self.path, &error))
+        match self.add(frame) {
+            Err(error) if self.file.is_none() && error.kind() == ErrorKind::BrokenPipe => self.abandoned = true,
+            added => added.map_err(|error| cannot_write(&self.path, &error))?,
+        }
+        Ok(())
+    }
+
+    /// Tells whether its reader has gone away, which is no error; nothing more needs to be drawn then.
+    pub(super) fn is_abandoned(&self) -> bool {
+        self.abandoned
     }
 
     fn add(&mut self, frame: &RgbImage) -> io::Result<()> {
@@ -51,6 +62,9 @@ impl Raw {
     }
 
     pub(super) fn finish(self) -> Result<(), String> {
+        if self.abandoned {
+            return Ok(());
+        }
         if self.reel.is_none() {
             return Err(no_frames(&self.path));
         }
