@@ -1,6 +1,7 @@
 //! The moving things, as the renderer sees them: particles in the looks of their materials, or in a style of the lecture's.
 
 use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
+use crate::shutter::Shutter;
 use crate::stage::{look, tessellate};
 use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
@@ -26,6 +27,9 @@ const LINK: Color = [170, 170, 180, 255];
 /// The strain at which springs are all red, or blue, where they are drawn by it.
 const FULL_STRAIN: f32 = 0.1;
 
+/// How deep in a surface the pictures that a style draws still show whole, in their radii.
+const SUNK: f32 = 2.5;
+
 /// How far before what it lies on a cloth is drawn, in sides of its triangles.
 const LIFT: f32 = 0.3;
 
@@ -36,6 +40,7 @@ pub(crate) struct Cast<'m> {
     size: f32,
     view: View,
     style: Option<Style>,
+    shutter: Option<Shutter>,
     trails: Option<Trails<'m>>,
     /// True for each particle of the start that is a corner of a surface, which is drawn instead.
     covered: Vec<bool>,
@@ -75,8 +80,14 @@ impl Memory {
 }
 
 impl<'m> Cast<'m> {
-    /// Nobody has been seen yet.
-    pub(crate) fn new(model: &Model, style: Option<Style>, from: &Viewpoint, memory: &'m mut Memory) -> Self {
+    /// Nobody has been seen yet. `shutter` is how long it is open for each picture \[s\], if there is one.
+    pub(crate) fn new(
+        model: &Model,
+        style: Option<Style>,
+        shutter: Option<f64>,
+        from: &Viewpoint,
+        memory: &'m mut Memory,
+    ) -> Self {
         let mut covered = vec![false; model.particles.len()];
         for PatchBuf { first, count, .. } in model.patches.iter().filter(|_| style.is_none()) {
             covered[*first as usize..][..*count as usize].fill(true);
@@ -88,7 +99,13 @@ impl<'m> Cast<'m> {
         let Viewpoint { camera, middle } = from;
         let size = DOT * 2.0 * (middle - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
         let view = View { eye: camera.eye, up: camera.up };
-        Self { before: HashMap::new(), size, view, style, trails, covered, forms }
+        let shutter = shutter.map(Shutter::new);
+        Self { before: HashMap::new(), size, view, style, shutter, trails, covered, forms }
+    }
+
+    /// Tells whether particles are drawn along their ways.
+    pub(crate) fn is_exposed(&self) -> bool {
+        self.shutter.is_some()
     }
 
     /// Looks from elsewhere from now on; points keep their size.
@@ -102,10 +119,20 @@ impl<'m> Cast<'m> {
         shapes && matches!(self.style, None | Some(Style::Shapes)) || self.style.is_none() && !model.patches.is_empty()
     }
 
-    /// Looks on after a step: trails remember.
+    /// Waits for the picture at an instant \[s\].
+    pub(crate) fn wait_for(&mut self, instant: f64) {
+        if let Some(shutter) = &mut self.shutter {
+            shutter.wait_for(instant);
+        }
+    }
+
+    /// Looks on after a step: trails and shutters remember.
     pub(crate) fn remember(&mut self, system: &System<Heap>, model: &Model) {
-        let Some(trails) = &mut self.trails else { return };
         let scene = model.scene();
+        if let Some(shutter) = &mut self.shutter {
+            shutter.look(&system.state(&scene), system.particles().serial);
+        }
+        let Some(trails) = &mut self.trails else { return };
         styled(&system.state(&scene), self.style, self.size, |state| {
             trails.look(state);
         });
@@ -132,12 +159,14 @@ impl<'m> Cast<'m> {
     fn particles(&mut self, state: &State<'_>, serial: &[u32], file: &SceneFile, seen: &mut Seen) {
         let mut now = HashMap::with_capacity(serial.len());
         for (row, (&position, &serial)) in state.position.iter().zip(serial).enumerate() {
-            now.insert(serial, position);
+            if self.shutter.is_none() {
+                now.insert(serial, position);
+            }
             if self.covered.get(serial as usize).is_some_and(|&covered| covered) {
                 continue;
             }
             if let Some(sprite) = sprite(state, row, &self.view) {
-                seen.billboards.push(billboard(&sprite));
+                seen.billboards.push(self.billboard(&sprite, file));
             } else if let Some(piece) = self.shape(state, row, file) {
                 seen.pieces.push(piece);
             } else if let Some(dot) = self.dot(state, row, serial) {
@@ -145,6 +174,18 @@ impl<'m> Cast<'m> {
             }
         }
         self.before = now;
+        if let Some(shutter) = &mut self.shutter {
+            shutter.close(state, serial);
+        }
+    }
+
+    fn billboard(&self, sprite: &Sprite, file: &SceneFile) -> Billboard {
+        let Sprite { center, right, up, color, material, frame, blend } = *sprite;
+        let picture = usize::from(material);
+        // What a style makes a picture of is a point, which may lie on a surface.
+        let is_own = file.materials.get(picture).is_some_and(|material| material.sprite.is_some());
+        let sunk = if is_own { 0.0 } else { SUNK };
+        Billboard { center, right, up, color, picture, frame, blend, sunk }
     }
 
     fn shape(&self, state: &State<'_>, row: usize, file: &SceneFile) -> Option<Piece> {
@@ -164,12 +205,12 @@ impl<'m> Cast<'m> {
             _ if diameter > 0.0 => diameter,
             _ => return None,
         };
-        let previous = self.before.get(&serial).copied().unwrap_or(position);
-        let (previous, glow) = match self.style {
-            Some(Style::Sprites) => (position, glow),
-            Some(_) => (position, 0.0),
-            None => (previous, glow),
+        let previous = match (&self.shutter, self.style) {
+            (Some(shutter), _) => shutter.opening(state, row, serial),
+            (None, None) => self.before.get(&serial).copied().unwrap_or(position),
+            (None, Some(_)) => position,
         };
+        let glow = if matches!(self.style, None | Some(Style::Sprites)) { glow } else { 0.0 };
         (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })
     }
 
@@ -201,11 +242,6 @@ fn styled(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnce(&
     let least = if style == Style::Sprites { size } else { 0.0 };
     let radius: Vec<_> = state.radius.iter().map(|radius| radius.max(least)).collect();
     see(&State { material: &material, materials: &materials, radius: &radius, ..*state });
-}
-
-fn billboard(sprite: &Sprite) -> Billboard {
-    let Sprite { center, right, up, color, material, frame, blend } = *sprite;
-    Billboard { center, right, up, color, picture: usize::from(material), frame, blend }
 }
 
 /// The surface of a cloth, lit.

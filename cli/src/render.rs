@@ -3,7 +3,8 @@
 use crate::cast::{Cast, Memory, Seen};
 use crate::draw::{Camera, Flipbook, Moving, Piece, Renderer, Sink, Stage};
 use crate::formats::{PictureFormat, pictures as format};
-use crate::outcome::{Failure, Outcome, print, tell};
+use crate::outcome::{Failure, Outcome, print, tell, warn};
+use crate::parse::number;
 use crate::progress::Progress;
 use crate::stage::{boxes, moves, pictures, stage, viewpoint};
 use crate::style::Style;
@@ -41,6 +42,10 @@ pub(crate) struct Render {
     /// Draw particles in one of the lecture's styles, not as the scene says
     #[arg(long, value_name = "NAME")]
     pub(crate) style: Option<Style>,
+    /// Draw particles along their ways of the last SECONDS before each picture, as a camera does whose shutter is open so long, at most from
+    /// picture to picture; without it as the scene's camera says
+    #[arg(long, value_name = "SECONDS", value_parser = shutter)]
+    pub(crate) shutter: Option<f64>,
     /// Draw the surfaces that particles come from and vanish at as well
     #[arg(long)]
     pub(crate) show_sources: bool,
@@ -110,6 +115,18 @@ impl Timing {
         }
     }
 
+    /// How long the shutter is open \[s\], if there is one.
+    fn shutter(&self, args: &Render, world: &World) -> Option<f64> {
+        let own = || world.file.camera.as_ref().and_then(|camera| camera.shutter).map(f64::from);
+        let asked = args.shutter.or_else(own)?;
+        if asked > self.frame_time {
+            let frame_time = self.frame_time;
+            let open = format!("pictures lie {frame_time} s apart, and it is open so long for each");
+            warn(&[format!("the shutter of {asked} s: {open}")]);
+        }
+        Some(asked.min(self.frame_time))
+    }
+
     /// The part of the film that is over at a picture.
     fn part(&self, frame: u64) -> f64 {
         frame as f64 / self.frames.max(1) as f64
@@ -146,10 +163,12 @@ fn film(
     progress: &mut Progress,
 ) -> Outcome {
     let mut memory = Memory::new(&world.file, args.style, world.system.capacity());
-    let mut cast = Cast::new(&world.model, args.style, from, &mut memory);
-    let studio = Studio::new(args, world, from, cast.has_pieces(&world.model))?;
+    let shutter = timing.shutter(args, world);
+    let mut cast = Cast::new(&world.model, args.style, shutter, from, &mut memory);
+    let studio = Studio::new(args, world, from, &cast)?;
     let (mut shots, mut drawn) = (Vec::new(), Vec::new());
     for frame in 0..=timing.frames {
+        cast.wait_for(frame as f64 * timing.frame_time);
         timing.step_to(frame, world, progress, |world| cast.remember(&world.system, &world.model));
         let camera = from.turned(args.looking.orbit.unwrap_or(0.0) * timing.part(frame));
         cast.look(&camera);
@@ -192,6 +211,8 @@ struct Studio {
     pictures: Arc<[Flipbook]>,
     size: (u32, u32),
     show_sources: bool,
+    /// Whether particles are drawn along their ways.
+    exposed: bool,
     /// The scenery, brought before the lens but once, if that stands still as well.
     still: Option<Renderer>,
     /// How many pictures are drawn side by side.
@@ -199,7 +220,7 @@ struct Studio {
 }
 
 impl Studio {
-    fn new(args: &Render, world: &World, from: &Viewpoint, has_pieces: bool) -> Outcome<Self> {
+    fn new(args: &Render, world: &World, from: &Viewpoint, cast: &Cast<'_>) -> Outcome<Self> {
         /// How many pixels are in the making at once, so that large pictures do not need all memory.
         const PIXELS: usize = 1 << 24;
         let World { file, model, .. } = world;
@@ -210,10 +231,11 @@ impl Studio {
             model: model.clone(),
             size: args.size,
             show_sources: args.show_sources,
+            exposed: cast.is_exposed(),
             still: None,
             batch,
         };
-        if !moves(model) && !has_pieces && args.looking.orbit.is_none() {
+        if !moves(model) && !cast.has_pieces(model) && args.looking.orbit.is_none() {
             studio.still = Some(studio.renderer(world.system.time(), from.camera, &[]));
         }
         Ok(studio)
@@ -229,7 +251,7 @@ impl Studio {
 
     fn draw(&self, shot: &Shot) -> RgbImage {
         let Seen { dots, billboards, segments, ribbons, pieces } = &shot.seen;
-        let moving = Moving { dots, billboards, segments, ribbons };
+        let moving = Moving { exposed: self.exposed, dots, billboards, segments, ribbons };
         match &self.still {
             Some(renderer) => renderer.frame(&moving),
             None => self.renderer(shot.instant, shot.camera, pieces).frame(&moving),
@@ -260,6 +282,11 @@ fn say(args: &Render, pictures: u64) -> Outcome {
     let bytes = fs::metadata(path).ok().filter(fs::Metadata::is_file);
     let bytes = bytes.map_or(String::new(), |facts| format!(", {}", DecimalBytes(facts.len())));
     print(&format!("{}: {what}{bytes}\n", path.display()))
+}
+
+fn shutter(text: &str) -> Result<f64, String> {
+    let seconds = number(text)?;
+    if seconds >= 0.0 && seconds.is_finite() { Ok(seconds) } else { Err("expected seconds, zero or more".into()) }
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

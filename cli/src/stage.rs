@@ -1,6 +1,6 @@
 //! A scene as the renderer sees it: scenery, and what moves.
 
-use crate::draw::{self, Flipbook, Line, Piece, Stage, Surface, shapes};
+use crate::draw::{self, Background, Flipbook, Line, Piece, Stage, Surface, shapes};
 use crate::outcome::{Failure, Outcome};
 use crate::style::Style;
 use crate::viewpoint::Viewpoint;
@@ -8,7 +8,7 @@ use glam::Vec3;
 use pointmass::Time;
 use pointmass::material::Blend;
 use pointmass::motion::Script;
-use pointmass::scene::{Camera, Light, Material, Model, SceneFile, Solid};
+use pointmass::scene::{Camera, Fog, Light, Material, Model, SceneFile, Sky, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
 use std::path::Path;
 use std::sync::Arc;
@@ -20,7 +20,8 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant
         camera: camera(file.camera.as_ref(), bounds),
         lights: lights(&file.lights),
         ambient: file.ambient.into(),
-        background: file.background.into(),
+        background: background(file),
+        fog: file.fog.map(|Fog { color, density, from }| draw::Fog { color: color.map(Vec3::from), density, from }),
         ..Stage::default()
     };
     let default = Material::default();
@@ -40,6 +41,17 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant
         }
     }
     stage
+}
+
+/// The sky, or the one colour behind everything.
+fn background(file: &SceneFile) -> Background {
+    match file.sky {
+        None => Background::Plain(file.background.into()),
+        Some(Sky { zenith, horizon, ground }) => {
+            let ground = ground.unwrap_or(horizon).into();
+            Background::Gradient { zenith: zenith.into(), horizon: horizon.into(), ground }
+        }
+    }
 }
 
 /// The pictures of particles, by the numbers of their materials; `path` is the scene's. In the style of sprites those that have none

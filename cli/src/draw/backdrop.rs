@@ -5,7 +5,7 @@ use super::clip::Frustum;
 use super::model::{Facet, Model};
 use super::raster::{Band, SAMPLES, Sample, Triangle};
 use super::shade::Shader;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// How many rows are drawn at a time; all samples of so many fit into the processor's cache.
@@ -25,7 +25,8 @@ pub(super) struct Backdrop {
 impl Backdrop {
     /// Draws a model, on all threads of the pool that it is called in. Bands know nothing of each other, so the picture does not
     /// depend on how many there are.
-    pub(super) fn new(lens: &Lens, model: &Model, shader: &Shader) -> Self {
+    pub(super) fn new(model: &Model, shader: &Shader) -> Self {
+        let lens = &shader.eye.lens;
         let count = lens.width * lens.height;
         let mut colors = vec![Vec3::ZERO; count];
         let mut depths = vec![[f32::INFINITY; DEPTHS]; count];
@@ -35,7 +36,7 @@ impl Backdrop {
         let bands = colors.par_chunks_mut(size).zip(depths.par_chunks_mut(size)).enumerate();
         bands.for_each(|(number, (colors, depths))| {
             let rows = colors.len() / lens.width;
-            let sky = |y| shader.sky.at(y as f32 + 0.5);
+            let sky = |x, y| shader.eye.air.sky.at(Vec2::new(x as f32, y as f32) + 0.5);
             let mut band = Band::new(BAND * number, rows, lens.width, sky);
             let opaque = visible.iter().filter(|(facet, _)| model.skins[facet.skin].opacity >= 1.0);
             opaque.for_each(|(_, triangle)| band.hide(triangle));

@@ -1,13 +1,15 @@
 //! A picture that stands in space, in the picture.
 
 use super::Billboard;
-use super::brush::Stroke;
+use super::air::Haze;
+use super::brush::middles;
 use super::camera::Lens;
 use super::canvas::Canvas;
-use super::color::Codec;
+use super::eye::Eye;
 use super::picture::{Flipbook, Frame};
 use glam::{Mat2, Vec2, Vec3, Vec4};
 use pointmass::material::Blend;
+use std::ops::Range;
 
 /// The least half width of a picture that is drawn, in pixels; what is smaller is drawn fainter instead.
 const SMALLEST: f32 = 0.7;
@@ -28,11 +30,18 @@ pub(super) struct Placed<'a> {
     flatten: Mat2,
     /// Half its width and its height, in pixels.
     half: Vec2,
+    /// How far it reaches to the sides and up and down, in pixels.
+    extent: Vec2,
+    /// How deep in a surface it still shows whole, in halves of its size.
+    sunk: f32,
+    /// What is before it.
+    pub(super) haze: Haze,
 }
 
 impl<'a> Placed<'a> {
     /// Brings a billboard before the lens; `None` if it cannot be seen.
-    pub(super) fn new(board: &Billboard, pictures: &'a [Flipbook], lens: &Lens, codec: &Codec) -> Option<Self> {
+    pub(super) fn new(board: &Billboard, pictures: &'a [Flipbook], eye: &Eye) -> Option<Self> {
+        let Eye { lens, codec, .. } = eye;
         let frame = pictures.get(board.picture)?.frame(board.frame)?;
         let place = lens.view(board.center);
         let depth = Lens::depth(place);
@@ -63,6 +72,9 @@ impl<'a> Placed<'a> {
             middle: lens.project(place),
             flatten: lie.inverse(),
             half: Vec2::new(right.length(), up.length()),
+            extent: right.abs() + up.abs() + 1.0,
+            sunk: board.sunk,
+            haze: eye.haze(place),
         };
         let seen =
             placed.middle.is_finite() && placed.flatten.is_finite() && placed.half.max_element() < 1e5 && opacity > 0.0;
@@ -73,26 +85,66 @@ impl<'a> Placed<'a> {
     pub(super) fn paint(&self, canvas: &mut Canvas) {
         let look = self.frame.at_width(2.0 * self.half.max_element());
         let softness = if self.blend == Blend::Opaque { 0.1 * self.reach } else { self.reach };
-        let dab = Stroke::dab(self.middle, self.half.length() + 1.0);
-        dab.each_pixel(canvas.width, canvas.height, |touch| {
-            let at = self.flatten * touch.offset;
-            // The part of the pixel that lies within its sides.
-            let within = ((Vec2::ONE - at.abs()) * self.half + 0.5).clamp(Vec2::ZERO, Vec2::ONE);
-            let texel = if within.min_element() > 0.0 { look(at) } else { Vec4::ZERO };
-            if texel == Vec4::ZERO {
-                return;
-            }
-            let share =
-                self.opacity * within.x * within.y * canvas.open(touch.pixel, self.depth + softness, 2.0 * softness);
-            let (color, opacity) = (texel.truncate() * self.color, texel.w);
-            match self.blend {
-                Blend::Alpha | Blend::Premultiplied => canvas.over(touch.pixel, color * share, opacity * share),
-                Blend::Additive => canvas.add(touch.pixel, color * share),
-                Blend::Opaque => {
-                    let there = ((opacity - 0.5) * 4.0 + 0.5).clamp(0.0, 1.0) * share;
-                    canvas.over(touch.pixel, color / opacity.max(1e-3) * there, there);
+        let depth = self.depth + softness - self.sunk * self.reach;
+        let (reach, margin) = (1.0 + 0.5 / self.half, self.extent);
+        for y in middles(self.middle.y - margin.y, self.middle.y + margin.y, canvas.height) {
+            let down = y as f32 + 0.5 - self.middle.y;
+            let row = Row { start: self.flatten.y_axis * down, step: self.flatten.x_axis, middle: self.middle.x };
+            for x in row.columns(reach, canvas.width) {
+                let at = row.at(x);
+                // The part of the pixel that lies within its sides.
+                let within = ((Vec2::ONE - at.abs()) * self.half + 0.5).clamp(Vec2::ZERO, Vec2::ONE);
+                let texel = look(at);
+                if texel.w > 0.0 || texel != Vec4::ZERO {
+                    let pixel = y * canvas.width + x;
+                    let share = self.opacity * within.x * within.y * canvas.open(pixel, depth, 2.0 * softness);
+                    self.lay(canvas, pixel, texel, share);
                 }
             }
-        });
+        }
+    }
+
+    /// Lays a share of a texel over a pixel.
+    fn lay(&self, canvas: &mut Canvas, pixel: usize, texel: Vec4, share: f32) {
+        let (color, opacity) = (texel.truncate() * self.color * self.haze.clear, texel.w);
+        let color = if self.blend == Blend::Additive { color } else { color + opacity * self.haze.light };
+        match self.blend {
+            Blend::Alpha | Blend::Premultiplied => canvas.over(pixel, color * share, opacity * share),
+            Blend::Additive => canvas.add(pixel, color * share),
+            Blend::Opaque => {
+                let there = ((opacity - 0.5) * 4.0 + 0.5).clamp(0.0, 1.0) * share;
+                canvas.over(pixel, color / opacity.max(1e-3) * there, there);
+            }
+        }
+    }
+}
+
+/// A row of pixels in a picture's own measure, which changes evenly along it.
+struct Row {
+    /// What lies straight above or below the picture's middle, and the change from pixel to pixel.
+    start: Vec2,
+    step: Vec2,
+    /// Where that middle is, in pixels.
+    middle: f32,
+}
+
+impl Row {
+    /// The place of the middle of a pixel.
+    fn at(&self, x: usize) -> Vec2 {
+        self.start + self.step * (x as f32 + 0.5 - self.middle)
+    }
+
+    /// The pixels that lie within a reach of the picture's middle, in both directions.
+    fn columns(&self, reach: Vec2, width: usize) -> Range<usize> {
+        let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
+        for (start, step, reach) in [(self.start.x, self.step.x, reach.x), (self.start.y, self.step.y, reach.y)] {
+            if step.abs() > 1e-9 {
+                let (a, b) = ((-reach - start) / step, (reach - start) / step);
+                (low, high) = (low.max(a.min(b)), high.min(a.max(b)));
+            } else if start.abs() > reach {
+                return 0..0;
+            }
+        }
+        middles(self.middle + low, self.middle + high, width)
     }
 }

@@ -62,7 +62,7 @@ impl Stroke {
 }
 
 /// The pixels of a row whose middles lie between two places.
-fn middles(low: f32, high: f32, count: usize) -> Range<usize> {
+pub(super) fn middles(low: f32, high: f32, count: usize) -> Range<usize> {
     // The casts send what is below zero, or not a number, to zero.
     let first = (low - 0.5).ceil() as usize;
     first..((high + 0.5).floor().max(0.0) as usize).min(count)

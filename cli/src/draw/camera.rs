@@ -76,6 +76,12 @@ impl Lens {
         self.center() + scale * Vec2::new(view.x, -view.y)
     }
 
+    /// The place at a depth of one metre that is seen at a place in the picture, in view coordinates.
+    pub(super) fn ray(&self, picture: Vec2) -> Vec3 {
+        let off = (picture - self.center()) / self.focal;
+        Vec3::new(off.x, -off.y, -1.0)
+    }
+
     /// How many pixels a metre takes at a depth.
     pub(super) fn pixels_per_metre(&self, depth: f32) -> f32 {
         self.focal / depth

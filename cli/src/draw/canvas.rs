@@ -62,7 +62,9 @@ impl<'a> Canvas<'a> {
     /// `depth`, falling to 0 where the backdrop is `softness` in front of it.
     pub(super) fn open(&self, pixel: usize, depth: f32, softness: f32) -> f32 {
         let depths = &self.depths[pixel];
-        if depths.iter().all(|&wall| wall >= depth) {
+        let nearer = |a: f32, b: f32| if a < b { a } else { b };
+        let [a, b, c, d] = *depths;
+        if nearer(nearer(a, b), nearer(c, d)) >= depth {
             return 1.0;
         }
         let share = |&wall: &f32| (1.0 + (wall - depth) / softness).clamp(0.0, 1.0);

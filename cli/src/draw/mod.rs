@@ -14,6 +14,7 @@
 //! The same stage and dots give the same bytes, whenever and on however many threads they are drawn.
 //! Anything with a coordinate that is not finite is left out of the picture.
 
+mod air;
 mod backdrop;
 mod billboard;
 mod bloom;
@@ -23,6 +24,7 @@ mod canvas;
 mod clip;
 mod color;
 mod contact;
+mod eye;
 mod lamp;
 mod model;
 mod picture;
@@ -40,9 +42,11 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
+pub use air::Fog;
 pub use camera::Camera;
 pub use picture::Flipbook;
 pub use render::Renderer;
 pub use sink::Sink;
+pub use sky::Background;
 pub use stage::{Billboard, Dot, Light, Line, Material, Moving, Piece, Stage};
 pub use surface::Surface;

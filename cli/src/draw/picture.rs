@@ -16,6 +16,7 @@ pub struct Flipbook {
 struct Level {
     width: usize,
     height: usize,
+    /// Row by row, with a copy of what is at the edges all around, so that each place lies between four texels.
     texels: Vec<Vec4>,
 }
 
@@ -36,8 +37,8 @@ impl Flipbook {
         };
         let frame = |column: u32, row: u32| {
             let places = (0..height).flat_map(|y| (0..width).map(move |x| (column * width + x, row * height + y)));
-            let texels = places.map(|(x, y)| texel(x, y)).collect();
-            Level { width: width as usize, height: height as usize, texels }.sizes()
+            let texels: Vec<_> = places.map(|(x, y)| texel(x, y)).collect();
+            Level::new(width as usize, height as usize, texels).sizes()
         };
         Self {
             frames: (0..rows)
@@ -68,8 +69,8 @@ impl Flipbook {
             });
             looks.sum::<Vec4>() / (LOOKS * LOOKS) as f32
         };
-        let texels = (0..SIDE * SIDE).map(|at| texel(at % SIDE, at / SIDE)).collect();
-        Some(Self { frames: vec![Level { width: SIDE, height: SIDE, texels }.sizes()] })
+        let texels: Vec<_> = (0..SIDE * SIDE).map(|at| texel(at % SIDE, at / SIDE)).collect();
+        Some(Self { frames: vec![Level::new(SIDE, SIDE, texels).sizes()] })
     }
 
     /// A frame, to be looked at in so many texels of the largest size a pixel.
@@ -97,34 +98,47 @@ impl<'a> Frame<'a> {
 }
 
 impl Level {
+    /// A frame of texels row by row; none at all of one without any.
+    fn new(width: usize, height: usize, texels: Vec<Vec4>) -> Self {
+        if texels.is_empty() {
+            return Self { width, height, texels };
+        }
+        let inner = |at: usize, count: usize| at.saturating_sub(1).min(count - 1);
+        let places = (0..height + 2).flat_map(|y| (0..width + 2).map(move |x| (x, y)));
+        let texels = places.map(|(x, y)| texels[inner(y, height) * width + inner(x, width)]).collect();
+        Self { width, height, texels }
+    }
+
     /// This one, and each half as large until one has a single texel in a direction.
     fn sizes(self) -> Vec<Self> {
         let mut sizes = vec![self];
         while let Some(last) = sizes.last().filter(|last| last.width > 1 && last.height > 1) {
             let (width, height) = (last.width / 2, last.height / 2);
             let texel = |x: usize, y: usize| {
-                let at = 2 * y * last.width + 2 * x;
-                let four = [at, at + 1, at + last.width, at + last.width + 1];
+                let at = (2 * y + 1) * (last.width + 2) + 2 * x + 1;
+                let four = [at, at + 1, at + last.width + 2, at + last.width + 3];
                 four.iter().map(|&at| last.texels[at]).sum::<Vec4>() * 0.25
             };
             let texels = (0..width * height).map(|at| texel(at % width, at / width)).collect();
-            sizes.push(Self { width, height, texels });
+            sizes.push(Self::new(width, height, texels));
         }
         sizes
     }
 
     /// Its colour at a place from −1 to 1 to the right and to the top, between four texels; beyond its edges what is there.
     fn look(&self, at: Vec2) -> Vec4 {
-        let x = (at.x + 1.0) * 0.5 * self.width as f32 - 0.5;
-        let y = (1.0 - at.y) * 0.5 * self.height as f32 - 0.5;
-        let (left, top) = (x.floor(), y.floor());
-        // The casts send what is below zero to zero.
-        let texel = |column: f32, row: f32| {
-            let (column, row) = ((column as usize).min(self.width - 1), (row as usize).min(self.height - 1));
-            self.texels[row * self.width + column]
+        let size = Vec2::new(self.width as f32, self.height as f32);
+        let place = (Vec2::new(1.0 + at.x, 1.0 - at.y) * (0.5 * size) + 0.5).clamp(Vec2::ZERO, size + 0.999);
+        // It is no less than zero, so that casts round down.
+        let (left, top) = (place.x as i32, place.y as i32);
+        let (right, down) = (place.x - left as f32, place.y - top as f32);
+        let stride = self.width + 2;
+        let first = top as usize * stride + left as usize;
+        let row = |at: usize| match self.texels.get(at..at + 2) {
+            Some([a, b]) => a.lerp(*b, right),
+            _ => Vec4::ZERO,
         };
-        let row = |row: f32| texel(left, row).lerp(texel(left + 1.0, row), x - left);
-        row(top).lerp(row(top + 1.0), y - top)
+        row(first).lerp(row(first + stride), down)
     }
 }
 

@@ -106,10 +106,11 @@ impl Triangle {
 }
 
 impl Band {
-    /// An empty strip, filled row by row with a colour.
-    pub(super) fn new(top: usize, rows: usize, width: usize, sky: impl Fn(usize) -> Vec3) -> Self {
-        let empty = |y| [Sample { color: sky(y), depth: f32::INFINITY }; SAMPLES.len()];
-        let samples = (top..top + rows).flat_map(|y| std::iter::repeat_n(empty(y), width)).collect();
+    /// An empty strip, filled with the colour of each column and row.
+    pub(super) fn new(top: usize, rows: usize, width: usize, sky: impl Fn(usize, usize) -> Vec3) -> Self {
+        let empty = |x, y| [Sample { color: sky(x, y), depth: f32::INFINITY }; SAMPLES.len()];
+        let places = (top..top + rows).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let samples = places.map(|(x, y)| empty(x, y)).collect();
         Self { top, rows, width, samples }
     }
 
@@ -178,7 +179,7 @@ mod tests {
     const SIZE: usize = 16;
 
     fn band() -> Band {
-        Band::new(0, SIZE, SIZE, |_| Vec3::ZERO)
+        Band::new(0, SIZE, SIZE, |_, _| Vec3::ZERO)
     }
 
     /// Two triangles that fill the picture at a depth.

@@ -3,17 +3,14 @@
 use super::backdrop::Backdrop;
 use super::billboard::Placed;
 use super::bloom::Bloom;
-use super::camera::Lens;
 use super::canvas::Canvas;
-use super::clip::Frustum;
-use super::color::Codec;
 use super::contact::{self, Caster};
+use super::eye::Eye;
 use super::lamp::Lamp;
 use super::model::Model;
 use super::rays::Rays;
 use super::segments::Thread;
 use super::shade::Shader;
-use super::sky::Sky;
 use super::sprite::Sprite;
 use super::{Flipbook, Moving, Stage};
 use glam::Vec3;
@@ -24,9 +21,7 @@ use std::sync::Arc;
 /// Draws pictures of one stage.
 #[derive(Debug)]
 pub struct Renderer {
-    lens: Lens,
-    frustum: Frustum,
-    codec: Codec,
+    eye: Eye,
     lamps: Vec<Lamp>,
     rays: Rays,
     backdrop: Backdrop,
@@ -45,53 +40,57 @@ enum Mover<'a> {
 impl Renderer {
     /// Draws everything that stands still, for pictures of a size in pixels.
     pub fn new(stage: &Stage, width: u32, height: u32) -> Self {
-        let lens = Lens::new(&stage.camera, width as usize, height as usize);
-        let lamps: Vec<_> = stage.lights.iter().filter_map(|light| Lamp::new(light, &lens)).collect();
-        let model = Model::new(stage, &lens);
-        let rays = Rays::new(&model, &lens);
+        let eye = Eye::new(stage, width, height);
+        let lens = &eye.lens;
+        let lamps: Vec<_> = stage.lights.iter().filter_map(|light| Lamp::new(light, lens)).collect();
+        let model = Model::new(stage, lens);
+        let rays = Rays::new(&model, lens);
         let up = lens.turn.y_axis;
-        let sky = Sky::new(stage.background, lens.height);
-        let backdrop = Backdrop::new(&lens, &model, &Shader { sky, lamps: &lamps, rays: &rays, up });
-        let pictures = stage.pictures.clone();
-        Self { lens, frustum: Frustum::new(&lens), codec: Codec::new(), lamps, rays, backdrop, up, pictures }
+        let backdrop = Backdrop::new(&model, &Shader { eye: &eye, lamps: &lamps, rays: &rays, up });
+        Self { eye, lamps, rays, backdrop, up, pictures: stage.pictures.clone() }
     }
 
     /// Draws a frame.
     pub fn frame(&self, moving: &Moving<'_>) -> RgbImage {
-        let (width, height) = (self.lens.width, self.lens.height);
-        let mut canvas = Canvas::new(&self.backdrop, width, height);
-        let mut bloom = Bloom::new(width, height);
+        let lens = &self.eye.lens;
+        let mut canvas = Canvas::new(&self.backdrop, lens.width, lens.height);
+        let mut bloom = Bloom::new(lens.width, lens.height);
 
-        let movers = self.back_to_front(moving);
-        for caster in movers.iter().filter_map(Mover::caster) {
-            contact::paint(&caster, &self.rays, self.up, &self.lens, &mut canvas);
+        let movers = self.movers(moving);
+        let order = back_to_front(&movers);
+        for caster in order.iter().filter_map(|&at| movers[at as usize].caster()) {
+            contact::paint(&caster, &self.rays, self.up, lens, &mut canvas);
         }
-        for mover in &movers {
-            match mover {
+        for &at in &order {
+            match &movers[at as usize] {
                 Mover::Sprite(sprite) => sprite.paint(&mut canvas, &mut bloom, &self.lamps),
                 Mover::Billboard(board) => board.paint(&mut canvas),
                 Mover::Thread(thread) => thread.paint(&mut canvas),
             }
         }
         bloom.spread();
-        canvas.develop(&bloom, &self.codec)
+        canvas.develop(&bloom, &self.eye.codec)
     }
 
-    /// The moving things that can be seen, the farthest first.
-    fn back_to_front(&self, moving: &Moving<'_>) -> Vec<Mover<'_>> {
-        let Self { lens, frustum, codec, pictures, .. } = self;
-        let sprites = moving.dots.iter().filter_map(|dot| Sprite::new(dot, lens, frustum, codec));
-        let boards = moving.billboards.iter().filter_map(|board| Placed::new(board, pictures, lens, codec));
+    /// The moving things that can be seen.
+    fn movers(&self, moving: &Moving<'_>) -> Vec<Mover<'_>> {
+        let Self { eye, pictures, .. } = self;
+        let sprites = moving.dots.iter().filter_map(|dot| Sprite::new(dot, moving.exposed, eye));
+        let boards = moving.billboards.iter().filter_map(|board| Placed::new(board, pictures, eye));
         let lines = moving.segments.iter().map(|line| (line, false));
         let lines = lines.chain(moving.ribbons.iter().map(|line| (line, true)));
-        let threads = lines.filter_map(|(line, joined)| Thread::new(line, joined, lens, frustum, codec));
-        let threads = threads.map(Mover::Thread);
-        let mut movers: Vec<_> =
-            threads.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect();
-        // Stable, so that things at one depth keep their order and pictures do not flicker.
-        movers.sort_by(|a, b| b.depth().total_cmp(&a.depth()));
-        movers
+        let threads = lines.filter_map(|(line, joined)| Thread::new(line, joined, eye)).map(Mover::Thread);
+        threads.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect()
     }
+}
+
+/// The numbers of movers in the order to draw them, the farthest first; those at one depth keep their order, so that pictures do not
+/// flicker.
+fn back_to_front(movers: &[Mover<'_>]) -> Vec<u32> {
+    // Depths are above zero, and such numbers are in the order of their bits.
+    let mut order: Vec<_> = movers.iter().zip(0..).map(|(mover, at)| (!mover.depth().to_bits(), at)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, at)| at).collect()
 }
 
 impl Mover<'_> {
@@ -107,14 +106,14 @@ impl Mover<'_> {
     fn caster(&self) -> Option<Caster> {
         match self {
             Self::Sprite(sprite) => {
-                let Sprite { place, reach, opacity, glow, color, .. } = *sprite;
-                Some(Caster { place, reach, opacity, glow, color })
+                let Sprite { place, reach, opacity, glow, color, haze, .. } = *sprite;
+                Some(Caster { place, reach, opacity: opacity * haze.clear, glow, color })
             }
             Self::Billboard(board) => {
                 let glow = f32::from(u8::from(board.blend == Blend::Additive));
                 // A picture covers about half of its square.
-                let Placed { place, reach, opacity, color, .. } = *board;
-                Some(Caster { place, reach, opacity: 0.5 * opacity, glow, color })
+                let Placed { place, reach, opacity, color, haze, .. } = *board;
+                Some(Caster { place, reach, opacity: 0.5 * opacity * haze.clear, glow, color })
             }
             Self::Thread(_) => None,
         }

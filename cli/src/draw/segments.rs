@@ -3,8 +3,7 @@
 use super::brush::Stroke;
 use super::camera::Lens;
 use super::canvas::Canvas;
-use super::clip::Frustum;
-use super::color::Codec;
+use super::eye::Eye;
 use glam::{Vec2, Vec3};
 use pointmass::draw::Line;
 
@@ -39,7 +38,8 @@ struct End {
 
 impl Thread {
     /// Brings a line before the lens; `None` if it cannot be seen.
-    pub(super) fn new(line: &Line, joined: bool, lens: &Lens, frustum: &Frustum, codec: &Codec) -> Option<Self> {
+    pub(super) fn new(line: &Line, joined: bool, eye: &Eye) -> Option<Self> {
+        let Eye { lens, frustum, .. } = eye;
         let [a, b] = line.ends;
         if !(a.is_finite() && b.is_finite()) {
             return None;
@@ -48,7 +48,7 @@ impl Thread {
         let (from, to) = frustum.clip_line(a, b)?;
         // What is cut off takes its share of the width and the colour along.
         let share = |place: Vec3| place.distance(a) / a.distance(b).max(f32::MIN_POSITIVE);
-        let ends = [from, to].map(|place| End::new(line, place, share(place), lens, codec));
+        let ends = [from, to].map(|place| End::new(line, place, share(place), eye));
         let is_seen = ends.iter().any(|end| end.opacity > 0.0);
         is_seen.then_some(Self { depth: Lens::depth(from).max(Lens::depth(to)), ends, joined })
     }
@@ -76,7 +76,8 @@ impl Thread {
 
 impl End {
     /// The end of the visible part of a line, a share of the way along it.
-    fn new(line: &Line, place: Vec3, share: f32, lens: &Lens, codec: &Codec) -> Self {
+    fn new(line: &Line, place: Vec3, share: f32, eye: &Eye) -> Self {
+        let Eye { lens, codec, .. } = eye;
         let [(from, opaque), (to, faint)] = line.colors.map(|color| codec.decode(color));
         let depth = Lens::depth(place);
         let [start, end] = line.widths.map(|width| 0.5 * width * lens.pixels_per_metre(depth));
@@ -86,7 +87,7 @@ impl End {
             at: lens.project(place),
             nearness: 1.0 / depth,
             radius: radius.clamp(RADIUS, 1e4),
-            color: from.lerp(to, share),
+            color: eye.haze(place).through(from.lerp(to, share)),
             opacity: (opaque + share * (faint - opaque)) * thinness,
         }
     }

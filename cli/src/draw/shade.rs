@@ -2,12 +2,12 @@
 
 use super::clip::Vertex;
 use super::color::{grain, soften};
+use super::eye::Eye;
 use super::lamp::{Beam, Lamp};
 use super::model::{Facet, Role, Skin};
 use super::raster::Fragment;
 use super::rays::Rays;
-use super::sky::Sky;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
 /// The share of a lamp's light that finds its way into its shadows.
@@ -22,7 +22,7 @@ const MELTING: f32 = 0.16;
 /// Everything that decides about colours.
 #[derive(Debug)]
 pub(super) struct Shader<'a> {
-    pub(super) sky: Sky,
+    pub(super) eye: &'a Eye,
     pub(super) lamps: &'a [Lamp],
     pub(super) rays: &'a Rays,
     /// The direction of the world's +y, in view coordinates.
@@ -55,9 +55,9 @@ impl Shader<'_> {
                 color += (SHADOW_LIGHT + (1.0 - SHADOW_LIGHT) * passing) * beam.color * returned;
             }
         }
-        let color = soften(color);
+        let color = self.eye.haze(place).through(soften(color));
         if skin.role == Role::Endless {
-            let sky = self.sky.at(fragment.y as f32 + 0.5);
+            let sky = self.eye.air.sky.at(Vec2::new(fragment.x as f32, fragment.y as f32) + 0.5);
             return sky.lerp(color, smooth(flat.dot(eye) / MELTING));
         }
         color

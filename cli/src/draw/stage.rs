@@ -1,6 +1,6 @@
 //! The things that there are to draw, in plain types.
 
-use super::{Camera, Flipbook, Surface};
+use super::{Background, Camera, Flipbook, Fog, Surface};
 use glam::Vec3;
 use pointmass::material::Blend;
 use std::sync::Arc;
@@ -14,8 +14,10 @@ pub struct Stage {
     pub lights: Vec<Light>,
     /// Light that comes from everywhere.
     pub ambient: Vec3,
-    /// The colour where there is nothing.
-    pub background: Vec3,
+    /// What is seen where there is nothing.
+    pub background: Background,
+    /// What is in the air, if it is not clear.
+    pub fog: Option<Fog>,
     /// The solid things.
     pub pieces: Vec<Piece>,
     /// The thin things.
@@ -123,7 +125,7 @@ pub enum Light {
 pub struct Dot {
     /// Where it is.
     pub position: Vec3,
-    /// Where it was in the previous frame; a streak joins the two places.
+    /// Where it was in the previous frame, to which a faint streak leads back; or where it was when the shutter opened.
     pub previous: Vec3,
     /// Red, green, blue (sRGB) and opacity.
     pub color: [u8; 4],
@@ -152,11 +154,17 @@ pub struct Billboard {
     pub frame: u16,
     /// How it is laid over what is behind it.
     pub blend: Blend,
+    /// How deep in a surface it still shows whole, in halves of its size: 0 for what is soft like smoke and half in what it lies on, more
+    /// for what stands for something small.
+    pub sunk: f32,
 }
 
 /// All that moves, in a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Moving<'a> {
+    /// True if particles are seen with an open shutter, evenly all along their ways from where they were before; what they cover and
+    /// the light that they shed is as much as if they stood still.
+    pub exposed: bool,
     /// Particles as balls and glows.
     pub dots: &'a [Dot],
     /// Particles as pictures.

@@ -1,5 +1,7 @@
 //! Pictures hold what the scene says.
 
+mod air;
+
 use super::*;
 use glam::Vec3;
 use image::RgbImage;
@@ -202,7 +204,7 @@ fn plain(color: [u8; 4]) -> Stage {
 }
 
 fn board(center: Vec3, half: f32, color: [u8; 4], blend: Blend) -> Billboard {
-    Billboard { center, right: Vec3::X * half, up: Vec3::Y * half, color, picture: 0, frame: 0, blend }
+    Billboard { center, right: Vec3::X * half, up: Vec3::Y * half, color, picture: 0, frame: 0, blend, sunk: 0.0 }
 }
 
 fn boards(stage: &Stage, billboards: &[Billboard]) -> RgbImage {
@@ -243,7 +245,7 @@ fn billboards_cover_what_geometry_has_them_cover() {
 
 #[test]
 fn a_thousand_layers_of_alpha_are_their_exact_composite() {
-    let stage = Stage { background: Vec3::new(0.0, 0.0, 0.5), ..plain([255, 255, 255, 255]) };
+    let stage = Stage { background: Background::Plain(Vec3::new(0.0, 0.0, 0.5)), ..plain([255, 255, 255, 255]) };
     for opacity in [1u8, 3, 40] {
         let layers: Vec<_> = (0..1000)
             .map(|i| board(Vec3::NEG_Z * (9.0 - 0.005 * i as f32), 2.0, [255, 0, 0, opacity], Blend::Alpha))

@@ -1,5 +1,6 @@
 //! The program from outside: its command line, its files, the course's scenes; and the formats it reads and writes.
 
+mod air;
 mod bad_input;
 mod check;
 mod command_line;

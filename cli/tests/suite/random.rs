@@ -182,6 +182,7 @@ fn camera() -> impl Strategy<Value = Camera> {
         xfov,
         near,
         far,
+        ..Camera::default()
     })
 }
 

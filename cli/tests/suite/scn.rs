@@ -204,6 +204,7 @@ fn everything() -> SceneFile {
             xfov: 0.5,
             near: 0.01,
             far: 1000.0,
+            shutter: None,
         }),
         ambient: [0.1, 0.2, 0.3],
         background: [1.0, 0.5, 0.0],

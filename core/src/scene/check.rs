@@ -2,7 +2,7 @@
 
 use super::check_force::check_force;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
-use super::{Group, Light, SceneError, SceneFile};
+use super::{Fog, Group, Light, SceneError, SceneFile, Sky};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
@@ -370,6 +370,15 @@ impl SceneFile {
         }
         if let Some(c) = &self.camera {
             finite("camera", [c.eye, c.towards, c.up, [c.xfov, c.near, c.far]].as_flattened())?;
+            zero_or_more("camera.shutter", c.shutter.unwrap_or(0.0))?;
+        }
+        if let Some(Sky { zenith, horizon, ground }) = self.sky {
+            finite("sky", [zenith, horizon, ground.unwrap_or(horizon)].as_flattened())?;
+        }
+        if let Some(Fog { color, density, from }) = self.fog {
+            finite("fog.color", &color.unwrap_or_default())?;
+            zero_or_more("fog.density", density)?;
+            zero_or_more("fog.from", from)?;
         }
         finite("ambient", &self.ambient)?;
         finite("background", &self.background)

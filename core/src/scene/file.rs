@@ -1,7 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::Response;
-use super::{Cloth, Material};
+use super::{Cloth, Fog, Material, Response, Sky};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -81,6 +80,12 @@ pub struct SceneFile {
     pub ambient: [f32; 3],
     /// The colour behind everything.
     pub background: [f32; 3],
+    /// A background by elevation, in place of that colour.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub sky: Option<Sky>,
+    /// Fog between the eye and what it sees; without it the air is clear.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub fog: Option<Fog>,
 }
 
 /// How a scene is run.
@@ -214,6 +219,10 @@ pub struct Camera {
     pub near: f32,
     /// Nothing farther is seen \[m\].
     pub far: f32,
+    /// How long its shutter is open before the instant of a picture \[s\], at most as long as pictures lie apart; particles are drawn
+    /// along their ways of that time. Without one, films draw them as they are then, with faint traces behind them.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub shutter: Option<f32>,
 }
 
 impl SceneFile {
@@ -242,6 +251,8 @@ impl SceneFile {
             camera: None,
             ambient: [0.0; 3],
             background: [0.0; 3],
+            sky: None,
+            fog: None,
         }
     }
 }
@@ -271,6 +282,14 @@ impl Default for Run {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { eye: [0.0; 3], towards: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], xfov: 0.25, near: 0.01, far: 1000.0 }
+        Self {
+            eye: [0.0; 3],
+            towards: [0.0, 0.0, -1.0],
+            up: [0.0, 1.0, 0.0],
+            xfov: 0.25,
+            near: 0.01,
+            far: 1000.0,
+            shutter: None,
+        }
     }
 }

@@ -5,6 +5,8 @@
 //! settled) → [`Scene`] (what a system steps through).
 
 #[cfg(feature = "alloc")]
+mod air;
+#[cfg(feature = "alloc")]
 mod check;
 #[cfg(feature = "alloc")]
 mod check_force;
@@ -35,6 +37,8 @@ pub mod scn;
 #[cfg(feature = "alloc")]
 mod write;
 
+#[cfg(feature = "alloc")]
+pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
 pub use cloth::{Cloth, Form, Gas};
 #[cfg(feature = "alloc")]

@@ -291,7 +291,7 @@ impl Reader<'_> {
                 scene.lights.push(Light::Area { color, position, direction, radius, attenuation });
             }
             Command::Camera([eye, towards, up, [xfov, near, far]]) => {
-                scene.camera = Some(Camera { eye, towards, up, xfov, near, far });
+                scene.camera = Some(Camera { eye, towards, up, xfov, near, far, shutter: None });
             }
             Command::Ambient(color) => scene.ambient = color,
             Command::Background(color) => scene.background = color,

@@ -160,6 +160,12 @@ impl Writer {
         if let Some(c) = &scene.camera {
             let rows = [c.eye, c.towards, c.up, [c.xfov, c.near, c.far]];
             self.line(format_args!("camera {}", Numbers(rows.as_flattened())));
+            if c.shutter.is_some() {
+                self.warn("camera: .scn has no shutter; it is left out");
+            }
+        }
+        if scene.sky.is_some() || scene.fog.is_some() {
+            self.warn("sky and fog: .scn has a background of one colour and clear air; they are left out");
         }
         for (name, color) in [("ambient", scene.ambient), ("background", scene.background)] {
             if color != [0.0; 3] {
