@@ -1,6 +1,7 @@
 //! The moving things, as the renderer sees them: particles in the looks of their materials, or in a style of the lecture's.
 
 use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
+use crate::show::{Show, lines};
 use crate::shutter::Shutter;
 use crate::stage::{look, tessellate};
 use crate::style::{Style, Styled};
@@ -17,6 +18,9 @@ use std::collections::HashMap;
 
 /// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
 const DOT: f32 = 0.009;
+
+/// The same of arrows.
+const ARROW: f32 = 0.06;
 
 /// The places that are remembered of each trail.
 const KNOTS: usize = 48;
@@ -40,6 +44,9 @@ pub(crate) struct Cast<'m> {
     size: f32,
     view: View,
     style: Option<Style>,
+    show: Vec<Show>,
+    /// The length of arrows \[m\].
+    arrow: f32,
     shutter: Option<Shutter>,
     trails: Option<Trails<'m>>,
     /// True for each particle of the start that is a corner of a surface, which is drawn instead.
@@ -84,6 +91,7 @@ impl<'m> Cast<'m> {
     pub(crate) fn new(
         model: &Model,
         style: Option<Style>,
+        show: &[Show],
         shutter: Option<f64>,
         from: &Viewpoint,
         memory: &'m mut Memory,
@@ -97,10 +105,12 @@ impl<'m> Cast<'m> {
         let Memory { rings, knots } = memory;
         let trails = (!rings.is_empty()).then(|| Trails::new(rings, knots, None));
         let Viewpoint { camera, middle } = from;
-        let size = DOT * 2.0 * (middle - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
+        let width = 2.0 * (middle - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
+        let (size, arrow) = (DOT * width, ARROW * width);
         let view = View { eye: camera.eye, up: camera.up };
         let shutter = shutter.map(Shutter::new);
-        Self { before: HashMap::new(), size, view, style, shutter, trails, covered, forms }
+        let show = show.to_vec();
+        Self { before: HashMap::new(), size, view, style, show, arrow, shutter, trails, covered, forms }
     }
 
     /// Tells whether particles are drawn along their ways.
@@ -144,6 +154,7 @@ impl<'m> Cast<'m> {
         styled(&system.state(&scene), self.style, self.size, |state| {
             self.particles(state, system.particles().serial, file, &mut seen);
             seen.segments = self.springs(state, model);
+            seen.segments.extend(lines(&self.show, state, model, file.run.index, self.arrow));
             if let Some(trails) = &self.trails {
                 seen.ribbons = vec![Line::NONE; state.position.len() * (KNOTS + 1)];
                 let (count, _) = trails.lines(state, &mut seen.ribbons);
@@ -216,20 +227,23 @@ impl<'m> Cast<'m> {
 
     /// The springs as they are now, but for those of surfaces, and the links of constraints.
     fn springs(&self, state: &State<'_>, model: &Model) -> Vec<Line> {
-        if self.style.is_some_and(|style| style != Style::Lines) {
+        let is_shown = self.show.contains(&Show::Springs);
+        if self.style.is_some_and(|style| style != Style::Lines) && !is_shown {
             return Vec::new();
         }
-        let full = if self.style.is_some() { FULL_STRAIN } else { f32::INFINITY };
-        let mut lines = vec![Line::NONE; state.springs.springs.len()];
-        let (count, _) = springs(state, full, &mut lines);
+        let full = if self.style.is_some() || is_shown { FULL_STRAIN } else { f32::INFINITY };
+        let mut all = vec![Line::NONE; state.springs.springs.len()];
+        let (count, _) = springs(state, full, &mut all);
         let is_covered = |number: &u32| self.covered.get(*number as usize).is_some_and(|&covered| covered);
-        let held = state.springs.held().zip(lines.iter().copied().take(count));
-        let mut drawn: Vec<_> =
-            held.filter(|(held, _)| !held.spring.ends.iter().all(is_covered)).map(|(_, line)| line).collect();
+        let held = state.springs.held().zip(all.iter().copied().take(count));
+        let mut drawn: Vec<_> = held
+            .filter(|(held, _)| is_shown || !held.spring.ends.iter().all(is_covered))
+            .map(|(_, line)| line)
+            .collect();
         let pairs = || model.constraints.0.iter().flat_map(ConstraintKind::links);
-        lines = vec![Line::NONE; pairs().count()];
-        let (count, _) = links(state, pairs(), LINK, &mut lines);
-        drawn.extend_from_slice(&lines[..count]);
+        all = vec![Line::NONE; pairs().count()];
+        let (count, _) = links(state, pairs(), LINK, &mut all);
+        drawn.extend_from_slice(&all[..count]);
         drawn
     }
 }

@@ -23,6 +23,7 @@ mod render;
 mod report;
 mod run;
 mod schedule;
+mod show;
 mod shutter;
 mod stage;
 mod stall;

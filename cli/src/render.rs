@@ -6,6 +6,7 @@ use crate::formats::{PictureFormat, pictures as format};
 use crate::outcome::{Failure, Outcome, print, tell, warn};
 use crate::parse::number;
 use crate::progress::Progress;
+use crate::show::Show;
 use crate::stage::{boxes, moves, pictures, stage, viewpoint};
 use crate::style::Style;
 use crate::viewpoint::{Crowd, Looking, Viewpoint};
@@ -46,9 +47,9 @@ pub(crate) struct Render {
     /// picture to picture; without it as the scene's camera says
     #[arg(long, value_name = "SECONDS", value_parser = shutter)]
     pub(crate) shutter: Option<f64>,
-    /// Draw the surfaces that particles come from and vanish at as well
-    #[arg(long)]
-    pub(crate) show_sources: bool,
+    /// Draw on top how it works
+    #[arg(long, value_name = "WHAT,...", value_delimiter = ',')]
+    pub(crate) show: Vec<Show>,
 }
 
 /// Draws a scene as the arguments say. Files are written whole, at the end, or not at all.
@@ -164,7 +165,7 @@ fn film(
 ) -> Outcome {
     let mut memory = Memory::new(&world.file, args.style, world.system.capacity());
     let shutter = timing.shutter(args, world);
-    let mut cast = Cast::new(&world.model, args.style, shutter, from, &mut memory);
+    let mut cast = Cast::new(&world.model, args.style, &args.show, shutter, from, &mut memory);
     let studio = Studio::new(args, world, from, &cast)?;
     let (mut shots, mut drawn) = (Vec::new(), Vec::new());
     for frame in 0..=timing.frames {
@@ -210,7 +211,7 @@ struct Studio {
     model: Model,
     pictures: Arc<[Flipbook]>,
     size: (u32, u32),
-    show_sources: bool,
+    show: Vec<Show>,
     /// Whether particles are drawn along their ways.
     exposed: bool,
     /// The scenery, brought before the lens but once, if that stands still as well.
@@ -230,7 +231,7 @@ impl Studio {
             file: file.clone(),
             model: model.clone(),
             size: args.size,
-            show_sources: args.show_sources,
+            show: args.show.clone(),
             exposed: cast.is_exposed(),
             still: None,
             batch,
@@ -243,7 +244,7 @@ impl Studio {
 
     /// The scenery at an instant, with what else is solid, seen by a camera.
     fn renderer(&self, instant: Time, camera: Camera, pieces: &[Piece]) -> Renderer {
-        let mut stage = stage(&self.file, &self.model, self.show_sources, instant);
+        let mut stage = stage(&self.file, &self.model, &self.show, instant);
         stage.pieces.extend_from_slice(pieces);
         let stage = Stage { camera, pictures: self.pictures.clone(), ..stage };
         Renderer::new(&stage, self.size.0, self.size.1)

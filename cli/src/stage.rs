@@ -2,6 +2,7 @@
 
 use crate::draw::{self, Background, Flipbook, Line, Piece, Stage, Surface, shapes};
 use crate::outcome::{Failure, Outcome};
+use crate::show::Show;
 use crate::style::Style;
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
@@ -13,8 +14,8 @@ use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scenery as it stands at an instant, and sources and sinks if they are to be seen.
-pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant: Time) -> Stage {
+/// The scenery as it stands at an instant, and sources and sinks as glass if they are to be seen.
+pub(crate) fn stage(file: &SceneFile, model: &Model, show: &[Show], instant: Time) -> Stage {
     let bounds = bounds(file, model);
     let mut stage = Stage {
         camera: camera(file.camera.as_ref(), bounds),
@@ -31,14 +32,12 @@ pub(crate) fn stage(file: &SceneFile, model: &Model, show_sources: bool, instant
         let to_world = if motion.is_still() { *to_world } else { motion.at(instant).after(to_world) };
         place(&mut stage, shape, &to_world, look(material), reach);
     }
-    if show_sources {
-        let sources = model.emitters.iter().map(|e| (&e.shape, e.color.unwrap_or([120, 200, 120, 255])));
-        let sinks = model.forces.1.iter().map(|s| (&s.shape, [200, 90, 90, 255]));
-        for (shape, [r, g, b, _]) in sources.chain(sinks) {
-            let tint = Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0;
-            let glass = draw::Material { ambient: tint, diffuse: tint, opacity: 0.35, ..draw::Material::default() };
-            place(&mut stage, shape, &Affine::IDENTITY, glass, reach);
-        }
+    let sources = model.emitters.iter().map(|e| (Show::Sources, &e.shape, e.color.unwrap_or([120, 200, 120, 255])));
+    let sinks = model.forces.1.iter().map(|s| (Show::Sinks, &s.shape, [200, 90, 90, 255]));
+    for (_, shape, [r, g, b, _]) in sources.chain(sinks).filter(|(what, ..)| show.contains(what)) {
+        let tint = Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0;
+        let glass = draw::Material { ambient: tint, diffuse: tint, opacity: 0.35, ..draw::Material::default() };
+        place(&mut stage, shape, &Affine::IDENTITY, glass, reach);
     }
     stage
 }

@@ -1,15 +1,18 @@
 //! The looks of particles: the same to whatever draws them.
 //!
 //! What there is to draw is written as plain lists into memory that the caller lends: [`sprites`] (pictures that stand in space),
-//! [`solids`] (shapes), [`trails`](Trails::lines), [`springs`] and [`velocities`] (lines), [`surface`] (cloth). The same bits on every
+//! [`solids`] (shapes), [`trails`](Trails::lines), [`springs`] and [`velocities`] (lines), [`surface`] (cloth), [`cells`]
+//! and [`arrows`] (what is not seen otherwise). The same bits on every
 //! machine; what finds no room is counted.
 
+mod debug;
 mod line;
 mod solid;
 mod sprite;
 mod surface;
 mod trail;
 
+pub use debug::{arrow, arrows, cells};
 pub use line::{Line, edges, links, springs, velocities};
 pub use solid::{Instance, solid, solids};
 pub use sprite::{Sprite, View, back_to_front, sprite, sprites};

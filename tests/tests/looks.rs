@@ -1,7 +1,10 @@
 //! What there is to draw: trails, lines, shapes and surfaces as plain lists.
 
 use pointmass::constrain::{Distance, Rope};
-use pointmass::draw::{Instance, Knot, Line, Patch, Ring, Trails, Vertex, links, solids, springs, surface, velocities};
+use pointmass::draw::{
+    Instance, Knot, Line, Patch, Ring, Trails, Vertex, arrows, cells, links, solids, springs, surface, velocities,
+};
+use pointmass::index::{SpatialIndex, Structure};
 use pointmass::material::{Heading, TrailMaterial};
 use pointmass::shape::Sphere;
 use pointmass::{
@@ -295,5 +298,58 @@ fn a_scene_file_says_shapes_and_trails_and_reads_back_what_it_wrote() {
         let checked = SceneFile::from_json("looks.json", &text(material)).and_then(|file| file.check().map(|()| file));
         let error = checked.expect_err(material).to_string();
         assert!(error.contains(told), "{material}: {error}");
+    }
+}
+
+#[test]
+fn boxes_of_every_index_hold_each_point_once() {
+    let spread = |i: u32, k: u32| (i.wrapping_mul(k) >> 8) as f32 / 16_777_216.0;
+    for (count, far) in [(0u32, 0.0f32), (1, 0.0), (700, 0.0), (700, 1e5)] {
+        let mut points: Vec<_> = (0..count)
+            .map(|i| {
+                Vec3::new(far, -far, 0.0)
+                    + Vec3::new(9.0, 2.0, 5.0)
+                        * Vec3::from([0x9e37_79b1, 0x85eb_ca6b, 0xc2b2_ae35].map(|k| spread(i, k)))
+            })
+            .collect();
+        points.extend([Vec3::NAN, Vec3::new(0.0, f32::INFINITY, 0.0)]);
+        for &structure in Structure::ALL {
+            let mut memory = vec![0; structure.words(points.len())];
+            let mut index = structure.index(&mut memory);
+            index.build(&points, 0.0).expect("there is room");
+            let (mut places, mut parts) = (vec![0; count as usize], 0);
+            index.parts(&mut |slots| {
+                parts += usize::from(!slots.is_empty());
+                slots.for_each(|place| places[place] += 1);
+            });
+            assert!(places.iter().all(|&times| times == 1), "{structure:?}, {count}");
+            let mut lines = vec![Line::NONE; 12 * parts];
+            assert_eq!(cells(&index, &points, [9; 4], &mut lines), (12 * parts, 0), "{structure:?}, {count}");
+            let low = |edges: &[Line]| edges.iter().flat_map(|line| line.ends).fold(Vec3::INFINITY, Vec3::min);
+            let high = |edges: &[Line]| edges.iter().flat_map(|line| line.ends).fold(Vec3::NEG_INFINITY, Vec3::max);
+            for point in points.iter().filter(|point| point.is_finite()) {
+                let holds = |edges: &&[Line]| point.cmpge(low(edges)).all() && point.cmple(high(edges)).all();
+                assert!(lines.chunks(12).any(|edges| holds(&edges)), "{structure:?}: nothing holds {point}");
+            }
+            let room = lines.len().min(5);
+            assert_eq!(cells(&index, &points, [9; 4], &mut lines[..room]), (room, 12 * parts - room));
+        }
+    }
+}
+
+#[test]
+fn arrows_begin_or_end_on_their_surface() {
+    let ball = Sphere { center: Vec3::new(1.0, -2.0, 3.0), radius: 2.0 };
+    let out = |point: Vec3| point.distance(ball.center) - ball.radius;
+    for (direction, length) in [(None, 0.5), (Some(Vec3::X * 7.0), 0.5), (None, -0.3)] {
+        let mut lines = [Line::NONE; 40];
+        assert_eq!(arrows(&ball, direction, length, 8, [255; 4], &mut lines), (40, 0));
+        for arrow in lines.chunks(5) {
+            let [from, to] = arrow[0].ends;
+            let (on, off) = if length > 0.0 { (from, to) } else { (to, from) };
+            assert!(out(on).abs() < 1e-5 && (to.distance(from) - length.abs()).abs() < 1e-5, "{from} to {to}");
+            assert!(direction.is_some() || (out(off) - length.abs()).abs() < 1e-5, "{from} to {to}");
+            assert!(direction.is_none_or(|direction| (to - from).dot(direction) > 3.49), "{from} to {to}");
+        }
     }
 }

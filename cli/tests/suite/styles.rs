@@ -63,3 +63,28 @@ fn a_style_that_is_none_is_told() {
     let folder = Folder::with("a.json", SCENE);
     folder.misuse("render a.json --out a.png", &[("--style blobs", "points, sprites, shapes, trails, lines")]);
 }
+
+#[test]
+fn what_works_unseen_is_shown_where_it_is_asked_for() {
+    let more = r#""sinks": [{"shape": {"sphere": {"center": [-2, -1.6, 0], "radius": 0.2}}, "intensity": 0, "ca": 1, "la": 0, "qa": 0}],
+        "emitters": [{"shape": {"sphere": {"center": [-2.4, 0, 0], "radius": 0.2}}, "rate": 0, "color": [0, 255, 0, 255]}],
+        "particles""#;
+    let folder = Folder::with("a.json", SCENE.replace(r#""particles""#, more));
+    let bare = drawn(&folder, "--style points");
+    let shown = |what: &str| drawn(&folder, &format!("--style points --show {what}"));
+    let changed =
+        |image: &RgbImage, other: &RgbImage| image.pixels().zip(other.pixels()).filter(|(a, b)| a != b).count();
+    // A spring far too long, a green source, a red sink, and a point that goes 0.3 m.
+    assert!(count(&shown("springs"), 0) > count(&bare, 0) + 20);
+    assert!(count(&shown("sources"), 1) > count(&bare, 1) + 30);
+    assert!(changed(&shown("sinks"), &bare) > 60, "{}", changed(&shown("sinks"), &bare));
+    assert!(count(&shown("velocities"), 0) > count(&bare, 0) + 4, "{}", count(&shown("velocities"), 0));
+    for index in ["grid", "kd", "bvh", "brute"] {
+        assert!(changed(&shown(&format!("index --index {index}")), &bare) > 100, "{index}");
+    }
+    let all = shown("index,velocities,springs,sources,sinks");
+    assert!(changed(&all, &bare) > 500);
+    let turned = drawn(&folder, "--style points --threads 3 --show sinks,sources,springs,velocities,index");
+    assert!(turned == all, "another order of asking is another picture");
+    folder.misuse("render a.json --out a.png", &[("--show all", "index, velocities, springs, sources, sinks")]);
+}

@@ -103,6 +103,12 @@ pub trait SpatialIndex: Sync {
     /// to caches.
     fn order(&self) -> &[u32];
 
+    /// Visits the parts into which space is divided, cells or leaves, as ranges of places of [`SpatialIndex::order`], each place in one of
+    /// them. All points are one part where an index does not say.
+    fn parts(&self, visit: &mut dyn FnMut(Range<usize>)) {
+        visit(0..self.order().len());
+    }
+
     /// Counts the points within `radius` of `center`.
     fn count(&self, center: Vec3, radius: f32) -> Cost;
 
@@ -217,6 +223,9 @@ macro_rules! answers {
     () => {
         fn order(&self) -> &[u32] {
             self.sorted().order()
+        }
+        fn parts(&self, visit: &mut dyn FnMut(core::ops::Range<usize>)) {
+            self.groups(&mut |slots: core::ops::Range<usize>, _| visit(slots));
         }
         fn count(&self, center: Vec3, radius: f32) -> Cost {
             Search(self).count(center, radius)

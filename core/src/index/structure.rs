@@ -96,6 +96,9 @@ impl SpatialIndex for AnyIndex<'_> {
     fn order(&self) -> &[u32] {
         self.get().order()
     }
+    fn parts(&self, visit: &mut dyn FnMut(Range<usize>)) {
+        self.get().parts(visit);
+    }
     fn count(&self, center: Vec3, radius: f32) -> Cost {
         self.get().count(center, radius)
     }
