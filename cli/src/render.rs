@@ -120,7 +120,8 @@ impl Timing {
     fn shutter(&self, args: &Render, world: &World) -> Option<f64> {
         let own = || world.file.camera.as_ref().and_then(|camera| camera.shutter).map(f64::from);
         let asked = args.shutter.or_else(own)?;
-        if asked > self.frame_time {
+        // A scene's own is as long as the film lets it be.
+        if asked > self.frame_time && args.shutter.is_some() {
             let frame_time = self.frame_time;
             let open = format!("pictures lie {frame_time} s apart, and it is open so long for each");
             warn(&[format!("the shutter of {asked} s: {open}")]);

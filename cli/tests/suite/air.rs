@@ -51,7 +51,8 @@ fn an_open_shutter_draws_ways_of_its_time_at_any_step() {
     folder.write("a.json", scene(r#", "shutter": 0.2"#, ""));
     assert_eq!(drawn(&folder, "--fps 2"), asked);
     assert_ne!(drawn(&folder, "--fps 2 --shutter 0.1"), asked);
-    let answer = folder.run("render a.json --out a.png --size 20x15 --fps 10");
+    folder.run("render a.json --out a.png --size 20x15 --fps 10").fine();
+    let answer = folder.run("render a.json --out a.png --size 20x15 --fps 10 --shutter 0.2");
     assert!(answer.warnings()[0].contains("the shutter of 0.2"), "{answer:?}");
     let cases =
         [("--shutter=-1", "expected seconds"), ("--shutter inf", "expected seconds"), ("--shutter x", "expected")];
