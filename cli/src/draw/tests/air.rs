@@ -164,3 +164,35 @@ fn a_way_is_even_all_along_and_what_is_out_of_sight_takes_its_share_along() {
     let seen = (4..36).map(|x| at(&left, x)).sum::<f64>() / 32.0;
     assert!((seen / mean - 0.5).abs() < 0.02, "{seen} and {mean}");
 }
+
+#[test]
+fn what_stands_for_a_point_shows_whole_where_it_lies_on_a_wall() {
+    let stage = Stage { pieces: vec![wall(3.0, glowing(Vec3::ZERO, 1.0))], ..plain([255; 4]) };
+    let seen = |distance: f32, sunk: f32| {
+        let one = board(Vec3::NEG_Z * distance, 0.2, [255, 0, 0, 255], Blend::Alpha);
+        linear(middle(&boards(&stage, &[Billboard { sunk, ..one }]))[0])
+    };
+    assert!(seen(3.0, 2.5) > 0.99 && seen(3.25, 2.5) > 0.99 && seen(3.75, 2.5) < 0.01);
+    assert!((seen(3.0, 0.0) - 0.5).abs() < 0.05);
+}
+
+#[test]
+fn a_clear_ball_takes_less_light_the_farther_out_it_is_looked_through() {
+    let stage = Stage { background: Background::Plain(Vec3::ONE), ..stage(vec![]) };
+    let ball = Dot { size: 0.8, color: [0, 0, 0, 200], ..dot(Vec3::NEG_Z * 2.0, [0; 3]) };
+    let image = frame(&stage, &[ball], &[]);
+    let eye = Eye::new(&stage, WIDTH, HEIGHT);
+    let radius = 0.4 * eye.lens.pixels_per_metre(2.0);
+    let left = 1.0 - 200.0 / 255.0f64;
+    for x in WIDTH / 2..WIDTH {
+        let out = f64::from((x as f32 + 0.5 - 0.5 * WIDTH as f32).hypot(0.5) / radius);
+        if out < 0.9 {
+            // No light is left but what passes along the chord, and a little of the ball's own shine.
+            let exact = left.powf((1.0 - out * out).sqrt());
+            let seen = linear(image[(x, HEIGHT / 2)].0[2]);
+            assert!(seen > exact - 0.02 && seen < exact + 0.25, "{seen} at {out}, not {exact}");
+        } else if out > 1.1 {
+            assert_eq!(image[(x, HEIGHT / 2)].0, [255; 3]);
+        }
+    }
+}
