@@ -106,6 +106,32 @@ impl Sheet {
         Some(Spring::new(ends, length(step), params.ks).damped(params.kd))
     }
 
+    /// The edges over which its [triangles](Sheet::triangles) bend: across each cell, then those along the first side, then those along
+    /// the second.
+    pub fn hinges(&self) -> impl Iterator<Item = Hinge> {
+        let sheet = *self;
+        let [width, height] = self.cells;
+        // The corner and the number of the first triangle of a cell.
+        let cell = move |u: u32, v: u32| (sheet.number(u, v), 2 * (v * width + u));
+        let corners = move |u: u32, v: u32| {
+            [sheet.number(u, v), sheet.number(u + 1, v), sheet.number(u, v + 1), sheet.number(u + 1, v + 1)]
+        };
+        let grid = |from: [u32; 2]| (from[1]..height).flat_map(move |v| (from[0]..width).map(move |u| (u, v)));
+        let across = grid([0, 0]).map(move |(u, v)| {
+            let ([a, b, c, d], (_, face)) = (corners(u, v), cell(u, v));
+            Hinge { edge: [a, d], far: [c, b], faces: [face + 1, face] }
+        });
+        let along = grid([0, 1]).map(move |(u, v)| {
+            let ([a, b, _, d], (below, face)) = (corners(u, v), cell(u, v - 1));
+            Hinge { edge: [a, b], far: [d, below], faces: [cell(u, v).1, face + 1] }
+        });
+        let aside = grid([1, 0]).map(move |(u, v)| {
+            let ([a, _, c, d], (before, face)) = (corners(u, v), cell(u - 1, v));
+            Hinge { edge: [a, c], far: [before, d], faces: [face, cell(u, v).1 + 1] }
+        });
+        across.chain(along).chain(aside)
+    }
+
     /// Two triangles for each cell, turned the same way.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         let sheet = *self;
@@ -117,6 +143,52 @@ impl Sheet {
             })
         })
     }
+}
+
+/// An edge over which two triangles bend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Hinge {
+    /// The vertices of the edge.
+    pub edge: [u32; 2],
+    /// The third vertex of each triangle.
+    pub far: [u32; 2],
+    /// The numbers of the triangles.
+    pub faces: [u32; 2],
+}
+
+impl Hinge {
+    /// All four vertices: those of the edge, then the far ones.
+    #[must_use]
+    pub const fn corners(&self) -> [u32; 4] {
+        [self.edge[0], self.edge[1], self.far[0], self.far[1]]
+    }
+
+    /// 1 if a triangle goes along the edge in its sense, −1 if it goes against it.
+    pub(crate) fn sign(&self, [a, b, c]: [u32; 3]) -> f32 {
+        if [[a, b], [b, c], [c, a]].contains(&self.edge) { 1.0 } else { -1.0 }
+    }
+}
+
+/// The edges over which a triangle mesh bends, by the numbers of their vertices: those that two triangles have in common. Edges of three
+/// and more do not bend.
+#[cfg(feature = "alloc")]
+#[must_use]
+pub fn mesh_hinges(triangles: &[[u32; 3]]) -> alloc::vec::Vec<Hinge> {
+    use alloc::collections::BTreeMap;
+    // Each edge once, with the corners that lie opposite and their triangles.
+    let mut edges: BTreeMap<[u32; 2], alloc::vec::Vec<[u32; 2]>> = BTreeMap::new();
+    for (face, &[a, b, c]) in triangles.iter().enumerate() {
+        for [from, to, far] in [[a, b, c], [b, c, a], [c, a, b]] {
+            if from != to && to != far && far != from {
+                edges.entry([from.min(to), from.max(to)]).or_default().push([far, face as u32]);
+            }
+        }
+    }
+    let pairs = edges.into_iter().filter_map(|(edge, sides)| Some((edge, <[[u32; 2]; 2]>::try_from(sides).ok()?)));
+    let hinges = pairs.map(|(edge, [[c, first], [d, second]])| Hinge { edge, far: [c, d], faces: [first, second] });
+    hinges.filter(|hinge| hinge.far[0] != hinge.far[1]).collect()
 }
 
 /// The springs of a triangle mesh, of which vertex 0 is particle `first` in the scene's start: one along every edge, and

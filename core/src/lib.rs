@@ -59,15 +59,15 @@ pub use cloth::{ClothSprings, Sheet, SpringParams};
 pub use collide::{Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
-pub use constrain::{Attach, Constraint, Contacts, Distance, Rope, ShapeMatching};
+pub use constrain::{Attach, Constraint, Contacts, Distance, Rope, ShapeMatching, Shell, ShellParams};
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
 pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};
 pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
-    AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones, MutualGravity, Penalty, PowerLaw,
-    Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity, Wind,
+    Aerodynamics, AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones, MutualGravity,
+    Penalty, PowerLaw, Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity, Wind,
 };
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;

@@ -250,6 +250,29 @@ pub fn sin_cos(radians: f32) -> (f32, f32) {
     sin_cos_turns(radians * (1.0 / core::f32::consts::TAU))
 }
 
+/// The angle from the first axis to the direction (x, y) \[rad\], from −π to π, within 3e-7; zero where there is no direction.
+///
+/// Cephes' single-precision polynomial on an eighth of a turn and half of that.
+#[must_use]
+pub fn angle(x: f32, y: f32) -> f32 {
+    use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+    let (wide, high) = (x.abs(), y.abs());
+    let steep = high > wide;
+    let (less, more) = if steep { (wide, high) } else { (high, wide) };
+    if !(more > 0.0) {
+        return 0.0;
+    }
+    // The tangent is at most 1, and after the second fold at most that of an eighth of a half turn.
+    let slope = less / more;
+    let (start, t) = if slope > 0.414_213_56 { (FRAC_PI_4, (slope - 1.0) / (slope + 1.0)) } else { (0.0, slope) };
+    let z = t * t;
+    let series = -0.333_329_5 + z * (0.199_777_1 + z * (-0.138_776_86 + z * 0.080_537_44));
+    let eighth = start + (t + t * z * series);
+    let quarter = if steep { FRAC_PI_2 - eighth } else { eighth };
+    let half = if x < 0.0 { PI - quarter } else { quarter };
+    if y < 0.0 { -half } else { half }
+}
+
 /// The largest whole number not above `x`; `x` itself beyond ±2³⁰.
 #[inline]
 #[must_use]

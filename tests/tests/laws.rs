@@ -31,6 +31,7 @@ mod ropes;
 mod rounding;
 mod sampling;
 mod scripted;
+mod sheets;
 mod springs;
 mod storage;
 mod tunnelling;

@@ -1,6 +1,6 @@
 //! The constraints that a scene file names.
 
-use super::{Attach, Bodies, Constraint, Demand, Distance, Rope, ShapeMatching, Share};
+use super::{Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell};
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
 
@@ -17,6 +17,8 @@ pub enum ConstraintKind {
     Cluster(ShapeMatching<Vec<u32>>),
     /// Particles that go where a script says.
     Attach(Attach<Vec<u32>, MotionBuf>),
+    /// A thin sheet that stretches, shears and bends.
+    Shell(Shell<Vec<u32>, Vec<[u32; 3]>, Vec<Hinge>>),
 }
 
 impl ConstraintKind {
@@ -27,6 +29,7 @@ impl ConstraintKind {
             Self::Rope(rope) => rope,
             Self::Cluster(cluster) => cluster,
             Self::Attach(attach) => attach,
+            Self::Shell(shell) => shell,
         }
     }
 
@@ -38,6 +41,7 @@ impl ConstraintKind {
             Self::Rope(rope) => rope.fault().or_else(|| twice(&rope.particles)),
             Self::Cluster(cluster) => cluster.fault().or_else(|| twice(&cluster.particles)),
             Self::Attach(attach) => attach.motion.fault().map(|why| ("motion", why)),
+            Self::Shell(shell) => shell.fault().or_else(|| twice(&shell.particles)),
         }
     }
 
@@ -46,7 +50,7 @@ impl ConstraintKind {
         let (list, closed) = match self {
             Self::Distance(distance) => (&distance.ends[..], false),
             Self::Rope(rope) => (&rope.particles[..], rope.closed),
-            Self::Cluster(_) | Self::Attach(_) => (&[][..], false),
+            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) => (&[][..], false),
         };
         let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
@@ -60,6 +64,7 @@ impl ConstraintKind {
             Self::Rope(rope) => &rope.particles,
             Self::Cluster(cluster) => &cluster.particles,
             Self::Attach(attach) => &attach.particles,
+            Self::Shell(shell) => &shell.particles,
         }
     }
 }

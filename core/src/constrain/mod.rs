@@ -13,6 +13,7 @@ mod distance;
 mod kind;
 mod rope;
 mod shape_matching;
+mod shell;
 
 pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
@@ -23,7 +24,11 @@ pub use distance::Distance;
 pub use kind::ConstraintKind;
 pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
+pub use shell::{Shell, ShellParams};
 
+pub use crate::cloth::Hinge;
+#[cfg(feature = "alloc")]
+pub use crate::cloth::mesh_hinges;
 pub use crate::memory::{Demand, Kept, Words};
 
 use crate::composed::composed;

@@ -1,8 +1,8 @@
 //! The forces that a file can name.
 
-use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
 #[cfg(feature = "alloc")]
-use super::{FlowKind, Pressure, Relaxation, Wind};
+use super::{Aerodynamics, FlowKind, Pressure, Relaxation, Wind};
+use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
 #[cfg(feature = "alloc")]
 use alloc::string::String;
 #[cfg(feature = "alloc")]
@@ -57,4 +57,6 @@ kinds! {
     Relaxation = "relaxation", Relaxation<String>, if "alloc";
     /// Gas in a closed mesh of particles.
     Pressure = "pressure", Pressure<Vec<[u32; 3]>>, if "alloc";
+    /// Lift and drag of triangles in the air.
+    Aerodynamics = "aerodynamics", Aerodynamics<Vec<[u32; 3]>, Vec<FlowKind>>, if "alloc";
 }

@@ -1,5 +1,6 @@
 //! Forces that pull and push particles: one file a force.
 
+mod aerodynamics;
 mod all_pairs;
 mod charge;
 mod curl;
@@ -25,6 +26,7 @@ mod steady;
 mod viscosity;
 mod wind;
 
+pub use aerodynamics::Aerodynamics;
 pub use all_pairs::AllPairs;
 pub use charge::Coulomb;
 pub use curl::Curl;

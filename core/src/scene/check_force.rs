@@ -21,8 +21,12 @@ impl SceneFile {
             }
         }
         for (i, force) in self.forces.iter().enumerate() {
-            let ForceKind::Pressure(pressure) = force else { continue };
-            for (k, corners) in pressure.triangles.iter().enumerate() {
+            let triangles = match force {
+                ForceKind::Pressure(pressure) => &pressure.triangles,
+                ForceKind::Aerodynamics(air) => &air.triangles,
+                _ => continue,
+            };
+            for (k, corners) in triangles.iter().enumerate() {
                 if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= count) {
                     let message = format!("particle {corner} is out of range; there are {count}, from 0");
                     return Err(SceneError::value(format!("forces[{i}].triangles[{k}]"), message));
@@ -86,8 +90,13 @@ pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
             .and_then(|()| zero_or_more(&name("theta"), c.theta)),
         ForceKind::Wind(wind) => {
             zero_or_more(&name("coefficient"), wind.coefficient.unwrap_or(0.0))?;
-            let mut flows = wind.field.iter().enumerate();
-            flows.try_for_each(|(i, flow)| check_flow(&name(&format!("field[{i}]")), flow))
+            check_flows(&name, &wind.field)
+        }
+        ForceKind::Aerodynamics(air) => {
+            let numbers =
+                [("density", air.density), ("drag", air.drag), ("lift", air.lift), ("friction", air.friction)];
+            numbers.into_iter().try_for_each(|(field, number)| zero_or_more(&name(field), number))?;
+            check_flows(&name, &air.field)
         }
         ForceKind::LennardJones(law) => finite(&name("epsilon"), &[law.0.epsilon])
             .and_then(|()| above_zero(&name("sigma"), law.0.sigma))
@@ -129,6 +138,11 @@ fn check_power(name: &dyn Fn(&str) -> alloc::string::String, law: &PowerLaw) -> 
     }
     length(&name("softening"), law.softening)?;
     reach(&name("reach"), law.reach)
+}
+
+fn check_flows(name: &dyn Fn(&str) -> alloc::string::String, flows: &[FlowKind]) -> Checked {
+    let mut flows = flows.iter().enumerate();
+    flows.try_for_each(|(i, flow)| check_flow(&name(&format!("field[{i}]")), flow))
 }
 
 fn check_flow(at: &str, flow: &FlowKind) -> Checked {

@@ -1,9 +1,11 @@
-//! Spring meshes in scene files, and what they are woven into.
+//! Sheets and meshes of particles in scene files: what holds them together, and what they are made into.
 
 use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
 use super::{PatchBuf, SceneError, SceneFile};
-use crate::cloth::{ClothSprings, Sheet, mesh_springs};
-use crate::force::{Pressure, Spring};
+use crate::cloth::{ClothSprings, Sheet, mesh_hinges, mesh_springs};
+use crate::constrain::{ConstraintKind, Shell, ShellParams};
+use crate::force::{Aerodynamics, FlowKind, ForceKind, Pressure, Spring};
+use crate::math::length;
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
 use alloc::format;
@@ -11,17 +13,28 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
 
-/// Particles joined by springs into a sheet, or into the form of a mesh. They follow the scene's own particles, in order.
+/// Particles joined into a sheet, or into the form of a mesh, as a shell or by springs. They follow the scene's own particles, in
+/// order.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Cloth {
     /// Its form.
     pub form: Form,
-    /// The mass of all of it \[kg\], of which every particle has an equal share.
+    /// The mass of all of it \[kg\], of which every particle has an equal share; in place of `density`.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub mass: f32,
-    /// Its springs, at rest in this form.
-    #[cfg_attr(feature = "serde", serde(alias = "threads"))]
+    /// Its mass for each square metre \[kg/m²\], of which particles have shares by the triangles around them; in place of `mass`.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub density: Option<f32>,
+    /// What it is made of, if it is a shell: its stiffness does not depend on the number of cells, nor on sub-steps.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub shell: Option<ShellParams>,
+    /// How the air pushes it: that of all `wind` among the scene's forces, or still air.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub air: Option<Air>,
+    /// Its springs, at rest in this form; beside a shell it needs none.
+    #[cfg_attr(feature = "serde", serde(default, alias = "threads"))]
     pub springs: ClothSprings,
     /// Springs break where a step ends with them so many times as long as at rest.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -48,6 +61,28 @@ pub struct Cloth {
     /// Its colour; without one, that of its material.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<Color>,
+}
+
+/// Air around a cloth: see [`Aerodynamics`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Air {
+    /// Its density \[kg/m³\].
+    pub density: f32,
+    /// The coefficient of drag of a plate across the wind.
+    pub drag: f32,
+    /// The coefficient of lift, at 45° twice what it lifts by.
+    pub lift: f32,
+    /// The coefficient of drag of a plate along the wind.
+    pub friction: f32,
+}
+
+impl Default for Air {
+    fn default() -> Self {
+        let Aerodynamics { density, drag, lift, friction, .. } = Aerodynamics::still(());
+        Self { density, drag, lift, friction }
+    }
 }
 
 /// Gas in a cloth: see [`Pressure`].
@@ -86,7 +121,7 @@ impl Cloth {
             }
             (Form::Mesh(_), None) => (Vec::new(), Vec::new()),
         };
-        let mass = self.mass / positions.len().max(1) as f32;
+        let mass = if self.density.is_some() { 0.0 } else { self.mass / positions.len().max(1) as f32 };
         let like = Particle {
             mass,
             velocity: self.velocity,
@@ -97,12 +132,50 @@ impl Cloth {
             ..Particle::REST
         };
         let mut particles: Vec<_> = positions.into_iter().map(|position| Particle { position, ..like }).collect();
+        for corners in self.density.iter().flat_map(|_| self.triangles(mesh)) {
+            let [a, b, c] = corners.map(|corner| particles.get(corner as usize).map_or(Vec3::ZERO, |p| p.position));
+            let third = self.density.unwrap_or(0.0) * length((b - a).cross(c - a)) / 6.0;
+            for corner in corners {
+                if let Some(particle) = particles.get_mut(corner as usize) {
+                    particle.mass += third;
+                }
+            }
+        }
         for &number in &self.fixed {
             if let Some(particle) = particles.get_mut(number as usize) {
                 particle.fixed = true;
             }
         }
         (particles, springs.into_iter().map(|spring| Spring { breaks_at: self.breaks_at, ..spring }).collect())
+    }
+
+    /// Its triangles, by its particles counted from 0.
+    fn triangles(&self, mesh: Option<&MeshBuf>) -> Vec<[u32; 3]> {
+        match (&self.form, mesh) {
+            (Form::Sheet(sheet), _) => sheet.triangles().collect(),
+            (Form::Mesh(_), mesh) => mesh.map_or_else(Vec::new, |mesh| mesh.triangles().to_vec()),
+        }
+    }
+
+    /// What holds it together, if it is a shell; its particles are those from `first` on, so many.
+    pub(super) fn shell(&self, mesh: Option<&MeshBuf>, first: u32, count: u32) -> Option<ConstraintKind> {
+        let params = self.shell?;
+        let triangles = self.triangles(mesh);
+        let (warp, hinges) = match &self.form {
+            Form::Sheet(sheet) => (sheet.sides[0], sheet.hinges().collect()),
+            Form::Mesh(_) => (Vec3::X, mesh_hinges(&triangles)),
+        };
+        let particles = (first..first.saturating_add(count)).collect();
+        Some(ConstraintKind::Shell(Shell { particles, triangles, hinges, warp, params }))
+    }
+
+    /// The push of the air.
+    pub(super) fn aerodynamics(&self, mesh: Option<&MeshBuf>, first: u32, forces: &[ForceKind]) -> Option<ForceKind> {
+        let Air { density, drag, lift, friction } = self.air?;
+        let triangles = self.triangles(mesh).iter().map(|corners| corners.map(|corner| first + corner)).collect();
+        let winds = forces.iter().filter_map(|force| if let ForceKind::Wind(wind) = force { Some(wind) } else { None });
+        let field: Vec<FlowKind> = winds.flat_map(|wind| wind.field.iter().copied()).collect();
+        Some(ForceKind::Aerodynamics(Aerodynamics { triangles, field, density, drag, lift, friction }))
     }
 
     /// The push of its gas.
@@ -114,11 +187,11 @@ impl Cloth {
 
     /// Its surface, if it has one.
     pub(super) fn patch(&self, mesh: Option<&MeshBuf>, first: u32) -> Option<PatchBuf> {
-        let (count, triangles): (usize, Vec<_>) = match (&self.form, mesh) {
-            (Form::Sheet(sheet), _) => (sheet.positions().count(), sheet.triangles().collect()),
-            (Form::Mesh(_), Some(mesh)) => (mesh.vertices().len(), mesh.triangles().to_vec()),
-            (Form::Mesh(_), None) => return None,
+        let count = match (&self.form, mesh) {
+            (Form::Sheet(sheet), _) => sheet.positions().count(),
+            (Form::Mesh(_), mesh) => mesh?.vertices().len(),
         };
+        let triangles = self.triangles(mesh);
         (!triangles.is_empty()).then_some(PatchBuf { first, count: count as u32, triangles, material: self.material })
     }
 
@@ -130,6 +203,25 @@ impl Cloth {
             }
             Form::Mesh(_) => None,
         }
+    }
+}
+
+impl Cloth {
+    /// Checks what it weighs, what it is made of and the air around it.
+    fn check_material(&self, at: &str) -> Result<(), SceneError> {
+        match self.density {
+            Some(_) if self.mass != 0.0 => {
+                return Err(SceneError::value(format!("{at}.density"), "say either density or mass"));
+            }
+            Some(density) => above_zero(&format!("{at}.density"), density)?,
+            None => above_zero(&format!("{at}.mass"), self.mass)?,
+        }
+        if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
+            return Err(SceneError::value(format!("{at}.shell.{field}"), message));
+        }
+        let Some(Air { density, drag, lift, friction }) = self.air else { return Ok(()) };
+        let numbers = [("density", density), ("drag", drag), ("lift", lift), ("friction", friction)];
+        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
     }
 }
 
@@ -145,13 +237,13 @@ impl SceneFile {
                 zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
                 zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
             }
-            if [structural, shear, bend].iter().all(Option::is_none) {
+            if cloth.shell.is_none() && [structural, shear, bend].iter().all(Option::is_none) {
                 return refuse(
                     "springs",
-                    "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}",
+                    "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
                 );
             }
-            above_zero(&format!("{at}.mass"), cloth.mass)?;
+            cloth.check_material(&at)?;
             finite(&format!("{at}.drag"), &[cloth.drag])?;
             finite(&format!("{at}.elasticity"), &[cloth.elasticity])?;
             finite(&format!("{at}.velocity"), &cloth.velocity.to_array())?;

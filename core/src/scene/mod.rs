@@ -40,7 +40,7 @@ mod write;
 #[cfg(feature = "alloc")]
 pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
-pub use cloth::{Cloth, Form, Gas};
+pub use cloth::{Air, Cloth, Form, Gas};
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
 #[cfg(feature = "alloc")]

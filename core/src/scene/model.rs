@@ -42,7 +42,7 @@ pub struct Model {
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
-    /// The constraints that bind them, then contacts by position.
+    /// The constraints that bind them, those of cloths that are shells, then contacts by position.
     pub constraints: (Vec<ConstraintKind>, Option<Contacts>),
     /// Parts that each step is cut into.
     pub substeps: u32,
@@ -165,6 +165,7 @@ impl Model {
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
             })
         });
+        let constraints = file.constraints.iter().cloned().chain(start.constraints).collect();
         Ok(Self {
             particles: start.particles,
             springs: start.springs,
@@ -172,7 +173,7 @@ impl Model {
             colliders: Scenery::new(colliders.collect::<Result<_, _>>()?),
             forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals),
             contacts: file.contacts,
-            constraints: (file.constraints.clone(), file.contacts.and_then(|response| response.contacts())),
+            constraints: (constraints, file.contacts.and_then(|response| response.contacts())),
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
             custom: file.custom.clone(),
@@ -282,8 +283,10 @@ impl Meshes<'_> {
 struct Start {
     particles: Vec<Particle>,
     springs: Vec<Spring>,
-    /// That of gas in cloths.
+    /// Those of gas in cloths, and of the air around them.
     forces: Vec<ForceKind>,
+    /// What holds those together that are shells.
+    constraints: Vec<ConstraintKind>,
     /// Where they begin.
     cloths: Vec<[usize; 2]>,
     patches: Vec<PatchBuf>,
@@ -295,6 +298,7 @@ impl Start {
             particles: file.particles.clone(),
             springs: file.springs.clone(),
             forces: Vec::new(),
+            constraints: Vec::new(),
             cloths: Vec::new(),
             patches: Vec::new(),
         };
@@ -320,11 +324,13 @@ impl Start {
                     format!("particle {number} is out of range; there are {}, from 0", particles.len()),
                 );
             }
+            start.constraints.extend(cloth.shell(mesh.as_deref(), first, particles.len() as u32));
             start.cloths.push([start.particles.len(), start.springs.len()]);
             start.particles.extend(particles);
             start.springs.extend(springs);
             start.patches.extend(cloth.patch(mesh.as_deref(), first));
             start.forces.extend(cloth.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
+            start.forces.extend(cloth.aerodynamics(mesh.as_deref(), first, &file.forces));
         }
         for particle in &mut start.particles {
             particle.color = color(file, particle.color, particle.material);

@@ -1,0 +1,142 @@
+//! Bending of triangles about their common edges.
+
+use super::membrane::frame;
+use super::solver::Step;
+use crate::math::{angle, dot, length};
+use core::f32::consts::{PI, TAU};
+use glam::Vec3;
+
+/// A fold at rest.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Bend {
+    /// The angle at rest \[rad\]; zero is flat.
+    angle: f32,
+    /// The curvature of the triangle on each side for each radian of the angle: along warp, weft, and √2 times that between
+    /// them \[1/m\]. Zero where the fold is degenerate.
+    curvature: [[f32; 3]; 2],
+}
+
+/// A fold in a sub-step: how its angle changes as its corners move.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Fold {
+    /// The change for each metre that the far corner of each triangle goes from the point of the edge beside it \[rad/m\].
+    slope: [Vec3; 2],
+    /// How far along the edge these points are, as a share of it.
+    foot: [f32; 2],
+    /// The moment in it × h², whatever its sign \[N m s²\].
+    moment: f32,
+}
+
+/// The normals of both triangles × twice the area, the edge from the first corner to the second and the ways from there to both far
+/// corners being given.
+fn normals([e, f, g]: [Vec3; 3]) -> [Vec3; 2] {
+    [e.cross(f), g.cross(e)]
+}
+
+/// The angle of a fold, above zero where the far corners are on the side of the normals.
+fn fold_angle(ways: [Vec3; 3]) -> f32 {
+    let [m, n] = normals(ways).map(|normal| normal / length(normal));
+    angle(dot(m, n), dot(n.cross(m), ways[0]) / length(ways[0]))
+}
+
+/// An angle, by the nearer way round.
+fn turn(angle: f32) -> f32 {
+    if angle > PI {
+        angle - TAU
+    } else if angle < -PI {
+        angle + TAU
+    } else {
+        angle
+    }
+}
+
+impl Bend {
+    /// The fold with these ways from the first corner; `signs` say on which side each triangle's normal is.
+    pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2]) -> Self {
+        let [e, f, g] = ways;
+        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2] };
+        let side = |far: Vec3, sign: f32| {
+            let up = far - e * (dot(far, e) / dot(e, e));
+            let height = length(up);
+            let [u, v] = frame([e, far], warp)?;
+            let [x, y] = [dot(up, u) / height, dot(up, v) / height];
+            Some([x * x, y * y, core::f32::consts::SQRT_2 * x * y].map(|part| sign * part / height))
+        };
+        let (Some(first), Some(second)) = (side(f, signs[0]), side(g, signs[1])) else { return none };
+        let this = Self { angle: fold_angle(ways), curvature: [first, second] };
+        let sound = this.angle.is_finite() && this.curvature.iter().flatten().all(|part| part.is_finite());
+        if sound { this } else { none }
+    }
+
+    /// Adds the curvature that a change of the angle makes to that of both triangles.
+    pub(super) fn curve(&self, side: usize, change: f32, curvature: &mut [f32; 3]) {
+        for (sum, part) in curvature.iter_mut().zip(self.curvature[side]) {
+            *sum += part * change;
+        }
+    }
+
+    /// The part that a triangle's curvature has in this fold's moment.
+    pub(super) fn moment(&self, side: usize, curvature: [f32; 3]) -> f32 {
+        let [a, b, c] = self.curvature[side];
+        a * curvature[0] + b * curvature[1] + c * curvature[2]
+    }
+}
+
+impl Fold {
+    pub(super) const NONE: Self = Self { slope: [Vec3::ZERO; 2], foot: [0.0; 2], moment: 0.0 };
+
+    /// The fold with these ways now, along others, and as it was as the sub-step began; with its angle less that at rest, and what
+    /// damping adds.
+    pub(super) fn of(bend: &Bend, step: &Step, [now, along, before]: [[Vec3; 3]; 3]) -> (Self, f32) {
+        let [e, f, g] = along;
+        let edge = length(e);
+        let slope = normals(along).map(|normal| normal * (edge / dot(normal, normal)));
+        let foot = [dot(f, e), dot(g, e)].map(|along| along / (edge * edge));
+        let this = Self { slope, foot, moment: 0.0 };
+        let open = turn(fold_angle(now) - bend.angle);
+        let open =
+            if step.lag > 0.0 { step.felt(open, open - turn(fold_angle(now) - fold_angle(before))) } else { open };
+        let acts = bend.curvature[0] != [0.0; 3];
+        if acts && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.slope.iter().all(|slope| slope.is_finite()) && self.foot.iter().all(|foot| foot.is_finite())
+    }
+
+    /// The same, with a moment in it.
+    pub(super) fn with_moment(self, moment: f32) -> Self {
+        Self { moment: moment.abs(), ..self }
+    }
+
+    /// How far the far corner of each side goes from the point of the edge beside it, where all four go so far.
+    fn ways(&self, [a, b, c, d]: [Vec3; 4]) -> [Vec3; 2] {
+        [(c, self.foot[0]), (d, self.foot[1])].map(|(far, foot)| far - a * (1.0 - foot) - b * foot)
+    }
+
+    /// How the angle changes where its corners go so far.
+    pub(super) fn change(&self, corners: [Vec3; 4]) -> f32 {
+        let [f, g] = self.ways(corners);
+        dot(self.slope[0], f) + dot(self.slope[1], g)
+    }
+
+    /// The forces of a moment on its four corners, in the sense that opens it.
+    pub(super) fn forces(&self, moment: f32) -> [Vec3; 4] {
+        self.spread(self.slope.map(|slope| slope * moment))
+    }
+
+    /// The resistance × h² that moments turning with the triangles put up, as the tension of triangles does: an upper bound of
+    /// a quarter of it.
+    pub(super) fn resist(&self, corners: [Vec3; 4]) -> [Vec3; 4] {
+        let ways = self.ways(corners);
+        self.spread(core::array::from_fn(|i| ways[i] * (0.25 * self.moment * dot(self.slope[i], self.slope[i]))))
+    }
+
+    /// Forces on both far corners, and against them on the edge.
+    fn spread(&self, [c, d]: [Vec3; 2]) -> [Vec3; 4] {
+        let [x, y] = self.foot;
+        [-(c * (1.0 - x) + d * (1.0 - y)), -(c * x + d * y), c, d]
+    }
+}

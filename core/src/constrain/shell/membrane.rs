@@ -1,0 +1,129 @@
+//! Strain in the plane of triangles.
+
+use super::ShellParams;
+use super::solver::Step;
+use crate::math::{dot, length, max, sqrt};
+use glam::Vec3;
+
+/// A triangle at rest.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Cell {
+    /// The inverse of its edges from the first corner in coordinates along warp and weft, by columns \[1/m\].
+    inverse: [f32; 4],
+    /// Its area \[m²\].
+    pub(super) area: f32,
+}
+
+/// A triangle in a sub-step.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Strain {
+    /// What warp and weft have become at the sub-step's beginning, for each metre of them.
+    along: [Vec3; 2],
+    /// The largest pull in it, or zero where it is only pressed \[N/m\].
+    tension: f32,
+    /// Its curvature, or the change of that: along warp, weft, and √2 times that between them \[1/m\].
+    pub(super) curvature: [f32; 3],
+}
+
+/// The unit vectors along warp and weft in the plane of a triangle with these edges; none if it is degenerate.
+pub(super) fn frame([e, f]: [Vec3; 2], warp: Vec3) -> Option<[Vec3; 2]> {
+    let normal = e.cross(f);
+    let size = length(normal);
+    // A triangle narrower than a millionth of its length has no plane.
+    if !(size > 1e-6 * max(dot(e, e), dot(f, f)) && size < f32::INFINITY) {
+        return None;
+    }
+    let normal = normal / size;
+    let flat = |v: Vec3| v - normal * dot(normal, v);
+    let (thread, edge) = (flat(warp), flat(e));
+    let along = if dot(thread, thread) > 1e-6 * dot(warp, warp) { thread } else { edge };
+    let u = along / length(along);
+    u.is_finite().then(|| [u, normal.cross(u)])
+}
+
+impl Cell {
+    pub(super) const NONE: Self = Self { inverse: [0.0; 4], area: 0.0 };
+
+    pub(super) fn at_rest(edges: [Vec3; 2], warp: Vec3) -> Self {
+        let Some([u, v]) = frame(edges, warp) else { return Self::NONE };
+        let [a, b] = edges.map(|edge| [dot(edge, u), dot(edge, v)]);
+        let twice = a[0] * b[1] - b[0] * a[1];
+        let inverse = [b[1], -a[1], -b[0], a[0]].map(|x| x / twice);
+        let sound = twice > 0.0 && inverse.iter().all(|x| x.is_finite());
+        if sound { Self { inverse, area: 0.5 * twice } } else { Self::NONE }
+    }
+
+    /// What warp and weft become where the edges are these.
+    fn deform(&self, [e, f]: [Vec3; 2]) -> [Vec3; 2] {
+        let [a, b, c, d] = self.inverse;
+        [e * a + f * b, e * c + f * d]
+    }
+
+    /// The forces on the second and the third corner of the stresses along warp and weft; that on the first is against both.
+    fn forces(&self, [p, q]: [Vec3; 2]) -> [Vec3; 2] {
+        let [a, b, c, d] = self.inverse;
+        [p * a + q * c, p * b + q * d]
+    }
+
+    /// Stresses × area × h² of strains along warp, weft, and of the angle between them.
+    fn stress(&self, params: &ShellParams, h: f32, strain: [f32; 3]) -> [f32; 3] {
+        let scale = self.area * (h * h);
+        let [warp, weft] = params.stretch;
+        [scale * warp * strain[0], scale * weft * strain[1], scale * params.shear * strain[2]]
+    }
+}
+
+impl Strain {
+    pub(super) const NONE: Self = Self { along: [Vec3::ZERO; 2], tension: 0.0, curvature: [0.0; 3] };
+
+    /// The triangle with these edges now, along others, and as it was as the sub-step began; with the push × h² on its second and
+    /// third corner.
+    pub(super) fn of(
+        cell: &Cell,
+        params: &ShellParams,
+        step: &Step,
+        [now, along, before]: [[Vec3; 2]; 3],
+    ) -> (Self, [Vec3; 2]) {
+        let (h, strain, earlier) = (step.h, green(cell.deform(now)), green(cell.deform(before)));
+        let stress = cell.stress(params, 1.0, strain);
+        let mut this = Self { along: cell.deform(along), ..Self::NONE };
+        let total: [f32; 3] = core::array::from_fn(|i| step.felt(strain[i], earlier[i]));
+        let push = this.push(cell, cell.stress(params, h, total)).map(|push| -push);
+        // The larger eigenvalue of the stresses.
+        let (half, mean) = (0.5 * (stress[0] - stress[1]), 0.5 * (stress[0] + stress[1]));
+        this.tension = max(mean + sqrt(half * half + stress[2] * stress[2]), 0.0) / cell.area;
+        let sound = cell.area > 0.0 && this.tension < f32::INFINITY && push.iter().all(|push| push.is_finite());
+        if sound { (this, push) } else { (Self::NONE, [Vec3::ZERO; 2]) }
+    }
+
+    /// How strains change as warp and weft do, along the directions of the beginning.
+    fn rate(&self, [du, dv]: [Vec3; 2]) -> [f32; 3] {
+        let [u, v] = self.along;
+        [dot(u, du), dot(v, dv), dot(u, dv) + dot(v, du)]
+    }
+
+    /// The forces of stresses on the second and the third corner, inward where it is stretched.
+    fn push(&self, cell: &Cell, [warp, weft, shear]: [f32; 3]) -> [Vec3; 2] {
+        let [u, v] = self.along;
+        cell.forces([u * warp + v * shear, v * weft + u * shear])
+    }
+
+    /// The resistance × h² to a change of the edges, against it on the second and the third corner.
+    pub(super) fn resist(&self, cell: &Cell, params: &ShellParams, step: &Step, edges: [Vec3; 2]) -> [Vec3; 2] {
+        let change = cell.deform(edges);
+        let stress = cell.stress(params, step.h, self.rate(change)).map(|stress| stress * step.rate);
+        let [a, b] = self.push(cell, stress);
+        // What is tense swings to and fro across: a quarter of that keeps any step stable, and takes nothing from the motion
+        // (Newmark's β = 1/4 for these forces).
+        let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
+        let [c, d] = cell.forces(change.map(|change| change * taut));
+        [a + c, b + d]
+    }
+}
+
+/// Green's strain along warp and weft, and twice that between them.
+fn green([u, v]: [Vec3; 2]) -> [f32; 3] {
+    [0.5 * (dot(u, u) - 1.0), 0.5 * (dot(v, v) - 1.0), dot(u, v)]
+}

@@ -1,0 +1,241 @@
+//! Thin sheets that stretch, shear and bend by the numbers of their material: cloth, paper, sails, leaves, foil.
+
+mod fold;
+mod membrane;
+mod solver;
+
+use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::cloth::Hinge;
+use crate::memory::take;
+use fold::{Bend, Fold};
+use glam::Vec3;
+use membrane::{Cell, Strain};
+use solver::{Solver, Step};
+
+/// What a sheet is made of, by numbers that do not depend on its mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ShellParams {
+    /// Young's modulus times thickness along the warp and along the weft \[N/m\]: a strip of that width is stretched by a share
+    /// s of its length with a pull of s times as much for each metre of its width. Woven cotton has about 2,000, jersey 100.
+    pub stretch: [f32; 2],
+    /// Shear modulus times thickness \[N/m\], for the angle between warp and weft. Half the stretch is what a material has that
+    /// is the same in all directions; cloth has much less.
+    pub shear: f32,
+    /// Bending stiffness \[N m\]: a strip is bent to a radius R by a moment of so much over R for each metre of its width. Silk has
+    /// about 1e-6, cotton 1e-5, denim 1e-4, paper 1e-3.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub bending: f32,
+    /// How long stresses take to fade whose strain stands still \[s\] (Kelvin and Voigt): a stress is that of the strain and of so
+    /// many seconds of its rate.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub damping: f32,
+}
+
+impl ShellParams {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let [warp, weft] = self.stretch;
+        [
+            ("stretch", warp, "must not be below zero, in N/m"),
+            ("stretch", weft, "must not be below zero, in N/m"),
+            ("shear", self.shear, "must not be below zero, in N/m"),
+            ("bending", self.bending, "must not be below zero, in N m"),
+            ("damping", self.damping, "must not be below zero, in s"),
+        ]
+        .into_iter()
+        .find(|&(_, value, _)| !(0.0..f32::INFINITY).contains(&value))
+        .map(|(name, _, message)| (name, message))
+    }
+}
+
+/// A thin shell of triangles, in the shape in which it begins at rest.
+///
+/// In its plane each triangle resists Green's strain along warp, weft and between them; out of it the curvature that the angles
+/// over its three edges make, less that at rest: ½ B A |S − S₀|², with S = Σ θ n nᵀ / height (Grinspun, Gingold, Reisman and Zorin,
+/// "Computing discrete shape operators on general meshes", Computer Graphics Forum 25, 2006, without Poisson's ratio). On sheets of
+/// cells that is exact for every uniform curvature, so that a mesh twice as fine bends alike. The quadratic energy over single
+/// edges (Bergou et al. 2006, Grinspun et al. 2003), with the weights printed there, makes such a sheet three times as stiff along its
+/// cells as across them.
+///
+/// Stretching and bending are solved as one, by conjugate gradients for the positions at the sub-step's end, as often as it takes
+/// to be as stiff as the numbers say: at rest the forces are those of the material, whatever the sub-steps, and that does not depend
+/// on the order of triangles. The stiffer, the finer the mesh and the longer the sub-steps, the more iterations: as the square root of
+/// stretch × h² / mass of a particle. One iteration costs about as much as a sweep of constraints over all edges. Iterations are
+/// counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it is then softer for a while.
+///
+/// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
+/// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. Whoever is fixed
+/// stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.
+///
+/// ```
+/// use pointmass::constrain::{Shell, ShellParams};
+/// use pointmass::{Gravity, Heap, Particle, Scene, Sheet, System, Time, Vec3};
+///
+/// // A strip of stiff paper, clamped where it begins.
+/// let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X * 0.21, Vec3::Z * 0.03], cells: [14, 2] };
+/// let gram = Particle { mass: 0.08 * 0.21 * 0.03 / 45.0, ..Particle::REST };
+/// let mut start: Vec<Particle> = sheet.particles(gram).collect();
+/// start.iter_mut().filter(|p| p.position.x < 0.02).for_each(|p| p.fixed = true);
+/// let paper = ShellParams { stretch: [1e4; 2], shear: 5e3, bending: 1e-2, damping: 1e-3 };
+/// let shell = Shell {
+///     particles: (0..45).collect::<Vec<u32>>(),
+///     triangles: sheet.triangles().collect::<Vec<_>>(),
+///     hinges: sheet.hinges().collect::<Vec<_>>(),
+///     warp: Vec3::X,
+///     params: paper,
+/// };
+/// let scene = Scene { start: &start, forces: &Gravity::EARTH, constraints: &shell, substeps: 10, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// for frame in 1..=30 {
+///     system.step_to(&scene, Time::frame(frame, 60));
+/// }
+/// let end = system.particles().position[14];
+/// assert!(end.y < -0.005 && end.y > -0.04, "it bends, and does not hang: {end}");
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Shell<P, T, H> {
+    /// The particles, by their place in the scene's start.
+    pub particles: P,
+    /// The triangles, by places in `particles`.
+    pub triangles: T,
+    /// The edges over which it bends, from [`Sheet::hinges`](crate::Sheet::hinges) or [`mesh_hinges`](super::mesh_hinges).
+    pub hinges: H,
+    /// The direction of the warp in the shape in which it begins; each triangle takes it in its own plane.
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub warp: Vec3,
+    /// Its material.
+    pub params: ShellParams,
+}
+
+/// The words that it keeps of each triangle and each fold, and works with; and with each particle.
+const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<Bend>() / 4];
+const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 14];
+
+impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
+    /// The numbers of its particles, triangles and hinges.
+    fn counts(&self) -> [usize; 3] {
+        [self.particles.as_ref().len(), self.triangles.as_ref().len(), self.hinges.as_ref().len()]
+    }
+
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let [particles, triangles, _] = self.counts();
+        let stranger = |number: u32, count: usize| number as usize >= count;
+        let mut corners = self.triangles.as_ref().iter().flatten();
+        let mut hinges = self.hinges.as_ref().iter();
+        let faults = [
+            (corners.any(|&c| stranger(c, particles)), "triangles", "have to name places in particles, from 0"),
+            (
+                hinges.any(|hinge| {
+                    hinge.corners().into_iter().any(|c| stranger(c, particles))
+                        || hinge.faces.into_iter().any(|face| stranger(face, triangles))
+                }),
+                "hinges",
+                "have to name places in particles, and triangles, from 0",
+            ),
+            (!self.warp.is_finite(), "warp", "has to be finite"),
+        ];
+        let wrong = faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message));
+        wrong.or_else(|| self.params.fault())
+    }
+
+    /// The shape at rest in the memory that it keeps: whether it is known, its triangles, its folds.
+    fn rest<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [u32], &'m mut [Cell], &'m mut [Bend]) {
+        let [_, triangles, hinges] = self.counts();
+        let mut rest = kept;
+        let known = take(&mut rest, 1);
+        let cells = whole(take(&mut rest, triangles.saturating_mul(KEPT[0])));
+        (known, cells, whole(take(&mut rest, hinges.saturating_mul(KEPT[1]))))
+    }
+
+    /// Takes the shape at rest from where all are, at the first of all.
+    fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
+        let (known, cells, bends) = self.rest(kept);
+        let [0] = *known else { return };
+        known[0] = 1;
+        let place = |corner: u32| {
+            let row = bodies.row_of_start(*self.particles.as_ref().get(corner as usize)?)?;
+            Some(bodies.position[row])
+        };
+        for (&corners, cell) in self.triangles.as_ref().iter().zip(&mut *cells) {
+            let [a, b, c] = corners.map(place);
+            *cell = a.zip(b).zip(c).map_or(Cell::NONE, |((a, b), c)| Cell::at_rest([b - a, c - a], self.warp));
+        }
+        for (hinge, bend) in self.hinges.as_ref().iter().zip(bends) {
+            let triangles = hinge.faces.map(|face| self.triangles.as_ref().get(face as usize));
+            let corners = hinge.corners().map(place);
+            let ([Some(first), Some(second)], [Some(a), Some(b), Some(c), Some(d)]) = (triangles, corners) else {
+                continue;
+            };
+            let signs = [hinge.sign(*first), -hinge.sign(*second)];
+            *bend = Bend::at_rest([b - a, c - a, d - a], self.warp, signs);
+        }
+    }
+}
+
+/// As many whole structs as there are in so many words.
+fn whole<S: bytemuck::Pod>(words: &mut [u32]) -> &mut [S] {
+    let size = size_of::<S>() / 4;
+    let count = words.len() / size;
+    bytemuck::cast_slice_mut(&mut words[..count * size])
+}
+
+impl<P, T, H> Constraint for Shell<P, T, H>
+where
+    P: AsRef<[u32]> + Sync,
+    T: AsRef<[[u32; 3]]> + Sync,
+    H: AsRef<[Hinge]> + Sync,
+{
+    fn demand(&self) -> Demand {
+        let [particles, triangles, hinges] = self.counts();
+        let sum = |parts: [usize; 3]| parts.into_iter().fold(0, usize::saturating_add);
+        let kept = sum([1, triangles.saturating_mul(KEPT[0]), hinges.saturating_mul(KEPT[1])]);
+        let work =
+            sum([triangles.saturating_mul(WORK[0]), hinges.saturating_mul(WORK[1]), particles.saturating_mul(WORK[2])]);
+        let words = |fixed| Words { per_row: 0, fixed };
+        Demand { kept: words(kept), scratch: words(work), ..Demand::NONE }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.triangles.as_ref().is_empty() && self.hinges.as_ref().is_empty()
+    }
+
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.learn(bodies, share.kept.fixed);
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let h = bodies.substep.seconds();
+        if !(h > 0.0) {
+            return;
+        }
+        let [_, triangles, hinges] = self.counts();
+        let (_, cells, bends) = self.rest(share.kept.fixed);
+        let mut rest = &mut *share.scratch;
+        let strains = whole(take(&mut rest, triangles.saturating_mul(WORK[0])));
+        let folds = whole(take(&mut rest, hinges.saturating_mul(WORK[1])));
+        let mut solver = Solver {
+            params: &self.params,
+            step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },
+            triangles: self.triangles.as_ref(),
+            cells,
+            strains,
+            hinges: self.hinges.as_ref(),
+            bends,
+            folds,
+            vectors: solver::Vectors::of(bodies, self.particles.as_ref(), rest),
+        };
+        solver.linearise(bodies);
+        solver.solve(bodies.report);
+        solver.keep_spin(bodies);
+        solver.act(bodies);
+    }
+}

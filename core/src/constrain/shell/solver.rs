@@ -1,0 +1,293 @@
+//! The positions of a shell at a sub-step's end, by conjugate gradients.
+
+use super::fold::{Bend, Fold};
+use super::membrane::{Cell, Strain};
+use super::{Bodies, ShellParams};
+use crate::cloth::Hinge;
+use crate::lanes;
+use crate::math::{dot, sqrt};
+use crate::memory::take;
+use crate::report::Report;
+use crate::rows::add_scaled;
+use glam::{Mat3, Vec3};
+
+/// Iterations at the most.
+const ITERATIONS: u32 = 400;
+/// The residual at which a solution is good enough, as a share of what it begins with.
+const RESIDUAL: f32 = 1e-4;
+/// The row of a particle that is not there.
+const NOBODY: u32 = u32::MAX;
+
+/// A sub-step.
+pub(super) struct Step {
+    /// How long it is \[s\].
+    pub(super) h: f32,
+    /// The seconds of a strain's rate that count as strain.
+    pub(super) lag: f32,
+    /// How much stiffer that makes a change within the sub-step.
+    pub(super) rate: f32,
+}
+
+impl Step {
+    /// A strain that was another when the sub-step began, and what its rate adds: a strain that stands still is felt as it is.
+    pub(super) fn felt(&self, now: f32, before: f32) -> f32 {
+        now + self.lag / self.h * (now - before)
+    }
+}
+
+/// The particles of a shell in a sub-step, by their place in its list.
+pub(super) struct Vectors<'m> {
+    rows: &'m mut [u32],
+    /// Inverse masses; zero for what does not move \[1/kg\].
+    weight: &'m mut [f32],
+    /// How far they are moved \[m\].
+    shift: &'m mut [Vec3],
+    /// Residuals, directions, and what the system makes of these.
+    r: &'m mut [Vec3],
+    p: &'m mut [Vec3],
+    q: &'m mut [Vec3],
+}
+
+impl<'m> Vectors<'m> {
+    /// Those of particles by their place in the scene's start; whoever is not finite is not among them.
+    pub(super) fn of(bodies: &Bodies<'_>, particles: &[u32], words: &'m mut [u32]) -> Self {
+        let mut rest = words;
+        let count = particles.len();
+        let rows = take(&mut rest, count);
+        let weight: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, count));
+        let [shift, r, p, q] = core::array::from_fn(|_| super::whole(take(&mut rest, 3 * count)));
+        for ((row, weight), &number) in rows.iter_mut().zip(&mut *weight).zip(particles) {
+            let found = bodies.row_of_start(number);
+            let sound = |row: usize| bodies.position[row].is_finite() && bodies.velocity[row].is_finite();
+            let found = found.filter(|&row| sound(row));
+            *row = found.map_or(NOBODY, |row| row as u32);
+            let inverse = found.map_or(0.0, |row| bodies.inverse_mass[row]);
+            *weight = if inverse > 0.0 && inverse < f32::INFINITY { inverse } else { 0.0 };
+        }
+        shift.fill(Vec3::ZERO);
+        r.fill(Vec3::ZERO);
+        Self { rows, weight, shift, r, p, q }
+    }
+
+    /// The rows of some particles, if all are there.
+    fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
+        let rows = corners.map(|corner| self.rows.get(corner as usize).copied().unwrap_or(NOBODY) as usize);
+        rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
+    }
+
+    /// z = W r, and r · z.
+    fn precondition(&mut self) -> f32 {
+        for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
+            *z = r * weight;
+        }
+        lanes::dot(self.r, self.q)
+    }
+}
+
+/// A shell in a sub-step: (M + h² K) Δx = h² f, f being the forces where the method has moved all, along the directions that the sub-step
+/// began with.
+///
+/// Preconditioned by masses alone, every direction of the search is a sum of forces within the shell: however early it
+/// ends, no momentum comes of it.
+pub(super) struct Solver<'m> {
+    pub(super) params: &'m ShellParams,
+    pub(super) step: Step,
+    pub(super) triangles: &'m [[u32; 3]],
+    pub(super) cells: &'m [Cell],
+    pub(super) strains: &'m mut [Strain],
+    pub(super) hinges: &'m [Hinge],
+    pub(super) bends: &'m [Bend],
+    pub(super) folds: &'m mut [Fold],
+    pub(super) vectors: Vectors<'m>,
+}
+
+impl Solver<'_> {
+    /// The forces where all are, and the directions in which they act.
+    pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
+        let (x, v, x0) = (&*bodies.position, &*bodies.velocity, bodies.before[0]);
+        let h = self.step.h;
+        // From one particle to another: now, along what forces act, and as it was.
+        let ways = |a: usize, b: usize| [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]];
+        for ((&corners, cell), strain) in self.triangles.iter().zip(self.cells).zip(&mut *self.strains) {
+            *strain = Strain::NONE;
+            let Some([a, b, c]) = self.vectors.living(corners) else { continue };
+            let (e, f) = (ways(a, b), ways(a, c));
+            let (now, push) = Strain::of(cell, self.params, &self.step, [0, 1, 2].map(|i| [e[i], f[i]]));
+            *strain = now;
+            add_pair(self.vectors.r, corners, push);
+        }
+        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&mut *self.folds) {
+            *fold = Fold::NONE;
+            let Some([a, b, c, d]) = self.vectors.living(hinge.corners()) else { continue };
+            let (e, f, g) = (ways(a, b), ways(a, c), ways(a, d));
+            let (now, open) = Fold::of(bend, &self.step, [0, 1, 2].map(|i| [e[i], f[i], g[i]]));
+            *fold = now;
+            curve(self.strains, hinge, bend, open);
+        }
+        let bending = self.bending();
+        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&mut *self.folds) {
+            let moment = moment(self.strains, self.cells, hinge, bend, bending);
+            *fold = fold.with_moment(moment);
+            add_all(self.vectors.r, hinge.corners(), fold.forces(-moment));
+        }
+        for (r, &weight) in self.vectors.r.iter_mut().zip(&*self.vectors.weight) {
+            *r = if weight > 0.0 { *r } else { Vec3::ZERO };
+        }
+    }
+
+    /// Bending stiffness × h².
+    fn bending(&self) -> f32 {
+        self.params.bending * (self.step.h * self.step.h)
+    }
+
+    /// q = (M + h² K) p, zero where nothing moves.
+    fn apply(&mut self) {
+        let bending = self.bending() * self.step.rate;
+        let Vectors { p, q, weight, .. } = &mut self.vectors;
+        for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
+            *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
+        }
+        for ((&corners, cell), strain) in self.triangles.iter().zip(self.cells).zip(&mut *self.strains) {
+            strain.curvature = [0.0; 3];
+            let [a, b, c] = corners.map(|corner| at(p, corner));
+            add_pair(q, corners, strain.resist(cell, self.params, &self.step, [b - a, c - a]));
+        }
+        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&*self.folds) {
+            let change = fold.change(hinge.corners().map(|corner| at(p, corner)));
+            curve(self.strains, hinge, bend, change);
+        }
+        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&*self.folds) {
+            let moment = moment(self.strains, self.cells, hinge, bend, bending);
+            let turning = fold.resist(hinge.corners().map(|corner| at(p, corner)));
+            let bending = fold.forces(moment);
+            add_all(q, hinge.corners(), core::array::from_fn(|i| bending[i] + turning[i]));
+        }
+        for (q, &weight) in q.iter_mut().zip(&**weight) {
+            *q = if weight > 0.0 { *q } else { Vec3::ZERO };
+        }
+    }
+
+    /// Conjugate gradients from zero, the masses being the preconditioner.
+    pub(super) fn solve(&mut self, report: &mut Report) {
+        let first = self.vectors.precondition();
+        self.vectors.p.copy_from_slice(self.vectors.q);
+        let enough = first * (RESIDUAL * RESIDUAL);
+        let solved = |left: f32| left >= 0.0 && left <= enough;
+        let (mut left, mut iterations) = (first, 0);
+        while !solved(left) && iterations < ITERATIONS {
+            self.apply();
+            let Vectors { shift, r, p, q, .. } = &mut self.vectors;
+            let curvature = lanes::dot(p, q);
+            let far = left / curvature;
+            if !(curvature > 0.0 && far > 0.0 && far < f32::INFINITY) {
+                break;
+            }
+            add_scaled(shift, far, p);
+            add_scaled(r, -far, q);
+            let before = left;
+            left = self.vectors.precondition();
+            let Vectors { p, q, .. } = &mut self.vectors;
+            let beta = left / before;
+            for (p, &z) in p.iter_mut().zip(&**q) {
+                *p = z + *p * beta;
+            }
+            iterations += 1;
+        }
+        let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
+        report.effort.solved(iterations, residual, !solved(left));
+    }
+
+    /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.
+    pub(super) fn keep_spin(&mut self, bodies: &Bodies<'_>) {
+        let Vectors { rows, weight, shift, .. } = &mut self.vectors;
+        let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
+        let all = || rows.iter().zip(&**weight).map(living);
+        let Some((origin, _)) = all().flatten().next() else { return };
+        if all().flatten().any(|(_, weight)| weight == 0.0) {
+            return;
+        }
+        let h = bodies.substep.seconds();
+        let place = |row: usize| {
+            bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
+        };
+        let (mut mass, mut middle) = (0.0, Vec3::ZERO);
+        for (row, weight) in all().flatten() {
+            mass += 1.0 / weight;
+            middle += place(row) / weight;
+        }
+        let middle = middle / mass;
+        let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+        for (of, &shift) in all().zip(&**shift) {
+            let Some((row, weight)) = of else { continue };
+            let arm = place(row) - middle;
+            torque += arm.cross(shift) / weight;
+            let [x, y, z] = arm.to_array().map(|along| arm * (along / weight));
+            spread += Mat3::from_cols(x, y, z);
+        }
+        let turn = turn_of(spread, torque);
+        for (of, shift) in all().zip(&mut **shift) {
+            let Some((row, _)) = of else { continue };
+            *shift -= turn.cross(place(row) - middle);
+        }
+    }
+
+    /// Moves all.
+    pub(super) fn act(&self, bodies: &mut Bodies<'_>) {
+        let Vectors { rows, weight, shift, .. } = &self.vectors;
+        for ((&row, &weight), &shift) in rows.iter().zip(&**weight).zip(&**shift) {
+            if weight > 0.0 && shift.is_finite() {
+                bodies.shift(row as usize, shift);
+            }
+        }
+    }
+}
+
+/// The small rotation whose moment is the given one: x of (tr(B) − B) x = moment, by Cramer's rule; none if there is none.
+fn turn_of(spread: Mat3, moment: Vec3) -> Vec3 {
+    let trace = spread.x_axis.x + spread.y_axis.y + spread.z_axis.z;
+    let column = |axis: Vec3, b: Vec3| axis - b / trace;
+    let [x, y, z] = [column(Vec3::X, spread.x_axis), column(Vec3::Y, spread.y_axis), column(Vec3::Z, spread.z_axis)];
+    let (change, determinant) = (moment / trace, dot(x, y.cross(z)));
+    let turn = Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant;
+    // All on one line: it does not turn about that.
+    if determinant > 1e-6 && turn.is_finite() { turn } else { Vec3::ZERO }
+}
+
+/// Adds the curvature that a change of a fold's angle makes.
+fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: f32) {
+    for (side, face) in hinge.faces.into_iter().enumerate() {
+        if let Some(strain) = strains.get_mut(face as usize) {
+            bend.curve(side, change, &mut strain.curvature);
+        }
+    }
+}
+
+/// The moment about an edge that the curvatures of its triangles make.
+fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bending: f32) -> f32 {
+    let mut sum = 0.0;
+    for (side, face) in hinge.faces.into_iter().enumerate() {
+        if let (Some(strain), Some(cell)) = (strains.get(face as usize), cells.get(face as usize)) {
+            sum += bend.moment(side, strain.curvature) * cell.area;
+        }
+    }
+    sum * bending
+}
+
+/// The vector of a corner; those of a corner that is not there are zero.
+fn at(vectors: &[Vec3], corner: u32) -> Vec3 {
+    vectors.get(corner as usize).copied().unwrap_or(Vec3::ZERO)
+}
+
+/// Adds forces on the second and third corner of a triangle, and against them on the first.
+fn add_pair(total: &mut [Vec3], corners: [u32; 3], [p, q]: [Vec3; 2]) {
+    add_all(total, corners, [-(p + q), p, q]);
+}
+
+/// Adds forces on corners.
+fn add_all<const N: usize>(total: &mut [Vec3], corners: [u32; N], forces: [Vec3; N]) {
+    for (corner, force) in corners.into_iter().zip(forces) {
+        if let Some(total) = total.get_mut(corner as usize) {
+            *total += force;
+        }
+    }
+}
