@@ -262,7 +262,7 @@ pub fn angle(x: f32, y: f32) -> f32 {
     if !(more > 0.0) {
         return 0.0;
     }
-    // The tangent is at most 1, and after the second fold at most that of an eighth of a half turn.
+    // The tangent is at most 1, and beyond that of a sixteenth of a turn it is taken from an eighth.
     let slope = less / more;
     let (start, t) = if slope > 0.414_213_56 { (FRAC_PI_4, (slope - 1.0) / (slope + 1.0)) } else { (0.0, slope) };
     let z = t * t;
@@ -299,6 +299,23 @@ pub fn frame(n: Vec3) -> (Vec3, Vec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn angles_are_within_their_bound() {
+        let around = (-40_000..=40_000).map(|i| sin_cos_turns(i as f32 / 80_000.0));
+        for (y, x) in
+            around.chain([(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (1.0, 1.0), (-3.0, -3.0), (1e-30, 1.0)])
+        {
+            for scale in [1.0, 1e-30, 1e30] {
+                let exact = libm::atan2(f64::from(y * scale), f64::from(x * scale));
+                assert!((f64::from(angle(x * scale, y * scale)) - exact).abs() < 3e-7, "({x}, {y}) × {scale}");
+            }
+        }
+        assert_eq!(angle(0.0, 0.0), 0.0);
+        for number in [f32::NAN, f32::INFINITY] {
+            let _ = (angle(number, 1.0), angle(1.0, number), angle(number, number));
+        }
+    }
 
     #[test]
     fn sine_and_cosine_are_within_their_bound() {

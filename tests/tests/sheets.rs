@@ -43,7 +43,7 @@ fn even(stretch: f32, bending: f32, damping: f32) -> ShellParams {
 #[test]
 fn a_strip_clamped_at_one_end_sags_like_a_plate() {
     let (long, wide, density) = (0.3f32, 0.06f32, 0.2f32);
-    let mut methods = Method::ALL.into_iter().cycle();
+    let mut methods = Method::ALL.iter().cycle();
     for (cells, scale, far) in [(5u32, 1.0f32, Vec3::ZERO), (8, 4.0, Vec3::new(3.0, 0.0, -8.0)), (11, 1.0, Vec3::ONE)] {
         for (substeps, mirrored) in [(10, false), (20, true), (50, false)] {
             let (long, wide) = (long * scale, wide * scale);
@@ -190,9 +190,9 @@ fn spin(system: &System<Heap>, start: &[Particle]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for ((p, place), velocity) in start.iter().zip(all.position).zip(all.velocity) {
         let [r, u] = [(place, x), (velocity, v)].map(|(of, mean)| [0, 1, 2].map(|k| f64::from(of[k]) - mean[k]));
-        for k in 0..3 {
+        for (k, sum) in sum.iter_mut().enumerate() {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            sum[k] += f64::from(p.mass) * (r[i] * u[j] - r[j] * u[i]);
+            *sum += f64::from(p.mass) * (r[i] * u[j] - r[j] * u[i]);
         }
     }
     sum

@@ -56,14 +56,14 @@ impl ShellParams {
 /// In its plane each triangle resists Green's strain along warp, weft and between them; out of it the curvature that the angles
 /// over its three edges make, less that at rest: ½ B A |S − S₀|², with S = Σ θ n nᵀ / height (Grinspun, Gingold, Reisman and Zorin,
 /// "Computing discrete shape operators on general meshes", Computer Graphics Forum 25, 2006, without Poisson's ratio). On sheets of
-/// cells that is exact for every uniform curvature, so that a mesh twice as fine bends alike. The quadratic energy over single
-/// edges (Bergou et al. 2006, Grinspun et al. 2003), with the weights printed there, makes such a sheet three times as stiff along its
-/// cells as across them.
+/// cells that is exact for every uniform curvature, so that a mesh twice as fine bends alike. Energies of single edges
+/// with weights of 3 length² / area (Bergou et al., "A quadratic bending model for inextensible surfaces", SGP 2006) are three times that
+/// where such a sheet bends along its cells, and nine times along one of their diagonals.
 ///
 /// Stretching and bending are solved as one, by conjugate gradients for the positions at the sub-step's end, as often as it takes
 /// to be as stiff as the numbers say: at rest the forces are those of the material, whatever the sub-steps, and that does not depend
 /// on the order of triangles. The stiffer, the finer the mesh and the longer the sub-steps, the more iterations: as the square root of
-/// stretch × h² / mass of a particle. One iteration costs about as much as a sweep of constraints over all edges. Iterations are
+/// stretch × h² / mass of a particle. Iterations are
 /// counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it is then softer for a while.
 ///
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
