@@ -170,10 +170,12 @@ fn flying(cells: u32, bent: bool, scale: f32, far: Vec3) -> (Vec<Particle>, Shee
     for particle in &mut start {
         let x = particle.position;
         let wave = (x.x * 8.0).sin() * (x.z * 5.0).cos();
-        let turn = Vec3::new(1.0, 2.0, 3.0).cross(x);
+        // It turns about its middle, and in a minute does not get where places are coarse.
+        let turn = Vec3::new(1.0, 2.0, 3.0).cross(x - Vec3::new(0.25, 0.0, 0.2));
         let up = if bent { 0.08 * (x.x * 9.0).sin() + 0.03 * (x.z * 20.0).cos() } else { 0.0 };
         particle.position = (x + Vec3::Y * up + far) * scale;
-        particle.velocity = (Vec3::new(0.2, 0.3, -0.2) + turn + Vec3::Y * (0.6 * wave) + random.vector(0.02)) * scale;
+        particle.velocity =
+            (Vec3::new(0.02, 0.03, -0.02) + turn + Vec3::Y * (0.6 * wave) + random.vector(0.02)) * scale;
     }
     (start, sheet)
 }
@@ -223,12 +225,13 @@ fn keeps_its_momenta(frames: u32, cases: &[(u32, bool, f32, f32)]) {
             let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
             let scale = f64::from(scale);
             let drift = gap(before.momentum, after.momentum) / (mass * scale);
-            assert!(drift < 2e-5 * (1.0 + f64::from(away)), "{method}, {substeps} sub-steps: {drift}");
-            // At 20 m places are no finer than 2e-6 m, and 1,200 sub-steps a second round to that.
+            assert!(drift < 5e-5 * (1.0 + f64::from(away)), "{method}, {substeps} sub-steps: {drift}");
+            // Velocities round in every sub-step; at 20 m places are no finer than 2e-6 m, and sub-steps round to that.
+            let rounding = 2e-9 * f64::from(frames * substeps) + 3e-3 * f64::from(away);
             let lost = gap(turned, spin(&system, &start)) / gap(turned, [0.0; 3]);
-            assert!(lost < 1e-4 + 2e-3 * f64::from(away), "{method}, {substeps} sub-steps, {scale} m: {lost}");
-            // Most of it is in flight and turning, and stays.
-            assert!(after.energy.kinetic > 0.9 * moving, "{method}: {}", after.energy.kinetic / moving);
+            assert!(lost < 1e-4 + rounding, "{method}, {substeps} sub-steps, {scale} m, {away}: {lost}");
+            // What turns goes on turning; waves become strain and back, and those that steps are too long for fade.
+            assert!(after.energy.kinetic > 0.5 * moving, "{method}: {}", after.energy.kinetic / moving);
         }
     }
 }
