@@ -8,12 +8,12 @@ use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::draw::{
-    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, links, solid, springs, sprite,
-    surface,
+    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, body, links, solid, springs,
+    sprite, surface,
 };
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
-use pointmass::{Color, ConstraintKind, Heap, System};
+use pointmass::{Color, ConstraintKind, Heap, RigidBox, System};
 use std::collections::HashMap;
 
 /// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
@@ -49,7 +49,7 @@ pub(crate) struct Cast<'m> {
     arrow: f32,
     shutter: Option<Shutter>,
     trails: Option<Trails<'m>>,
-    /// True for each particle of the start that is a corner of a surface, which is drawn instead.
+    /// True for each particle of the start that is a corner of a surface, or in a body's box, which is drawn instead.
     covered: Vec<bool>,
     /// The shapes of particles, by their materials, about the origin.
     forms: Vec<Surface>,
@@ -100,6 +100,9 @@ impl<'m> Cast<'m> {
         for PatchBuf { first, count, .. } in model.patches.iter().filter(|_| style.is_none()) {
             covered[*first as usize..][..*count as usize].fill(true);
         }
+        for RigidBox { first, count, .. } in model.constraints.1.boxes.iter().filter(|_| style.is_none()) {
+            covered[*first as usize..][..*count as usize].fill(true);
+        }
         let form = |shape: &Option<_>| shape.as_ref().map_or_else(Surface::default, |shape| tessellate(shape, 1.0));
         let forms = model.shapes.iter().map(form).collect();
         let Memory { rings, knots } = memory;
@@ -126,7 +129,8 @@ impl<'m> Cast<'m> {
     /// Tells whether there are shapes or surfaces, so that light and shadow change from picture to picture.
     pub(crate) fn has_pieces(&self, model: &Model) -> bool {
         let shapes = self.forms.iter().any(|form| !form.triangles.is_empty());
-        shapes && matches!(self.style, None | Some(Style::Shapes)) || self.style.is_none() && !model.patches.is_empty()
+        let are_joined = !model.patches.is_empty() || !model.constraints.1.boxes.is_empty();
+        shapes && matches!(self.style, None | Some(Style::Shapes)) || self.style.is_none() && are_joined
     }
 
     /// Waits for the picture at an instant \[s\].
@@ -162,6 +166,8 @@ impl<'m> Cast<'m> {
             }
             if self.style.is_none() {
                 seen.pieces.extend(model.patches.iter().filter_map(|patch| cloth(state, patch, file)));
+                let boxes = model.constraints.1.boxes.iter().filter_map(|of| body(state, of, &model.particles));
+                seen.pieces.extend(boxes.map(|instance| cuboid(&instance, file)));
             }
         });
         seen
@@ -272,6 +278,14 @@ fn cloth(state: &State<'_>, patch: &PatchBuf, file: &SceneFile) -> Option<Piece>
     // Its corners lie on what it covers, its triangles behind that.
     let lift = LIFT * (surface.area() / count as f32).sqrt();
     Some(Piece { surface, material: painted(material, color), endless: false, lift })
+}
+
+/// The box of a rigid body.
+fn cuboid(instance: &Instance, file: &SceneFile) -> Piece {
+    let Instance { center, axes, color, material } = *instance;
+    let surface = shapes::cuboid(Vec3::ZERO, Vec3::splat(2.0)).transformed(axes, center);
+    let material = painted(file.materials.get(usize::from(material)), color);
+    Piece { surface, material, endless: false, lift: 0.0 }
 }
 
 /// A material in the colour of a particle.

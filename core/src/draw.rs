@@ -5,6 +5,7 @@
 //! and [`arrows`] (what is not seen otherwise). The same bits on every
 //! machine; what finds no room is counted.
 
+mod bodies;
 mod debug;
 mod line;
 mod solid;
@@ -12,6 +13,7 @@ mod sprite;
 mod surface;
 mod trail;
 
+pub use bodies::{bodies, body};
 pub use debug::{arrow, arrows, cells};
 pub use line::{Line, edges, links, springs, velocities};
 pub use solid::{Instance, solid, solids};

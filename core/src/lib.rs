@@ -59,7 +59,9 @@ pub use cloth::{ClothSprings, Sheet, SpringParams};
 pub use collide::{Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
-pub use constrain::{Attach, Constraint, Contacts, Distance, Rope, ShapeMatching, Shell, ShellParams};
+pub use constrain::{
+    Attach, Constraint, Contacts, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams,
+};
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
 pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};

@@ -27,6 +27,7 @@ mod looks;
 #[path = "rays/main.rs"]
 mod rays;
 mod reapers;
+mod rigid;
 mod ropes;
 mod rounding;
 mod sampling;

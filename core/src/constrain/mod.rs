@@ -11,9 +11,11 @@ mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
+mod rigid;
 mod rope;
 mod shape_matching;
 mod shell;
+mod turn;
 
 pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
@@ -22,6 +24,7 @@ pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
+pub use rigid::{RigidBodies, RigidBox};
 pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
 pub use shell::{Shell, ShellParams};

@@ -1,5 +1,6 @@
 //! Clusters that keep their shape: rigid bodies and jellies of particles.
 
+use super::turn::{Turn, about, keeping, moment, nearest, outer, solve};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{dot, max, sqrt};
 use glam::{Mat3, Vec3};
@@ -62,10 +63,6 @@ pub struct ShapeMatching<P> {
 
 /// Words kept before the places in the shape: whether they are known, and the rotation.
 const HEAD: usize = 5;
-/// Rounds of Newton's method, and of the search for the nearest rotation, at the most.
-const ROUNDS: [u32; 2] = [8, 40];
-/// An angle \[rad\] that is rounding.
-const ROUNDING: f32 = 5e-7;
 
 impl<P> ShapeMatching<P> {
     /// A rigid body.
@@ -346,147 +343,3 @@ impl Body {
         if member.fixed { 0.0 } else { bodies.mass[member.row] / self.mass }
     }
 }
-
-/// A rotation: a unit quaternion x, y, z, w.
-#[derive(Clone, Copy)]
-struct Turn([f32; 4]);
-
-impl Turn {
-    const NONE: Self = Self([0.0, 0.0, 0.0, 1.0]);
-
-    /// The one that is kept.
-    fn kept(kept: &[u32]) -> Self {
-        Self([1, 2, 3, 4].map(|word| f32::from_bits(kept[word])))
-    }
-
-    /// Turned on the shortest way so that a place in the shape gets into a direction.
-    fn bring(self, place: Vec3, to: Vec3) -> Self {
-        let from = self.matrix() * place;
-        let lengths = sqrt(dot(from, from)) * sqrt(dot(to, to));
-        // The tangent of half the angle, along the axis.
-        let half = from.cross(to) / (lengths + dot(from, to));
-        if half.is_finite() { self.on(half * 2.0) } else { self }
-    }
-
-    /// Turned on by about an angle \[rad\] about a direction: by 2 atan(|angle| / 2), for which no sine is needed (Cayley).
-    fn on(self, angle: Vec3) -> Self {
-        let ([x, y, z, w], half) = (self.0, angle * 0.5);
-        let v = Vec3::new(x, y, z);
-        let turned = half * w + v + half.cross(v);
-        let real = w - dot(half, v);
-        let norm = 1.0 / sqrt(dot(turned, turned) + real * real);
-        if norm > 0.0 && norm < f32::INFINITY {
-            Self([turned.x * norm, turned.y * norm, turned.z * norm, real * norm])
-        } else {
-            self
-        }
-    }
-
-    fn matrix(self) -> Mat3 {
-        let [x, y, z, w] = self.0;
-        Mat3::from_cols(
-            Vec3::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
-            Vec3::new(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
-            Vec3::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
-        )
-    }
-}
-
-/// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
-fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
-    let (mut turn, mut before) = (last, f32::INFINITY);
-    for _ in 0..ROUNDS[0] {
-        // Σ m y (R q)ᵀ, and of it what is antisymmetric: Σ m y × R q.
-        let sum = from * turn.matrix().transpose();
-        let [x, y, z] = [sum.x_axis, sum.y_axis, sum.z_axis];
-        if !(x.x + y.y + z.z >= 0.0) {
-            return None;
-        }
-        let has = Vec3::new(z.y - y.z, x.z - z.x, y.x - x.y);
-        let (sum, lack) = (sum.transpose(), torque - has);
-        let angle = axis.map_or_else(|| solve(sum, lack), |axis| axis * about(axis, sum, lack));
-        let size = dot(angle, angle);
-        if !(size < before && size < 4.0) {
-            // Rounding goes to and fro.
-            return (before < 1e-8).then_some(turn);
-        }
-        (turn, before) = (turn.on(angle), size);
-        if size < ROUNDING * ROUNDING {
-            return Some(turn);
-        }
-    }
-    (before < 1e-8).then_some(turn)
-}
-
-/// The rotation nearest to Σ m x qᵀ, found from the last one on: one column pulls another round by r × a / |Σ r · a|.
-fn nearest(last: Turn, to: Mat3, axis: Option<Vec3>) -> Turn {
-    let mut turn = last;
-    for _ in 0..ROUNDS[1] {
-        let rotation = turn.matrix();
-        let (mut pull, mut along) = (Vec3::ZERO, 0.0);
-        for (r, a) in [(rotation.x_axis, to.x_axis), (rotation.y_axis, to.y_axis), (rotation.z_axis, to.z_axis)] {
-            pull += r.cross(a);
-            along += dot(r, a);
-        }
-        let pull = axis.map_or(pull, |axis| axis * dot(axis, pull));
-        let angle = pull / along.abs();
-        let size = dot(angle, angle);
-        if !(size < f32::INFINITY) {
-            break;
-        }
-        turn = turn.on(angle);
-        if size < ROUNDING * ROUNDING {
-            break;
-        }
-    }
-    turn
-}
-
-/// a bᵀ.
-fn outer(a: Vec3, b: Vec3) -> Mat3 {
-    Mat3::from_cols(a * b.x, a * b.y, a * b.z)
-}
-
-/// (tr(B) − B) x: the moment that turning by x, or so fast, is.
-fn moment(b: Mat3, x: Vec3) -> Vec3 {
-    system(b) * x
-}
-
-/// tr(B) − B, without what would cancel.
-fn system(b: Mat3) -> Mat3 {
-    let [x, y, z] = [b.x_axis, b.y_axis, b.z_axis];
-    Mat3::from_cols(
-        Vec3::new(y.y + z.z, -x.y, -x.z),
-        Vec3::new(-y.x, x.x + z.z, -y.z),
-        Vec3::new(-z.x, -z.y, x.x + y.y),
-    )
-}
-
-/// How far to turn, or how fast, about an axis for a change of the moment.
-fn about(axis: Vec3, b: Mat3, change: Vec3) -> f32 {
-    let by = dot(axis, change) / dot(axis, moment(b, axis));
-    if by.is_finite() { by } else { 0.0 }
-}
-
-/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by Cramer's rule. About an axis on which all
-/// lies there is no moment, and it does not turn.
-fn solve(b: Mat3, change: Vec3) -> Vec3 {
-    let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
-    if !(trace > 0.0 && trace < f32::INFINITY) {
-        return Vec3::ZERO;
-    }
-    // In units of the trace nothing underflows, however small the cluster.
-    let change = change / trace;
-    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
-    let plain = [x / trace, y / trace, z / trace];
-    let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
-    let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
-    let columns = if determinant(plain) > THIN { plain } else { ridged };
-    let [x, y, z] = columns;
-    let answer =
-        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
-    if answer.is_finite() { answer } else { Vec3::ZERO }
-}
-
-/// The share of a cluster's largest moment of inertia below which the least is rounding.
-const THIN: f32 = 1e-6;

@@ -2,7 +2,7 @@
 
 use super::check_force::check_force;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
-use super::{Fog, Group, Light, SceneError, SceneFile, Sky};
+use super::{Boxes, Fog, Group, Light, SceneError, SceneFile, Sky};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
@@ -72,6 +72,7 @@ impl SceneFile {
             }
         }
         self.check_fabrics()?;
+        self.check_boxes()?;
         for (i, emitter) in self.emitters.iter().enumerate() {
             self.check_emitter(&format!("emitters[{i}]"), emitter)?;
             self.check_group(&format!("emitters[{i}]"), emitter.group)?;
@@ -95,7 +96,8 @@ impl SceneFile {
         }
         // The number of particles that cloths bring is known when their meshes have been read.
         if self.cloths.is_empty() {
-            self.check_corners(self.particles.len())?;
+            let boxes: u64 = self.boxes.iter().map(Boxes::particles).sum();
+            self.check_corners(self.particles.len().saturating_add(boxes as usize))?;
         }
         self.check_scenery()?;
         self.check_look()

@@ -1,6 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::{Cloth, Fog, Material, Response, Sky};
+use super::{Boxes, Cloth, Fog, Material, Response, Sky};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -37,6 +37,9 @@ pub struct SceneFile {
     /// Sheets and meshes of springs, whose particles and springs follow those above.
     #[cfg_attr(feature = "serde", serde(alias = "fabrics", skip_serializing_if = "Vec::is_empty"))]
     pub cloths: Vec<Cloth>,
+    /// Rigid boxes, whose particles follow those above.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub boxes: Vec<Boxes>,
     /// Emitters, which bring further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub emitters: Vec<Emitter<Shape<String>, Option<MotionBuf>>>,
@@ -236,6 +239,7 @@ impl SceneFile {
             particles: Vec::new(),
             springs: Vec::new(),
             cloths: Vec::new(),
+            boxes: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),
             contacts: None,

@@ -7,6 +7,8 @@
 #[cfg(feature = "alloc")]
 mod air;
 #[cfg(feature = "alloc")]
+mod boxes;
+#[cfg(feature = "alloc")]
 mod check;
 #[cfg(feature = "alloc")]
 mod check_force;
@@ -39,6 +41,8 @@ mod write;
 
 #[cfg(feature = "alloc")]
 pub use air::{Fog, Sky};
+#[cfg(feature = "alloc")]
+pub use boxes::{Boxes, Scatter};
 #[cfg(feature = "alloc")]
 pub use cloth::{Air, Cloth, Form, Gas};
 #[cfg(feature = "alloc")]

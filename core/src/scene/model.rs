@@ -4,7 +4,7 @@ use super::Response;
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
 use crate::collide::Meetings;
-use crate::constrain::{ConstraintKind, Contacts};
+use crate::constrain::{ConstraintKind, Contacts, RigidBodies, RigidBox};
 use crate::custom::CustomBuf;
 use crate::draw::Patch;
 use crate::emit::Emitter;
@@ -42,8 +42,8 @@ pub struct Model {
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
-    /// The constraints that bind them, those of cloths that are shells, then contacts by position.
-    pub constraints: (Vec<ConstraintKind>, Option<Contacts>),
+    /// The constraints that bind them, those of cloths that are shells, the rigid bodies, then contacts by position.
+    pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>>, Option<Contacts>),
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// The things that they bounce off.
@@ -173,7 +173,11 @@ impl Model {
             colliders: Scenery::new(colliders.collect::<Result<_, _>>()?),
             forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals),
             contacts: file.contacts,
-            constraints: (constraints, file.contacts.and_then(|response| response.contacts())),
+            constraints: (
+                constraints,
+                RigidBodies { boxes: start.boxes },
+                file.contacts.and_then(|response| response.contacts()),
+            ),
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
             custom: file.custom.clone(),
@@ -279,7 +283,7 @@ impl Meshes<'_> {
     }
 }
 
-/// A scene's own particles, springs and forces, with those of its cloths.
+/// A scene's own particles, springs and forces, with those of its cloths and boxes.
 struct Start {
     particles: Vec<Particle>,
     springs: Vec<Spring>,
@@ -290,6 +294,7 @@ struct Start {
     /// Where they begin.
     cloths: Vec<[usize; 2]>,
     patches: Vec<PatchBuf>,
+    boxes: Vec<RigidBox>,
 }
 
 impl Start {
@@ -301,6 +306,7 @@ impl Start {
             constraints: Vec::new(),
             cloths: Vec::new(),
             patches: Vec::new(),
+            boxes: Vec::new(),
         };
         for (i, cloth) in file.cloths.iter().enumerate() {
             let mesh = match &cloth.form {
@@ -331,6 +337,15 @@ impl Start {
             start.patches.extend(cloth.patch(mesh.as_deref(), first));
             start.forces.extend(cloth.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
             start.forces.extend(cloth.aerodynamics(mesh.as_deref(), first, &file.forces));
+        }
+        for (i, boxes) in file.boxes.iter().enumerate() {
+            let (particles, bodies) = boxes.make(start.particles.len() as u32);
+            if !particles.iter().all(Particle::is_sound) {
+                let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
+                return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));
+            }
+            start.particles.extend(particles);
+            start.boxes.extend(bodies);
         }
         for particle in &mut start.particles {
             particle.color = color(file, particle.color, particle.material);

@@ -122,6 +122,9 @@ impl Writer {
             particles.extend(woven);
             springs.extend(threads);
         }
+        if !scene.boxes.is_empty() {
+            self.warn("boxes: .scn has no rigid bodies; they are left out");
+        }
         (particles, springs)
     }
 

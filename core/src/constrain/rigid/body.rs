@@ -1,0 +1,294 @@
+//! A rigid body as a whole: what its particles tell of it, how it moves, and what it tells them.
+
+use super::super::turn::{Turn, keeping, outer, solve};
+use super::super::{Bodies, SHIFTED};
+use super::RigidBox;
+use crate::math::{length, max, min, sqrt};
+use glam::{Mat3, Vec3};
+
+/// It is not there: its particles are dead or nowhere.
+const ABSENT: u32 = 0;
+/// It is there and stays where it is.
+const FIXED: u32 = 1;
+/// It moves.
+const MOVING: u32 = 2;
+
+/// A body between two calls. All places within it are told in its box's frame.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Body {
+    /// How many of its particles live, plus one; zero before it is seen for the first time.
+    known: u32,
+    state: u32,
+    turn: [f32; 4],
+    /// Its centre of mass \[m\].
+    pub(super) center: Vec3,
+    /// Its velocity \[m/s\].
+    pub(super) velocity: Vec3,
+    /// Its angular momentum about its centre over its mass \[m²/s\].
+    spin: Vec3,
+    /// How it turns \[rad/s\].
+    pub(super) omega: Vec3,
+    /// Its centre of mass in the box's frame \[m\].
+    pub(super) rest: Vec3,
+    /// One over its mass \[1/kg\]; zero: it stays.
+    pub(super) inverse_mass: f32,
+    /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
+    spread: Mat3,
+    inverse_inertia: Mat3,
+    /// Its rotation, and the inverse of its inertia over its mass in the world.
+    pub(super) rotation: Mat3,
+    inverse: Mat3,
+    /// Its velocity and rate of turning when the sub-step began.
+    pub(super) before: [Vec3; 2],
+    /// How much farther the method has moved it than its velocity says \[m\].
+    drift: Vec3,
+    /// 1 if something presses on it in this sub-step.
+    pub(super) pressed: u32,
+    /// Half the sides of its box \[m\].
+    pub(super) half: Vec3,
+    /// How far its box reaches from its centre of mass \[m\].
+    pub(super) radius: f32,
+    /// The share of the normal speed it keeps in a hit, and the number of its material plus one.
+    pub(super) elasticity: f32,
+    pub(super) material: u32,
+    /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
+    pub(super) leash: f32,
+    pub(super) spare: f32,
+}
+
+/// What a body is made of: its box, and the places of its particles in it, three words each.
+#[derive(Clone, Copy)]
+pub(super) struct Made<'a> {
+    pub(super) of: &'a RigidBox,
+    pub(super) places: &'a [u32],
+}
+
+impl Made<'_> {
+    /// Visits its living particles: row, and place in the box's frame \[m\].
+    fn each(&self, bodies: &Bodies<'_>, visit: &mut dyn FnMut(usize, Vec3)) {
+        for (i, place) in self.places.chunks_exact(3).enumerate() {
+            if let Some(row) = bodies.row_of_start(self.of.first.saturating_add(i as u32)) {
+                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
+                visit(row, Vec3::new(x, y, z));
+            }
+        }
+    }
+}
+
+impl Body {
+    /// The world: what stands still and has no box.
+    pub(super) fn world() -> Self {
+        Self { rotation: Mat3::IDENTITY, ..bytemuck::Zeroable::zeroed() }
+    }
+
+    /// Tells whether it is there to be met.
+    pub(super) fn is_there(&self) -> bool {
+        self.state != ABSENT
+    }
+
+    /// Tells whether it is there and moves.
+    pub(super) fn moves(&self) -> bool {
+        self.state == MOVING
+    }
+
+    /// The place of a point of it in the world \[m\].
+    pub(super) fn point(&self, place: Vec3) -> Vec3 {
+        self.center + self.rotation * (place - self.rest)
+    }
+
+    /// The place in its box's frame of a point of the world \[m\].
+    pub(super) fn place(&self, point: Vec3) -> Vec3 {
+        self.rotation.transpose() * (point - self.center) + self.rest
+    }
+
+    /// The middle of its box \[m\].
+    pub(super) fn middle(&self) -> Vec3 {
+        self.center - self.rotation * self.rest
+    }
+
+    /// A bound on the speed of any point of its box \[m/s\].
+    pub(super) fn speed(&self) -> f32 {
+        length(self.velocity) + length(self.omega) * self.radius
+    }
+
+    /// The speed of the point of it that is `arm` \[m\] from its centre \[m/s\].
+    pub(super) fn velocity_at(&self, arm: Vec3) -> Vec3 {
+        self.velocity + self.omega.cross(arm)
+    }
+
+    /// How much an impulse there changes the speed there along a direction \[1/kg\].
+    pub(super) fn yielding(&self, arm: Vec3, direction: Vec3) -> f32 {
+        let lever = arm.cross(direction);
+        self.inverse_mass * (1.0 + lever.dot(self.inverse * lever))
+    }
+
+    /// Gives it an impulse \[N s\] there.
+    pub(super) fn push(&mut self, arm: Vec3, impulse: Vec3) {
+        let change = impulse * self.inverse_mass;
+        let torque = arm.cross(change);
+        self.velocity += change;
+        self.spin += torque;
+        self.omega += self.inverse * torque;
+    }
+
+    /// Looks which of its particles live; tells whether that is news.
+    pub(super) fn look(&mut self, bodies: &Bodies<'_>, of: &RigidBox, places: &mut [u32]) -> bool {
+        if self.known == 0 {
+            self.learn(bodies, of, places);
+        }
+        let made = Made { of, places };
+        let (mut living, mut is_sound) = (0, true);
+        made.each(bodies, &mut |row, place| {
+            living += 1;
+            is_sound &= (bodies.position[row] + bodies.velocity[row] + place).is_finite();
+        });
+        if self.known == living + 1 && is_sound == self.is_there() {
+            return false;
+        }
+        self.known = living + 1;
+        self.state = ABSENT;
+        self.inverse_mass = 0.0;
+        if living > 0 && is_sound {
+            self.weigh(bodies, made);
+        }
+        true
+    }
+
+    /// Takes the places of its particles as they are.
+    fn learn(&mut self, bodies: &Bodies<'_>, of: &RigidBox, places: &mut [u32]) {
+        self.turn = Turn(of.turn).on(Vec3::ZERO).0;
+        self.half = of.half;
+        let back = Turn(self.turn).matrix().transpose();
+        for (i, place) in places.chunks_exact_mut(3).enumerate() {
+            if let Some(row) = bodies.row_of_start(of.first.saturating_add(i as u32)) {
+                place.copy_from_slice(&(back * (bodies.position[row] - of.center)).to_array().map(f32::to_bits));
+            }
+        }
+    }
+
+    /// Finds its mass, inertia and motion by its particles.
+    fn weigh(&mut self, bodies: &Bodies<'_>, made: Made<'_>) {
+        let (mut mass, mut is_free, mut first) = (0.0, true, None);
+        made.each(bodies, &mut |row, place| {
+            mass += bodies.mass[row];
+            is_free &= bodies.inverse_mass[row] > 0.0;
+            first.get_or_insert((row, place));
+        });
+        let Some((row, place)) = first.filter(|_| mass > 0.0 && mass < f32::INFINITY) else { return };
+        (self.center, self.velocity, self.rest) = (bodies.position[row], bodies.velocity[row], place);
+        // Means of what is left of the last ones: rounding keeps shares of the mass from adding up to one.
+        for _ in 0..2 {
+            let (mut center, mut velocity, mut rest) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+            made.each(bodies, &mut |row, place| {
+                let share = bodies.mass[row] / mass;
+                center += (bodies.position[row] - self.center) * share;
+                velocity += (bodies.velocity[row] - self.velocity) * share;
+                rest += (place - self.rest) * share;
+            });
+            self.center += center;
+            self.velocity += velocity;
+            self.rest += rest;
+        }
+        self.rotation = Turn(self.turn).matrix();
+        let (mut spread, mut spin) = (Mat3::ZERO, Vec3::ZERO);
+        made.each(bodies, &mut |row, place| {
+            let (share, place) = (bodies.mass[row] / mass, place - self.rest);
+            spread += outer(place * share, place);
+            spin += (self.rotation * place).cross(bodies.velocity[row] - self.velocity) * share;
+        });
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| solve(spread, axis));
+        (self.spread, self.spin) = (spread, spin);
+        self.inverse_inertia = Mat3::from_cols(axes[0], axes[1], axes[2]);
+        let reach = self.half + self.rest.abs();
+        self.radius = length(reach);
+        self.elasticity = bodies.elasticity[row];
+        self.material = u32::from(bodies.material[row]);
+        (self.state, self.inverse_mass) = (MOVING, 1.0 / mass);
+        if !is_free {
+            (self.state, self.inverse_mass) = (FIXED, 0.0);
+            (self.velocity, self.spin) = (Vec3::ZERO, Vec3::ZERO);
+        }
+        self.face();
+    }
+
+    /// Follows its turn: rotation, inertia in the world, rate of turning.
+    fn face(&mut self) {
+        self.rotation = Turn(self.turn).matrix();
+        self.inverse = self.rotation * self.inverse_inertia * self.rotation.transpose();
+        if !self.moves() {
+            self.inverse = Mat3::ZERO;
+        }
+        self.omega = self.inverse * self.spin;
+    }
+
+    /// Takes in what has been done to its particles since they were last told where to be: what the method did by the forces, and others.
+    /// Without any of that they are, to the bit, where it says, and its momenta stay as they are.
+    pub(super) fn gather(&mut self, bodies: &Bodies<'_>, made: Made<'_>) {
+        self.before = [self.velocity, self.omega];
+        self.pressed = 0;
+        if !self.moves() {
+            return;
+        }
+        let (mut way, mut push, mut torque) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        made.each(bodies, &mut |row, place| {
+            let arm = self.rotation * (place - self.rest);
+            let share = bodies.mass[row] * self.inverse_mass;
+            let change = (bodies.velocity[row] - self.velocity_at(arm)) * share;
+            way += (bodies.position[row] - (self.center + arm)) * share;
+            push += change;
+            torque += arm.cross(change);
+        });
+        if !(way + push + torque).is_finite() {
+            self.state = ABSENT;
+            self.inverse_mass = 0.0;
+            return;
+        }
+        self.velocity += push;
+        self.spin += torque;
+        self.omega = self.inverse * self.spin;
+        self.drift = way - self.velocity * bodies.substep.seconds();
+    }
+
+    /// Moves it through the sub-step of `h` \[s\] by its velocity, and turns it so that its angular momentum stays (the discrete
+    /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)).
+    pub(super) fn go(&mut self, h: f32) {
+        if !self.moves() {
+            return;
+        }
+        self.center += self.velocity * h;
+        if self.pressed == 0 {
+            self.center += self.drift;
+        }
+        let (last, torque) = (Turn(self.turn), self.spin * h);
+        if torque != Vec3::ZERO {
+            let turn = keeping(last, self.rotation * self.spread, torque, None);
+            self.turn = turn.unwrap_or_else(|| last.on(self.omega * h)).0;
+        }
+        self.face();
+    }
+
+    /// Puts its particles where it says.
+    pub(super) fn tell(&self, bodies: &mut Bodies<'_>, made: Made<'_>) {
+        if !self.moves() || !(self.center + self.velocity + self.omega).is_finite() {
+            return;
+        }
+        for (i, place) in made.places.chunks_exact(3).enumerate() {
+            if let Some(row) = bodies.row_of_start(made.of.first.saturating_add(i as u32)) {
+                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
+                let arm = self.rotation * (Vec3::new(x, y, z) - self.rest);
+                bodies.position[row] = self.center + arm;
+                bodies.velocity[row] = self.velocity_at(arm);
+                bodies.marks[row] |= SHIFTED;
+                if self.pressed != 0 {
+                    bodies.mark_touching(row);
+                }
+            }
+        }
+    }
+
+    /// A length that is small beside its box \[m\].
+    pub(super) fn small(&self) -> f32 {
+        max(min(self.half.x, min(self.half.y, self.half.z)) * 0.02, f32::EPSILON * sqrt(self.center.dot(self.center)))
+    }
+}

@@ -1,0 +1,114 @@
+//! Two bodies that touch, or a body and the scenery: where, and what they have done to each other.
+
+use super::body::Body;
+use super::boxes::{Oriented, Spot, apart, four};
+use crate::material::Mixed;
+use crate::math::{dot, max, min};
+use glam::Vec3;
+
+/// Where two touch.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Point {
+    /// The place on each, in its box's frame \[m\].
+    pub(super) places: [Vec3; 2],
+    /// From the centre of each to the middle between them \[m\].
+    pub(super) arms: [Vec3; 2],
+    /// The impulse that keeps them apart, and that of friction on the second \[N s\].
+    pub(super) pressed: f32,
+    pub(super) held: Vec3,
+    /// How far apart they are \[m\].
+    pub(super) gap: f32,
+    /// How fast they came together when the sub-step began, then how fast they shall part \[m/s\].
+    pub(super) bounce: f32,
+    /// The speed below which they come together by their weight, not by a blow \[m/s\].
+    pub(super) calm: f32,
+    /// The impulse that makes them part by 1 m/s \[kg\].
+    pub(super) mass: f32,
+}
+
+/// Two that may touch.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Manifold {
+    /// Their numbers, the lower first; zero: the world.
+    pub(super) bodies: [u32; 2],
+    /// How far they may go against each other before where they touch is looked for again \[m\].
+    pub(super) spare: f32,
+    /// How many points there are.
+    pub(super) count: u32,
+    /// From the first to the second, in the first's frame.
+    pub(super) normal: Vec3,
+    /// How the scenery moves \[m/s\].
+    pub(super) surface: Vec3,
+    pub(super) elasticity: f32,
+    pub(super) friction: [f32; 2],
+    pub(super) points: [Point; 4],
+}
+
+impl Manifold {
+    /// Two that touch nowhere yet.
+    pub(super) fn of(bodies: [u32; 2], mixed: Mixed) -> Self {
+        let Mixed { elasticity, friction } = mixed;
+        let elasticity = min(max(elasticity, 0.0), 1.0);
+        Self { bodies, elasticity, friction: [friction.static_, friction.kinetic], ..bytemuck::Zeroable::zeroed() }
+    }
+
+    /// Its points.
+    pub(super) fn points(&self) -> &[Point] {
+        &self.points[..(self.count as usize).min(4)]
+    }
+
+    /// Puts a point in, with what a point of before near it has done.
+    pub(super) fn put(&mut self, places: [Vec3; 2], before: &[Point], near: f32) {
+        let is_near = |point: &&Point| {
+            let way = point.places[1] - places[1];
+            dot(way, way) <= near * near
+        };
+        let fresh = Point { places, ..bytemuck::Zeroable::zeroed() };
+        let point = before.iter().find(is_near).map_or(fresh, |&point| Point { places, ..point });
+        if let Some(place) = self.points.get_mut(self.count as usize) {
+            *place = point;
+            self.count += 1;
+        }
+    }
+
+    /// Looks where two boxes touch, or will when they have gone `reach` \[m\] against each other.
+    pub(super) fn find(&mut self, a: &Body, b: &Body, reach: f32) {
+        let (before, count) = (self.points, (self.count as usize).min(4));
+        let small = min(a.small(), b.small());
+        self.count = 0;
+        let [one, other] = [a, b].map(oriented);
+        // Boxes farther apart than this are let go for as long as they stay so.
+        let far = f32::MAX;
+        let Some(gap) = apart(&one, &other, far) else {
+            self.spare = 0.0;
+            return;
+        };
+        if gap.gap > reach + small {
+            self.spare = gap.gap;
+            return;
+        }
+        self.spare = small;
+        let touching = gap.touching(&one, &other, reach + small);
+        self.normal = a.rotation.transpose() * touching.normal;
+        for [p, q] in four(&touching) {
+            self.put([a.place(p), b.place(q)], &before[..count], 5.0 * small);
+        }
+    }
+}
+
+/// A body's box.
+pub(super) fn oriented(body: &Body) -> Oriented {
+    Oriented { middle: body.middle(), axes: body.rotation, half: body.half }
+}
+
+/// Tells whether the boxes of two bodies are within `reach` \[m\] of each other.
+pub(super) fn are_near(a: &Body, b: &Body, reach: f32) -> bool {
+    apart(&oriented(a), &oriented(b), reach).is_some()
+}
+
+/// The middle of a spot.
+pub(super) fn middle([p, q]: Spot) -> Vec3 {
+    (p + q) * 0.5
+}

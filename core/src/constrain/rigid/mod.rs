@@ -1,0 +1,199 @@
+//! Rigid bodies of particles that collide as boxes.
+
+mod body;
+mod boxes;
+mod lists;
+mod manifold;
+mod scenery;
+mod solver;
+
+use super::turn::Turn;
+use super::{Bodies, Constraint, Demand, Share};
+use crate::math::sqrt;
+use crate::memory::take;
+use crate::particles::Particle;
+use body::{Body, Made};
+use boxes::Oriented;
+use glam::{Mat3, Vec3};
+use lists::Kept;
+use manifold::Manifold;
+use scenery::DIRECTIONS;
+use solver::Span;
+
+/// Rigid bodies, each a few particles and a box: they fly as their particles do, all as one, and touch each other and the scene's colliders
+/// as boxes, with friction and elasticity.
+///
+/// A body has the mass, centre and inertia of its particles, and their momenta; it turns by Euler's equations as
+/// [`ShapeMatching`](crate::ShapeMatching) does, and in the end its particles are put where it says. Eight equal particles at 1/√3 of the way to the
+/// corners have the inertia of a solid box, others that of loaded dice. A body with a fixed particle stays where it is; particles that have died no
+/// longer count. Particles of bodies should have no radius, so that no other constraint takes them for balls.
+///
+/// Where two boxes touch is found by separating axes: face on face by clipping (four points), edge on edge by their nearest points. Against colliders
+/// a box's corners count, and what of the scenery is nearest to its middle, where that lies in the box: of what is smaller than the box, edges and
+/// balls, one place each. Impulses at these points, with those of the last sub-step to begin with, keep bodies from passing into each other within
+/// the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019; Catto, "Soft Constraints", GDC 2011), then velocities are brought to
+/// part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020, section 3.6).
+/// Friction is Coulomb's. All impulses act on both at one place, so that linear and angular momentum are kept to rounding.
+///
+/// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
+/// touching pairs a body and three directions of the scenery; what finds none is counted (`caps.contacts`).
+///
+/// ```
+/// use pointmass::constrain::{RigidBodies, RigidBox};
+/// use pointmass::shape::Plane;
+/// use pointmass::{Gravity, Heap, Particle, Scene, System, Time, Vec3};
+///
+/// // A solid box of 0.2 m × 0.1 m × 0.1 m and 1 kg, 0.3 m above the ground.
+/// let cuboid = RigidBox::new(Vec3::new(0.1, 0.05, 0.05), Vec3::Y * 0.3, 0);
+/// let start = cuboid.solid(Particle { mass: 1.0, ..Particle::REST });
+/// let bodies = RigidBodies { boxes: [cuboid] };
+/// let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+/// let scene = Scene {
+///     start: &start,
+///     forces: &Gravity::EARTH,
+///     colliders: &ground,
+///     constraints: &bodies,
+///     substeps: 10,
+///     ..Scene::EMPTY
+/// };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// for frame in 1..=60 {
+///     system.step_to(&scene, Time::frame(frame, 60));
+/// }
+/// let particles = system.particles();
+/// let height = particles.position.iter().map(|x| x.y).sum::<f32>() / 8.0;
+/// assert!((height - 0.05).abs() < 1e-3 && particles.velocity[0].length() < 1e-3);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidBodies<L> {
+    /// The bodies.
+    pub boxes: L,
+}
+
+/// A rigid body: some particles, and the box they are in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidBox {
+    /// The first of its particles, by its place in the scene's start, and their number: the next ones are the others.
+    pub first: u32,
+    /// How many there are.
+    pub count: u32,
+    /// Half the sides of the box \[m\].
+    pub half: Vec3,
+    /// The middle of the box at the scene's start \[m\].
+    pub center: Vec3,
+    /// How the box is turned then: a quaternion x, y, z, w of any length but zero.
+    pub turn: [f32; 4],
+}
+
+impl RigidBox {
+    /// An upright box of eight particles, `first` and those that follow.
+    #[must_use]
+    pub const fn new(half: Vec3, center: Vec3, first: u32) -> Self {
+        Self { first, count: 8, half, center, turn: [0.0, 0.0, 0.0, 1.0] }
+    }
+
+    /// How it is turned at the scene's start.
+    #[must_use]
+    pub fn rotation(&self) -> Mat3 {
+        Turn(self.turn).on(Vec3::ZERO).matrix()
+    }
+
+    /// Eight particles that are together as heavy as `whole`, and move as it does, with the inertia of a solid box: M (a² + b²) / 3 about an
+    /// axis across half sides a and b.
+    #[must_use]
+    pub fn solid(&self, whole: Particle) -> [Particle; 8] {
+        let turn = self.rotation();
+        let half = self.half * sqrt(1.0 / 3.0);
+        core::array::from_fn(|i| {
+            let position = self.center + turn * Oriented::corner(half, i as u32);
+            Particle { position, mass: whole.mass * 0.125, ..whole }
+        })
+    }
+
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let above_zero = |x: f32| x > 0.0 && x < f32::INFINITY;
+        let square = self.turn.iter().map(|x| x * x).sum::<f32>();
+        let faults = [
+            (self.count == 0, "count", "has to be one or more"),
+            (!self.half.to_array().into_iter().all(above_zero), "half", "has to be above zero, in m"),
+            (!self.center.is_finite(), "center", "has to be finite"),
+            (!above_zero(square), "turn", "has to be a quaternion x, y, z, w that is not zero"),
+        ];
+        faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))
+    }
+}
+
+impl<L: AsRef<[RigidBox]>> RigidBodies<L> {
+    /// The first number of any body that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        self.boxes.as_ref().iter().find_map(RigidBox::fault)
+    }
+
+    /// Does something with each body, and the places of its particles.
+    fn each(&self, kept: &mut Kept<'_>, mut visit: impl FnMut(&mut Body, &RigidBox, &mut [u32])) {
+        let mut places = &mut *kept.places;
+        for (body, of) in kept.bodies[1..].iter_mut().zip(self.boxes.as_ref()) {
+            visit(body, of, take(&mut places, 3 * of.count as usize));
+        }
+    }
+}
+
+impl<L: AsRef<[RigidBox]> + Sync> Constraint for RigidBodies<L> {
+    fn demand(&self) -> Demand {
+        let boxes = self.boxes.as_ref();
+        let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));
+        let [kept, scratch] = lists::demand(boxes.len(), particles);
+        Demand { kept, scratch, finds_near: true, ..Demand::NONE }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.boxes.as_ref().is_empty()
+    }
+
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let Some(mut kept) = Kept::of(share.kept.fixed, self.boxes.as_ref().len()) else { return };
+        let mut is_news = false;
+        if bodies.substep.number == 0 {
+            kept.bodies[0] = Body::world();
+            self.each(&mut kept, |body, of, places| is_news |= body.look(bodies, of, places));
+        }
+        lists::gather(bodies, &mut kept, share.scratch, is_news);
+        let slots = kept.scenery.chunks_exact_mut(DIRECTIONS);
+        for (number, (body, slots)) in kept.bodies[1..].iter_mut().zip(slots).enumerate() {
+            if body.moves() {
+                scenery::meet(bodies, body, number as u32 + 1, slots);
+            } else {
+                slots.iter_mut().for_each(|slot| slot.count = 0);
+            }
+        }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let Some(mut kept) = Kept::of(share.kept.fixed, self.boxes.as_ref().len()) else { return };
+        let span = Span { h: bodies.substep.seconds(), step: bodies.substep.step.seconds() };
+        if !(span.h > 0.0) {
+            return;
+        }
+        let len = kept.lists.pairs as usize;
+        for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
+            solver::begin(kept.bodies, manifold);
+        }
+        self.each(&mut kept, |body, of, places| body.gather(bodies, Made { of, places }));
+        for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
+            solver::expect(kept.bodies, manifold, span);
+            solver::hold_on(kept.bodies, manifold);
+        }
+        solver::keep_apart(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
+        kept.bodies.iter_mut().for_each(|body| body.go(span.h));
+        solver::part(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
+        self.each(&mut kept, |body, of, places| body.tell(bodies, Made { of, places }));
+        let presses = |manifold: &&Manifold| manifold.points().iter().any(|point| point.pressed > 0.0);
+        bodies.report.contacts += kept.pairs[..len].iter().filter(presses).count() as u64;
+        bodies.report.hits += kept.scenery.iter().filter(presses).count() as u64;
+    }
+}

@@ -1,0 +1,182 @@
+//! Where bodies meet the scene's colliders.
+
+use super::super::Bodies;
+use super::body::Body;
+use super::boxes::Oriented;
+use super::manifold::Manifold;
+use crate::material::on_surface;
+use crate::math::{clamp, dot, length, max, min};
+use crate::shape::{Aabb, Contact, Segment};
+use glam::Vec3;
+
+/// Directions that one body can be pressed in by the scenery at a time.
+pub(super) const DIRECTIONS: usize = 3;
+/// The cosine of the angle within which two faces are one.
+const ONE_FACE: f32 = 0.9999;
+/// The cosine of the angle within which a corner of the scenery presses no otherwise than a corner of the body.
+const ALIKE: f32 = 0.9;
+
+/// A body among the scenery.
+struct Visit<'a> {
+    body: &'a Body,
+    number: u32,
+    slots: &'a mut [Manifold],
+    before: [Manifold; DIRECTIONS],
+    reach: f32,
+}
+
+/// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time.
+///
+/// Its corners are asked for, as points: one that is beyond a surface, as seen from the body's middle, is met where the way there crosses it.
+/// Then the places of the scenery nearest to the body's middle, where they lie in its box: edges and spheres smaller than it.
+pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, number: u32, slots: &mut [Manifold]) {
+    let h = bodies.substep.seconds();
+    let (way, small) = (body.speed() * h, body.small());
+    let is_new = bodies.substep.number == 0;
+    if !is_new && body.spare > way {
+        body.spare -= way;
+        return;
+    }
+    let Ok(&before) = <&[Manifold; DIRECTIONS]>::try_from(&*slots) else { return };
+    slots.iter_mut().for_each(|slot| slot.count = 0);
+    let around = |reach: f32| {
+        let (middle, reach) = (body.middle(), reach + length(body.half));
+        Aabb { min: middle - reach, max: middle + reach }
+    };
+    let free = 0.5 * body.radius;
+    if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around(free)) {
+        body.spare = free - way;
+        return;
+    }
+    let reach = 2.0 * (small + way);
+    if !bodies.colliders.may_touch(&around(reach)) {
+        body.spare = small;
+        return;
+    }
+    let mut visit = Visit { body, number, slots, before, reach };
+    (0..8).for_each(|corner| visit.corner(bodies, corner));
+    visit.scenery(bodies);
+    let is_moving = visit.slots.iter().any(|slot| slot.count > 0 && slot.surface != Vec3::ZERO);
+    body.spare = if is_moving { 0.0 } else { small };
+}
+
+impl Visit<'_> {
+    /// Looks around a corner.
+    fn corner(&mut self, bodies: &mut Bodies<'_>, corner: u32) {
+        let place = Oriented::corner(self.body.half, corner);
+        let (middle, at, colliders) = (self.body.middle(), bodies.substep.during[0], bodies.colliders);
+        let mut point = self.body.point(place);
+        let path = Segment { from: middle, to: point, radius: 0.0, during: [at, at] };
+        if let Some(hit) = colliders.first_hit(&path) {
+            let met = path.at(hit.time);
+            let contact = Contact {
+                point: met,
+                normal: hit.normal,
+                distance: 0.0,
+                slack: hit.slack,
+                velocity: hit.velocity,
+                material: hit.material,
+            };
+            self.put(bodies, &contact, place);
+            // From before it other faces are seen.
+            point = path.at(0.9 * hit.time);
+        }
+        let reach = self.reach + length(point - path.to);
+        let mut others = heapless::Vec::<Contact, 8>::new();
+        let mut left_out = 0;
+        colliders.contacts(point, reach, at, &mut |contact| left_out += u64::from(others.push(*contact).is_err()));
+        bodies.report.caps.contacts += left_out;
+        for contact in &others {
+            if dot(contact.normal, path.to - contact.point) <= self.reach {
+                self.put(bodies, contact, place);
+            }
+        }
+    }
+
+    /// Looks for places of the scenery in the box.
+    fn scenery(&mut self, bodies: &mut Bodies<'_>) {
+        let (body, at) = (self.body, bodies.substep.during[0]);
+        let (middle, half) = (body.middle(), body.half);
+        let mut near = heapless::Vec::<Contact, 8>::new();
+        let mut left_out = 0;
+        bodies.colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
+            left_out += u64::from(near.push(*contact).is_err());
+        });
+        bodies.report.caps.contacts += left_out;
+        for contact in &near {
+            let place = body.place(contact.point);
+            let held = [0, 1, 2].map(|k| clamp(place[k], -half[k], half[k]));
+            let away = Vec3::from_array(held) - place;
+            let distance = length(away);
+            if distance > self.reach {
+                continue;
+            }
+            let (mut on, mut normal) = (Vec3::from_array(held), away * (1.0 / distance));
+            if !(distance > 0.0) {
+                let depth = [0, 1, 2].map(|k| half[k] - place[k].abs());
+                let axis = if depth[0] <= depth[1] && depth[0] <= depth[2] {
+                    0
+                } else if depth[1] <= depth[2] {
+                    1
+                } else {
+                    2
+                };
+                let side = if place[axis] < 0.0 { -1.0 } else { 1.0 };
+                normal = Vec3::ZERO;
+                (on[axis], normal[axis]) = (side * half[axis], -side);
+            }
+            let normal = body.rotation * normal;
+            let is_met = |slot: &Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
+            if dot(normal, contact.normal) > 0.0 && !self.slots.iter().any(is_met) {
+                self.put(bodies, &Contact { normal, ..*contact }, on);
+            }
+        }
+    }
+
+    /// Adds a place, to the points on the same face if there are any.
+    fn put(&mut self, bodies: &mut Bodies<'_>, contact: &Contact, place: Vec3) {
+        let Contact { point, normal, velocity, material, .. } = *contact;
+        let on = |slot: &Manifold| slot.count > 0 && slot.surface == velocity && dot(slot.normal, normal) > ONE_FACE;
+        let free = |slot: &Manifold| slot.count == 0;
+        let number = self.slots.iter().position(on).or_else(|| self.slots.iter().position(free));
+        let Some(slot) = number.and_then(|number| self.slots.get_mut(number)) else {
+            bodies.report.caps.contacts += 1;
+            return;
+        };
+        if slot.count == 0 {
+            let own = (self.body.material as u16).checked_sub(1);
+            let mixed = on_surface(bodies.materials, self.body.elasticity, own, material);
+            *slot = Manifold { normal, surface: velocity, ..Manifold::of([0, self.number], mixed) };
+        }
+        let twice = slot.points().iter().any(|other| other.places[1] == place);
+        let gap = |point: Vec3| dot(normal, self.body.point(place) - point);
+        if twice {
+            return;
+        }
+        let near = |slot: &&Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
+        let before = self.before.iter().find(near).map_or(&[][..], Manifold::points);
+        if slot.count < 4 {
+            slot.put([point, place], before, 0.0);
+            return;
+        }
+        // Of more than four on a face the deepest count.
+        let (body, mut least) = (self.body, (0, f32::NEG_INFINITY));
+        for (i, other) in slot.points.iter().enumerate() {
+            let gap = dot(normal, body.point(other.places[1]) - other.places[0]);
+            if gap > least.1 {
+                least = (i, gap);
+            }
+        }
+        if gap(point) < least.1 {
+            let last = slot.points[3];
+            slot.points[least.0] = last;
+            slot.count = 3;
+            slot.put([point, place], before, 0.0);
+        }
+    }
+}
+
+/// A bound on how far a body goes in a time \[m\].
+pub(super) fn leash(body: &Body, seconds: f32) -> f32 {
+    0.25 * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
+}

@@ -1,0 +1,187 @@
+//! Rigid boxes in scene files: one, or a block of many that differ by chance.
+
+use super::numbers::{Checked, above_zero, finite, zero_or_more};
+use super::{SceneError, SceneFile};
+use crate::constrain::RigidBox;
+use crate::math::{length, sin_cos, unit};
+use crate::particles::{Color, Particle};
+use crate::rng::Stream;
+use alloc::format;
+use alloc::vec::Vec;
+use glam::Vec3;
+
+/// Solid boxes that collide as boxes, each of eight particles (see [`RigidBodies`](crate::RigidBodies)). The particles follow the
+/// scene's own and those of cloths, in order.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Boxes {
+    /// The lengths of a box's sides \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub sides: Vec3,
+    /// The mass of each \[kg\].
+    pub mass: f32,
+    /// Where the middle of the first is \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub position: Vec3,
+    /// How many there are along x, y and z.
+    #[cfg_attr(feature = "serde", serde(default = "one"))]
+    pub count: [u32; 3],
+    /// From one's middle to the next one's along x, y and z \[m\]; without it the sides, so that they touch.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<[f32; 3]>"))]
+    pub spacing: Option<Vec3>,
+    /// How each is turned: by the length of this \[rad\], about its direction.
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub turn: Vec3,
+    /// How each moves to begin with \[m/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub velocity: Vec3,
+    /// How each turns to begin with \[rad/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub spin: Vec3,
+    /// By how much each may differ from that.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub scatter: Option<Scatter>,
+    /// By how much a side along x, y and z is heavier than the one across, from −1 to 1: loaded dice.
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub load: Vec3,
+    /// True if they never move.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub fixed: bool,
+    /// Coefficient of linear drag of each box \[kg/s\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub drag: f32,
+    /// The share of the normal speed that they keep when they hit something.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub elasticity: f32,
+    /// Number of the material in the scene, if they have one.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub material: Option<u16>,
+    /// Their colours, one after the other and again from the first; without any, that of their material.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub colors: Vec<Color>,
+}
+
+/// How much boxes differ by chance: along each axis evenly between less and more by so much.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Scatter {
+    /// In place \[m\].
+    pub position: f32,
+    /// In turn \[rad\].
+    pub turn: f32,
+    /// In velocity \[m/s\].
+    pub velocity: f32,
+    /// In rate of turning \[rad/s\].
+    pub spin: f32,
+    /// Another number makes another throw.
+    pub seed: u32,
+}
+
+/// One box.
+#[cfg(feature = "serde")]
+const fn one() -> [u32; 3] {
+    [1; 3]
+}
+
+/// As many boxes as a scene may have: they take about 6 kB each.
+const MOST: u64 = 1 << 16;
+
+impl Boxes {
+    /// How many there are.
+    fn number(&self) -> u64 {
+        self.count.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n)))
+    }
+
+    /// How many particles they are.
+    pub(super) fn particles(&self) -> u64 {
+        self.number().saturating_mul(8)
+    }
+
+    /// Its particles and bodies, the first particle having number `first` in the scene's start.
+    pub(super) fn make(&self, first: u32) -> (Vec<Particle>, Vec<RigidBox>) {
+        let [nx, ny, nz] = self.count;
+        let places = (0..ny).flat_map(|y| (0..nz).flat_map(move |z| (0..nx).map(move |x| [x, y, z])));
+        let (mut particles, mut bodies) = (Vec::new(), Vec::new());
+        for (number, place) in places.enumerate() {
+            let (body, whole, spin) = self.body(number as u32, place, first + particles.len() as u32);
+            let load = |i: usize, axis: usize| if i >> axis & 1 == 1 { self.load[axis] } else { -self.load[axis] };
+            particles.extend(body.solid(whole).into_iter().enumerate().map(|(i, corner)| Particle {
+                velocity: corner.velocity + spin.cross(corner.position - body.center),
+                mass: corner.mass * (0..3).map(|axis| 1.0 + load(i, axis)).product::<f32>(),
+                ..corner
+            }));
+            bodies.push(body);
+        }
+        (particles, bodies)
+    }
+
+    /// The box with a number, its particles in one, and how it turns.
+    fn body(&self, number: u32, place: [u32; 3], first: u32) -> (RigidBox, Particle, Vec3) {
+        let chance = self.scatter.unwrap_or_default();
+        let stream = Stream::new(u64::from(chance.seed), u32::MAX, number);
+        let vary = |place: u32, by: f32| {
+            let ([x, y], [z, _]) = (stream.units(2 * place), stream.units(2 * place + 1));
+            (Vec3::new(x, y, z) * 2.0 - 1.0) * by
+        };
+        let step = self.spacing.unwrap_or(self.sides) * Vec3::from_array(place.map(|n| n as f32));
+        let turn = self.turn + vary(1, chance.turn);
+        let (sin, cos) = sin_cos(0.5 * length(turn));
+        let [x, y, z] = (unit(turn) * sin).to_array();
+        let center = self.position + step + vary(0, chance.position);
+        let body = RigidBox { turn: [x, y, z, cos], ..RigidBox::new(self.sides * 0.5, center, first) };
+        let color = (!self.colors.is_empty()).then(|| self.colors[number as usize % self.colors.len()]);
+        let whole = Particle {
+            mass: self.mass,
+            velocity: self.velocity + vary(2, chance.velocity),
+            drag: self.drag * 0.125,
+            elasticity: self.elasticity,
+            material: self.material,
+            fixed: self.fixed,
+            color,
+            ..Particle::REST
+        };
+        (body, whole, self.spin + vary(3, chance.spin))
+    }
+}
+
+impl SceneFile {
+    pub(super) fn check_boxes(&self) -> Checked {
+        let mut count = 0u64;
+        for (i, boxes) in self.boxes.iter().enumerate() {
+            let at = |field: &str| format!("boxes[{i}].{field}");
+            for side in boxes.sides.to_array() {
+                above_zero(&at("sides"), side)?;
+            }
+            above_zero(&at("mass"), boxes.mass)?;
+            let spacing = boxes.spacing.unwrap_or_default();
+            let vectors = [boxes.position, spacing, boxes.turn, boxes.velocity, boxes.spin, boxes.load];
+            let names = ["position", "spacing", "turn", "velocity", "spin", "load"];
+            for (name, vector) in names.into_iter().zip(vectors) {
+                finite(&at(name), &vector.to_array())?;
+            }
+            if boxes.load.to_array().into_iter().any(|load| load.abs() >= 1.0) {
+                return Err(SceneError::value(at("load"), "has to be within -1 and 1, a share of the mass of a side"));
+            }
+            let Scatter { position, turn, velocity, spin, seed: _ } = boxes.scatter.unwrap_or_default();
+            for (name, number) in [("position", position), ("turn", turn), ("velocity", velocity), ("spin", spin)] {
+                zero_or_more(&at(&format!("scatter.{name}")), number)?;
+            }
+            finite(&at("drag"), &[boxes.drag])?;
+            finite(&at("elasticity"), &[boxes.elasticity])?;
+            count = count.saturating_add(boxes.number());
+            if count > MOST {
+                let message = format!("makes {} boxes; a scene may have {MOST}", boxes.number());
+                return Err(SceneError::value(at("count"), message));
+            }
+            self.check_material(&format!("boxes[{i}]"), boxes.material)?;
+        }
+        Ok(())
+    }
+}
