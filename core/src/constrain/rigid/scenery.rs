@@ -178,5 +178,5 @@ impl Visit<'_> {
 
 /// A bound on how far a body goes in a time \[m\].
 pub(super) fn leash(body: &Body, seconds: f32) -> f32 {
-    0.25 * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
+    0.25 * max(min(body.radius, f32::MAX), 0.0) + 0.25 * body.speed() * seconds
 }
