@@ -196,11 +196,11 @@ impl<'a> Pair<'a> {
     fn press_evenly(&mut self, wanted: &mut dyn FnMut(&Point) -> f32) {
         let (mut lack, mut least, mut levers, mut number) = (0.0, f32::INFINITY, [Vec3::ZERO; 2], 0.0);
         let mut counts = [false; 4];
-        for i in 0..self.count {
+        for (i, counts) in counts.iter_mut().enumerate().take(self.count) {
             let missing = wanted(&self.points[i]) - self.parting(i);
             let Point { pressed, arms, .. } = self.points[i];
-            counts[i] = missing > 0.0 || pressed > 0.0;
-            if counts[i] {
+            *counts = missing > 0.0 || pressed > 0.0;
+            if *counts {
                 (lack, least, number) = (lack + missing, min(least, pressed), number + 1.0);
                 levers[0] += arms[0];
                 levers[1] += arms[1];
