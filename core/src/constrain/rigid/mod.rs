@@ -146,6 +146,9 @@ impl<L: AsRef<[RigidBox]>> RigidBodies<L> {
 impl<L: AsRef<[RigidBox]> + Sync> Constraint for RigidBodies<L> {
     fn demand(&self) -> Demand {
         let boxes = self.boxes.as_ref();
+        if boxes.is_empty() {
+            return Demand::NONE;
+        }
         let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));
         let [kept, scratch] = lists::demand(boxes.len(), particles);
         Demand { kept, scratch, finds_near: true, ..Demand::NONE }
