@@ -1,13 +1,15 @@
 //! What holds together, computed alike by every target: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
-//! A rope that hangs from a nail, a ring of soft links, a die and a jelly are thrown onto the floor, one after the other and
-//! all at once.
+//! A rope that hangs from a nail, a ring of soft links, a die, a jelly, a sheet and two boxes are thrown onto the floor, one after the
+//! other and all at once.
 
-use pointmass::constrain::{Attach, Contacts, Distance, Rope, ShapeMatching};
+use pointmass::constrain::{
+    Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams,
+};
 use pointmass::index::Structure;
 use pointmass::motion::Motion;
 use pointmass::shape::Plane;
-use pointmass::{Constraint, Drag, Gravity, Inline, Particle, Scene, System, Time, Vec3, Verlet};
+use pointmass::{Constraint, Drag, Gravity, Inline, Particle, Scene, Sheet, System, Time, Vec3, Verlet};
 
 /// The hashes in the form of `all` in `expected.rs`.
 pub(crate) const EXPECTED: &str = include_str!("../../bonds.txt");
@@ -16,9 +18,21 @@ const ROPE: [u32; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 const RING: [u32; 8] = [12, 13, 14, 15, 16, 17, 18, 19];
 const DIE: [u32; 8] = [20, 21, 22, 23, 24, 25, 26, 27];
 const JELLY: [u32; 8] = [28, 29, 30, 31, 32, 33, 34, 35];
-const PARTICLES: usize = 36;
+const SHEET: Sheet = Sheet {
+    corner: Vec3::new(-0.2, 0.6, 0.3),
+    sides: [Vec3::new(0.3, 0.1, 0.0), Vec3::new(0.0, 0.05, 0.2)],
+    cells: [3, 2],
+};
+/// Particles before those of the sheet, and its own, with its triangles and hinges.
+const LOOSE: usize = 36;
+const WOVEN: usize = 12;
+const FACES: usize = 12;
+const HINGES: usize = 13;
+/// Where a corner of the die is, and one of the jelly.
+const THROWN: [Vec3; 2] = [Vec3::new(0.4, 0.5, 0.5), Vec3::new(0.3, 0.9, 0.45)];
+const PARTICLES: usize = LOOSE + WOVEN;
 const COLUMNS: usize = 64;
-const KEPT: usize = 4;
+const KEPT: usize = 20;
 
 /// Everything that they need, none of it on the stack.
 pub(crate) struct Memory {
@@ -43,14 +57,25 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let ring = Rope { compliance: 1e-4, closed: true, ..Rope::rigid(RING, [0.12]) };
     let die = ShapeMatching::rigid(DIE);
     let jelly = ShapeMatching { compliance: 2e-3, damping: 0.5, ..ShapeMatching::rigid(JELLY) };
+    let sheet = sheet();
+    let chest = |place: Vec3, first| RigidBox::new(Vec3::splat(0.1), place + 0.1, first);
+    let chests = RigidBodies { boxes: [chest(THROWN[0], DIE[0]), chest(THROWN[1], JELLY[0])] };
     let leash = Distance { compliance: 1e-3, ..Distance::string([11, 20], 0.3) };
     let hand = Attach {
         particles: [0],
         motion: Motion { spin: 0.7, pivot: Vec3::new(0.0, 1.0, 0.1), axis: Vec3::Y, ..Motion::STILL },
     };
-    let all = &(hand, (leash, rope, ring), (die, jelly), Contacts::HARD);
-    let bonds: [(&str, &dyn Constraint); 6] =
-        [("rope", &rope), ("ring", &ring), ("die", &die), ("jelly", &jelly), ("leash", &leash), ("bonds", all)];
+    let all = &(hand, (leash, rope, ring), (die, jelly), sheet, Contacts::HARD);
+    let bonds: [(&str, &dyn Constraint); 8] = [
+        ("rope", &rope),
+        ("ring", &ring),
+        ("die", &die),
+        ("jelly", &jelly),
+        ("leash", &leash),
+        ("sheet", &sheet),
+        ("chests", &chests),
+        ("bonds", all),
+    ];
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     for (name, constraints) in bonds {
         let scene = Scene {
@@ -63,16 +88,25 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
             index: &Structure::Grid,
             ..Scene::EMPTY
         };
-        if system.start(&scene, 1).is_ok() {
-            for frame in 1..=90 {
-                system.step(&scene, Time::frame(frame, 60) - system.time());
-            }
+        system.start(&scene, 1).expect("there is memory for it");
+        for frame in 1..=90 {
+            system.step(&scene, Time::frame(frame, 60) - system.time());
         }
         out(name, system.hash());
     }
 }
 
-/// A rope from its nail, a ring, and two lots of the corners of a box, all a little different.
+/// A sheet of stiff paper.
+fn sheet() -> Shell<[u32; WOVEN], [[u32; 3]; FACES], [Hinge; HINGES]> {
+    let (mut triangles, mut hinges) = ([[0; 3]; FACES], [Hinge { edge: [0; 2], far: [0; 2], faces: [0; 2] }; HINGES]);
+    triangles.iter_mut().zip(SHEET.triangles()).for_each(|(to, from)| *to = from);
+    hinges.iter_mut().zip(SHEET.hinges()).for_each(|(to, from)| *to = from);
+    let particles = core::array::from_fn(|i| (LOOSE + i) as u32);
+    let params = ShellParams { stretch: [100.0, 80.0], shear: 30.0, bending: 1e-3, damping: 1e-3 };
+    Shell { particles, triangles, hinges, warp: Vec3::X, params }
+}
+
+/// A rope from its nail, a ring, two lots of the corners of a box, and a sheet, all a little different.
 fn throw(start: &mut [Particle]) {
     for (i, place) in start.iter_mut().enumerate() {
         let odd = (i * 7 % 10) as f32 * 0.1;
@@ -92,9 +126,10 @@ fn throw(start: &mut [Particle]) {
                 let [x, z] = round[i - 12];
                 (Vec3::new(0.15 * x + 1.5, 0.8 + 0.1 * x, 0.15 * z), Vec3::new(-1.0, 1.0 + z, 0.3))
             }
+            LOOSE.. => (SHEET.positions().nth(i - LOOSE).unwrap_or(Vec3::ZERO), Vec3::new(odd, 0.0, 1.0 - odd)),
             _ => {
                 let corner = Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32) * 0.2;
-                let place = if i < 28 { Vec3::new(0.4, 0.5, 0.5) } else { Vec3::new(-0.6, 0.7, -0.2) };
+                let place = THROWN[usize::from(i >= 28)];
                 (place + corner, Vec3::new(1.0, 0.5, -1.0).cross(corner) * 12.0)
             }
         };

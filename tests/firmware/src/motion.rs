@@ -109,10 +109,9 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     blow(&mut start[WOVEN.0..], &mut springs[WOVEN.1..]);
     for method in Method::ALL {
         let scene = Scene { start, springs, forces: &forces(), integrator: method, index: &InGrid, ..Scene::EMPTY };
-        if system.start(&scene, 1).is_ok() {
-            for frame in 1..=90 {
-                system.step(&scene, Time::frame(frame, 60) - system.time());
-            }
+        system.start(&scene, 1).expect("there is memory for it");
+        for frame in 1..=90 {
+            system.step(&scene, Time::frame(frame, 60) - system.time());
         }
         out(method.name(), system.hash());
     }
@@ -134,23 +133,22 @@ fn grow_old(
     let mut hash = Fnv::new();
     let (mut rings, mut knots) = ([Ring::NONE; TRAILS], [Knot::NONE; 6 * TRAILS]);
     let mut trails = Trails::new(&mut rings, &mut knots, None);
-    if system.start(&scene, 1).is_ok() {
-        for frame in 1..=88 {
-            system.step(&scene, Time::frame(frame, 60) - system.time());
-            let state = system.state(&scene);
-            for look in (0..system.len()).filter_map(|row| appearance(&state, row)) {
-                [look.diameter, look.scale, look.glow, look.rotation].into_iter().for_each(|x| hash.float(x));
-                hash.bytes(&look.color);
-            }
-            hash_sprites(&state, &mut hash);
-            hash.long(trails.look(&state) as u64);
-            hash_lines(|into| trails.lines(&state, into), &mut hash);
-            hash_lines(|into| draw::springs(&state, 0.2, into), &mut hash);
-            hash_lines(|into| draw::velocities(&state, 0.1, into), &mut hash);
-            hash_lines(|into| draw::links(&state, EDGES.into_iter(), [255; 4], into), &mut hash);
-            hash_solids(&state, &mut hash);
-            hash_surface(&state, &mut hash);
+    system.start(&scene, 1).expect("there is memory for it");
+    for frame in 1..=88 {
+        system.step(&scene, Time::frame(frame, 60) - system.time());
+        let state = system.state(&scene);
+        for look in (0..system.len()).filter_map(|row| appearance(&state, row)) {
+            [look.diameter, look.scale, look.glow, look.rotation].into_iter().for_each(|x| hash.float(x));
+            hash.bytes(&look.color);
         }
+        hash_sprites(&state, &mut hash);
+        hash.long(trails.look(&state) as u64);
+        hash_lines(|into| trails.lines(&state, into), &mut hash);
+        hash_lines(|into| draw::springs(&state, 0.2, into), &mut hash);
+        hash_lines(|into| draw::velocities(&state, 0.1, into), &mut hash);
+        hash_lines(|into| draw::links(&state, EDGES.into_iter(), [255; 4], into), &mut hash);
+        hash_solids(&state, &mut hash);
+        hash_surface(&state, &mut hash);
     }
     hash.long(system.hash());
     hash.finish()
