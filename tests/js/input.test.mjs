@@ -195,6 +195,10 @@ test("what there is to draw is in lists of numbers", () => {
   near([...sprites.slice(0, 3)], [0, 1, -4]); // The farthest comes first.
   near([...sprites.slice(16)], [3, 0, 0, 0.1, 0, 0, 0, 0.1, 0, 1, 0, 0.2, 1, 0, 0, 2]);
   near([...world.shapes().slice(0, 12)], [0, 5, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]);
+  const dice = new World({ boxes: [{ sides: [0.2, 0.1, 0.4], mass: 1, position: [1, 2, 3], count: [2, 1, 1], spacing: [1, 0, 0] }] });
+  assert.equal(dice.boxes().length, 2 * 17);
+  near([...dice.boxes().slice(17, 29)], [2, 2, 3, 0.1, 0, 0, 0, 0.05, 0, 0, 0, 0.2]);
+  dice.free();
   const spring = world.springs();
   near([...spring.slice(0, 8)], [0, 5, 0, 0, 7.2, 0, 0, 0]);
   assert.ok(spring[8] > 0.9 && spring[10] < 0.25, "longer by a tenth is red");

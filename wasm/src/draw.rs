@@ -2,9 +2,10 @@
 
 use js_sys::Float32Array;
 use pointmass::Color;
-use pointmass::draw::{Instance, Line, Sprite, View, back_to_front, solids, springs, sprites};
+use pointmass::draw::{Instance, Line, Sprite, View, back_to_front, bodies, solids, springs, sprites};
 use pointmass::force::State;
 use pointmass::material::Blend;
+use pointmass::scene::Model;
 
 /// Red, green, blue (sRGB) and opacity, each from 0 to 1.
 fn shares(color: Color) -> [f32; 4] {
@@ -47,7 +48,19 @@ pub(crate) fn sprites_of(state: &State<'_>, view: &View) -> Float32Array {
 pub(crate) fn shapes_of(state: &State<'_>) -> Float32Array {
     let mut list = vec![Instance::NONE; state.position.len()];
     let (count, _) = solids(state, &mut list);
-    packed(list[..count].iter().map(|instance| {
+    instances(&list[..count])
+}
+
+/// The rigid boxes of a state, 17 numbers each.
+pub(crate) fn boxes_of(state: &State<'_>, model: &Model) -> Float32Array {
+    let boxes = &model.constraints.1.boxes;
+    let mut list = vec![Instance::NONE; boxes.len()];
+    let (count, _) = bodies(state, boxes, &model.particles, &mut list);
+    instances(&list[..count])
+}
+
+fn instances(list: &[Instance]) -> Float32Array {
+    packed(list.iter().map(|instance| {
         let Instance { center, axes, color, material } = *instance;
         joined::<17>(&[&center.to_array(), &axes.to_cols_array(), &shares(color), &[f32::from(material)]])
     }))

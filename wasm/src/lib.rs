@@ -92,7 +92,7 @@ impl World {
         } else {
             read_scn("scene", &text, &mut files)?
         };
-        memory::room_to_weave(&file, &files)?;
+        memory::room_to_build(&file, &files)?;
         let model = Model::load(&file, "scene", &mut files)?;
         let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(model.particles.len() as u32));
         let heap = Heap::try_new(model.size(capacity as usize)).map_err(|_| {
@@ -236,6 +236,13 @@ impl World {
     #[must_use]
     pub fn shapes(&self) -> Float32Array {
         draw::shapes_of(&self.system.state(&self.model.scene()))
+    }
+
+    /// The rigid boxes of the scene that can be seen, 17 numbers each: the middle, the ways from there to the middles of three sides \[m\], red,
+    /// green, blue, opacity from 0 to 1, and the material's number. A copy.
+    #[must_use]
+    pub fn boxes(&self) -> Float32Array {
+        draw::boxes_of(&self.system.state(&self.model.scene()), &self.model)
     }
 
     /// The springs that hold, as lines of 16 numbers each: both ends \[m\], the widths there \[m\], zero for about a pixel, and the colours there,

@@ -10,6 +10,9 @@ const OBJECT: usize = 1536;
 /// Bytes that a particle of a cloth takes at most, with its springs.
 const WOVEN: usize = 2048;
 
+/// Bytes that a rigid box takes at most, with its particles.
+const BOX: usize = 6144;
+
 /// Makes sure that so many bytes are to be had, for `what`.
 ///
 /// # Errors
@@ -31,17 +34,20 @@ pub(crate) fn room_to_read(text: &str) -> Result<(), JsError> {
     room(objects.saturating_mul(OBJECT).saturating_add(text.len().saturating_mul(12)), "the scene")
 }
 
-/// Makes sure of the memory that the cloths of a scene take.
+/// Makes sure of the memory that the cloths and boxes of a scene take.
 ///
 /// # Errors
 /// If there is not so much.
-pub(crate) fn room_to_weave(file: &SceneFile, files: &Files) -> Result<(), JsError> {
+pub(crate) fn room_to_build(file: &SceneFile, files: &Files) -> Result<(), JsError> {
+    let product = |counts: &[u32], more: usize| {
+        counts.iter().fold(1_usize, |product, &n| product.saturating_mul((n as usize).saturating_add(more)))
+    };
     let particles = file.cloths.iter().map(|cloth| match &cloth.form {
-        Form::Sheet(sheet) => {
-            sheet.cells.iter().fold(1_usize, |product, &n| product.saturating_mul((n as usize).saturating_add(1)))
-        }
+        Form::Sheet(sheet) => product(&sheet.cells, 1),
         Form::Mesh(name) => files.corners(name),
     });
     let particles = particles.fold(0_usize, usize::saturating_add);
-    room(particles.saturating_mul(WOVEN), "the cloths of the scene")
+    room(particles.saturating_mul(WOVEN), "the cloths of the scene")?;
+    let boxes = file.boxes.iter().map(|boxes| product(&boxes.count, 0)).fold(0_usize, usize::saturating_add);
+    room(boxes.saturating_mul(BOX), "the boxes of the scene")
 }
