@@ -105,7 +105,7 @@ pub struct Shell<P, T, H> {
     pub particles: P,
     /// The triangles, by places in `particles`.
     pub triangles: T,
-    /// The edges over which it bends, from [`Sheet::hinges`](crate::Sheet::hinges) or [`mesh_hinges`](super::mesh_hinges).
+    /// The edges over which it bends. They come from [`Sheet::hinges`](crate::Sheet::hinges) or [`mesh_hinges`](super::mesh_hinges).
     pub hinges: H,
     /// The direction of the warp in the shape in which it begins; each triangle takes it in its own plane.
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
