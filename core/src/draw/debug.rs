@@ -29,7 +29,7 @@ const EVEN: [f32; 3] = [0.819_172_5, 0.671_043_6, 0.549_700_5];
 /// let mut index = Structure::Grid.index(&mut memory);
 /// index.build(&points, 2.0)?;
 /// let mut lines = [Line::NONE; 48];
-/// assert_eq!(cells(&index, &points, [255; 4], &mut lines), (24, 0)); // Two near each other, one by itself.
+/// assert_eq!(cells(&index, &points, [255; 4], &mut lines), (12, 0)); // So few are one part: the edges of one box.
 /// # Ok::<(), pointmass::index::TooSmall>(())
 /// ```
 pub fn cells(index: &dyn SpatialIndex, points: &[Vec3], color: Color, into: &mut [Line]) -> (usize, usize) {
