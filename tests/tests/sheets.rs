@@ -226,8 +226,9 @@ fn keeps_its_momenta(frames: u32, cases: &[(u32, bool, f32, f32)]) {
             let scale = f64::from(scale);
             let drift = gap(before.momentum, after.momentum) / (mass * scale);
             assert!(drift < 5e-5 * (1.0 + f64::from(away)), "{method}, {substeps} sub-steps: {drift}");
-            // Velocities round in every sub-step; at 20 m places are no finer than 2e-6 m, and sub-steps round to that.
-            let rounding = 2e-9 * f64::from(frames * substeps) + 3e-3 * f64::from(away);
+            // Velocities round in every sub-step; at 20 m places are no finer than 2e-6 m, and sub-steps round to that, up and down.
+            let all = f64::from(frames * substeps);
+            let rounding = 2e-9 * all + 3e-3 * f64::from(away) * (all / 4500.0).sqrt().max(1.0);
             let lost = gap(turned, spin(&system, &start)) / gap(turned, [0.0; 3]);
             assert!(lost < 1e-4 + rounding, "{method}, {substeps} sub-steps, {scale} m, {away}: {lost}");
             // What turns goes on turning; waves become strain and back, and those that steps are too long for fade.
@@ -239,7 +240,7 @@ fn keeps_its_momenta(frames: u32, cases: &[(u32, bool, f32, f32)]) {
 #[test]
 fn a_free_sheet_keeps_its_momenta_and_gains_no_energy() {
     keeps_its_momenta(
-        often(900) as u32,
+        often(300) as u32,
         &[(5, false, 1.0, 0.0), (4, true, 1.0, 1.0), (5, true, 1e-3, 0.0), (4, false, 50.0, 0.0)],
     );
 }
