@@ -1,4 +1,4 @@
-//! What is between the eye and what it sees.
+//! The air between the eye and the things that it sees.
 
 use super::camera::Lens;
 use super::color::decode;
@@ -26,7 +26,7 @@ pub(super) struct Air {
     color: Option<Vec3>,
 }
 
-/// What becomes of light on its way from a place to the eye.
+/// The air's effect on light on its way from a place to the eye.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Haze {
     /// The share that arrives.
@@ -41,7 +41,7 @@ impl Air {
         Self { sky, fog, color: fog.and_then(|fog| fog.color).map(decode) }
     }
 
-    /// What is before a place in view coordinates.
+    /// The haze before a place in view coordinates.
     pub(super) fn before(&self, place: Vec3, lens: &Lens) -> Haze {
         let Some(fog) = self.fog else { return Haze::NONE };
         let clear = (-fog.density * (place.length() - fog.from).max(0.0)).exp();
@@ -54,7 +54,7 @@ impl Haze {
     /// Nothing at all.
     pub(super) const NONE: Self = Self { clear: 1.0, light: Vec3::ZERO };
 
-    /// What is seen of a colour.
+    /// The light that arrives of a colour.
     pub(super) fn through(&self, color: Vec3) -> Vec3 {
         self.clear * color + self.light
     }

@@ -34,7 +34,7 @@ pub(super) struct Placed<'a> {
     extent: Vec2,
     /// How deep in a surface it still shows whole, in halves of its size.
     sunk: f32,
-    /// What is before it.
+    /// The haze before it.
     pub(super) haze: Haze,
 }
 
@@ -121,7 +121,7 @@ impl<'a> Placed<'a> {
 
 /// A row of pixels in a picture's own measure, which changes evenly along it.
 struct Row {
-    /// What lies straight above or below the picture's middle, and the change from pixel to pixel.
+    /// The place straight above or below the picture's middle, and the change from pixel to pixel.
     start: Vec2,
     step: Vec2,
     /// Where that middle is, in pixels.

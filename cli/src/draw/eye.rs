@@ -25,7 +25,7 @@ impl Eye {
         Self { lens, frustum: Frustum::new(&lens), air, codec: Codec::new() }
     }
 
-    /// What is before a place in view coordinates.
+    /// The haze before a place in view coordinates.
     pub(super) fn haze(&self, place: Vec3) -> Haze {
         self.air.before(place, &self.lens)
     }

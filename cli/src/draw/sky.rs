@@ -4,7 +4,7 @@ use super::camera::Lens;
 use super::color::{decode, luminance};
 use glam::{Vec2, Vec3};
 
-/// What is behind everything.
+/// The background behind everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
     /// One colour, in sRGB; a dark one has a breath of light lower down, so that the picture has some depth.

@@ -85,7 +85,7 @@ pub(super) struct Sprite {
     radius: f32,
     /// The share of its way that is in sight, or all of it.
     seen: f32,
-    /// What is before it.
+    /// The haze before it.
     pub(super) haze: Haze,
     /// True if its way is that of an open shutter.
     pub(super) exposed: bool,
