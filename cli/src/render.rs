@@ -213,7 +213,7 @@ struct Studio {
     pictures: Arc<[Flipbook]>,
     size: (u32, u32),
     show: Vec<Show>,
-    /// Whether particles are drawn along their ways.
+    /// True if particles are drawn along their ways.
     exposed: bool,
     /// The scenery, brought before the lens but once, if that stands still as well.
     still: Option<Renderer>,

@@ -1,4 +1,4 @@
-//! What pictures show on top of what is seen: how things work.
+//! Lines that pictures show on top of what is seen: how things work.
 
 use clap::ValueEnum;
 use pointmass::draw::{Line, arrows, cells, velocities};
@@ -24,7 +24,7 @@ pub(crate) enum Show {
 /// The time that velocities are drawn for \[s\].
 const AHEAD: f32 = 0.1;
 
-/// How many arrows a surface has, and the lines of each.
+/// The number of arrows that a surface has, and of the lines of each.
 const ARROWS: u32 = 8;
 const STROKES: usize = 5;
 

@@ -14,9 +14,9 @@ pub struct Stage {
     pub lights: Vec<Light>,
     /// Light that comes from everywhere.
     pub ambient: Vec3,
-    /// What is seen where there is nothing.
+    /// The background, seen where there is nothing.
     pub background: Background,
-    /// What is in the air, if it is not clear.
+    /// The fog in the air, if it is not clear.
     pub fog: Option<Fog>,
     /// The solid things.
     pub pieces: Vec<Piece>,

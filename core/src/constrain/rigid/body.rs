@@ -17,7 +17,7 @@ const MOVING: u32 = 2;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Body {
-    /// How many of its particles live, plus one; zero before it is seen for the first time.
+    /// The number of its particles that live, plus one; zero before it is seen for the first time.
     known: u32,
     state: u32,
     turn: [f32; 4],
@@ -57,7 +57,7 @@ pub(super) struct Body {
     pub(super) spare: f32,
 }
 
-/// What a body is made of: its box, and the places of its particles in it, three words each.
+/// The make of a body: its box, and the places of its particles in it, three words each.
 #[derive(Clone, Copy)]
 pub(super) struct Made<'a> {
     pub(super) of: &'a RigidBox,

@@ -13,7 +13,7 @@ const PAIRS: usize = 8;
 /// Pairs of bodies whose balls are near that there is room for, for each body.
 const CANDIDATES: usize = 24;
 
-/// What else is kept of them.
+/// The rest that is kept of them.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Lists {
