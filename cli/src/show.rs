@@ -62,7 +62,7 @@ pub(crate) fn lines(show: &[Show], state: &State<'_>, model: &Model, index: Stru
 /// The boxes of an index that is built of the points as they are, its cells as large as their density suggests.
 fn boxes(state: &State<'_>, structure: Structure) -> Vec<Line> {
     let mut memory = vec![0; structure.words(state.position.len())];
-    let mut index = structure.index(&mut memory);
+    let mut index = structure.in_room(&mut memory, state.near.room());
     if index.build(state.position, 0.0).is_err() {
         return Vec::new();
     }

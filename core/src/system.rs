@@ -3,6 +3,7 @@
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::{self, SpringList, Springs, State};
 use crate::hash::Fnv;
+use crate::index::Neighbours;
 use crate::memory::{Columns, Layout, Storage};
 use crate::observe::Observer;
 use crate::particles::{Full, Id, Particle};
@@ -236,6 +237,7 @@ impl<'a> Columns<'a> {
             materials,
             springs,
             custom,
+            near: Neighbours::among(&[]).in_room(scene.index.room()),
             ..State::EMPTY
         };
         lives.moved(status.time, &position[..status.len], &velocity[..status.len])

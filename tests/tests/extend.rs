@@ -8,7 +8,7 @@ use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::{Births, EmitterState};
 use pointmass::force::State;
-use pointmass::index::{Cost, IndexChoice, Neighbour, SpatialIndex, Stats, Structure, TooSmall};
+use pointmass::index::{Cost, IndexChoice, Neighbour, Room, SpatialIndex, Stats, Structure, TooSmall};
 use pointmass::integrate::{Dynamics, Motion};
 use pointmass::reap::Verdicts;
 use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
@@ -474,7 +474,18 @@ impl IndexChoice for InOrder {
         0
     }
 
-    fn with_index(&self, _: &mut [u32], points: &[Vec3], reach: f32, then: &mut dyn FnMut(Option<&dyn SpatialIndex>)) {
+    fn with_index(
+        &self,
+        _: &mut [u32],
+        points: &[Vec3],
+        reach: f32,
+        room: Option<&Room>,
+        then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
+    ) {
+        // It knows of none: in a room, neighbours are then looked for among all.
+        if room.is_some() {
+            return then(None);
+        }
         self.0.fetch_add(1, Ordering::Relaxed);
         let mut index = AlongX::default();
         assert!(reach > 0.0 && index.build(points, reach).is_ok());

@@ -28,6 +28,7 @@ mod looks;
 mod rays;
 mod reapers;
 mod rigid;
+mod rooms;
 mod ropes;
 mod rounding;
 mod sampling;

@@ -62,5 +62,5 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
     let home = &*home;
     all.home = home;
     let reach = 2.0 * all.widest + all.max_travel;
-    scene.index.with_index(index_memory, home, reach, &mut |index| all.run(index));
+    scene.index.with_index(index_memory, home, reach, None, &mut |index| all.run(index));
 }

@@ -150,7 +150,7 @@ impl Near<'_> {
     pub fn pairs(&mut self, points: &[Vec3], reach: f32, visit: &mut dyn FnMut(u32, u32)) {
         // No more memory than these points call for: more would make another structure.
         let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
-        self.index.with_index(&mut self.memory[..words], points, reach, &mut |index| match index {
+        self.index.with_index(&mut self.memory[..words], points, reach, None, &mut |index| match index {
             Some(index) => {
                 index.pairs(reach, &mut |row, others| others.iter().for_each(|&other| visit(row, other)));
             }

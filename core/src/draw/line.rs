@@ -54,7 +54,7 @@ const LONG: Color = [235, 70, 50, 255];
 /// ```
 pub fn springs(state: &State<'_>, full: f32, into: &mut [Line]) -> (usize, usize) {
     let line = |Held { spring, rows: [a, b], .. }: Held<'_>| {
-        let ends = [state.position[a], state.position[b]];
+        let ends = [state.position[a], state.position[a] + state.between(a, b)];
         let rest = spring.rest(state.time);
         let strain = if rest > 0.0 { length(ends[1] - ends[0]) / rest - 1.0 } else { 0.0 };
         Line::plain(ends, strained(strain / full))
@@ -70,8 +70,9 @@ pub fn links(
     color: Color,
     into: &mut [Line],
 ) -> (usize, usize) {
-    let place = |number: u32| state.springs.row(number).map(|row| state.position[row]);
-    fill(pairs.filter_map(|[a, b]| Some(Line::plain([place(a)?, place(b)?], color))), into)
+    let row = |number: u32| state.springs.row(number);
+    let line = |[a, b]: [usize; 2]| Line::plain([state.position[a], state.position[a] + state.between(a, b)], color);
+    fill(pairs.filter_map(|[a, b]| Some(line([row(a)?, row(b)?]))), into)
 }
 
 /// The colour of a share of the full strain, −1 to 1.

@@ -2,6 +2,7 @@
 
 use super::{Line, appearance, fill};
 use crate::force::State;
+use crate::index::between;
 use crate::material::TrailMaterial;
 use crate::math::min;
 use crate::particles::Color;
@@ -117,7 +118,7 @@ impl<'m> Trails<'m> {
 
     /// The lines of the trail of the particle in a row.
     fn of_row(&self, state: &State<'_>, row: usize) -> impl Iterator<Item = Line> {
-        let share = self.share();
+        let (share, room) = (self.share(), state.near.room());
         let known = || {
             let (trail, id) = self.trail(state, row).zip(state.id(row))?;
             let slot = id.slot as usize;
@@ -131,6 +132,8 @@ impl<'m> Trails<'m> {
             let pen = Pen { trail, color, now: state.time };
             let mut from = head;
             ring.backward(knots).map_while(move |to| {
+                // Whoever has left a room at one side and come in at the other has gone on straight.
+                let to = Knot { place: from.place + between(room, from.place, to.place), ..to };
                 let line = pen.line(from, to)?;
                 from = to;
                 Some(line)

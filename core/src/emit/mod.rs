@@ -11,7 +11,7 @@ pub use vary::{Spread, Varied};
 
 use crate::custom::CustomColumnsMut;
 use crate::force::State;
-use crate::index::{SpatialIndex, count_of};
+use crate::index::{Neighbours, SpatialIndex};
 use crate::math::{divide, max};
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::{Full, Particle};
@@ -130,10 +130,9 @@ impl Births<'_> {
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
         let all = &self.workspace.memory.position[..self.workspace.len()];
-        match self.near {
-            Some(index) => index.count(place, radius).found + count_of(&all[self.old..], place, radius),
-            None => count_of(all, place, radius),
-        }
+        let (old, newborn) = all.split_at(self.old);
+        let near = Neighbours::by(self.near, old).in_room(self.scene.index.room());
+        near.count_within(place, radius) + near.at(newborn).count_within(place, radius)
     }
 
     /// The particles there are, those born in this step among them.

@@ -29,6 +29,16 @@ pub(super) fn add_up(
     });
 }
 
+/// The way from one row to another, in double precision \[m\].
+#[cfg(feature = "std")]
+pub(super) fn wide_between(state: &State<'_>, from: usize, to: usize) -> [f64; 3] {
+    if state.near.room().is_some() {
+        return state.between(from, to).to_array().map(f64::from);
+    }
+    let [from, to] = [from, to].map(|row| state.position[row].to_array().map(f64::from));
+    core::array::from_fn(|axis| to[axis] - from[axis])
+}
+
 /// Σ of something over all pairs of neighbours, each counted once.
 #[cfg(feature = "std")]
 pub(super) fn sum_of_pairs(state: &State<'_>, reach: f32, mut term: impl FnMut(usize, usize) -> f64) -> f64 {

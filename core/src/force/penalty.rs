@@ -55,7 +55,7 @@ impl Penalty {
     }
 
     fn touch(&self, state: &State<'_>, [row, other]: [usize; 2]) -> Option<Touch> {
-        let d = state.position[row] - state.position[other];
+        let d = state.between(other, row);
         let distance = length(d);
         let overlap = state.radius[row] + state.radius[other] - distance;
         if !(overlap > 0.0) {

@@ -2,7 +2,7 @@
 
 use super::near::add_up;
 #[cfg(feature = "std")]
-use super::near::sum_of_pairs;
+use super::near::{sum_of_pairs, wide_between};
 use super::{Force, Needs, Perturbation, State};
 use crate::index::{Nearby, Neighbours};
 use crate::lanes::{self, LANES};
@@ -96,8 +96,8 @@ impl Pair {
 /// All particles within a law's reach of each other act on each other by it.
 ///
 /// Neighbours are found by the scene's index, or without one by looking at all. Two that coincide, or are so close that
-/// the force is beyond an `f32`, do not act on each other. Ways are straight: through the sides of a periodic box nothing
-/// acts.
+/// the force is beyond an `f32`, do not act on each other. In a [periodic room](crate::index::Periodic) they act
+/// through its sides.
 ///
 /// ```
 /// use pointmass::force::{Pair, Radial, RadialLaw};
@@ -155,7 +155,7 @@ impl<L: RadialLaw> Radial<L> {
     /// About a pair of neighbours; none if they coincide.
     #[inline(always)]
     fn pair_stiffness(&self, state: &State<'_>, rows: [usize; 2]) -> Option<PairStiffness> {
-        let toward = state.position[rows[1]] - state.position[rows[0]];
+        let toward = state.between(rows[0], rows[1]);
         let square = toward.dot(toward);
         if !(square > 0.0) {
             return None;
@@ -212,8 +212,7 @@ impl<L: RadialLaw> Force for Radial<L> {
     #[cfg(feature = "std")]
     fn energy(&self, state: &State<'_>) -> f64 {
         sum_of_pairs(state, self.0.reach(), |row, other| {
-            let wide = |row: usize| state.position[row].to_array().map(f64::from);
-            let square = wide(row).iter().zip(wide(other)).map(|(a, b)| (a - b) * (a - b)).sum();
+            let square = wide_between(state, row, other).iter().map(|x| x * x).sum();
             if square > 0.0 { self.0.energy(square, &Pair::of(state, [row, other])) } else { 0.0 }
         })
     }

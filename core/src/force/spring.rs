@@ -1,5 +1,7 @@
 //! Damped springs between particles of the scene's start.
 
+#[cfg(feature = "std")]
+use super::near::wide_between;
 use super::{Force, Perturbation, State};
 use crate::math::{length, max, sin_cos_turns};
 use crate::time::Time;
@@ -84,7 +86,7 @@ impl Spring {
     fn is_overstretched(&self, number: usize, table: &Springs<'_>, state: &State<'_>) -> bool {
         let Some(ratio) = self.breaks_at else { return false };
         let rows = table.row(self.ends[0]).zip(table.row(self.ends[1])).filter(|_| !table.is_broken(number));
-        rows.is_some_and(|(a, b)| length(state.position[b] - state.position[a]) > ratio * self.rest(state.time))
+        rows.is_some_and(|(a, b)| length(state.between(a, b)) > ratio * self.rest(state.time))
     }
 
     /// How its force changes with its ends, positions and velocities weighed. A spring that is pressed would push sideways;
@@ -96,7 +98,7 @@ impl Spring {
         state: &State<'_>,
         [position, velocity]: [f32; 2],
     ) -> Option<PairStiffness> {
-        let toward = state.position[b] - state.position[a];
+        let toward = state.between(a, b);
         let d = length(toward);
         if !(d > 0.0 && d < f32::INFINITY) {
             return None;
@@ -310,7 +312,7 @@ impl Force for Springs<'_> {
         for (total, row) in total.iter_mut().zip(rows) {
             for (spring, other) in self.at(row) {
                 let Some(other) = self.row(other) else { continue };
-                let toward = state.position[other] - state.position[row];
+                let toward = state.between(row, other);
                 let d = length(toward);
                 if d > 0.0 {
                     let along = toward / d;
@@ -393,8 +395,8 @@ impl Held<'_> {
     fn pose(&self, state: &State<'_>) -> (f64, f64) {
         let [a, b] = self.rows;
         let f = |v: Vec3| v.to_array().map(f64::from);
-        let (d, v) = ([f(state.position[a]), f(state.position[b])], [f(state.velocity[a]), f(state.velocity[b])]);
-        let apart: [f64; 3] = core::array::from_fn(|i| d[1][i] - d[0][i]);
+        let v = [f(state.velocity[a]), f(state.velocity[b])];
+        let apart = wide_between(state, a, b);
         let length = libm::sqrt(apart.iter().map(|x| x * x).sum());
         let opening: f64 = apart.iter().zip(v[0].iter().zip(v[1])).map(|(x, (a, b))| x * (b - a)).sum();
         (length, if length > 0.0 { opening / length } else { 0.0 })

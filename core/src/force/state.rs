@@ -2,7 +2,7 @@
 
 use super::Springs;
 use crate::custom::CustomColumns;
-use crate::index::{BarnesHut, Neighbours};
+use crate::index::{BarnesHut, Neighbours, between};
 use crate::material::MaterialList;
 use crate::particles::{Color, Id};
 use crate::rng::later;
@@ -109,7 +109,7 @@ impl<'a> State<'a> {
             materials: self.materials,
             custom: self.custom.rows(0..len),
             springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
-            near: Neighbours::among(position),
+            near: self.near.at(position),
             mass_tree: None,
             charge_tree: None,
         }
@@ -141,6 +141,13 @@ impl<'a> State<'a> {
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
         self.near.count_within(place, radius)
+    }
+
+    /// The way from the particle in one row to that in another \[m\]: in a periodic room the shortest through its sides.
+    #[must_use]
+    #[inline(always)]
+    pub fn between(&self, from: usize, to: usize) -> Vec3 {
+        between(self.near.room(), self.position[from], self.position[to])
     }
 
     /// The particle in a row.

@@ -28,7 +28,7 @@ impl Viscosity {
     /// μ m₁ m₂ (1 − d / reach) \[kg/s\] of two neighbours.
     #[inline(always)]
     fn weight(&self, state: &State<'_>, [a, b]: [usize; 2]) -> f32 {
-        let d = length(state.position[b] - state.position[a]);
+        let d = length(state.between(a, b));
         self.coefficient * (state.mass[a] * state.mass[b]) * max(1.0 - d / self.reach, 0.0)
     }
 }

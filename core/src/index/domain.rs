@@ -1,7 +1,8 @@
 //! How points are placed in an index: wrapped into a periodic domain, scaled where squares would leave an `f32`.
 
+use super::Room;
 use super::region::widened;
-use crate::math::{self, floor, largest, max, min};
+use crate::math::{self, largest, max, min};
 use glam::Vec3;
 
 /// All coordinates in an index are smaller than this, so that no square of a distance is beyond an `f32`: 2⁶¹.
@@ -10,9 +11,7 @@ pub(super) const FAR: f32 = 2_305_843_009_213_693_952.0;
 /// A domain: all of space, or a box whose opposite faces are one and the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Domain {
-    low: Vec3,
-    /// Its sides \[m\]; zero where it is open.
-    sides: Vec3,
+    room: Room,
     /// A power of two that brings coordinates into the middle of an `f32`'s range.
     scale: f32,
 }
@@ -38,28 +37,20 @@ impl Image {
 }
 
 impl Domain {
-    pub(super) const OPEN: Self = Self { low: Vec3::ZERO, sides: Vec3::ZERO, scale: 1.0 };
+    pub(super) const OPEN: Self = Self { room: Room::OPEN, scale: 1.0 };
 
-    /// A box from `low` on; sides that are not positive and finite are open.
-    pub(super) fn periodic(low: Vec3, sides: Vec3) -> Self {
-        let side = |low: f32, side: f32| if low.is_finite() && side > 0.0 && side.is_finite() { side } else { 0.0 };
-        let sides = Vec3::new(side(low.x, sides.x), side(low.y, sides.y), side(low.z, sides.z));
-        let low = Vec3::select(sides.cmpgt(Vec3::ZERO), low, Vec3::ZERO);
-        Self { low, sides, scale: 1.0 }
-    }
-
-    /// Tells whether it is all of space.
-    pub(super) fn is_open(&self) -> bool {
-        self.sides == Vec3::ZERO
+    /// A room.
+    pub(super) const fn of(room: Room) -> Self {
+        Self { room, scale: 1.0 }
     }
 
     /// Chooses the scale for points like these.
     pub(super) fn fit(&mut self, points: &[Vec3]) {
         let sound = points.iter().filter(|point| point.is_finite());
-        let most = if self.sides == Vec3::ZERO {
+        let most = if self.room.is_open() {
             sound.fold(0.0, |most, point| max(largest(*point), most))
         } else {
-            sound.fold(largest(self.sides), |most, point| max(largest(self.wrap(*point)), most))
+            sound.fold(largest(self.room.sides()), |most, point| max(largest(self.room.offset(*point)), most))
         };
         let exponent = ((most.to_bits() >> 23) as i32 - 127).clamp(-126, 126);
         let usual = most == 0.0 || (-30..=60).contains(&exponent);
@@ -69,7 +60,7 @@ impl Domain {
     /// Where a point is in the index.
     #[inline(always)]
     pub(super) fn place(&self, point: Vec3) -> Vec3 {
-        if self.sides == Vec3::ZERO { point * self.scale } else { self.wrap(point) * self.scale }
+        if self.room.is_open() { point * self.scale } else { self.room.offset(point) * self.scale }
     }
 
     /// A length in the index.
@@ -82,38 +73,25 @@ impl Domain {
         length / self.scale
     }
 
-    fn wrap(&self, point: Vec3) -> Vec3 {
-        let side = |x: f32, low: f32, side: f32| {
-            if side == 0.0 {
-                return x;
-            }
-            let x = x - low;
-            let x = x - side * floor(x / side);
-            if x >= 0.0 && x < side { x } else { 0.0 }
-        };
-        let (low, sides) = (self.low, self.sides);
-        Vec3::new(side(point.x, low.x, sides.x), side(point.y, low.y, sides.y), side(point.z, low.z, sides.z))
-    }
-
     /// Half of the shortest side, in the index: within less, a point is met in one of its images only. Zero if its
     /// square is beyond an `f32`, infinite if the domain is open.
     pub(super) fn half(&self) -> f32 {
         let side = |side: f32| if side == 0.0 { f32::INFINITY } else { side * self.scale * 0.5 };
-        let half = min(side(self.sides.x), min(side(self.sides.y), side(self.sides.z)));
+        let half = min(side(self.room.sides().x), min(side(self.room.sides().y), side(self.room.sides().z)));
         if half * half >= f32::MIN_POSITIVE { half } else { 0.0 }
     }
 
     /// The image in which any point may be looked at.
     pub(super) fn image_of_all(&self) -> Image {
-        if self.sides == Vec3::ZERO { Image::Itself } else { Image::Nearest(self.sides * self.scale) }
+        if self.room.is_open() { Image::Itself } else { Image::Nearest(self.room.sides() * self.scale) }
     }
 
     /// Visits the images of the points that can come within `radius`, less than half of a side, of a box.
     pub(super) fn images(&self, low: Vec3, high: Vec3, radius: f32, mut visit: impl FnMut(Image)) {
-        if self.sides == Vec3::ZERO {
+        if self.room.is_open() {
             return visit(Image::Itself);
         }
-        let sides = (self.sides * self.scale).to_array();
+        let sides = (self.room.sides() * self.scale).to_array();
         let across = |axis: usize, sign: i32| {
             let (low, high, side) = (low[axis], high[axis], sides[axis]);
             let reach = widened(radius, low, high, side);

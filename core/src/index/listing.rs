@@ -34,6 +34,7 @@ pub(crate) type Then<'a> = &'a mut dyn FnMut(Neighbours<'_>, Found);
 #[inline(never)]
 pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: Then<'_>) {
     let Search { index, memory, lists, reach } = search;
+    let room = index.room();
     let Some(mut lists) = lists else {
         return stream(index, memory, points, reach, then);
     };
@@ -42,23 +43,26 @@ pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: T
         return stream(index, memory, points, reach, then);
     }
     if let Some(lists) = lists.kept(points, reach) {
-        return then(Neighbours::listed(lists, points), Found::Kept);
+        return then(Neighbours::listed(lists, points).in_room(room), Found::Kept);
     }
     let Some(skin) = lists.skin(points, velocity, reach) else {
         return stream(index, memory, points, reach, then);
     };
-    index.with_index(memory, points, reach + skin, &mut |index| {
+    index.with_index(memory, points, reach + skin, room, &mut |index| {
         let made = index.and_then(|index| lists.make(index, points, [reach, skin]));
         match made {
-            Some(lists) => then(Neighbours::listed(lists, points), Found::Listed),
-            None => then(Neighbours::by(index, points), how(index)),
+            Some(lists) => then(Neighbours::listed(lists, points).in_room(room), Found::Listed),
+            None => then(Neighbours::by(index, points).in_room(room), how(index)),
         }
     });
 }
 
 /// Calls `then` with the neighbours of points by an index that is made for it.
 fn stream(index: &dyn IndexChoice, memory: &mut [u32], points: &[Vec3], reach: f32, then: Then<'_>) {
-    index.with_index(memory, points, reach, &mut |index| then(Neighbours::by(index, points), how(index)));
+    let room = index.room();
+    index.with_index(memory, points, reach, room, &mut |index| {
+        then(Neighbours::by(index, points).in_room(room), how(index));
+    });
 }
 
 fn how(index: Option<&dyn SpatialIndex>) -> Found {

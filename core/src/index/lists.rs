@@ -1,10 +1,10 @@
 //! Lists of neighbours that last until somebody has gone half their skin (Verlet, "Computer 'Experiments' on Classical
 //! Fluids", Phys. Rev. 159, 1967).
 
-use super::SpatialIndex;
 use super::nearby::{NOBODY, Nearby, Runs};
 use super::sorted::Entry;
-use crate::math::{max, sqrt};
+use super::{Room, SpatialIndex, between, wrapped_in};
+use crate::math::{largest, max, sqrt};
 use crate::rows::farthest;
 use core::ops::Range;
 use glam::Vec3;
@@ -49,6 +49,8 @@ pub(crate) struct ListMemory<'a> {
     changes: u32,
     /// How long a step is \[s\].
     step: f32,
+    /// The room that points lie in, if there is one.
+    room: Option<&'a Room>,
 }
 
 /// Lists, for reading. Points are numbered anew, in the order of the index: what is near in space is near in memory.
@@ -84,17 +86,23 @@ impl Lists<'_> {
     }
 
     /// As [`Neighbours::of`](super::Neighbours::of).
-    pub(super) fn of(&self, rows: Range<usize>, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
-        let (mut runs, mut room) = (Runs::EMPTY, [0; ROOM]);
+    pub(super) fn of(
+        &self,
+        rows: Range<usize>,
+        reach: f32,
+        room: Option<&Room>,
+        visit: &mut dyn FnMut(usize, &Nearby),
+    ) {
+        let (mut runs, mut fetched) = (Runs::EMPTY, [0; ROOM]);
         let place_of = |other: u32| self.places.get(other as usize).copied().unwrap_or(NOBODY);
         for (spans, places) in self.spans.chunks(BATCH).zip(self.places.chunks(BATCH)) {
-            let (entries, first) = self.fetched(spans, &mut room);
+            let (entries, first) = self.fetched(spans, &mut fetched);
             for (span, place) in spans.iter().zip(places) {
                 let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
                 if rows.contains(&row) {
                     let list = entries.get(start..end).unwrap_or_default();
                     let others = list.as_chunks().0.iter().map(|four| four.map(place_of));
-                    runs.visit((row, Vec3::from_array(place.x)), others, reach, visit);
+                    runs.visit((row, Vec3::from_array(place.x)), others, reach, room, visit);
                 }
             }
         }
@@ -119,11 +127,17 @@ impl Lists<'_> {
 
 impl<'a> ListMemory<'a> {
     /// Memory for lists; those in it count no longer if it is not the same as before.
-    pub(crate) fn new(words: &'a mut [u32], listed: &'a mut Listed, changes: u32, step: f32) -> Self {
+    pub(crate) fn new(
+        words: &'a mut [u32],
+        listed: &'a mut Listed,
+        changes: u32,
+        step: f32,
+        room: Option<&'a Room>,
+    ) -> Self {
         if listed.words != words.len() {
             *listed = Listed::NONE;
         }
-        Self { words, listed, changes, step }
+        Self { words, listed, changes, step, room }
     }
 
     /// The same, lent on.
@@ -172,12 +186,12 @@ impl<'a> ListMemory<'a> {
         let absent = (0..).zip(points).filter(|(_, point)| !point.is_finite()).map(|(row, _)| row);
         let mut count = 0;
         for ((made, place), row) in made.iter_mut().zip(places).zip(order.iter().copied().chain(absent)) {
-            *made = *points.get(row as usize)?;
+            *made = wrapped_in(self.room, *points.get(row as usize)?);
             *place = Entry { x: made.to_array(), row };
             count += 1;
         }
         spans.fill([0; 2]);
-        let making = Making { index, radius: reach + skin };
+        let making = Making { index, radius: reach + skin + self.room.map_or(0.0, Room::slack) };
         let fits = count == points.len() && making.fill(0..order.len().min(count), spans, entries);
         // Not again as soon, if there is no room.
         self.listed.pause = if fits { 0 } else { PAUSE };
@@ -186,7 +200,8 @@ impl<'a> ListMemory<'a> {
         }
         let (changes, words, uses, pause) = (self.changes, self.words.len(), 1, 0);
         // Half of the skin each, less what rounding may come to.
-        let max_travel = 0.499 * skin - 4.0 * f32::EPSILON * farthest(points);
+        let size = max(farthest(points), self.room.map_or(0.0, |room| largest(room.sides())));
+        let max_travel = 0.499 * skin - 4.0 * f32::EPSILON * size;
         *self.listed = Listed { points: points.len() as u32, reach, max_travel, changes, words, uses, pause };
         Some(self.read())
     }
@@ -203,9 +218,9 @@ impl<'a> ListMemory<'a> {
         let Parts { made, places, .. } = parts(self.words, points.len());
         let mut any = 0;
         for (place, made) in places.iter_mut().zip(made) {
-            let at = points[place.row as usize];
+            let at = wrapped_in(self.room, points[place.row as usize]);
             place.x = at.to_array();
-            let d = at - *made;
+            let d = between(self.room, *made, at);
             any |= u32::from(!(d.x * d.x + d.y * d.y + d.z * d.z <= square));
         }
         any == 0

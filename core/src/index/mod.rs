@@ -47,6 +47,7 @@ mod octree;
 mod ordered;
 mod partition;
 mod region;
+mod room;
 mod search;
 mod sorted;
 mod split;
@@ -60,7 +61,7 @@ pub use brute::Brute;
 pub use bsp::Bsp;
 pub(crate) use bsp::principal_axes;
 pub use bvh::Bvh;
-pub use choice::{InGrid, InKd, IndexChoice};
+pub use choice::{InGrid, InKd, IndexChoice, Periodic};
 pub use grid::Grid;
 pub use hash::Hash;
 pub use kd::Kd;
@@ -69,8 +70,9 @@ pub(crate) use lists::{ListMemory, Listed};
 pub use nearby::Nearby;
 pub use nearest::Neighbour;
 pub use neighbours::Neighbours;
-pub(crate) use neighbours::count_of;
 pub use octree::{Octree, Quadtree};
+pub use room::Room;
+pub(crate) use room::{between, wrapped_in};
 pub use structure::{AnyIndex, Structure, UnknownStructure};
 pub use tree::Tree;
 
@@ -130,8 +132,8 @@ pub trait SpatialIndex: Sync {
     /// `radius` in ascending order of their rows; true if all have been visited. Lists of neighbours are made of that, where there are threads by
     /// several at once.
     ///
-    /// An index need not be able to, nor to the end: the built-in ones are not in a periodic box, nor where a point has more
-    /// than a thousand, nor on chips. Then neighbours are looked up anew whenever they are asked for.
+    /// An index need not be able to, nor to the end: the built-in ones are not where a point has more than a thousand, nor beyond
+    /// half of a periodic box, nor on chips. Then neighbours are looked up anew whenever they are asked for.
     fn in_order(&self, places: Range<usize>, radius: f32, visit: &mut dyn FnMut(usize, &[u32])) -> bool {
         let _ = (places, radius, visit);
         false
@@ -212,7 +214,13 @@ macro_rules! constructors {
         /// are open; points outside are wrapped in.
         #[must_use]
         pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
-            Self::in_domain(memory, Domain::periodic(low, sides))
+            Self::in_domain(memory, Domain::of(crate::index::Room::new(low, sides)))
+        }
+
+        /// An empty one in a room, or in all of space.
+        #[must_use]
+        pub fn in_room(memory: &'m mut [u32], room: Option<&crate::index::Room>) -> Self {
+            Self::in_domain(memory, room.map_or(Domain::OPEN, |room| Domain::of(*room)))
         }
     };
 }

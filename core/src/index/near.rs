@@ -78,9 +78,10 @@ impl Near {
         true
     }
 
-    /// The runs that it remembers.
-    pub(super) fn runs(&self) -> impl Iterator<Item = Range<usize>> {
-        self.slots[..self.len].iter().map(|&[start, end]| start as usize..end as usize)
+    /// The runs that it remembers, and how far each is moved.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (Range<usize>, Vec3)> {
+        let views = self.views.iter().map(|(image, _)| image.moved());
+        self.slots[..self.len].iter().map(|&[start, end]| start as usize..end as usize).zip(views)
     }
 
     /// Visits what of it is within a distance of a point, with the square of the distance to its box.

@@ -1,5 +1,6 @@
 //! Some neighbours of a row, side by side.
 
+use super::Room;
 use super::sorted::Entry;
 use crate::lanes::LANES;
 use glam::Vec3;
@@ -38,12 +39,13 @@ impl Nearby {
         &self.square
     }
 
-    /// Takes the first `len` of some others than a row at a place, and hands them over.
+    /// Takes the first `len` of some others than a row at a place, and hands them over, with the shortest ways to them.
     #[inline]
     fn hand_over(
         &mut self,
         (found, len): (&[f32x4; FOUND], usize),
         (row, place): (usize, Vec3),
+        shortest: impl Fn([f32x4; 3]) -> [f32x4; 3],
         visit: &mut dyn FnMut(usize, &Self),
     ) {
         if len == 0 {
@@ -51,7 +53,8 @@ impl Nearby {
         }
         let ([to_x, to_y, to_z], center) = (&mut self.toward, place.to_array().map(f32x4::splat));
         for (k, four) in found.as_chunks().0.iter().enumerate().take(len.div_ceil(4)) {
-            let ([x, y, z], rows) = ways(*four, center);
+            let (ways, rows) = ways(*four, center);
+            let [x, y, z] = shortest(ways);
             put(to_x, k, x);
             put(to_y, k, y);
             put(to_z, k, z);
@@ -98,20 +101,38 @@ pub(super) struct Runs {
 impl Runs {
     pub(super) const EMPTY: Self = Self { found: [f32x4::ZERO; FOUND], nearby: Nearby::NOBODY };
 
-    /// Visits a row at a place with those of some others, four by four, that are within `reach` of it, in their order.
+    /// Visits a row at a place with those of some others, four by four, that are within `reach` of it, in their order. In a room all are
+    /// wrapped in, and ways lead through its sides.
     #[inline]
     pub(super) fn visit(
+        &mut self,
+        own: (usize, Vec3),
+        others: impl Iterator<Item = [Entry; 4]>,
+        reach: f32,
+        room: Option<&Room>,
+        visit: &mut dyn FnMut(usize, &Nearby),
+    ) {
+        match room.map(Room::side_by_side) {
+            None => self.gather(own, others, reach, |ways| ways, visit),
+            Some(room) => self.gather(own, others, reach, |ways| room.nearest(ways), visit),
+        }
+    }
+
+    /// The same by the shortest of all ways.
+    #[inline]
+    fn gather(
         &mut self,
         (row, place): (usize, Vec3),
         others: impl Iterator<Item = [Entry; 4]>,
         reach: f32,
+        shortest: impl Fn([f32x4; 3]) -> [f32x4; 3],
         visit: &mut dyn FnMut(usize, &Nearby),
     ) {
         let (center, square) = (place.to_array().map(f32x4::splat), f32x4::splat(reach * reach));
         let mut len = 0;
         for four in others {
             let four = four.map(bytemuck::cast);
-            let ([x, y, z], _) = ways(four, center);
+            let [x, y, z] = shortest(ways(four, center).0);
             let hits = (x * x + y * y + z * z).simd_le(square).to_bitmask() as usize;
             for (k, other) in four.into_iter().enumerate() {
                 // Written whether it is near or not, and then written over, so that there is no branch to guess.
@@ -119,11 +140,11 @@ impl Runs {
                 len += hits >> k & 1;
             }
             if len >= RUN {
-                self.nearby.hand_over((&self.found, RUN), (row, place), visit);
+                self.nearby.hand_over((&self.found, RUN), (row, place), &shortest, visit);
                 self.found.copy_within(RUN..RUN + 4, 0);
                 len -= RUN;
             }
         }
-        self.nearby.hand_over((&self.found, len), (row, place), visit);
+        self.nearby.hand_over((&self.found, len), (row, place), &shortest, visit);
     }
 }

@@ -1,9 +1,9 @@
 //! Neighbours of particles: from lists that last for a while, from an index, or by looking at all; to the same bits.
 
-use super::SpatialIndex;
 use super::lists::Lists;
 use super::nearby::{self, NOBODY, Nearby, Runs};
 use super::sorted::Entry;
+use super::{Room, SpatialIndex, between, wrapped_in};
 use core::array;
 use core::fmt;
 use core::ops::Range;
@@ -20,6 +20,8 @@ const MOST: usize = if cfg!(target_os = "none") { 64 } else { 512 };
 pub struct Neighbours<'a> {
     points: &'a [Vec3],
     source: Source<'a>,
+    /// The room through whose sides they are near, if there is one.
+    room: Option<&'a Room>,
 }
 
 /// The means by which neighbours are found.
@@ -37,18 +39,38 @@ impl<'a> Neighbours<'a> {
     /// Found by looking at all points.
     #[must_use]
     pub const fn among(points: &'a [Vec3]) -> Self {
-        Self { points, source: Source::All }
+        Self { points, source: Source::All, room: None }
+    }
+
+    /// Found through the sides of a room, if there is one.
+    #[must_use]
+    pub const fn in_room(self, room: Option<&'a Room>) -> Self {
+        Self { room, ..self }
+    }
+
+    /// The same room, and other points in it: found by looking at all.
+    pub(crate) const fn at<'s>(&self, points: &'s [Vec3]) -> Neighbours<'s>
+    where
+        'a: 's,
+    {
+        Neighbours { points, source: Source::All, room: self.room }
+    }
+
+    /// The room through whose sides they are near, if there is one.
+    #[must_use]
+    pub const fn room(&self) -> Option<&'a Room> {
+        self.room
     }
 
     /// Found by an index of these points, if there is one.
     #[must_use]
     pub fn by(index: Option<&'a dyn SpatialIndex>, points: &'a [Vec3]) -> Self {
-        Self { points, source: index.map_or(Source::All, Source::Index) }
+        Self { points, source: index.map_or(Source::All, Source::Index), room: None }
     }
 
     /// Found in lists of these points.
     pub(crate) const fn listed(lists: Lists<'a>, points: &'a [Vec3]) -> Self {
-        Self { points, source: Source::Lists(lists) }
+        Self { points, source: Source::Lists(lists), room: None }
     }
 
     /// Visits each of `rows` that has others within `reach` \[m\] with these, in ascending order, in runs of 32 and a last one
@@ -60,7 +82,7 @@ impl<'a> Neighbours<'a> {
         let rows = rows.start..rows.end.min(self.points.len());
         match self.source {
             _ if !(reach > 0.0) => {}
-            Source::Lists(lists) if lists.reaches(reach) => lists.of(rows, reach, visit),
+            Source::Lists(lists) if lists.reaches(reach) => lists.of(rows, reach, self.room, visit),
             Source::Index(index) => self.by_index(index, rows, reach, visit),
             _ => rows.for_each(|row| self.by_all(row, reach, visit)),
         }
@@ -69,9 +91,17 @@ impl<'a> Neighbours<'a> {
     /// Counts the points within `radius` \[m\] of a place, whoever lies there included.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
-        match self.source {
-            Source::Index(index) => index.count(place, radius).found,
-            _ => count_of(self.points, place, radius),
+        match (self.source, self.room) {
+            (Source::Index(index), None) => index.count(place, radius).found,
+            (Source::Index(index), Some(room)) => {
+                let mut count = 0;
+                index.within(place, radius + room.slack(), &mut |rows| {
+                    let points = rows.iter().filter_map(|&row| self.points.get(row as usize));
+                    count += count_of(points, place, radius, Some(room));
+                });
+                count
+            }
+            _ => count_of(self.points, place, radius, self.room),
         }
     }
 
@@ -92,20 +122,21 @@ impl<'a> Neighbours<'a> {
     ) {
         let (mut found, mut len, mut of) = ([0; MOST], 0, None);
         let mut runs = Runs::EMPTY;
+        // Whom the index has found is near, whatever its scale; in a room it looks a little farther, as ways are others there.
+        let (farther, sure) = self.room.map_or((reach, f32::INFINITY), |room| (reach + room.slack(), reach));
         let mut finish = |row: Option<usize>, found: &mut [u32; MOST], len: usize| match row {
             Some(row) if len <= MOST => {
                 found[..len].sort_unstable();
-                // Whom the index has found is near, whatever its scale.
                 let others = found[..len]
                     .chunks(4)
                     .map(|four| array::from_fn(|k| four.get(k).map_or(NOBODY, |&other| self.entry(other))));
-                runs.visit(self.at(row), others, f32::INFINITY, visit);
+                runs.visit(self.place(row), others, sure, self.room, visit);
             }
             // Neighbours too many for that are a good part of all points.
             Some(row) => self.by_all(row, reach, &mut *visit),
             None => {}
         };
-        index.neighbours(reach, &mut |row, others| {
+        index.neighbours(farther, &mut |row, others| {
             let row = row as usize;
             if !rows.contains(&row) {
                 return;
@@ -128,15 +159,15 @@ impl<'a> Neighbours<'a> {
         let is_other = |&other: &u32| other as usize != row && (other as usize) < self.points.len();
         let entry = |other| Some(other).filter(is_other).map_or(NOBODY, |other| self.entry(other));
         let all = (0..self.points.len() as u32).step_by(4).map(|first| array::from_fn(|k| entry(first + k as u32)));
-        runs.visit(self.at(row), all, reach, visit);
+        runs.visit(self.place(row), all, reach, self.room, visit);
     }
 
-    fn at(&self, row: usize) -> (usize, Vec3) {
-        (row, self.points[row])
+    fn place(&self, row: usize) -> (usize, Vec3) {
+        (row, wrapped_in(self.room, self.points[row]))
     }
 
     fn entry(&self, row: u32) -> Entry {
-        Entry { x: self.points[row as usize].to_array(), row }
+        Entry { x: self.place(row as usize).1.to_array(), row }
     }
 }
 
@@ -146,12 +177,12 @@ impl fmt::Debug for Neighbours<'_> {
     }
 }
 
-/// Counts those of these points that lie within `radius` \[m\] of a place.
-pub(crate) fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
+/// Counts those of these points that lie within `radius` \[m\] of a place, through the sides of a room as well if there is one.
+fn count_of<'p>(points: impl IntoIterator<Item = &'p Vec3>, place: Vec3, radius: f32, room: Option<&Room>) -> u64 {
     let square = radius * radius;
     let is_near = |&&point: &&Vec3| {
-        let d = point - place;
+        let d = between(room, place, point);
         d.x * d.x + d.y * d.y + d.z * d.z <= square
     };
-    if radius >= 0.0 { points.iter().filter(is_near).count() as u64 } else { 0 }
+    if radius >= 0.0 { points.into_iter().filter(is_near).count() as u64 } else { 0 }
 }

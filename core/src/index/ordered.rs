@@ -1,10 +1,13 @@
 //! All neighbours in ascending order of rows: what is near a group of points is put in order once for all of them.
 
+use super::Room;
+use super::domain::Image;
 use super::near::{GROUP, Near, chunks};
 use super::partition::Partition;
 use super::search::{Reach, Search};
 use super::sorted::{LANES, Sorted};
 use crate::lanes;
+use crate::math::largest;
 use core::ops::Range;
 use glam::Vec3;
 use wide::f32x8;
@@ -29,10 +32,10 @@ struct Crowd {
 
 impl<P: Partition> Search<'_, P> {
     /// Visits the points in some slots with the slots of all others within a radius, in ascending order of rows. False if more
-    /// are near somebody than there is room for, or in a periodic box: then not all have been visited.
+    /// are near somebody than there is room for, or may be in two images: then not all have been visited.
     pub(super) fn in_order(&self, slots: Range<usize>, radius: f32, visit: &mut dyn FnMut(usize, &[u32])) -> bool {
         let Some(reach) = self.reach(radius) else { return true };
-        let (mut near, mut crowd, mut fits) = (Near::new(), Crowd::new(), self.0.sorted().domain.is_open());
+        let (mut near, mut crowd, mut fits) = (Near::new(), Crowd::new(), true);
         self.0.groups(&mut |group, frame| {
             for group in chunks(group.start.max(slots.start)..group.end.min(slots.end)) {
                 fits = fits && self.group_in_order((group, frame), reach, (&mut near, &mut crowd), visit);
@@ -51,7 +54,7 @@ impl<P: Partition> Search<'_, P> {
     ) -> bool {
         let sorted = self.0.sorted();
         self.gather(&group, frame, 0, reach, near);
-        if !near.full && crowd.take(sorted, near, reach.square) {
+        if !near.full && is_met_once(sorted, &group, reach) && crowd.take(sorted, near, reach.square) {
             crowd.visit(sorted, group, reach.square, visit);
             return true;
         }
@@ -77,14 +80,19 @@ impl Crowd {
     /// Takes what is near a group, in ascending order of rows, if there is room for it.
     fn take(&mut self, sorted: &Sorted<'_>, near: &Near, square: f32) -> bool {
         let Some(len) = self.collect(sorted, near, square) else { return false };
-        let order = sorted.order();
+        let (order, [low, high]) = (sorted.order(), sorted.bounds(near.group.clone()));
+        let (center, image) = (0.5 * (low + high), sorted.domain.image_of_all());
+        let image_near = |center: Vec3, place: Vec3| match image {
+            Image::Nearest(sides) => center + Room::new(Vec3::ZERO, sides).nearest(place - center),
+            _ => place,
+        };
         for (key, &slot) in self.keys[0].iter_mut().zip(&self.found[..len]) {
             *key = u64::from(order[slot as usize]) << 32 | u64::from(slot);
         }
         let keys = put_in_order(&mut self.keys, len, sorted.rows);
         for (at, key) in keys.iter().enumerate() {
             let slot = *key as u32;
-            let place = sorted.point(slot as usize);
+            let place = image_near(center, sorted.point(slot as usize));
             self.slots[at] = slot;
             (self.x[0][at], self.x[1][at], self.x[2][at]) = (place.x, place.y, place.z);
             if let Some(own) = self.own.get_mut((slot as usize).wrapping_sub(near.group.start)) {
@@ -107,7 +115,9 @@ impl Crowd {
             let [x, y, z] = [gap(0), gap(1), gap(2)];
             x * x + y * y + z * z
         };
-        for run in near.runs() {
+        for (run, moved) in near.runs() {
+            let moved = lanes::splat(moved);
+            let to_box = |x: [f32x8; 3]| to_box([x[0] + moved[0], x[1] + moved[1], x[2] + moved[2]]);
             sorted.blocks_with(&run, to_box, &mut |slot, left, squares| {
                 let hits = squares.simd_le(square).to_bitmask() & ((1 << left) - 1);
                 fits &= put_hits(&mut self.found, &mut len, hits, slot as u32);
@@ -154,6 +164,15 @@ fn put_hits(found: &mut [u32], len: &mut usize, hits: u32, first: u32) -> bool {
     *free = HITS[hits].map(|lane| first + lane);
     *len += usize::from(COUNTS[hits]);
     true
+}
+
+/// Tells whether all that is within reach of a group of points is met in one image only.
+fn is_met_once(sorted: &Sorted<'_>, group: &Range<usize>, reach: Reach) -> bool {
+    let half = sorted.domain.half();
+    half == f32::INFINITY || {
+        let [low, high] = sorted.bounds(group.clone());
+        largest(high - low) + reach.radius < 0.99 * half
+    }
 }
 
 /// Puts the first so many keys in ascending order of their upper halves, digit by digit, the lowest first.

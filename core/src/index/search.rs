@@ -14,7 +14,7 @@ use glam::Vec3;
 /// A query's radius, in the index.
 #[derive(Clone, Copy)]
 pub(super) struct Reach {
-    radius: f32,
+    pub(super) radius: f32,
     pub(super) square: f32,
     /// True if points could be met in two images: then all of them are looked at, each in its nearest image.
     wraps: bool,

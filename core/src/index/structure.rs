@@ -2,7 +2,7 @@
 
 use super::cells;
 use super::sorted::Sorted;
-use super::{Brute, Bsp, Bvh, Cost, Grid, Hash, Kd, Neighbour, Octree, Quadtree, SpatialIndex, Stats, TooSmall};
+use super::{Brute, Bsp, Bvh, Cost, Grid, Hash, Kd, Neighbour, Octree, Quadtree, Room, SpatialIndex, Stats, TooSmall};
 use crate::named::by_name;
 use core::ops::Range;
 use glam::Vec3;
@@ -37,13 +37,19 @@ macro_rules! structures {
             /// An empty index in so much memory.
             #[must_use]
             pub fn index(self, memory: &mut [u32]) -> AnyIndex<'_> {
-                match self { $(Self::$structure => AnyIndex::$structure($structure::new(memory)),)+ }
+                self.in_room(memory, None)
             }
 
             /// An empty index of a box from `low` on with these sides \[m\], whose opposite faces are one.
             #[must_use]
             pub fn periodic(self, memory: &mut [u32], low: Vec3, sides: Vec3) -> AnyIndex<'_> {
-                match self { $(Self::$structure => AnyIndex::$structure($structure::periodic(memory, low, sides)),)+ }
+                self.in_room(memory, Some(&Room::new(low, sides)))
+            }
+
+            /// An empty index of a room, or of all of space.
+            #[must_use]
+            pub fn in_room<'m>(self, memory: &'m mut [u32], room: Option<&Room>) -> AnyIndex<'m> {
+                match self { $(Self::$structure => AnyIndex::$structure($structure::in_room(memory, room)),)+ }
             }
         }
 

@@ -112,8 +112,9 @@ fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
         *place = if pending_death == PendingDeath::Lives { x } else { Vec3::NAN };
     }
     let (position, mut verdicts) = (&*places, Verdicts::on(pending_deaths));
-    index.with_index(words, position, reach, &mut |near| {
-        let near = Neighbours::by(near, position);
+    let room = index.room();
+    index.with_index(words, position, reach, room, &mut |near| {
+        let near = Neighbours::by(near, position).in_room(room);
         reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
     });
 }

@@ -99,6 +99,7 @@ impl SceneFile {
             let boxes: u64 = self.boxes.iter().map(Boxes::particles).sum();
             self.check_corners(self.particles.len().saturating_add(boxes as usize))?;
         }
+        self.check_room()?;
         self.check_scenery()?;
         self.check_look()
     }

@@ -1,6 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::{Boxes, Cloth, Fog, Material, Response, Sky};
+use super::{Boxes, Cloth, Fog, Material, PeriodicRoom, Response, Sky};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -28,6 +28,9 @@ pub struct SceneFile {
     pub about: String,
     /// How it is run unless the command line says otherwise.
     pub run: Run,
+    /// The room that it all happens in, if its opposite sides are one; without it space has no end.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub room: Option<PeriodicRoom>,
     /// The particles it begins with; springs name them by their place here, from 0.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub particles: Vec<Particle>,
@@ -236,6 +239,7 @@ impl SceneFile {
             schema: None,
             about: String::new(),
             run: Run::default(),
+            room: None,
             particles: Vec::new(),
             springs: Vec::new(),
             cloths: Vec::new(),

@@ -32,6 +32,8 @@ mod read;
 #[cfg(feature = "alloc")]
 mod remarks;
 mod response;
+#[cfg(feature = "alloc")]
+mod room;
 mod rules;
 #[cfg(feature = "schema")]
 mod schema;
@@ -57,6 +59,8 @@ pub use model::{Forces, Model, PatchBuf, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use response::{Position, Response};
+#[cfg(feature = "alloc")]
+pub use room::PeriodicRoom;
 pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;

@@ -9,7 +9,7 @@ use crate::custom::CustomBuf;
 use crate::draw::Patch;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Penalty, Sink, Spring};
-use crate::index::Structure;
+use crate::index::{Periodic, Room, Structure};
 use crate::integrate::Tuned;
 use crate::math::max;
 use crate::memory::{Heap, Size};
@@ -60,8 +60,8 @@ pub struct Model {
     pub max_bounces: u32,
     /// The method.
     pub integrator: Tuned,
-    /// How forces find neighbours.
-    pub index: Structure,
+    /// How forces find neighbours, and the room through whose sides they do, if there is one.
+    pub index: Periodic<Structure>,
     /// Where the particles and springs of each cloth begin among all.
     pub cloths: Vec<[usize; 2]>,
     /// The surfaces of cloths that have one.
@@ -165,13 +165,17 @@ impl Model {
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
             })
         });
+        let forces = (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals);
+        file.check_reach(&forces).map_err(|error| error.in_file(path))?;
+        let room = file.room.map_or(Room::OPEN, |room| room.room());
+        let index = Periodic { room, index: file.run.index };
         let constraints = file.constraints.iter().cloned().chain(start.constraints).collect();
         Ok(Self {
             particles: start.particles,
             springs: start.springs,
             emitters,
             colliders: Scenery::new(colliders.collect::<Result<_, _>>()?),
-            forces: (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals),
+            forces,
             contacts: file.contacts,
             constraints: (
                 constraints,
@@ -184,7 +188,7 @@ impl Model {
             materials: file.materials.clone(),
             scenery,
             integrator: Tuned { method: file.run.integrator, tuning: file.run.tuning },
-            index: file.run.index,
+            index,
             max_bounces: file.run.max_bounces,
             cloths: start.cloths,
             patches: start.patches,

@@ -83,6 +83,9 @@ impl Writer {
         if !scene.goals.is_empty() {
             self.warn("goals: .scn leads particles nowhere; they are left out");
         }
+        if scene.room.is_some() {
+            self.warn("room: in .scn space goes on without end; that is left out");
+        }
         if !scene.reapers.is_empty() {
             self.warn("reapers: in .scn particles die of age and at sinks alone; that is left out");
         }

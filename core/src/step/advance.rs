@@ -60,7 +60,7 @@ impl Tile<'_> {
             before: before.map(|column| first(column, old)),
             marks: first(marks, old),
             lasting,
-            lists: ListMemory::new(lists, listed, changes, dt.seconds()),
+            lists: ListMemory::new(lists, listed, changes, dt.seconds(), scene.index.room()),
             kept,
             scratch,
             capacity,

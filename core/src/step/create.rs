@@ -34,7 +34,7 @@ impl Workspace<'_> {
         if reach > 0.0 {
             let (places, words) = layout.crowd(core::mem::take(&mut memory.work), old);
             places.copy_from_slice(&memory.position[..old]);
-            scene.index.with_index(words, places, reach, &mut |near| emit(&mut memory, near));
+            scene.index.with_index(words, places, reach, scene.index.room(), &mut |near| emit(&mut memory, near));
         } else {
             emit(&mut memory, None);
         }

@@ -42,6 +42,8 @@ impl Workspace<'_> {
         if scene.forces.needs().write {
             self.write(scene, span, report);
         }
+        let len = self.len();
+        scene.index.wrap(&mut self.memory.position[..len]);
         let before = report.died.total();
         self.reap(scene, report, observer);
         if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {

@@ -6,7 +6,7 @@ use super::{Status, Workspace};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
 use crate::force::{Springs, State};
-use crate::index::Listed;
+use crate::index::{Listed, Neighbours};
 #[cfg(feature = "rayon")]
 use crate::memory::Layout;
 use crate::memory::Storage;
@@ -133,6 +133,7 @@ impl Workspace<'_> {
             materials,
             springs,
             custom,
+            near: Neighbours::among(&[]).in_room(scene.index.room()),
             ..State::EMPTY
         };
         let attributes = Attributes { lives, inverse_mass: m.inverse_mass, elasticity: m.elasticity };

@@ -1,0 +1,81 @@
+//! A room whose opposite faces are one, as files say it.
+
+use super::numbers::{Checked, finite, zero_or_more};
+use super::{Response, SceneError, SceneFile};
+use crate::force::{Force, ForceKind};
+use crate::index::Room;
+use alloc::format;
+use alloc::string::String;
+use glam::Vec3;
+
+/// A box whose opposite faces are one: what leaves it at one comes in at the other, and forces between neighbours and springs act through its
+/// sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PeriodicRoom {
+    /// Its lower corner \[m\].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub low: [f32; 3],
+    /// Its sides \[m\]; along those that are zero space goes on.
+    pub sides: [f32; 3],
+}
+
+impl PeriodicRoom {
+    /// It, to find neighbours in.
+    #[must_use]
+    pub fn room(&self) -> Room {
+        Room::new(Vec3::from_array(self.low), Vec3::from_array(self.sides))
+    }
+}
+
+impl SceneFile {
+    /// Checks that a room can be what it is to be, and that nothing in it acts as if it had no sides.
+    pub(super) fn check_room(&self) -> Checked {
+        let Some(PeriodicRoom { low, sides }) = self.room else { return Ok(()) };
+        finite("room.low", &low)?;
+        sides.iter().try_for_each(|&side| zero_or_more("room.sides", side))?;
+        if sides == [0.0; 3] {
+            return Err(SceneError::value("room.sides", "are all zero: leave the room out, or give it a side"));
+        }
+        if let Some((at, what)) = self.straight() {
+            return Err(SceneError::value(at, format!("{what} cannot act through the sides of the scene's room")));
+        }
+        Ok(())
+    }
+
+    /// Checks that of two particles within `reach` \[m\] of each other one way is the shortest.
+    pub(super) fn check_reach(&self, forces: &dyn Force) -> Checked {
+        let (reach, half) = (forces.needs().reach, self.room.map_or(f32::INFINITY, |room| room.room().half()));
+        if reach < half {
+            return Ok(());
+        }
+        let message = format!("are too short: forces reach {reach} m, and have to reach less than half of each side");
+        Err(SceneError::value("room.sides", message))
+    }
+
+    /// The first part of the scene that acts along straight ways alone.
+    fn straight(&self) -> Option<(String, &'static str)> {
+        let far = |force: &ForceKind| match force {
+            ForceKind::MutualGravity(_) => Some("a force that reaches any distance (a power_law has a reach)"),
+            ForceKind::Coulomb(_) => {
+                Some("a force that reaches any distance (a power_law between charges has a reach)")
+            }
+            ForceKind::Pressure(_) | ForceKind::Aerodynamics(_) => Some("surfaces of particles"),
+            _ => None,
+        };
+        let force = self.forces.iter().enumerate().find_map(|(i, force)| Some((format!("forces[{i}]"), far(force)?)));
+        let part = |name: &str, is_empty: bool, what| (!is_empty).then(|| (format!("{name}[0]"), what));
+        let contacts = match self.contacts {
+            Some(Response::Impulse {} | Response::Position(_)) => {
+                Some(("contacts".into(), "contacts by impulse or by position (by force they can)"))
+            }
+            _ => None,
+        };
+        force
+            .or(contacts)
+            .or(part("constraints", self.constraints.is_empty(), "constraints"))
+            .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))
+            .or(part("boxes", self.boxes.is_empty(), "rigid bodies"))
+    }
+}
