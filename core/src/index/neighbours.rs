@@ -3,7 +3,7 @@
 use super::lists::Lists;
 use super::nearby::{self, NOBODY, Nearby, Runs};
 use super::sorted::Entry;
-use super::{Room, SpatialIndex, between, wrapped_in};
+use super::{Room, SpatialIndex, wrapped_in};
 use core::array;
 use core::fmt;
 use core::ops::Range;
@@ -91,17 +91,13 @@ impl<'a> Neighbours<'a> {
     /// Counts the points within `radius` \[m\] of a place, whoever lies there included.
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
-        match (self.source, self.room) {
-            (Source::Index(index), None) => index.count(place, radius).found,
-            (Source::Index(index), Some(room)) => {
-                let mut count = 0;
-                index.within(place, radius + room.slack(), &mut |rows| {
-                    let points = rows.iter().filter_map(|&row| self.points.get(row as usize));
-                    count += count_of(points, place, radius, Some(room));
-                });
-                count
+        match (self.room, self.source) {
+            (Some(room), source) => {
+                let index = if let Source::Index(index) = source { Some(index) } else { None };
+                (room.code.0)(room, index, self.points, (place, radius))
             }
-            _ => count_of(self.points, place, radius, self.room),
+            (None, Source::Index(index)) => index.count(place, radius).found,
+            (None, _) => count_of(self.points, place, radius),
         }
     }
 
@@ -177,12 +173,12 @@ impl fmt::Debug for Neighbours<'_> {
     }
 }
 
-/// Counts those of these points that lie within `radius` \[m\] of a place, through the sides of a room as well if there is one.
-fn count_of<'p>(points: impl IntoIterator<Item = &'p Vec3>, place: Vec3, radius: f32, room: Option<&Room>) -> u64 {
+/// Counts those of these points that lie within `radius` \[m\] of a place.
+fn count_of(points: &[Vec3], place: Vec3, radius: f32) -> u64 {
     let square = radius * radius;
     let is_near = |&&point: &&Vec3| {
-        let d = between(room, place, point);
+        let d = point - place;
         d.x * d.x + d.y * d.y + d.z * d.z <= square
     };
-    if radius >= 0.0 { points.into_iter().filter(is_near).count() as u64 } else { 0 }
+    if radius >= 0.0 { points.iter().filter(is_near).count() as u64 } else { 0 }
 }

@@ -1,5 +1,6 @@
 //! A room whose opposite faces are one, and the shortest ways in it.
 
+use super::SpatialIndex;
 use crate::math::{floor, largest, max, min};
 use glam::Vec3;
 use wide::f32x4;
@@ -15,23 +16,35 @@ use wide::f32x4;
 /// assert_eq!(room.wrap(Vec3::new(-1.0, 12.0, 99.0)), Vec3::new(9.0, 2.0, 99.0));
 /// assert_eq!(room.nearest(Vec3::new(9.0, -4.0, 99.0)), Vec3::new(-1.0, -4.0, 99.0));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Room {
     low: Vec3,
     /// Its sides \[m\]; zero where it is open.
     sides: Vec3,
+    pub(super) code: RoomCode,
+}
+
+/// Counts the points within a distance \[m\] of a place, by an index of them if there is one. A function, so that a program without rooms does not
+/// carry it about.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RoomCode(pub(super) fn(&Room, Option<&dyn SpatialIndex>, &[Vec3], (Vec3, f32)) -> u64);
+
+impl PartialEq for Room {
+    fn eq(&self, other: &Self) -> bool {
+        (self.low, self.sides) == (other.low, other.sides)
+    }
 }
 
 impl Room {
     /// All of space.
-    pub const OPEN: Self = Self { low: Vec3::ZERO, sides: Vec3::ZERO };
+    pub const OPEN: Self = Self { low: Vec3::ZERO, sides: Vec3::ZERO, code: RoomCode(count_within) };
 
     /// A box from `low` on with these sides \[m\]. It is open along sides that are not positive and finite.
     #[must_use]
     pub fn new(low: Vec3, sides: Vec3) -> Self {
         let side = |low: f32, side: f32| if low.is_finite() && side > 0.0 && side.is_finite() { side } else { 0.0 };
         let sides = Vec3::new(side(low.x, sides.x), side(low.y, sides.y), side(low.z, sides.z));
-        Self { low: Vec3::select(sides.cmpgt(Vec3::ZERO), low, Vec3::ZERO), sides }
+        Self { low: Vec3::select(sides.cmpgt(Vec3::ZERO), low, Vec3::ZERO), sides, ..Self::OPEN }
     }
 
     /// Its lower corner \[m\]; zero along sides that are open.
@@ -110,6 +123,20 @@ impl Room {
         let sides = self.sides.to_array();
         SideBySide { sides: sides.map(f32x4::splat), half: sides.map(|side| f32x4::splat(half(side))) }
     }
+}
+
+fn count_within(room: &Room, index: Option<&dyn SpatialIndex>, points: &[Vec3], (place, radius): (Vec3, f32)) -> u64 {
+    let is_near = |point: &Vec3| {
+        let d = between(Some(room), place, *point);
+        radius >= 0.0 && d.x * d.x + d.y * d.y + d.z * d.z <= radius * radius
+    };
+    let Some(index) = index else { return points.iter().filter(|point| is_near(point)).count() as u64 };
+    let mut count = 0;
+    index.within(place, radius + room.slack(), &mut |rows| {
+        let found = rows.iter().filter_map(|&row| points.get(row as usize));
+        count += found.filter(|point| is_near(point)).count() as u64;
+    });
+    count
 }
 
 /// A coordinate that lies outside, wrapped in.
