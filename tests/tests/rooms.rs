@@ -165,15 +165,15 @@ fn flights_are_wrapped_and_corners_do_not_matter() {
                 let at = f64s(system.particles().position[row]);
                 let size = f64::from(room.low().length() + from.velocity.length() * t as f32) + 4.0;
                 assert!(system.particles().velocity[row] == from.velocity);
-                for axis in 0..3 {
+                for (axis, at) in at.into_iter().enumerate() {
                     let (side, low) = (f64::from(room.sides()[axis]), f64::from(room.low()[axis]));
                     let way = f64s(from.position)[axis] + f64s(from.velocity)[axis] * t;
                     let wrapped = if side > 0.0 { low + (way - low).rem_euclid(side) } else { way };
-                    let off = (wrapped - at[axis]).abs();
+                    let off = (wrapped - at).abs();
                     // Beside a side rounding may put it on the other.
                     let off = if side > 0.0 { off.min((off - side).abs()) } else { off };
                     assert!(off < 200.0 * 6e-8 * size + 1e-5, "{off} m off");
-                    assert!(side == 0.0 || (low - 1e-4..low + side + 1e-4).contains(&at[axis]));
+                    assert!(side == 0.0 || (low - 1e-4..low + side + 1e-4).contains(&at));
                 }
             }
         }

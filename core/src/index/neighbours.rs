@@ -2,6 +2,7 @@
 
 use super::lists::Lists;
 use super::nearby::{self, NOBODY, Nearby, Runs};
+use super::room::Points;
 use super::sorted::Entry;
 use super::{Room, SpatialIndex, wrapped_in};
 use core::array;
@@ -94,7 +95,7 @@ impl<'a> Neighbours<'a> {
         match (self.room, self.source) {
             (Some(room), source) => {
                 let index = if let Source::Index(index) = source { Some(index) } else { None };
-                (room.code.0)(room, index, self.points, (place, radius))
+                (room.code.0)(room, &Points { places: self.points, index }, place, radius)
             }
             (None, Source::Index(index)) => index.count(place, radius).found,
             (None, _) => count_of(self.points, place, radius),

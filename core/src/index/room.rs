@@ -27,7 +27,13 @@ pub struct Room {
 /// Counts the points within a distance \[m\] of a place, by an index of them if there is one. A function, so that a program without rooms does not
 /// carry it about.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RoomCode(pub(super) fn(&Room, Option<&dyn SpatialIndex>, &[Vec3], (Vec3, f32)) -> u64);
+pub(super) struct RoomCode(pub(super) fn(&Room, &Points<'_>, Vec3, f32) -> u64);
+
+/// Points, and an index of them, if there is one.
+pub(super) struct Points<'a> {
+    pub(super) places: &'a [Vec3],
+    pub(super) index: Option<&'a dyn SpatialIndex>,
+}
 
 impl PartialEq for Room {
     fn eq(&self, other: &Self) -> bool {
@@ -102,11 +108,10 @@ impl Room {
     #[must_use]
     #[inline]
     pub fn nearest(&self, way: Vec3) -> Vec3 {
-        let side = |d: f32, side: f32| match 0.5 * side {
-            half if half == 0.0 => d,
-            half if d > half => d - side,
-            half if d < -half => d + side,
-            _ => d,
+        let side = |d: f32, side: f32| match d {
+            _ if side == 0.0 || d.abs() <= 0.5 * side => d,
+            d if d > 0.0 => d - side,
+            d => d + side,
         };
         Vec3::new(side(way.x, self.sides.x), side(way.y, self.sides.y), side(way.z, self.sides.z))
     }
@@ -125,15 +130,15 @@ impl Room {
     }
 }
 
-fn count_within(room: &Room, index: Option<&dyn SpatialIndex>, points: &[Vec3], (place, radius): (Vec3, f32)) -> u64 {
+fn count_within(room: &Room, points: &Points<'_>, place: Vec3, radius: f32) -> u64 {
     let is_near = |point: &Vec3| {
         let d = between(Some(room), place, *point);
         radius >= 0.0 && d.x * d.x + d.y * d.y + d.z * d.z <= radius * radius
     };
-    let Some(index) = index else { return points.iter().filter(|point| is_near(point)).count() as u64 };
+    let Some(index) = points.index else { return points.places.iter().filter(|point| is_near(point)).count() as u64 };
     let mut count = 0;
     index.within(place, radius + room.slack(), &mut |rows| {
-        let found = rows.iter().filter_map(|&row| points.get(row as usize));
+        let found = rows.iter().filter_map(|&row| points.places.get(row as usize));
         count += found.filter(|point| is_near(point)).count() as u64;
     });
     count
