@@ -93,8 +93,8 @@ fn the_short_way_has_the_bits_of_the_long_one() {
     let friction =
         |static_, kinetic| ContactMaterial { friction: Some(Friction { static_, kinetic }), elasticity: None };
     let materials = [friction(0.5, 0.4), friction(0.0, 0.0), ContactMaterial { elasticity: Some(0.3), friction: None }];
-    let (mut hits, mut scenes) = (0, 0);
-    for (number, method) in Method::ALL.iter().cycle().take(54).enumerate() {
+    let (mut hits, count) = (0, if cfg!(debug_assertions) { 14 } else { 54 });
+    for (number, method) in Method::ALL.iter().cycle().take(count).enumerate() {
         let scale = [1.0, 1e-3, 40.0][number % 3];
         let far = [0.0, 0.0, 1e3][number / 3 % 3] * scale;
         let normals = [Vec3::Y, Vec3::NEG_Y, Vec3::Y * 3.0, random.direction() * 0.7, Vec3::NEG_X, Vec3::Z * 0.1];
@@ -142,9 +142,8 @@ fn the_short_way_has_the_bits_of_the_long_one() {
             assert_eq!([short.hash(), told.hash()], [long.hash(); 2], "{number} {step} {method}");
             hits += a.hits;
         }
-        scenes += 1;
     }
-    assert!(scenes == 54 && hits > 30_000, "{hits}");
+    assert!(hits > 500 * count as u64, "{hits}");
 }
 
 /// A sink takes what touches it wherever that is, over a ground as elsewhere.
