@@ -227,6 +227,8 @@ impl<'m> Cast<'m> {
             (None, None) => self.before.get(&serial).copied().unwrap_or(position),
             (None, Some(_)) => position,
         };
+        // Whoever has come in at the other side of a room has come straight.
+        let previous = state.near.room().map_or(previous, |room| position + room.between(position, previous));
         let glow = if matches!(self.style, None | Some(Style::Sprites)) { glow } else { 0.0 };
         (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })
     }

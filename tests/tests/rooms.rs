@@ -221,7 +221,7 @@ fn waves_go_round_through_a_side() {
             let p = system.particles();
             let off = |i: u32| {
                 let rest = Vec3::X * (low + 0.25 * i as f32);
-                f64::from(room.nearest(room.wrap(p.position[i as usize]) - room.wrap(rest)).x)
+                f64::from(room.between(rest, p.position[i as usize]).x)
             };
             (0..count).map(|i| off(i) * turn(i).sin()).sum::<f64>() / (0.002 * f64::from(count))
         };

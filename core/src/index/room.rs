@@ -116,6 +116,13 @@ impl Room {
         Vec3::new(side(way.x, self.sides.x), side(way.y, self.sides.y), side(way.z, self.sides.z))
     }
 
+    /// The shortest way from one point to another, wherever they are.
+    #[must_use]
+    #[inline]
+    pub fn between(&self, from: Vec3, to: Vec3) -> Vec3 {
+        self.nearest(self.wrap(to) - self.wrap(from))
+    }
+
     /// More than what rounding may make of a distance \[m\] in it: points lie where they are, or beside a corner, or in an image.
     pub(super) fn slack(&self) -> f32 {
         (largest(self.low) + largest(self.sides)) * (16.0 * f32::EPSILON)
@@ -183,7 +190,7 @@ pub(crate) fn wrapped_in(room: Option<&Room>, point: Vec3) -> Vec3 {
 #[inline(always)]
 pub(crate) fn between(room: Option<&Room>, from: Vec3, to: Vec3) -> Vec3 {
     match room {
-        Some(room) => room.nearest(room.wrap(to) - room.wrap(from)),
+        Some(room) => room.between(from, to),
         None => to - from,
     }
 }
