@@ -53,6 +53,25 @@ fn a_soft_chain_hangs_longer_by_its_closed_form_whatever_the_sub_steps() {
     }
 }
 
+#[test]
+fn ropes_that_cannot_be_met_are_counted() {
+    // Held at both ends, a little nearer than they are long or a little farther apart; whatever a whip does is met.
+    for (span, lack) in [(0.9f32, false), (1.1, true)] {
+        let mut start = chain(10, 0.1 * span, Vec3::ZERO, Vec3::X, Particle { mass: 0.1, ..Particle::REST });
+        start[10].fixed = true;
+        let rope = Rope::rigid(all(&start), [0.1]);
+        for (substeps, method) in [(1, Method::Symplectic), (7, Method::Verlet)] {
+            let integrator = method.integrator();
+            let scene =
+                Scene { start: &start, forces: &DOWN, constraints: &rope, substeps, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            run(&mut system, &scene, 1.0 / 60.0, 30);
+            let expected = if lack { 30 * u64::from(substeps) } else { 0 };
+            assert_eq!(system.totals().effort.capped, expected, "{span} {substeps} {method}");
+        }
+    }
+}
+
 /// A metre of 128 links: hanging straight, falling from the level, hung far from the origin and with a weight at its end.
 #[test]
 fn a_rigid_chain_of_128_links_is_as_long_as_it_should_be() {

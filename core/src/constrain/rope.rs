@@ -18,7 +18,8 @@ use glam::Vec3;
 ///
 /// Linear momentum is kept to rounding; so is angular momentum, since links act along the directions that they had when the sub-step began,
 /// as long as none of them turns by more than 60° in a sub-step. Where one does (the end of a whip), the sub-step is gone through in paces,
-/// which takes energy and angular momentum out of the motion, never puts any in.
+/// which takes energy and angular momentum out of the motion, never puts any in. What is off even then is counted as capped in
+/// [`Effort`](crate::Effort).
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself.
@@ -193,10 +194,12 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         let paces = floor(clamp(2.0 * turn, 0.0, PACES - 1.0)) + 1.0;
         links.pull.fill(0.0);
         links.start_over(bodies);
+        let mut met = true;
         for pace in 1..=paces as u32 {
             links.pace(bodies, pace as f32 / paces, 1.0 / paces);
-            self.meet(bodies, links, soft, Way::Now(if pace as f32 == paces { ROUNDS } else { 3 }));
+            met = self.meet(bodies, links, soft, Way::Now(if pace as f32 == paces { ROUNDS } else { 3 }));
         }
+        bodies.report.effort.capped += u64::from(!met);
     }
 
     /// The rounding of a link's length, from where its ends are.
