@@ -52,8 +52,8 @@ pub(crate) struct Settings {
     /// How many particles may live at once, what finds no room is refused and counted; by default what the scene says
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=500_000_000))]
     pub(crate) capacity: Option<u32>,
-    /// Divide every step into N sub-steps, or `auto`: into as few as springs, drag and contacts need to be stable and
-    /// --tolerance asks, at most 1024
+    /// Divide every step into N sub-steps, or `auto`: into as few as springs, drag and contacts need to be stable,
+    /// constraints to be met within 1 % and --tolerance asks, at most 1024
     #[arg(long, value_name = "N|auto", default_value = "1")]
     pub(crate) substeps: Substeps,
     /// With --substeps auto, how far a step may end, in metres and at any particle, from where half as many sub-steps
@@ -140,8 +140,8 @@ impl World {
         let mut system = System::with(memory);
         system.start(&model.scene(), seed)?;
         let method = model.integrator.method;
-        let chosen = args.substeps == Substeps::Auto && !method.chooses_steps();
-        let limit = if chosen { Bounds::of(&model).largest_step(method) } else { Limit::Unconditional };
+        let is_auto = args.substeps == Substeps::Auto;
+        let limit = if is_auto { Bounds::of(&model).whole_step(method) } else { Limit::Unconditional };
         let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
         let pace = Pace::new(args.substeps, limit, tolerance);
         let threads = threads(args.threads, capacity)?;

@@ -1,9 +1,10 @@
 //! Advice on what to change.
 
 use super::contact::STEPS;
+use super::hold::Hold;
 use super::part::place;
 use super::study::{Stand, Study};
-use super::words::{plain, time, typed};
+use super::words::{plain, time};
 use crate::report::words::counted;
 use pointmass::Spring;
 use pointmass::scene::Model;
@@ -19,23 +20,24 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     let mut advice = Vec::new();
     match stand.every_pose.and(stand.drag).and(stand.contact).and(stand.goal) {
         _ if stand.chooses_steps => advice.push(format!("{} chooses its own steps", stand.method)),
-        limit if limit.admits(check.dt) => advice.push(fine(check, limit)),
+        limit if limit.admits(check.h()) => advice.push(fine(check, limit)),
         Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
         _ => advice.push(never(check, model, stand)),
     }
     advice.extend(damping(check, model));
     advice.extend(taut(check, stand));
+    advice.extend(check.holds.iter().filter_map(|hold| held(check, hold)));
     advice.extend(world(check));
     advice
 }
 
 fn fine(check: &Study, limit: Limit) -> String {
-    let (step, method) = (time(check.dt), &check.integrator);
+    let (step, method) = (time(check.h()), &check.integrator);
     match limit {
         Limit::Step(limit) => {
-            let part = plain(100.0 * check.dt / limit);
+            let part = plain(100.0 * check.h() / limit);
             let text = format!("steps of {step} by {method} are stable: {part} % of the largest that is in every pose");
-            match check.dt > 0.5 * limit {
+            match check.h() > 0.5 * limit {
                 true => format!("{text}; stable is not accurate, --substeps auto takes care of both"),
                 false => text,
             }
@@ -45,14 +47,14 @@ fn fine(check: &Study, limit: Limit) -> String {
 }
 
 fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
-    let parts = (check.dt / limit).ceil();
-    let step = time(check.dt);
+    let parts = (check.h() / limit).ceil();
+    let step = time(check.h());
     let mut advice = vec![
-        match stand.at_rest.and(stand.drag).admits(check.dt) {
-            true if !stand.contact.admits(check.dt) => {
+        match stand.at_rest.and(stand.drag).admits(check.h()) {
+            true if !stand.contact.admits(check.h()) => {
                 format!("steps of {step} by {} are too long for contacts by force: hits add energy", stand.method)
             }
-            true if stand.every_pose.admits(check.dt) => {
+            true if stand.every_pose.admits(check.h()) => {
                 format!(
                     "steps of {step} by {} are too long for goals: whoever they hold swings ever wider",
                     stand.method
@@ -63,7 +65,7 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
         },
         format!(
             "take --dt {} or less, or --substeps {parts} to keep the step, or --substeps auto for accuracy as well",
-            typed(limit)
+            check.typed(limit)
         ),
     ];
     let others: Vec<_> = check.methods.iter().filter(|other| other.stable && other.growth_across <= 0.0).collect();
@@ -110,7 +112,7 @@ fn damping(check: &Study, model: &Model) -> Option<String> {
 }
 
 fn taut(check: &Study, stand: &Stand) -> Option<String> {
-    let is_worth_saying = stand.growth_across > 0.0 && stand.every_pose.admits(check.dt) && !stand.chooses_steps;
+    let is_worth_saying = stand.growth_across > 0.0 && stand.every_pose.admits(check.h()) && !stand.chooses_steps;
     is_worth_saying.then(|| {
         format!(
             "under tension, springs also swing across themselves, which only drag damps: {} makes that grow, at this step up \
@@ -119,6 +121,14 @@ fn taut(check: &Study, stand: &Stand) -> Option<String> {
             time(1.0 / stand.growth_across)
         )
     })
+}
+
+/// What to do about constraints that are off by much.
+fn held(check: &Study, hold: &Hold) -> Option<String> {
+    let warning = hold.warning(check.h())?;
+    let Limit::Step(enough) = hold.largest_step() else { return None };
+    let parts = (check.dt / enough).ceil();
+    Some(format!("{warning}: let the scene cut its steps into {parts} (`run.substeps`)"))
 }
 
 fn world(check: &Study) -> Vec<String> {
@@ -136,22 +146,22 @@ fn world(check: &Study) -> Vec<String> {
             time(followed.step)
         ));
     }
-    if let Some(hit) = check.hit.filter(|hit| check.dt * STEPS > *hit) {
+    if let Some(hit) = check.hit.filter(|hit| check.h() * STEPS > *hit) {
         advice.push(format!(
             "a hit lasts {}: take --dt {} or less for ten steps in it, as many as its bounce takes to be right",
             time(hit),
-            typed(0.1 * hit)
+            check.typed(0.1 * hit)
         ));
     }
-    if let Some(pair) = check.pair.as_ref().filter(|pair| check.dt * ORBIT > pair.period) {
+    if let Some(pair) = check.pair.as_ref().filter(|pair| check.h() * ORBIT > pair.period) {
         let [a, b] = pair.particles;
         advice.push(format!(
             "particles {a} and {b} would circle each other in {}: take --dt {} or less for {ORBIT} steps a round",
             time(pair.period),
-            typed(pair.period / ORBIT)
+            check.typed(pair.period / ORBIT)
         ));
     }
-    let quick = || check.sinks.iter().filter(|sink| check.dt * sink.rate * PULL > std::f64::consts::TAU);
+    let quick = || check.sinks.iter().filter(|sink| check.h() * sink.rate * PULL > std::f64::consts::TAU);
     if let Some(sink) = quick().reduce(|a, b| if b.rate > a.rate { b } else { a }) {
         let others = match quick().count() - 1 {
             0 => String::new(),
@@ -162,7 +172,7 @@ fn world(check: &Study) -> Vec<String> {
                 "near {}, the pull changes within {}{others}: take --dt {} or less",
                 sink.place,
                 time(1.0 / sink.rate),
-                typed(std::f64::consts::TAU / (PULL * sink.rate))
+                check.typed(std::f64::consts::TAU / (PULL * sink.rate))
             ),
             false => format!("{} pulls without bound at its surface: give it a ca above zero", sink.place),
         });

@@ -1,8 +1,11 @@
-//! The bounds on the step of a scene: its springs in every pose, drag, contacts and goals, over whole lives.
+//! The bounds on the step of a scene: its springs in every pose, drag, contacts and goals, over whole lives; and constraints.
+//!
+//! They are bounds on the steps that a method takes: those of a scene, or what it cuts them into.
 
 use super::body::{Body, extremes};
 use super::contact::Contact;
 use super::goal::Goals;
+use super::hold::Hold;
 use super::part::{Part, place};
 use super::words::time;
 use pointmass::scene::Model;
@@ -23,6 +26,10 @@ pub(crate) struct Bounds {
     pub(crate) contact: Option<Contact>,
     /// The goals that particles are led to.
     pub(crate) goals: Option<Goals>,
+    /// The constraints.
+    pub(crate) holds: Vec<Hold>,
+    /// Parts that the scene cuts each step into.
+    substeps: f64,
 }
 
 impl Bounds {
@@ -35,6 +42,8 @@ impl Bounds {
             dragged: dragged(model, &bodies),
             contact: Contact::of(model, &bodies),
             goals: Goals::of(model, &bodies),
+            holds: Hold::all(model),
+            substeps: f64::from(model.substeps),
             bodies,
         }
     }
@@ -42,6 +51,16 @@ impl Bounds {
     /// The largest stable step, whatever the springs' pose and whoever is born.
     pub(crate) fn largest_step(&self, method: Method) -> Limit {
         self.lasting_step(method).and(self.contact_step(method))
+    }
+
+    /// The longest step of a run, which the scene may cut into parts, that is stable and leaves constraints off by little.
+    pub(crate) fn whole_step(&self, method: Method) -> Limit {
+        let stable = if method.chooses_steps() { Limit::Unconditional } else { self.largest_step(method) };
+        let enough = self.holds.iter().fold(stable, |least, hold| least.and(hold.largest_step()));
+        match enough {
+            Limit::Step(step) => Limit::Step(step * self.substeps),
+            other => other,
+        }
     }
 
     /// The bound of springs, drag and goals, which act for long.
@@ -69,10 +88,12 @@ impl Bounds {
         self.contact.as_ref().map_or(Limit::Unconditional, |contact| contact.largest_step(method))
     }
 
-    /// Warnings of a run with this step \[s\] that takes this long \[s\].
+    /// Warnings of a run with this step \[s\], which the scene may cut into parts, that takes this long \[s\].
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
+        let step = step / self.substeps;
+        let held = self.holds.iter().filter_map(|hold| hold.warning(step));
         if method.chooses_steps() {
-            return Vec::new();
+            return held.collect();
         }
         let culprit = || self.culprit(method).unwrap_or_default();
         let growth = self.growth(method, step);
@@ -93,7 +114,8 @@ impl Bounds {
             )],
             _ => Vec::new(),
         };
-        warnings.extend(self.contact.as_ref().and_then(|contact| contact.warning(method, step)));
+        warnings.extend(self.contact.as_ref().and_then(|contact| contact.warning(method, step, self.substeps)));
+        warnings.extend(held);
         warnings
     }
 

@@ -64,8 +64,8 @@ impl Contact {
         swings.chain(slip).fold(Limit::Unconditional, Limit::and)
     }
 
-    /// The warning about steps \[s\] that do hits no justice.
-    pub(crate) fn warning(&self, method: Method, step: f64) -> Option<String> {
+    /// The warning about steps \[s\] that do hits no justice, so many of which are one of the run's.
+    pub(crate) fn warning(&self, method: Method, step: f64, substeps: f64) -> Option<String> {
         let (steps, hit) = (time(step), self.duration());
         let Part { place, about, .. } = &self.part;
         match self.largest_step(method) {
@@ -78,7 +78,7 @@ impl Contact {
                 "steps of {steps} are coarse for contacts by force: a hit lasts {}, and its bounce comes out wrong, because \
                  of {place} {about}; try --dt {}",
                 time(hit),
-                typed(0.1 * hit)
+                typed(0.1 * hit * substeps)
             )),
             _ => None,
         }

@@ -2,8 +2,8 @@
 //!
 //! `body` is whoever there may be, with the extremes of its `life`. `net` makes matrices of the springs, `modes` and `verlet`
 //! work out their oscillations at rest, `bounds` what holds in every pose, `contact` and `hit` what touching balls ask for,
-//! `goal` what goals do, `world` what else has a time of its own; `study` is what it came to, which `advice` puts into words,
-//! and `report` and `plot` tell.
+//! `goal` what goals do, `statics` how hard links are pulled, `hold` what constraints do, `world` what else has a time of its own;
+//! `study` is what it came to, which `advice` puts into words, and `report` and `plot` tell.
 
 mod advice;
 mod body;
@@ -11,12 +11,14 @@ mod bounds;
 mod contact;
 mod goal;
 mod hit;
+mod hold;
 mod life;
 mod modes;
 mod net;
 mod part;
 mod plot;
 mod report;
+mod statics;
 mod study;
 #[cfg(test)]
 mod tests;
@@ -94,5 +96,5 @@ pub(crate) fn check(args: &Check) -> Outcome {
 fn scenery(study: &Study, spectra: Vec<Spectrum>, method: Method) -> Scenery {
     let modes = spectra.into_iter().flat_map(|spectrum| spectrum.modes);
     let parts = [&study.dragged, &study.touching, &study.led].into_iter().flatten().map(|part| part.mode);
-    Scenery { modes: modes.chain(parts).collect(), method, dt: study.dt }
+    Scenery { modes: modes.chain(parts).collect(), method, dt: study.h() }
 }

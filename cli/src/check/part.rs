@@ -18,10 +18,13 @@ pub(crate) struct Part {
     pub(crate) mode: Mode,
 }
 
-/// Where particle (0) or spring (1) number `number` stands in the file: in a list, or in a cloth.
+/// Where particle (0) or spring (1) number `number` stands in the file: in a list, in a cloth, or in boxes.
 pub(crate) fn place(model: &Model, kind: usize, number: usize) -> String {
-    match model.cloths.partition_point(|begin| begin[kind] <= number) {
-        0 => format!("{}[{number}]", ["particles", "springs"][kind]),
-        after => format!("cloths[{}]", after - 1),
+    let boxes = model.boxes.partition_point(|&begin| kind == 0 && begin <= number);
+    let cloths = model.cloths.partition_point(|begin| begin[kind] <= number);
+    match (boxes, cloths) {
+        (0, 0) => format!("{}[{number}]", ["particles", "springs"][kind]),
+        (0, after) => format!("cloths[{}]", after - 1),
+        (after, _) => format!("boxes[{}]", after - 1),
     }
 }

@@ -1,5 +1,6 @@
 //! A check, told at a terminal or on a page, and as a table.
 
+use super::hold::{Hold, Kind};
 use super::modes::How;
 use super::study::{Oscillations, Stand, Study};
 use super::words::{limit, plain, time};
@@ -7,7 +8,7 @@ use crate::outcome::Outcome;
 use crate::report::Report;
 use crate::report::plot::Chart;
 use crate::report::table::{Cell, Table};
-use crate::report::words::{counted, thousands};
+use crate::report::words::{counted, short, thousands};
 use pointmass::stability::Limit;
 use std::fmt::Write;
 
@@ -26,6 +27,14 @@ const NOTES: [&str; 7] = [
      method make that grow at any step, however slowly.",
 ];
 
+/// The meaning of those of constraints.
+const HELD: [&str; 2] = [
+    "Constraints: their stiffness, their fastest oscillation, were it alone, and by how much their own weight stretches them, \
+     were they hung from what is fixed. A sub-step damps what swings in less than 2π of it, as implicit Euler does.",
+    "Ropes, clusters and sheets are solved as a whole, and are at rest what they are by their numbers. Distances are met one \
+     after the other: each pulls at those before it once more, by h²/m times its pull. 1 % with: the sub-step that leaves so much.",
+];
+
 /// Tells all of it.
 pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report) -> Outcome {
     report.facts(&facts(study));
@@ -35,6 +44,12 @@ pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report)
     }
     report.heading(2, "The largest steps");
     report.table(&steps(study));
+    if !study.holds.is_empty() {
+        report.heading(2, "What holds together");
+        report.table(&holds(study));
+        let notes = if report.is_page() { &HELD[..] } else { &[] };
+        notes.iter().for_each(|note| report.paragraph(note));
+    }
     if report.is_page() {
         report.heading(2, "Where methods are stable");
         report.charts(&charts.iter().collect::<Vec<_>>())?;
@@ -61,11 +76,31 @@ fn steps(study: &Study) -> Table {
     if study.led.is_some() {
         table.column("goal", stands().map(|stand| limit(stand.goal)));
     }
-    table.words(format!("at {}", time(study.dt)), stands().map(verdict));
+    table.words(format!("at {}", time(study.h())), stands().map(verdict));
     table
 }
 
-/// The same for other programs.
+/// The constraints.
+fn holds(study: &Study) -> Table {
+    let holds = || study.holds.iter();
+    let stiffness = |hold: &Hold| match (hold.kind, hold.stiffness) {
+        (Kind::Attach, _) => None,
+        (_, stiffness) => Some(stiffness.map_or("rigid".into(), plain)),
+    };
+    let gives = |hold: &Hold| (hold.gives > 0.0).then(|| short(100.0 * hold.gives));
+    let mut table = Table::default();
+    table.column("", holds().map(Hold::name));
+    table.words("kind", holds().map(|hold| hold.kind.name()));
+    table.column("particles", holds().map(|hold| thousands(hold.particles)));
+    table.column("N/m", holds().map(stiffness));
+    table.column("fastest /s", holds().map(|hold| hold.rate.map(plain)));
+    table.column("gives %", holds().map(gives));
+    table.column("1 % with", holds().map(|hold| limit(hold.largest_step())));
+    table.words(format!("in {}", time(study.h())), holds().map(|hold| hold.told(study.h())));
+    table
+}
+
+/// The steps for other programs.
 pub(crate) fn sheet(study: &Study) -> Table {
     let stands = || study.methods.iter();
     let seconds = |limit: Limit| match limit {
@@ -89,10 +124,14 @@ pub(crate) fn sheet(study: &Study) -> Table {
 
 /// All there is to know beside the table, each with its name.
 fn facts(study: &Study) -> Vec<(&'static str, String)> {
-    let Study { particles, free, springs, emitters, dt, integrator, .. } = study;
+    let Study { particles, free, springs, emitters, dt, substeps, integrator, .. } = study;
+    let parts = match substeps {
+        1 => String::new(),
+        n => format!(", each in {n} sub-steps of {}", time(study.h())),
+    };
     let mut facts = vec![
         ("scene", study.scene.clone()),
-        ("judged", format!("steps of {} by {integrator}", time(*dt))),
+        ("judged", format!("steps of {} by {integrator}{parts}", time(*dt))),
         (
             "holds",
             format!(

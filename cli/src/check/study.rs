@@ -3,8 +3,10 @@
 use super::body::extremes;
 use super::bounds::Bounds;
 use super::contact::Contact;
+use super::hold::Hold;
 use super::modes::{How, Spectrum};
 use super::part::Part;
+use super::words::typed;
 use super::world::{Followed, Pair, Pull, fastest_pair, followed, not_judged, pulls};
 use pointmass::Method;
 use pointmass::scene::{Model, Run};
@@ -17,8 +19,9 @@ use std::path::Path;
 pub(crate) struct Study {
     /// The scene's file.
     pub(crate) scene: String,
-    /// The step that is judged.
+    /// The step that is judged, and the parts that the scene cuts it into.
     pub(crate) dt: f64,
+    pub(crate) substeps: u32,
     /// The method that is advised on.
     pub(crate) integrator: String,
     /// Particles at the start, and those of them that can move.
@@ -37,6 +40,8 @@ pub(crate) struct Study {
     pub(crate) hit: Option<f64>,
     /// The goal that holds the most stiffly.
     pub(crate) led: Option<Part>,
+    /// The constraints.
+    pub(crate) holds: Vec<Hold>,
     pub(crate) methods: Vec<Stand>,
     /// The length of paths that are followed with full accuracy to what they hit.
     pub(crate) followed: Option<Followed>,
@@ -61,7 +66,7 @@ pub(crate) struct Oscillations {
     pub(crate) damping_ratio: Option<f64>,
 }
 
-/// The steps that a method stands.
+/// The steps that a method stands, where scenes cut theirs into parts the length of these.
 #[derive(Debug, Serialize)]
 pub(crate) struct Stand {
     pub(crate) method: String,
@@ -88,13 +93,15 @@ pub(crate) struct Stand {
 impl Study {
     /// The study of a scene, without advice, and the modes of its springs, at each of the extremes that lives come to.
     pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Vec<Spectrum>) {
-        let (dt, bounds) = (run.dt, Bounds::of(model));
+        let (dt, substeps, bounds) = (run.dt, model.substeps, Bounds::of(model));
+        let h = dt / f64::from(substeps);
         let corners = extremes(&bounds.bodies[..model.particles.len()]);
         let spectra: Vec<_> = corners.iter().filter_map(|corner| Spectrum::of(corner, &model.springs)).collect();
-        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, dt)).collect();
+        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, h)).collect();
         let study = Self {
             scene: crate::load::name(path).into_owned(),
             dt,
+            substeps,
             integrator: model.integrator.method.to_string(),
             particles: model.particles.len(),
             free: model.particles.iter().filter(|particle| !particle.fixed).count(),
@@ -106,6 +113,7 @@ impl Study {
             hit: bounds.contact.as_ref().map(Contact::duration),
             touching: bounds.contact.map(|contact| contact.part),
             led: bounds.goals.map(|goals| goals.part),
+            holds: bounds.holds,
             methods,
             followed: followed(model),
             // An orbit that takes far longer than the run is none.
@@ -116,9 +124,19 @@ impl Study {
         };
         (study, spectra)
     }
+
+    /// The step that methods take: one of the parts that the scene cuts each into.
+    pub(crate) fn h(&self) -> f64 {
+        self.dt / f64::from(self.substeps)
+    }
+
+    /// The step to give a run, as one types it, so that methods take such a step \[s\].
+    pub(crate) fn typed(&self, step: f64) -> String {
+        typed(step * f64::from(self.substeps))
+    }
 }
 
-fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], dt: f64) -> Stand {
+fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], h: f64) -> Stand {
     let at_rest = spectra.iter().fold(Limit::Unconditional, |least, modes| least.and(modes.largest_step(method)));
     let (every_pose, drag) = (bounds.poses_step(method), bounds.drag_step(method));
     Stand {
@@ -130,8 +148,8 @@ fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], dt: f64) -> Stan
         drag,
         contact: bounds.contact_step(method),
         goal: bounds.goal_step(method),
-        stable: method.chooses_steps() || bounds.largest_step(method).admits(dt),
-        growth_across: bounds.growth(method, dt),
+        stable: method.chooses_steps() || bounds.largest_step(method).admits(h),
+        growth_across: bounds.growth(method, h),
     }
 }
 

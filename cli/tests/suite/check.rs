@@ -98,6 +98,41 @@ fn what_is_no_spring_is_told_as_well() {
 }
 
 #[test]
+fn constraints_are_told_and_bound_sub_steps() {
+    // Twenty rigid links of a tenth of a metre hang straight down: the first is too long by 19 g h².
+    let particle = |i: u32| format!(r#"{{"position": [0, {}, 0], "fixed": {}}}"#, -0.1 * f64::from(i), i == 0);
+    let link = |i: u32| format!(r#"{{"distance": {{"ends": [{i}, {}], "length": 0.1}}}}"#, i + 1);
+    let [particles, links] = [(0..=20).map(particle).collect(), (0..20).map(link).collect::<Vec<_>>()];
+    let particles: Vec<String> = particles;
+    let scene = |substeps: u32| {
+        format!(
+            r#"{{"run": {{"duration": 1, "dt": 0.01, "substeps": {substeps}}}, "forces": [{{"gravity": {{"acceleration": [0, -10, 0]}}}}],
+                "particles": [{}], "constraints": [{}]}}"#,
+            particles.join(", "),
+            links.join(", ")
+        )
+    };
+    let folder = Folder::with("few.json", scene(2));
+    folder.write("many.json", scene(10));
+    let few = check(&folder, "few.json");
+    let enough = (0.01f64 / (190.0 / 0.1)).sqrt();
+    assert!((number(&few, "holds/0/owes") / 1900.0 - 1.0).abs() < 2e-3, "{few}");
+    assert!(few["advice"].to_string().contains("into 5 (`run.substeps`)"), "{few}");
+    for word in ["constraints[0] and 19 more", "distance", "rigid", "each in 2 sub-steps", "4.75 % too long"] {
+        let text = folder.run("check few.json").fine().stdout;
+        assert!(text.contains(word), "no {word}:\n{text}");
+    }
+    let page = folder.run("check many.json --out o.html").fine().stdout;
+    assert!(!page.contains("% longer") && folder.read("o.html").contains("What holds together"), "{page}");
+    let answer = folder.run("run few.json --steps 3");
+    let warnings = answer.warnings();
+    assert!(warnings.len() == 1 && warnings[0].contains("hang up to 4.75 %"), "{warnings:?}");
+    assert!(folder.run("run few.json --steps 3 --substeps 4").warnings().is_empty());
+    let auto = folder.run("run few.json --steps 3 --substeps auto --tolerance 1 --report json").fine().report();
+    assert!(number(&auto, "substeps/least") >= (0.01 / (2.0 * enough)).ceil(), "{auto}");
+}
+
+#[test]
 fn odd_scenes_are_checked_too() {
     let folder = Folder::new();
     let two = "particle 0 0 0 0 0 0 1 0 0 0 0 -1 particle 1 0 0 0 0 0 1 0 0 0 0 -1\n";

@@ -64,6 +64,8 @@ pub struct Model {
     pub index: Periodic<Structure>,
     /// Where the particles and springs of each cloth begin among all.
     pub cloths: Vec<[usize; 2]>,
+    /// Where the particles of each of the file's boxes begin among all.
+    pub boxes: Vec<usize>,
     /// The surfaces of cloths that have one.
     pub patches: Vec<PatchBuf>,
     /// The shapes that particles are drawn as, by the numbers of their materials.
@@ -191,6 +193,7 @@ impl Model {
             index,
             max_bounces: file.run.max_bounces,
             cloths: start.cloths,
+            boxes: start.blocks,
             patches: start.patches,
             shapes,
         })
@@ -299,6 +302,8 @@ struct Start {
     cloths: Vec<[usize; 2]>,
     patches: Vec<PatchBuf>,
     boxes: Vec<RigidBox>,
+    /// Where those of each of the file's boxes begin.
+    blocks: Vec<usize>,
 }
 
 impl Start {
@@ -311,6 +316,7 @@ impl Start {
             cloths: Vec::new(),
             patches: Vec::new(),
             boxes: Vec::new(),
+            blocks: Vec::new(),
         };
         for (i, cloth) in file.cloths.iter().enumerate() {
             let mesh = match &cloth.form {
@@ -348,6 +354,7 @@ impl Start {
                 let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
                 return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));
             }
+            start.blocks.push(start.particles.len());
             start.particles.extend(particles);
             start.boxes.extend(bodies);
         }

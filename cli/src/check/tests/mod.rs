@@ -1,5 +1,7 @@
 //! Predictions, held against the engine itself.
 
+mod hold;
+
 use super::bounds::Bounds;
 use super::modes::{How, Spectrum};
 use pointmass::scene::{Model, SceneFile};
