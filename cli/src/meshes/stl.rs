@@ -1,31 +1,34 @@
-//! STL, binary and text, read by `stl_io`, which also makes corners of the same bits one vertex.
+//! STL, binary and text; corners of the same bits are one vertex.
 //!
-//! The library tells the two kinds apart by the first line alone, stops at the end of the first of several solids,
-//! refuses a solid without a name and a facet whose normal isn't a number, and never says which line it means. So the
-//! file is told apart here, and a text is handed over as one solid with plain normals, which a mesh has no use for.
-
-use std::io::{self, Cursor};
-
-use stl_io::IndexedMesh;
+//! This reader is our own: `stl_io` 0.11 tells the two kinds apart by the first line alone, stops at the end of the first
+//! of several solids, refuses a solid without a name and a facet whose normal isn't a number, and never says which line
+//! it means.
 
 use super::MeshData;
 use super::text;
-use crate::fault::{Fault, excerpt};
+use crate::fault::Fault;
+use std::collections::HashMap;
 
 /// Eighty bytes that say anything, then the number of triangles.
 const HEADER: usize = 84;
 /// A normal, three corners and two bytes of attributes.
 const TRIANGLE: usize = 50;
-/// From `facet` to `endfacet`.
-const LINES_OF_A_FACET: usize = 7;
+/// The words that the lines of a facet begin with.
+const FACET: [&str; 7] = ["facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet"];
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
-    let mesh = if is_text(bytes) { read_text(bytes) } else { read_binary(bytes) }?;
-    // A file within the size limit has far fewer vertices than a `u32` counts.
-    Ok(MeshData {
-        vertices: mesh.vertices.iter().map(|vertex| vertex.0).collect(),
-        triangles: mesh.faces.iter().map(|face| face.vertices.map(|index| index as u32)).collect(),
-    })
+    let facets = if is_text(bytes) { read_text(&text::decode(bytes)) } else { read_binary(bytes) }?;
+    let (mut mesh, mut known) = (MeshData::default(), HashMap::new());
+    for corners in facets {
+        mesh.triangles.push(corners.map(|corner| {
+            *known.entry(corner.map(f32::to_bits)).or_insert_with(|| {
+                mesh.vertices.push(corner);
+                // A file within the size limit has far fewer vertices than a `u32` counts.
+                mesh.vertices.len() as u32 - 1
+            })
+        }));
+    }
+    Ok(mesh)
 }
 
 /// Whether it is the text kind; a binary header may begin with `solid` just as well.
@@ -35,7 +38,7 @@ fn is_text(bytes: &[u8]) -> bool {
     head.trim_start().to_ascii_lowercase().starts_with("solid") && bytes.get(HEADER - 1) != Some(&0)
 }
 
-fn read_binary(bytes: &[u8]) -> Result<IndexedMesh, Fault> {
+fn read_binary(bytes: &[u8]) -> Result<Vec<[[f32; 3]; 3]>, Fault> {
     let Some((header, triangles)) = bytes.split_at_checked(HEADER) else {
         return Err(Fault::new(
             "is neither a text that begins with `solid` nor a binary STL, which has 84 bytes or more",
@@ -46,67 +49,40 @@ fn read_binary(bytes: &[u8]) -> Result<IndexedMesh, Fault> {
     if promised as usize > found {
         return Err(Fault::new(format!("promises {promised} triangles, but has bytes for {found}: is it cut short?")));
     }
-    // An empty first line, so that the library can't take the header for a text.
-    let mut bytes = bytes.to_vec();
-    bytes[0] = b'\n';
-    let mesh = read_with_library(&bytes).map_err(|error| Fault::new(excerpt(&error.to_string())))?;
-    for (face, number) in mesh.faces.iter().zip(1..) {
-        let mut corners = face.vertices.iter().map(|index| mesh.vertices[*index].0);
-        if let Some(corner) = corners.find(|corner| !corner.iter().all(|x| x.is_finite())) {
+    let float = |bytes: &[u8], at: usize| f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    let corners = |bytes| [12, 24, 36].map(|at| [0, 4, 8].map(|axis| float(bytes, at + axis)));
+    let facets: Vec<_> = triangles.chunks_exact(TRIANGLE).take(promised as usize).map(corners).collect();
+    for (corners, number) in facets.iter().zip(1..) {
+        if let Some(corner) = corners.iter().find(|corner| !corner.iter().all(|x| x.is_finite())) {
             return Err(Fault::new(format!(
                 "triangle {number} has a corner at {corner:?}: expected finite coordinates"
             )));
         }
     }
-    Ok(mesh)
+    Ok(facets)
 }
 
-fn read_text(bytes: &[u8]) -> Result<IndexedMesh, Fault> {
-    let text = text::decode(bytes);
-    let solid = one_solid(&text)?;
-    read_with_library(solid.as_bytes()).map_err(|error| {
-        // The library doesn't say where, but shows how far it gets; the lines are the same in both texts.
-        let read = facets_before_fault(solid.as_bytes());
-        let mut full = solid.lines().zip(1..).skip(1).filter(|(line, _)| !line.trim().is_empty());
-        let start = full.nth(read * LINES_OF_A_FACET).map_or(1, |(_, line)| line);
-        Fault::at(start, format!("the facet that should begin here: {}", excerpt(&error.to_string())))
-    })
-}
-
-/// The text, line for line, as a single solid in lower case with plain normals.
-fn one_solid(text: &str) -> Result<String, Fault> {
-    let mut solid = String::from("solid \n");
-    let mut ended = false;
-    for line in text::lines(text).skip(1) {
+fn read_text(text: &str) -> Result<Vec<[[f32; 3]; 3]>, Fault> {
+    let (mut facets, mut corners, mut ended, mut next) = (Vec::new(), [[0.0; 3]; 3], false, 0);
+    for line in text::lines(text).skip(1).filter(|line| !line.content.is_empty()) {
         let lower = line.content.to_ascii_lowercase();
         let mut words = lower.split_whitespace();
         match words.next() {
-            None => {}
-            Some("solid") => ended = false,
-            Some("endsolid") => ended = true,
-            Some("facet") => solid.push_str("facet normal 0 0 0"),
-            Some("vertex") => {
-                line.point(&mut words)?;
-                solid.push_str(&lower);
+            Some(word @ ("solid" | "endsolid")) if next == 0 => ended = word == "endsolid",
+            Some(word) if word == FACET[next] => {
+                if word == "vertex" {
+                    corners[next - 2] = line.point(&mut words)?;
+                }
+                next = (next + 1) % FACET.len();
+                facets.extend((next == 0).then_some(corners));
             }
-            Some(_) => solid.push_str(&lower),
+            _ => return Err(line.fault(&format!("`{}`", FACET[next]))),
         }
-        solid.push('\n');
     }
-    if !ended {
-        let last = text.lines().count();
-        return Err(Fault::at(last, "the solid has no `endsolid`: is the file cut short?"));
+    match ended && next == 0 {
+        true => Ok(facets),
+        false => Err(Fault::at(text.lines().count(), "the solid has no `endsolid`: is the file cut short?")),
     }
-    solid.push_str("endsolid\n");
-    Ok(solid)
-}
-
-fn read_with_library(bytes: &[u8]) -> io::Result<IndexedMesh> {
-    stl_io::create_stl_reader(&mut Cursor::new(bytes))?.as_indexed_triangles()
-}
-
-fn facets_before_fault(bytes: &[u8]) -> usize {
-    stl_io::create_stl_reader(&mut Cursor::new(bytes)).map_or(0, |facets| facets.take_while(Result::is_ok).count())
 }
 
 #[cfg(test)]
@@ -179,16 +155,10 @@ mod tests {
                 "x.stl:5: `inf`: expected a finite coordinate within ±3.4e38",
             ),
             (two.replacen("vertex 1 0 0", "vertex 1 0", 1), "x.stl:5: `vertex 1 0`: expected three coordinates"),
-            (
-                two.replace("endfacet\nendsolid", "endsolid"),
-                "x.stl:10: the facet that should begin here: expected [\"endfacet\"], got [\"endsolid\"]",
-            ),
+            (two.replace("endfacet\nendsolid", "endsolid"), "x.stl:16: `endsolid a`: expected `endfacet`"),
             (two.replace("endsolid a\n", ""), "x.stl:16: the solid has no `endsolid`: is the file cut short?"),
             ("solid a\nendsolid a\n".into(), "x.stl: has no triangles: a mesh needs at least one face"),
-            (
-                "solid a\nfoo\nendsolid\n".into(),
-                "x.stl:2: the facet that should begin here: invalid facet header: [\"foo\"]",
-            ),
+            ("solid a\nfoo\nendsolid\n".into(), "x.stl:2: `foo`: expected `facet`"),
         ];
         for (text, expected) in cases {
             assert_eq!(read(text).unwrap_err().to_string(), expected);
