@@ -162,48 +162,29 @@ impl Observer for Notes {
 /// Two who watch the same step.
 pub(crate) struct Both<'a>(pub(crate) &'a mut dyn Observer, pub(crate) &'a mut dyn Observer);
 
+/// What is told to both.
+macro_rules! both {
+    ($($event:ident($($what:ident: $of:ty),+))+) => {$(
+        fn $event(&mut self, $($what: $of),+) {
+            self.0.$event($($what),+);
+            self.1.$event($($what),+);
+        }
+    )+};
+}
+
 impl Observer for Both<'_> {
     fn attention(&self) -> Attention {
         self.0.attention().max(self.1.attention())
     }
 
-    fn after(&mut self, phase: Phase, state: &State<'_>) {
-        self.0.after(phase, state);
-        self.1.after(phase, state);
-    }
-
-    fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
-        self.0.write(state, custom);
-        self.1.write(state, custom);
-    }
-
-    fn hit(&mut self, hit: &Impact) {
-        self.0.hit(hit);
-        self.1.hit(hit);
-    }
-
-    fn touched(&mut self, touch: &Impact) {
-        self.0.touched(touch);
-        self.1.touched(touch);
-    }
-
-    fn slid(&mut self, slide: &Sliding) {
-        self.0.slid(slide);
-        self.1.slid(slide);
-    }
-
-    fn born(&mut self, birth: &LifeEvent) {
-        self.0.born(birth);
-        self.1.born(birth);
-    }
-
-    fn died(&mut self, death: &LifeEvent, cause: Cause) {
-        self.0.died(death, cause);
-        self.1.died(death, cause);
-    }
-
-    fn refused(&mut self, count: u64, time: Time) {
-        self.0.refused(count, time);
-        self.1.refused(count, time);
+    both! {
+        after(phase: Phase, state: &State<'_>)
+        write(state: &State<'_>, custom: &mut CustomColumnsMut<'_>)
+        hit(hit: &Impact)
+        touched(touch: &Impact)
+        slid(slide: &Sliding)
+        born(birth: &LifeEvent)
+        died(death: &LifeEvent, cause: Cause)
+        refused(count: u64, time: Time)
     }
 }

@@ -5,7 +5,7 @@ use crate::schedule::nanoseconds;
 use pointmass::draw::appearance;
 use pointmass::force::Springs;
 use pointmass::{Color, Columns, Heap, Scene, System, Time, Vec3, WHITE};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The state after a step, by id.
@@ -37,7 +37,8 @@ pub(super) struct Column {
 }
 
 /// The values of a column.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
 pub(super) enum Values {
     /// In single precision.
     Single(Vec<f32>),
@@ -67,6 +68,20 @@ pub(super) enum Value {
     Byte(u8),
 }
 
+/// Does the same with values of whatever type.
+macro_rules! whatever {
+    ($of:ident $this:expr, $x:ident => $done:expr) => {
+        match $this {
+            $of::Single($x) => $done,
+            $of::Double($x) => $done,
+            $of::Unsigned($x) => $done,
+            $of::Signed($x) => $done,
+            $of::Byte($x) => $done,
+        }
+    };
+}
+pub(super) use whatever;
+
 impl Values {
     /// The value in a row.
     pub(super) fn at(&self, row: usize) -> Value {
@@ -81,61 +96,25 @@ impl Values {
 
     /// All of them as bytes, each number from its lowest byte on.
     pub(super) fn bytes(&self) -> Vec<u8> {
-        match self {
-            Self::Single(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Self::Double(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Self::Unsigned(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Self::Signed(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Self::Byte(values) => values.clone(),
-        }
-    }
-}
-
-impl Serialize for Values {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Single(values) => values.serialize(serializer),
-            Self::Double(values) => values.serialize(serializer),
-            Self::Unsigned(values) => values.serialize(serializer),
-            Self::Signed(values) => values.serialize(serializer),
-            Self::Byte(values) => values.serialize(serializer),
-        }
+        whatever!(Self self, values => values.iter().flat_map(|value| value.to_le_bytes()).collect())
     }
 }
 
 impl std::fmt::Display for Value {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Single(value) => value.fmt(f),
-            Self::Double(value) => value.fmt(f),
-            Self::Unsigned(value) => value.fmt(f),
-            Self::Signed(value) => value.fmt(f),
-            Self::Byte(value) => value.fmt(f),
-        }
+        whatever!(Self self, value => value.fmt(f))
     }
 }
 
 impl Value {
     /// It in single precision.
     pub(super) fn single(self) -> f32 {
-        match self {
-            Self::Single(value) => value,
-            Self::Double(value) => value as f32,
-            Self::Unsigned(value) => value as f32,
-            Self::Signed(value) => value as f32,
-            Self::Byte(value) => f32::from(value),
-        }
+        whatever!(Self self, value => value as f32)
     }
 
     /// Its bytes, from the lowest on.
     pub(super) fn write(self, out: &mut impl std::io::Write) -> std::io::Result<()> {
-        match self {
-            Self::Single(value) => out.write_all(&value.to_le_bytes()),
-            Self::Double(value) => out.write_all(&value.to_le_bytes()),
-            Self::Unsigned(value) => out.write_all(&value.to_le_bytes()),
-            Self::Signed(value) => out.write_all(&value.to_le_bytes()),
-            Self::Byte(value) => out.write_all(&[value]),
-        }
+        whatever!(Self self, value => out.write_all(&value.to_le_bytes()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Arrays as NumPy reads them, one a column: in a `.npz` of a record or of all, or each in a `.npy`.
 
-use super::frame::Values;
+use super::frame::{Values, whatever};
 use super::{Frame, Out, Writer};
 use npyz::{AutoSerialize, WriteOptions, WriterBuilder};
 use std::io::{self, Write};
@@ -70,11 +70,9 @@ impl Array<'_> {
         match self {
             Self::Faces(faces) => write(out, &[faces.len() as u64, 3], faces.as_flattened().iter().copied()),
             Self::Edges(edges) => write(out, &[edges.len() as u64, 2], edges.as_flattened().iter().copied()),
-            Self::Column(Values::Single(values)) => write(out, &[values.len() as u64], values.iter().copied()),
-            Self::Column(Values::Double(values)) => write(out, &[values.len() as u64], values.iter().copied()),
-            Self::Column(Values::Unsigned(values)) => write(out, &[values.len() as u64], values.iter().copied()),
-            Self::Column(Values::Signed(values)) => write(out, &[values.len() as u64], values.iter().copied()),
-            Self::Column(Values::Byte(values)) => write(out, &[values.len() as u64], values.iter().copied()),
+            Self::Column(all) => {
+                whatever!(Values all, values => write(out, &[values.len() as u64], values.iter().copied()))
+            }
         }
     }
 }
