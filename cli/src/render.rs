@@ -57,7 +57,7 @@ pub(crate) fn render(args: &Render) -> Outcome {
     let mut world = World::load(&args.world)?;
     let timing = Timing::new(&world, args.fps);
     let frames = u32::try_from(timing.frames + 1).unwrap_or(u32::MAX);
-    let mut sink = Sink::create(&args.out.0, f64::from(args.fps), frames).map_err(Failure::new)?;
+    let mut sink = Sink::create(&args.out.0, f64::from(args.fps), frames)?;
     world.warn_of_steps(timing.step(), world.duration);
     let pool = args.world.threads.map(pool).transpose()?;
 
@@ -72,7 +72,7 @@ pub(crate) fn render(args: &Render) -> Outcome {
         None => draw()?,
     }
     let is_read = !sink.is_abandoned();
-    sink.finish().map_err(Failure::new)?;
+    sink.finish()?;
     drop(progress);
     if !is_read {
         return Ok(());
@@ -196,7 +196,7 @@ fn film(
 }
 
 fn write(pictures: &[RgbImage], sink: &mut Sink) -> Outcome {
-    pictures.iter().try_for_each(|picture| sink.push(picture)).map_err(Failure::new)
+    pictures.iter().try_for_each(|picture| sink.push(picture))
 }
 
 /// The moving things at an instant, and from where they are seen.

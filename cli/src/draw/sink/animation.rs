@@ -1,7 +1,9 @@
 //! Animated GIFs: the file, and the frames in time.
 
-use super::common::{Size, cannot_write, no_frames};
+use super::Film;
+use super::common::{cannot_write, no_frames};
 use super::screen::Screen;
+use crate::outcome::Outcome;
 use crate::whole::WholeFile;
 use gif::{Encoder, EncodingError, Frame, Repeat};
 use image::RgbImage;
@@ -17,7 +19,6 @@ const SHORTEST: u64 = 2;
 #[derive(Debug)]
 pub(super) struct Animation {
     file: WholeFile,
-    size: Size,
     fps: f64,
     /// How many frames were pushed.
     count: u64,
@@ -33,13 +34,19 @@ struct Reel {
 }
 
 impl Animation {
-    pub(super) fn create(path: &Path, fps: f64) -> Result<Self, String> {
-        let file = WholeFile::create(path).map_err(|failure| failure.to_string())?;
-        Ok(Self { file, size: Size::default(), fps, count: 0, reel: None })
+    pub(super) fn create(path: &Path, fps: f64) -> Outcome<Self> {
+        Ok(Self { file: WholeFile::create(path)?, fps, count: 0, reel: None })
     }
 
-    pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
-        self.size.check(frame, self.file.path())?;
+    /// When a frame begins, in hundredths of a second. Each is rounded by itself, so that the
+    /// rounding does not add up.
+    fn time(&self, frame: u64) -> u64 {
+        (100.0 * frame as f64 / self.fps).round() as u64
+    }
+}
+
+impl Film for Animation {
+    fn push(&mut self, frame: &RgbImage) -> Outcome {
         let begins = self.time(self.count);
         self.count += 1;
         let done = match &mut self.reel {
@@ -49,20 +56,14 @@ impl Animation {
                 Ok(())
             }),
         };
-        done.map_err(|error| cannot_write(self.file.path(), &error))
+        done.map_err(|error| cannot_write(self.file.path(), error))
     }
 
-    pub(super) fn finish(self) -> Result<(), String> {
+    fn finish(self: Box<Self>) -> Outcome {
         let ends = self.time(self.count);
         let Some(reel) = self.reel else { return Err(no_frames(self.file.path())) };
-        reel.finish(ends).map_err(|error| cannot_write(self.file.path(), &error))?;
-        self.file.complete().map_err(|failure| failure.to_string())
-    }
-
-    /// When a frame begins, in hundredths of a second. Each is rounded by itself, so that the
-    /// rounding does not add up.
-    fn time(&self, frame: u64) -> u64 {
-        (100.0 * frame as f64 / self.fps).round() as u64
+        reel.finish(ends).map_err(|error| cannot_write(self.file.path(), error))?;
+        self.file.complete()
     }
 }
 
@@ -118,7 +119,7 @@ mod tests {
         for number in 0..count {
             film.push(&RgbImage::from_pixel(4, 3, image::Rgb([(9 * number) as u8; 3]))).unwrap();
         }
-        film.finish().unwrap();
+        Box::new(film).finish().unwrap();
         let mut decoder = gif::Decoder::new(File::open(path).unwrap()).unwrap();
         assert_eq!(decoder.repeat(), Repeat::Infinite);
         let mut delays = Vec::new();

@@ -1,6 +1,8 @@
 //! Animated PNGs: every picture to the bit, and of each only the part that has changed.
 
-use super::common::{Size, cannot_write, no_frames};
+use super::Film;
+use super::common::{cannot_write, no_frames};
+use crate::outcome::Outcome;
 use crate::whole::WholeFile;
 use image::RgbImage;
 use image::imageops::crop_imm;
@@ -13,7 +15,6 @@ use std::path::Path;
 #[derive(Debug)]
 pub(super) struct Apng {
     file: WholeFile,
-    size: Size,
     /// The part of a second that a frame is shown, as numerator and denominator.
     delay: (u16, u16),
     /// The number of frames that there are going to be; the file begins with that.
@@ -28,17 +29,12 @@ struct Reel {
 }
 
 impl Apng {
-    pub(super) fn create(path: &Path, fps: f64, frames: u32) -> Result<Self, String> {
-        let file = WholeFile::create(path).map_err(|failure| failure.to_string())?;
+    pub(super) fn create(path: &Path, fps: f64, frames: u32) -> Outcome<Self> {
+        let file = WholeFile::create(path)?;
         // Rates are whole numbers, or have as many digits as fit.
         let unit = if fps.fract() == 0.0 && fps <= 65535.0 { 1.0 } else { (60_000.0 / fps).clamp(1.0, 1000.0).floor() };
         let delay = (unit as u16, (unit * fps).round().clamp(1.0, 65535.0) as u16);
-        Ok(Self { file, size: Size::default(), delay, frames, reel: None })
-    }
-
-    pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
-        self.size.check(frame, self.file.path())?;
-        self.add(frame).map_err(|error| cannot_write(self.file.path(), &error))
+        Ok(Self { file, delay, frames, reel: None })
     }
 
     fn add(&mut self, frame: &RgbImage) -> Result<(), EncodingError> {
@@ -56,11 +52,17 @@ impl Apng {
         self.reel = Some(Reel { writer, before: frame.clone() });
         Ok(())
     }
+}
 
-    pub(super) fn finish(self) -> Result<(), String> {
+impl Film for Apng {
+    fn push(&mut self, frame: &RgbImage) -> Outcome {
+        self.add(frame).map_err(|error| cannot_write(self.file.path(), error))
+    }
+
+    fn finish(self: Box<Self>) -> Outcome {
         let Some(reel) = self.reel else { return Err(no_frames(self.file.path())) };
-        reel.writer.finish().map_err(|error| cannot_write(self.file.path(), &error))?;
-        self.file.complete().map_err(|failure| failure.to_string())
+        reel.writer.finish().map_err(|error| cannot_write(self.file.path(), error))?;
+        self.file.complete()
     }
 }
 

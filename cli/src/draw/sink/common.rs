@@ -1,19 +1,20 @@
 //! The kinds of files have this in common.
 
+use crate::outcome::{Failure, Outcome};
 use image::codecs::png::PngEncoder;
 use image::{ImageError, RgbImage};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// The sentence that says what went wrong with a path.
-pub(super) fn cannot_write(path: &Path, error: &dyn std::error::Error) -> String {
-    format!("cannot write {}: {error}", path.display())
+/// The failure to write to a path.
+pub(super) fn cannot_write(path: &Path, error: impl std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot write {}: {error}", path.display()))
 }
 
-/// The sentence for a rendering without frames.
-pub(super) fn no_frames(path: &Path) -> String {
-    format!("cannot write {}: there is no frame to write", path.display())
+/// That of a rendering without frames.
+pub(super) fn no_frames(path: &Path) -> Failure {
+    cannot_write(path, "there is no frame to write")
 }
 
 /// Writes a picture.
@@ -31,18 +32,14 @@ impl Size {
     /// The largest size that every format can hold.
     const LARGEST: u32 = u16::MAX as u32;
 
-    pub(super) fn check(&mut self, frame: &RgbImage, path: &Path) -> Result<(), String> {
+    pub(super) fn check(&mut self, frame: &RgbImage, path: &Path) -> Outcome {
         let (width, height) = frame.dimensions();
-        let (path, sides) = (path.display(), 1..=Self::LARGEST);
+        let sides = 1..=Self::LARGEST;
         if !(sides.contains(&width) && sides.contains(&height)) {
-            return Err(format!("cannot write {path}: {width} by {height} pixels are no picture"));
+            return Err(cannot_write(path, format!("{width} by {height} pixels are no picture")));
         }
-        match *self.0.get_or_insert((width, height)) {
-            first if first == (width, height) => Ok(()),
-            first => Err(format!(
-                "cannot write {path}: a frame is {width} by {height} pixels, but the first was {} by {}",
-                first.0, first.1
-            )),
-        }
+        let first = *self.0.get_or_insert((width, height));
+        let unlike = || format!("a frame is {width} by {height} pixels, but the first was {} by {}", first.0, first.1);
+        if first == (width, height) { Ok(()) } else { Err(cannot_write(path, unlike())) }
     }
 }

@@ -15,13 +15,16 @@ mod thrift;
 mod video;
 mod yuv;
 
+use crate::outcome::Outcome;
 use crate::pattern::{self, Pattern};
+use crate::whole::{Series, WholeFile, is_standard};
 use animation::Animation;
 use apng::Apng;
+use common::{Size, cannot_write};
 use image::RgbImage;
 use raw::Raw;
 use sequence::Sequence;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use still::Still;
 use video::{Packing, Video};
 
@@ -29,16 +32,26 @@ use video::{Packing, Video};
 ///
 /// Errors are sentences that name the file and say what to do.
 #[derive(Debug)]
-pub struct Sink(Kind);
+pub struct Sink {
+    film: Box<dyn Film>,
+    path: PathBuf,
+    size: Size,
+}
 
-#[derive(Debug)]
-enum Kind {
-    Animation(Animation),
-    Apng(Apng),
-    Raw(Raw),
-    Video(Video),
-    Still(Still),
-    Sequence(Sequence),
+/// A format that frames are written in, all of one size.
+trait Film: std::fmt::Debug + Send {
+    fn push(&mut self, frame: &RgbImage) -> Outcome;
+
+    /// Completes the file and gives it its name.
+    fn finish(self: Box<Self>) -> Outcome;
+
+    fn keeps_only_last(&self) -> bool {
+        false
+    }
+
+    fn is_abandoned(&self) -> bool {
+        false
+    }
 }
 
 impl Sink {
@@ -53,65 +66,51 @@ impl Sink {
     ///   created if it is missing.
     ///
     /// There are `fps` frames to a second, and `frames` in all.
-    pub fn create(path: &Path, fps: f64, frames: u32) -> Result<Self, String> {
-        let shown = path.display();
+    pub fn create(path: &Path, fps: f64, frames: u32) -> Outcome<Self> {
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(format!("cannot write {shown}: {fps} frames per second make no film"));
+            return Err(cannot_write(path, format!("{fps} frames per second make no film")));
         }
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-        let pattern = Pattern::parse(path).map_err(|error| format!("cannot write {shown}: {error}"))?;
-        let kind = match (pattern, extension.to_ascii_lowercase().as_str()) {
-            (Some(pattern), "png") => Kind::Sequence(Sequence::create(path, pattern)?),
-            (Some(_), _) => return Err(format!("cannot write {shown}: numbered pictures must end in .png")),
-            (None, "png") => Kind::Still(Still::create(path)?),
-            (None, "gif") => Kind::Animation(Animation::create(path, fps)?),
-            (None, "apng") => Kind::Apng(Apng::create(path, fps, frames)?),
-            (None, "y4m") => Kind::Raw(Raw::create(path, fps)?),
-            (None, "mp4") => Kind::Video(Video::create(path, fps, Packing::Mp4)?),
-            (None, "webm") => Kind::Video(Video::create(path, fps, Packing::Webm)?),
-            (None, _) if path == Path::new("-") => Kind::Raw(Raw::create(path, fps)?),
+        let pattern = Pattern::parse(path).map_err(|error| cannot_write(path, error))?;
+        let film: Box<dyn Film> = match (pattern, extension.to_ascii_lowercase().as_str()) {
+            (Some(pattern), "png") => {
+                Box::new(Sequence { path: path.into(), pattern, series: Series::create(path, true)? })
+            }
+            (Some(_), _) => return Err(cannot_write(path, "numbered pictures must end in .png")),
+            (None, "png") => Box::new(Still { file: WholeFile::create(path)?, last: None }),
+            (None, "gif") => Box::new(Animation::create(path, fps)?),
+            (None, "apng") => Box::new(Apng::create(path, fps, frames)?),
+            (None, "mp4") => Box::new(Video::create(path, fps, Packing::Mp4)?),
+            (None, "webm") => Box::new(Video::create(path, fps, Packing::Webm)?),
+            (None, extension) if extension == "y4m" || is_standard(path) => Box::new(Raw::create(path, fps)?),
             (None, _) => {
-                return Err(format!(
-                    "cannot write {shown}: its name must end in .gif, .apng, .mp4, .webm, .y4m or .png, or be like \
-                     DIR/%04d.png"
-                ));
+                let known = "its name must end in .gif, .apng, .mp4, .webm, .y4m or .png, or be like DIR/%04d.png";
+                return Err(cannot_write(path, known));
             }
         };
-        Ok(Self(kind))
+        let path = if is_standard(path) { "standard output".into() } else { path.to_owned() };
+        Ok(Self { film, path, size: Size::default() })
     }
 
     /// Whether only the last frame counts, so that the others need not be drawn.
     pub fn keeps_only_last(&self) -> bool {
-        matches!(self.0, Kind::Still(_))
+        self.film.keeps_only_last()
     }
 
     /// Tells whether nobody reads what is written any more, so that no further frame need be drawn.
     pub fn is_abandoned(&self) -> bool {
-        matches!(&self.0, Kind::Raw(raw) if raw.is_abandoned())
+        self.film.is_abandoned()
     }
 
     /// Takes the next frame. All frames must have the same size.
-    pub fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
-        match &mut self.0 {
-            Kind::Animation(animation) => animation.push(frame),
-            Kind::Apng(apng) => apng.push(frame),
-            Kind::Raw(raw) => raw.push(frame),
-            Kind::Video(video) => video.push(frame),
-            Kind::Still(still) => still.push(frame),
-            Kind::Sequence(sequence) => sequence.push(frame),
-        }
+    pub fn push(&mut self, frame: &RgbImage) -> Outcome {
+        self.size.check(frame, &self.path)?;
+        self.film.push(frame)
     }
 
     /// Completes what is written and gives it its name. It is an error if there was no frame.
-    pub fn finish(self) -> Result<(), String> {
-        match self.0 {
-            Kind::Animation(animation) => animation.finish(),
-            Kind::Apng(apng) => apng.finish(),
-            Kind::Raw(raw) => raw.finish(),
-            Kind::Video(video) => video.finish(),
-            Kind::Still(still) => still.finish(),
-            Kind::Sequence(sequence) => sequence.finish(),
-        }
+    pub fn finish(self) -> Outcome {
+        self.film.finish()
     }
 }
 
@@ -136,7 +135,7 @@ mod tests {
             sink.push(&RgbImage::new(8, 6)).unwrap();
             drop(sink);
             assert_eq!(names(folder.path()), [""; 0], "{name}");
-            let error = Sink::create(&path, 25.0, 1).unwrap().finish().unwrap_err();
+            let error = Sink::create(&path, 25.0, 1).unwrap().finish().unwrap_err().to_string();
             assert!(error.contains(name), "{error}");
             assert_eq!(names(folder.path()), [""; 0], "{name}");
         }
@@ -176,7 +175,7 @@ mod tests {
             "%d.gif",
             "%s.png",
         ] {
-            let error = Sink::create(&folder.path().join(name), 25.0, 2).unwrap_err();
+            let error = Sink::create(&folder.path().join(name), 25.0, 2).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");
         }
         let path = folder.path().join("a.gif");
@@ -186,7 +185,7 @@ mod tests {
         for name in ["a.gif", "a.apng", "a.y4m", "%d.png"] {
             let mut sink = Sink::create(&folder.path().join(name), 25.0, 2).unwrap();
             sink.push(&RgbImage::new(8, 6)).unwrap();
-            assert!(sink.push(&RgbImage::new(6, 8)).unwrap_err().contains(name));
+            assert!(sink.push(&RgbImage::new(6, 8)).unwrap_err().to_string().contains(name));
         }
     }
 }

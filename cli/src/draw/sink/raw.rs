@@ -1,8 +1,10 @@
 //! Films for other programs, in a file or on standard output.
 
-use super::common::{Size, cannot_write, no_frames};
+use super::Film;
+use super::common::{cannot_write, no_frames};
 use super::yuv::Yuv;
-use crate::whole::WholeFile;
+use crate::outcome::Outcome;
+use crate::whole::{WholeFile, is_standard};
 use image::RgbImage;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -13,7 +15,6 @@ pub(super) struct Raw {
     path: PathBuf,
     /// Nothing on standard output, which gets the pictures as they come.
     file: Option<WholeFile>,
-    size: Size,
     fps: f64,
     /// True once nobody reads standard output any more.
     abandoned: bool,
@@ -22,25 +23,11 @@ pub(super) struct Raw {
 
 impl Raw {
     /// A film in a file, or on standard output for `-`.
-    pub(super) fn create(path: &Path, fps: f64) -> Result<Self, String> {
-        let is_file = path != Path::new("-");
-        let file = is_file.then(|| WholeFile::create(path)).transpose().map_err(|failure| failure.to_string())?;
+    pub(super) fn create(path: &Path, fps: f64) -> Outcome<Self> {
+        let is_file = !is_standard(path);
+        let file = is_file.then(|| WholeFile::create(path)).transpose()?;
         let path = if is_file { path } else { Path::new("standard output") };
-        Ok(Self { path: path.to_owned(), file, size: Size::default(), fps, abandoned: false, reel: None })
-    }
-
-    pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
-        self.size.check(frame, &self.path)?;
-        match self.add(frame) {
-            Err(error) if self.file.is_none() && error.kind() == ErrorKind::BrokenPipe => self.abandoned = true,
-            added => added.map_err(|error| cannot_write(&self.path, &error))?,
-        }
-        Ok(())
-    }
-
-    /// Tells whether its reader has gone away, which is no error; nothing more needs to be drawn then.
-    pub(super) fn is_abandoned(&self) -> bool {
-        self.abandoned
+        Ok(Self { path: path.to_owned(), file, fps, abandoned: false, reel: None })
     }
 
     fn add(&mut self, frame: &RgbImage) -> io::Result<()> {
@@ -60,8 +47,23 @@ impl Raw {
             None => Box::new(io::stdout()),
         })
     }
+}
 
-    pub(super) fn finish(self) -> Result<(), String> {
+impl Film for Raw {
+    fn push(&mut self, frame: &RgbImage) -> Outcome {
+        match self.add(frame) {
+            Err(error) if self.file.is_none() && error.kind() == ErrorKind::BrokenPipe => self.abandoned = true,
+            added => added.map_err(|error| cannot_write(&self.path, error))?,
+        }
+        Ok(())
+    }
+
+    /// Its reader may have gone away, which is no error.
+    fn is_abandoned(&self) -> bool {
+        self.abandoned
+    }
+
+    fn finish(self: Box<Self>) -> Outcome {
         if self.abandoned {
             return Ok(());
         }
@@ -69,8 +71,8 @@ impl Raw {
             return Err(no_frames(&self.path));
         }
         match self.file {
-            Some(file) => file.complete().map_err(|failure| failure.to_string()),
-            None => io::stdout().flush().map_err(|error| cannot_write(&self.path, &error)),
+            Some(file) => file.complete(),
+            None => io::stdout().flush().map_err(|error| cannot_write(&self.path, error)),
         }
     }
 }

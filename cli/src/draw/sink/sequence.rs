@@ -1,37 +1,32 @@
 //! A numbered sequence of pictures.
 
-use super::common::{Size, cannot_write, no_frames, write_png};
+use super::Film;
+use super::common::{cannot_write, no_frames, write_png};
 use super::pattern::Pattern;
+use crate::outcome::Outcome;
 use crate::whole::{Series, folder_of, publish};
 use image::RgbImage;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A sequence in the making.
 #[derive(Debug)]
 pub(super) struct Sequence {
-    path: PathBuf,
-    pattern: Pattern,
-    size: Size,
-    series: Series,
+    pub(super) path: PathBuf,
+    pub(super) pattern: Pattern,
+    pub(super) series: Series,
 }
 
-impl Sequence {
-    pub(super) fn create(path: &Path, pattern: Pattern) -> Result<Self, String> {
-        let series = Series::create(path, true).map_err(|failure| failure.to_string())?;
-        Ok(Self { path: path.to_owned(), pattern, size: Size::default(), series })
-    }
-
-    pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
-        self.size.check(frame, &self.path)?;
+impl Film for Sequence {
+    fn push(&mut self, frame: &RgbImage) -> Outcome {
         let path = folder_of(&self.path).join(self.pattern.name(self.series.len()));
-        let file = self.series.next(path).map_err(|error| cannot_write(&self.path, &error))?;
-        write_png(frame, file).map_err(|error| cannot_write(&self.path, &error))
+        let file = self.series.next(path).map_err(|error| cannot_write(&self.path, error))?;
+        write_png(frame, file).map_err(|error| cannot_write(&self.path, error))
     }
 
-    pub(super) fn finish(self) -> Result<(), String> {
-        if self.series.len() == 0 {
-            return Err(no_frames(&self.path));
+    fn finish(self: Box<Self>) -> Outcome {
+        match self.series.len() {
+            0 => Err(no_frames(&self.path)),
+            _ => publish(&self.series.close()?),
         }
-        self.series.close().and_then(|pictures| publish(&pictures)).map_err(|failure| failure.to_string())
     }
 }

@@ -1,7 +1,9 @@
 //! Videos, which ffmpeg packs.
 
-use super::common::{Size, cannot_write, no_frames};
+use super::Film;
+use super::common::{cannot_write, no_frames};
 use super::yuv::Yuv;
+use crate::outcome::{Failure, Outcome};
 use crate::whole::WholeFile;
 use image::RgbImage;
 use std::io::{self, ErrorKind, Read};
@@ -33,7 +35,6 @@ impl Packing {
 #[derive(Debug)]
 pub(super) struct Video {
     file: WholeFile,
-    size: Size,
     fps: f64,
     program: Program,
     /// Nothing before the first picture, which gives the video its size.
@@ -53,26 +54,17 @@ impl Drop for Program {
 }
 
 impl Video {
-    pub(super) fn create(path: &Path, fps: f64, packing: Packing) -> Result<Self, String> {
-        let file = WholeFile::create(path).map_err(|failure| failure.to_string())?;
+    pub(super) fn create(path: &Path, fps: f64, packing: Packing) -> Outcome<Self> {
+        let file = WholeFile::create(path)?;
         let program = start(file.passing(), packing).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => format!(
-                "cannot write {}: the program ffmpeg packs videos and is not installed; install it, or write .gif, .apng \
-                 or .y4m, which need no other program",
-                path.display()
+            ErrorKind::NotFound => cannot_write(
+                path,
+                "the program ffmpeg packs videos and is not installed; install it, or write .gif, .apng or .y4m, which need no \
+                 other program",
             ),
-            _ => format!("cannot write {}: {PROGRAM}: {error}", path.display()),
+            _ => cannot_write(path, format!("{PROGRAM}: {error}")),
         })?;
-        Ok(Self { file, size: Size::default(), fps, program: Program(program), reel: None })
-    }
-
-    pub(super) fn push(&mut self, frame: &RgbImage) -> Result<(), String> {
-        self.size.check(frame, self.file.path())?;
-        self.add(frame).map_err(|error| match error.kind() {
-            // It has ended, and has said why.
-            ErrorKind::BrokenPipe => self.complaint(),
-            _ => cannot_write(self.file.path(), &error),
-        })
+        Ok(Self { file, fps, program: Program(program), reel: None })
     }
 
     fn add(&mut self, frame: &RgbImage) -> io::Result<()> {
@@ -83,22 +75,8 @@ impl Video {
         self.reel.as_mut().map_or(Ok(()), |reel| reel.push(frame))
     }
 
-    pub(super) fn finish(mut self) -> Result<(), String> {
-        // With its end of the pipe closed the program comes to an end.
-        if self.reel.take().is_none() {
-            return Err(no_frames(self.file.path()));
-        }
-        let complaint = self.complaint();
-        let Self { file, mut program, .. } = self;
-        match program.0.wait() {
-            Ok(status) if status.success() => file.complete().map_err(|failure| failure.to_string()),
-            Ok(_) => Err(complaint),
-            Err(error) => Err(cannot_write(file.path(), &error)),
-        }
-    }
-
     /// The sentence for what the program says before it ends, of which the last line tells most.
-    fn complaint(&mut self) -> String {
+    fn complaint(&mut self) -> Failure {
         let mut said = Vec::new();
         if let Some(mut errors) = self.program.0.stderr.take() {
             // What cannot be read is not said.
@@ -106,7 +84,31 @@ impl Video {
         }
         let said = String::from_utf8_lossy(&said);
         let why = said.trim().lines().last().unwrap_or("it ended and did not say why");
-        format!("cannot write {}: {PROGRAM}: {why}", self.file.path().display())
+        cannot_write(self.file.path(), format!("{PROGRAM}: {why}"))
+    }
+}
+
+impl Film for Video {
+    fn push(&mut self, frame: &RgbImage) -> Outcome {
+        self.add(frame).map_err(|error| match error.kind() {
+            // It has ended, and has said why.
+            ErrorKind::BrokenPipe => self.complaint(),
+            _ => cannot_write(self.file.path(), error),
+        })
+    }
+
+    fn finish(mut self: Box<Self>) -> Outcome {
+        // With its end of the pipe closed the program comes to an end.
+        if self.reel.take().is_none() {
+            return Err(no_frames(self.file.path()));
+        }
+        let complaint = self.complaint();
+        let Self { file, mut program, .. } = *self;
+        match program.0.wait() {
+            Ok(status) if status.success() => file.complete(),
+            Ok(_) => Err(complaint),
+            Err(error) => Err(cannot_write(file.path(), error)),
+        }
     }
 }
 
