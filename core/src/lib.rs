@@ -60,7 +60,8 @@ pub use collide::{Impulse, Meetings};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
 pub use constrain::{
-    Attach, Constraint, Contacts, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams,
+    Attach, Constraint, Contacts, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, SheetContacts, Shell,
+    ShellParams,
 };
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;

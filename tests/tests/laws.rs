@@ -33,6 +33,7 @@ mod ropes;
 mod rounding;
 mod sampling;
 mod scripted;
+mod sheet_contacts;
 mod sheets;
 mod springs;
 mod storage;

@@ -14,6 +14,7 @@ mod kind;
 mod rigid;
 mod rope;
 mod shape_matching;
+mod sheet_contacts;
 mod shell;
 mod turn;
 
@@ -27,6 +28,7 @@ pub use kind::ConstraintKind;
 pub use rigid::{RigidBodies, RigidBox};
 pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
+pub use sheet_contacts::SheetContacts;
 pub use shell::{Shell, ShellParams};
 
 pub use crate::cloth::Hinge;

@@ -53,6 +53,17 @@ impl Turn {
     }
 }
 
+/// The small rotation whose moment is the given one: x of (tr(B) − B) x = moment, by Cramer's rule; none if there is none.
+pub(super) fn turn_of(spread: Mat3, moment: Vec3) -> Vec3 {
+    let trace = spread.x_axis.x + spread.y_axis.y + spread.z_axis.z;
+    let column = |axis: Vec3, b: Vec3| axis - b / trace;
+    let [x, y, z] = [column(Vec3::X, spread.x_axis), column(Vec3::Y, spread.y_axis), column(Vec3::Z, spread.z_axis)];
+    let (change, determinant) = (moment / trace, dot(x, y.cross(z)));
+    let turn = Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant;
+    // All on one line: it does not turn about that.
+    if determinant > 1e-6 && turn.is_finite() { turn } else { Vec3::ZERO }
+}
+
 /// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
 pub(super) fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
     let (mut turn, mut before) = (last, f32::INFINITY);

@@ -1,7 +1,7 @@
 //! Sheets and meshes of particles in scene files: what holds them together, and what they are made into.
 
 use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
-use super::{PatchBuf, SceneError, SceneFile};
+use super::{PatchBuf, SceneError, SceneFile, SheetContactsBuf};
 use crate::cloth::{ClothSprings, Sheet, mesh_hinges, mesh_springs};
 use crate::constrain::{ConstraintKind, Shell, ShellParams};
 use crate::force::{Aerodynamics, FlowKind, ForceKind, Pressure, Spring};
@@ -30,6 +30,10 @@ pub struct Cloth {
     /// What it is made of, if it is a shell: its stiffness does not depend on the number of cells, nor on sub-steps.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub shell: Option<ShellParams>,
+    /// How thick it is \[m\]: it then touches itself, the other cloths that have a thickness, and the scenery, without passing through
+    /// any. Without one only its particles meet the scenery.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub thickness: Option<f32>,
     /// How the air pushes it: that of all `wind` among the scene's forces, or still air.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub air: Option<Air>,
@@ -169,6 +173,15 @@ impl Cloth {
         Some(ConstraintKind::Shell(Shell { particles, triangles, hinges, warp, params }))
     }
 
+    /// Adds it to the sheets that touch each other, if it has a thickness; its particles are those from `first` on, so many.
+    pub(super) fn touch(&self, mesh: Option<&MeshBuf>, first: u32, count: u32, contacts: &mut SheetContactsBuf) {
+        let Some(thickness) = self.thickness else { return };
+        let place = contacts.particles.len() as u32;
+        contacts.particles.extend(first..first.saturating_add(count));
+        contacts.triangles.extend(self.triangles(mesh).iter().map(|corners| corners.map(|corner| place + corner)));
+        contacts.thickness.resize(contacts.triangles.len(), thickness);
+    }
+
     /// The push of the air.
     pub(super) fn aerodynamics(&self, mesh: Option<&MeshBuf>, first: u32, forces: &[ForceKind]) -> Option<ForceKind> {
         let Air { density, drag, lift, friction } = self.air?;
@@ -218,6 +231,9 @@ impl Cloth {
         }
         if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
             return Err(SceneError::value(format!("{at}.shell.{field}"), message));
+        }
+        if let Some(thickness) = self.thickness {
+            above_zero(&format!("{at}.thickness"), thickness)?;
         }
         let Some(Air { density, drag, lift, friction }) = self.air else { return Ok(()) };
         let numbers = [("density", density), ("drag", drag), ("lift", lift), ("friction", friction)];

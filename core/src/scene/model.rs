@@ -4,7 +4,7 @@ use super::Response;
 use super::Scene;
 use super::{Files, Form, Material, SceneError, SceneFile, beside};
 use crate::collide::Meetings;
-use crate::constrain::{ConstraintKind, Contacts, RigidBodies, RigidBox};
+use crate::constrain::{ConstraintKind, Contacts, RigidBodies, RigidBox, SheetContacts};
 use crate::custom::CustomBuf;
 use crate::draw::Patch;
 use crate::emit::Emitter;
@@ -29,6 +29,9 @@ use glam::Vec3;
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
 
+/// The contacts of cloths with each other.
+pub type SheetContactsBuf = SheetContacts<Vec<u32>, Vec<[u32; 3]>, Vec<f32>>;
+
 /// A scene file made ready to run, owned: lend it to a system with [`Model::scene`].
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -42,8 +45,8 @@ pub struct Model {
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
-    /// The constraints that bind them, those of cloths that are shells, the rigid bodies, then contacts by position.
-    pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>>, Option<Contacts>),
+    /// The constraints that bind them, those of cloths that are shells, the rigid bodies, then contacts by position, and those of cloths.
+    pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>>, Option<Contacts>, SheetContactsBuf),
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// The things that they bounce off.
@@ -183,6 +186,7 @@ impl Model {
                 constraints,
                 RigidBodies { boxes: start.boxes },
                 file.contacts.and_then(|response| response.contacts()),
+                start.contacts,
             ),
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
@@ -304,6 +308,8 @@ struct Start {
     boxes: Vec<RigidBox>,
     /// Where those of each of the file's boxes begin.
     blocks: Vec<usize>,
+    /// The contacts of those that have a thickness.
+    contacts: SheetContactsBuf,
 }
 
 impl Start {
@@ -317,6 +323,7 @@ impl Start {
             patches: Vec::new(),
             boxes: Vec::new(),
             blocks: Vec::new(),
+            contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
         };
         for (i, cloth) in file.cloths.iter().enumerate() {
             let mesh = match &cloth.form {
@@ -341,6 +348,7 @@ impl Start {
                 );
             }
             start.constraints.extend(cloth.shell(mesh.as_deref(), first, particles.len() as u32));
+            cloth.touch(mesh.as_deref(), first, particles.len() as u32, &mut start.contacts);
             start.cloths.push([start.particles.len(), start.springs.len()]);
             start.particles.extend(particles);
             start.springs.extend(springs);

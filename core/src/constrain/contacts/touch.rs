@@ -8,20 +8,20 @@ use glam::Vec3;
 /// The effect that two in touch have on each other in a sub-step.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct Touch {
+pub(in crate::constrain) struct Touch {
     /// By how much the contact has changed the speed at which they part \[m/s\]; below zero: they do not touch.
     pressed: f32,
     /// How much slip friction has taken \[m/s\].
     held: f32,
     /// How much more of what weighs on the upper one goes through here than has changed that speed \[m/s\].
     carried: f32,
-    pub(super) elasticity: f32,
+    pub(in crate::constrain) elasticity: f32,
     static_: f32,
     kinetic: f32,
 }
 
 impl Touch {
-    pub(super) fn new(Mixed { elasticity, friction: Friction { static_, kinetic } }: Mixed) -> Self {
+    pub(in crate::constrain) fn new(Mixed { elasticity, friction: Friction { static_, kinetic } }: Mixed) -> Self {
         Self { pressed: -1.0, held: 0.0, carried: 0.0, elasticity, static_, kinetic }
     }
 
@@ -31,7 +31,7 @@ impl Touch {
     }
 
     /// By how much the contact has changed the speed at which they part \[m/s\].
-    pub(super) fn pressed(&self) -> f32 {
+    pub(in crate::constrain) fn pressed(&self) -> f32 {
         self.pressed
     }
 
@@ -40,7 +40,7 @@ impl Touch {
     }
 
     /// Tells whether the two touch in this sub-step, and not smoothly.
-    pub(super) fn rubs(&self) -> bool {
+    pub(in crate::constrain) fn rubs(&self) -> bool {
         self.is_on() && self.has_friction()
     }
 
@@ -49,12 +49,12 @@ impl Touch {
     }
 
     /// They touch, and have been given this speed apart.
-    pub(super) fn begin(&mut self, pressed: f32) {
+    pub(in crate::constrain) fn begin(&mut self, pressed: f32) {
         (self.pressed, self.held, self.carried) = (pressed, 0.0, 0.0);
     }
 
     /// Friction counts in this many times what presses, besides that itself.
-    pub(super) fn carry(&mut self, times: f32) {
+    pub(in crate::constrain) fn carry(&mut self, times: f32) {
         self.carried = times * self.pressed;
     }
 
@@ -65,14 +65,14 @@ impl Touch {
 
     /// How the speed at which they part has to change to be `wanted`. It takes back no more than the contact has given, so
     /// that it never pulls.
-    pub(super) fn press(&mut self, wanted: f32, parting: f32) -> f32 {
+    pub(in crate::constrain) fn press(&mut self, wanted: f32, parting: f32) -> f32 {
         let change = max(wanted - parting, -self.pressed);
         self.pressed += change;
         change
     }
 
     /// The part of a slip that friction takes \[m/s\]: all that it can by what presses, which counts `weight` times.
-    pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
+    pub(in crate::constrain) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
         let speed = length(slip);
         let left = |share: f32| max(share * self.load() * weight - self.held, 0.0);
         let taken = if speed <= left(self.static_) { speed } else { min(speed, left(self.kinetic)) };

@@ -4,8 +4,9 @@ use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
 use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
+use crate::constrain::turn::turn_of;
 use crate::lanes;
-use crate::math::{dot, sqrt};
+use crate::math::sqrt;
 use crate::memory::take;
 use crate::report::Report;
 use crate::rows::add_scaled;
@@ -240,17 +241,6 @@ impl Solver<'_> {
             }
         }
     }
-}
-
-/// The small rotation whose moment is the given one: x of (tr(B) − B) x = moment, by Cramer's rule; none if there is none.
-fn turn_of(spread: Mat3, moment: Vec3) -> Vec3 {
-    let trace = spread.x_axis.x + spread.y_axis.y + spread.z_axis.z;
-    let column = |axis: Vec3, b: Vec3| axis - b / trace;
-    let [x, y, z] = [column(Vec3::X, spread.x_axis), column(Vec3::Y, spread.y_axis), column(Vec3::Z, spread.z_axis)];
-    let (change, determinant) = (moment / trace, dot(x, y.cross(z)));
-    let turn = Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant;
-    // All on one line: it does not turn about that.
-    if determinant > 1e-6 && turn.is_finite() { turn } else { Vec3::ZERO }
 }
 
 /// Adds the curvature that a change of a fold's angle makes.

@@ -1,0 +1,92 @@
+//! The faces of the scenery that particles of sheets are kept from, half a thickness off.
+
+use super::super::contacts::Touch;
+use super::super::{Bodies, Substep};
+use super::lists::{Kept, NOBODY, Surface, Work};
+use super::rest::Rest;
+use crate::material::on_surface;
+use crate::math::{length, max, min};
+use crate::shape::Contact;
+use glam::Vec3;
+
+/// Sub-steps ahead that a search of the scenery looks, at the most.
+const AHEAD: u32 = 8;
+/// The share of a gap that is missing that a sub-step gives back.
+const RECOVERY: f32 = 0.2;
+/// The share of half a thickness that a particle stays off, whatever happens.
+const LEAST: f32 = 0.1;
+
+/// Lists the faces that particles may touch in the sub-step. Who has been found to be far from all is not asked again before it has gone
+/// that far.
+pub(super) fn gather(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'_>) {
+    kept.counts.surfaces = 0;
+    if bodies.substep.number == 0 {
+        kept.clear.fill(0.0);
+    }
+    if bodies.colliders.is_empty() {
+        return;
+    }
+    let Substep { number, count, .. } = bodies.substep;
+    let ahead = (count - number).min(AHEAD) as f32;
+    for i in 0..kept.rows.len() {
+        let row = kept.rows[i];
+        if row == NOBODY || !(kept.weight[i] > 0.0) {
+            continue;
+        }
+        let (half, way) = (rest.half[i], length(work.now[i] - work.from[i]));
+        // Others may push it as far again.
+        let near = 2.0 * (half + way);
+        if kept.clear[i] < near {
+            kept.clear[i] = near + ahead * way;
+            look(kept, (i, row as usize), [half, near], work, bodies);
+        }
+        kept.clear[i] = max(kept.clear[i] - way, 0.0);
+    }
+}
+
+/// Lists the faces near a particle, and says how far off all are, at the least.
+fn look(
+    kept: &mut Kept<'_>,
+    (i, row): (usize, usize),
+    [half, near]: [f32; 2],
+    work: &Work<'_>,
+    bodies: &mut Bodies<'_>,
+) {
+    let (from, h) = (work.from[i], bodies.substep.seconds());
+    let (own, elasticity) = (bodies.material[row].checked_sub(1), bodies.elasticity[row]);
+    let reach = kept.clear[i];
+    bodies.colliders.contacts(from, reach, bodies.substep.during[0], &mut |contact: &Contact| {
+        let Contact { point, normal, distance, velocity, material, .. } = *contact;
+        // What moves is asked again in every sub-step.
+        kept.clear[i] = if velocity == Vec3::ZERO { min(distance, kept.clear[i]) } else { 0.0 };
+        if !(distance < near) || !normal.is_finite() {
+            return;
+        }
+        let Some(place) = kept.surfaces.get_mut(kept.counts.surfaces as usize) else {
+            bodies.report.caps.contacts += 1;
+            return;
+        };
+        kept.counts.surfaces += 1;
+        let recovery = RECOVERY * max(half - distance, 0.0);
+        let gap = if distance < half { distance + recovery } else { half };
+        let surface = normal.dot(point + velocity * h);
+        let (offset, limit) = (surface + gap, surface + min(LEAST * half, 0.5 * distance));
+        let mut touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
+        touch.begin(0.0);
+        *place = Surface { particle: i as u32, normal, offset, limit, recovery, velocity, touch };
+    });
+}
+
+/// Puts whoever has been pushed too near to a face back to where it was, as seen from that. Tells whether somebody has been.
+pub(super) fn hold(kept: &Kept<'_>, work: &mut Work<'_>, h: f32) -> bool {
+    let mut holds = false;
+    for surface in &kept.surfaces[..kept.counts.surfaces as usize] {
+        let i = surface.particle as usize;
+        if work.held[i] == 0 && work.now[i].dot(surface.normal) < surface.limit {
+            work.held[i] = 1;
+            work.put(i, work.from[i] + surface.velocity * h);
+            holds = true;
+        }
+    }
+    holds
+}

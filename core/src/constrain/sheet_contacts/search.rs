@@ -1,0 +1,182 @@
+//! Who comes near whom in a sub-step.
+
+use super::super::Bodies;
+use super::super::contacts::Touch;
+use super::closest::{Closest, Kind, Meeting};
+use super::lists::{Contact, Kept, Work};
+use super::rest::{Face, Rest};
+use super::tree::Ways;
+use crate::material::of_two;
+use crate::math::{high, length, low, max, min};
+use crate::report::Report;
+use glam::Vec3;
+
+/// How much of the distance between two each may go before it has to be looked again: less than half of it.
+const SHARE: f32 = 0.45;
+/// Two that come so near to each other, as a share of their thickness, have come together.
+const NEAR: f32 = 0.1;
+/// The share of a gap that is missing that a sub-step gives back.
+const RECOVERY: f32 = 0.2;
+
+/// Lists whatever comes near on the way from where all were to where they are now, and says how far each may be pushed from there
+/// before that changes. Contacts known before keep what they have done. Returns how many would pass each other.
+pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) -> u32 {
+    let known = kept.counts.contacts as usize;
+    work.old[..known].copy_from_slice(&kept.contacts[..known]);
+    kept.counts.contacts = 0;
+    let budget = rest.facts.budget;
+    work.room.fill(2.0 * SHARE * budget);
+    let ways = Ways { from: work.from, to: work.now, drift: drift(work) };
+    let widest = |face: &Face| face.corners.iter().fold(0.0, |most, &corner| max(half(rest, corner), most));
+    work.tree.fit(rest.faces, ways, |face| widest(face) + budget);
+    let mut search = Search {
+        rest,
+        from: work.from,
+        now: work.now,
+        room: work.room,
+        contacts: kept.contacts,
+        count: &mut kept.counts.contacts,
+        meetings: 0,
+        report: bodies.report,
+    };
+    work.tree.pairs(|i, j| search.triangles(&rest.faces[i], &rest.faces[j]));
+    let meetings = search.meetings;
+    let contacts = &mut kept.contacts[..kept.counts.contacts as usize];
+    contacts.sort_unstable_by_key(Contact::key);
+    let old = &work.old[..known];
+    for contact in contacts {
+        contact.touch = match old.binary_search_by_key(&contact.key(), Contact::key) {
+            Ok(place) => old[place].touch,
+            Err(_) => touch(bodies, contact.sides().map(|side| kept.rows[side] as usize)),
+        };
+    }
+    meetings
+}
+
+/// The touch of particles in two rows, which does nothing as yet.
+fn touch(bodies: &Bodies<'_>, [a, b]: [usize; 2]) -> Touch {
+    let of_both = [a, b].map(|row| bodies.material[row].checked_sub(1));
+    let mut touch = Touch::new(of_two(bodies.materials, [bodies.elasticity[a], bodies.elasticity[b]], of_both));
+    touch.begin(0.0);
+    touch
+}
+
+/// The mean way of all \[m\].
+fn drift(work: &Work<'_>) -> Vec3 {
+    let ways = work.now.iter().zip(&*work.from).map(|(now, from)| *now - *from);
+    let (sum, count) =
+        ways.filter(|way| way.is_finite()).fold((Vec3::ZERO, 0.0), |(sum, count), way| (sum + way, count + 1.0));
+    sum / max(count, 1.0)
+}
+
+fn half(rest: &Rest<'_>, corner: u32) -> f32 {
+    rest.half.get(corner as usize).copied().unwrap_or(0.0)
+}
+
+struct Search<'m, 'r> {
+    rest: &'m Rest<'r>,
+    from: &'m [Vec3],
+    now: &'m [Vec3],
+    room: &'m mut [f32],
+    contacts: &'m mut [Contact],
+    count: &'m mut u32,
+    meetings: u32,
+    report: &'m mut Report,
+}
+
+impl Search<'_, '_> {
+    /// The corners of one with the other, and the edges of one with those of the other, as far as they are their own and have no corner
+    /// in common.
+    fn triangles(&mut self, one: &Face, other: &Face) {
+        for (of, with) in [(one, other), (other, one)] {
+            for (i, &corner) in of.corners.iter().enumerate() {
+                let [a, b, c] = with.corners;
+                if of.owns_corner(i) && ![a, b, c].contains(&corner) {
+                    self.look(Kind::PointTriangle, [corner, a, b, c], with);
+                }
+            }
+        }
+        for i in (0..3).filter(|&i| one.owns_edge(i)) {
+            let [a, b] = one.edge(i);
+            for j in (0..3).filter(|&j| other.owns_edge(j)) {
+                let [c, d] = other.edge(j);
+                if a != c && a != d && b != c && b != d {
+                    self.look(Kind::EdgeEdge, [a, b, c, d], other);
+                }
+            }
+        }
+    }
+
+    /// Lists the two if they come near, `with` being the triangle that the second belongs to.
+    fn look(&mut self, kind: Kind, corners: [u32; 4], with: &Face) {
+        let [first, second] = [corners[0], corners[kind.split()]];
+        let (thickness, budget) = (half(self.rest, first) + half(self.rest, second), self.rest.facts.budget);
+        let reach = thickness + 2.0 * budget;
+        let seen = |of: &[Vec3]| {
+            let place = |corner: u32| of[corner as usize];
+            corners.map(|corner| place(corner) - place(corners[0]))
+        };
+        let ends = [seen(self.from), seen(self.now)];
+        if are_apart(kind, &ends, reach) {
+            return;
+        }
+        let Some(meeting) = Meeting::of(kind, &ends, reach, NEAR * thickness) else { return };
+        let at_rest = length(Closest::of(kind, seen(self.rest.places)).gap);
+        let thickness = min(0.5 * at_rest, thickness);
+        let Meeting { closest, distance: [begun, ended], meets } = meeting;
+        if !meets && ended >= thickness + 2.0 * budget {
+            return;
+        }
+        for corner in corners {
+            let room = &mut self.room[corner as usize];
+            *room = min(SHARE * ended, *room);
+        }
+        self.meetings += u32::from(meets);
+        if !meets && !is_own(kind, &closest.weights, with) {
+            return;
+        }
+        let recovery = RECOVERY * max(thickness - begun, 0.0);
+        let target = if begun < thickness { begun + recovery } else { thickness };
+        let normal = closest.gap / length(closest.gap);
+        if !normal.is_finite() {
+            return;
+        }
+        match self.contacts.get_mut(*self.count as usize) {
+            Some(place) => {
+                let (split, weights, meets) = (kind.split() as u32, closest.weights, u32::from(meets));
+                let touch = bytemuck::Zeroable::zeroed();
+                *place = Contact { corners, split, weights, normal, target, recovery, meets, touch };
+                *self.count += 1;
+            }
+            None => self.report.caps.contacts += 1,
+        }
+    }
+}
+
+/// Tells whether boxes around two things at both ends are farther than `reach` from each other.
+fn are_apart(kind: Kind, ends: &[[Vec3; 4]; 2], reach: f32) -> bool {
+    let around = |from: usize, to: usize| {
+        let all = ends.iter().flat_map(|end| &end[from..to]);
+        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        all.fold(empty, |(least, most), &place| (low(place, least), high(place, most)))
+    };
+    let ((a, b), (c, d)) = (around(0, kind.split()), around(kind.split(), 4));
+    let gap = high(a - d, c - b);
+    gap.x > reach || gap.y > reach || gap.z > reach
+}
+
+/// Tells whether the nearest place is the triangle's own: where others share it, they are as near, and one of them does for all. Edges
+/// touch where they cross; at their ends points do.
+fn is_own(kind: Kind, weights: &[f32; 4], with: &Face) -> bool {
+    let [_, a, b, c] = weights.map(|weight| weight != 0.0);
+    match (kind, [a, b, c]) {
+        (Kind::EdgeEdge, [a, b, c]) => weights[0] != 0.0 && a && b && c,
+        (_, [true, false, false]) => with.owns_corner(0),
+        (_, [false, true, false]) => with.owns_corner(1),
+        (_, [false, false, true]) => with.owns_corner(2),
+        (_, [true, true, false]) => with.owns_edge(0),
+        (_, [false, true, true]) => with.owns_edge(1),
+        (_, [true, false, true]) => with.owns_edge(2),
+        _ => true,
+    }
+}

@@ -1,0 +1,132 @@
+//! Boxes around the ways of triangles, in a tree that their order at rest makes: what is near in the material is near in space.
+
+use super::rest::{BLOCK, Face};
+use crate::math::{high, low};
+use crate::memory::take;
+use glam::Vec3;
+
+/// A box, empty or along a way.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Bounds {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
+
+    fn with(self, place: Vec3) -> Self {
+        Self { low: low(place, self.low), high: high(place, self.high) }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { low: low(other.low, self.low), high: high(other.high, self.high) }
+    }
+
+    fn wider(self, by: f32) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        let (a, b) = (self.low, self.high);
+        let (c, d) = (other.low, other.high);
+        a.x <= d.x && c.x <= b.x && a.y <= d.y && c.y <= b.y && a.z <= d.z && c.z <= b.z
+    }
+}
+
+/// Where particles are at the beginning and in the end, the way of all of them together being left out.
+#[derive(Clone, Copy)]
+pub(super) struct Ways<'m> {
+    pub(super) from: &'m [Vec3],
+    pub(super) to: &'m [Vec3],
+    pub(super) drift: Vec3,
+}
+
+/// A perfect binary tree of boxes over blocks of triangles: the children of node i are 2 i and 2 i + 1, the root is 1.
+pub(super) struct Tree<'m> {
+    faces: &'m mut [Bounds],
+    nodes: &'m mut [Bounds],
+    blocks: usize,
+}
+
+/// Blocks that so many triangles make.
+fn blocks(triangles: usize) -> usize {
+    triangles.div_ceil(BLOCK).next_power_of_two()
+}
+
+/// The words that it takes for so many triangles.
+pub(super) fn words(triangles: usize) -> usize {
+    triangles.saturating_add(blocks(triangles).saturating_mul(2)).saturating_mul(size_of::<Bounds>() / 4)
+}
+
+impl<'m> Tree<'m> {
+    /// An undefined one.
+    pub(super) fn of(rest: &mut &'m mut [u32], triangles: usize) -> Self {
+        let blocks = blocks(triangles);
+        let size = size_of::<Bounds>() / 4;
+        let faces = bytemuck::cast_slice_mut(take(rest, triangles * size));
+        Self { faces, nodes: bytemuck::cast_slice_mut(take(rest, 2 * blocks * size)), blocks }
+    }
+
+    /// Puts boxes around the ways of all triangles, wider by what `reach` says of each. A triangle without a sound corner is in none.
+    pub(super) fn fit(&mut self, faces: &[Face], ways: Ways<'_>, reach: impl Fn(&Face) -> f32) {
+        let place = |of: &[Vec3], corner: u32| of.get(corner as usize).copied().unwrap_or(Vec3::NAN);
+        for (bounds, face) in self.faces.iter_mut().zip(faces) {
+            *bounds = Bounds::EMPTY;
+            let from = face.corners.map(|corner| place(ways.from, corner));
+            let to = face.corners.map(|corner| place(ways.to, corner) - ways.drift);
+            if from.iter().chain(&to).all(|place| place.is_finite()) {
+                *bounds = from.into_iter().chain(to).fold(Bounds::EMPTY, Bounds::with).wider(reach(face));
+            }
+        }
+        let (inner, leaves) = self.nodes.split_at_mut(self.blocks);
+        leaves.fill(Bounds::EMPTY);
+        for (leaf, faces) in leaves.iter_mut().zip(self.faces.chunks(BLOCK)) {
+            *leaf = faces.iter().fold(Bounds::EMPTY, |sum, &bounds| sum.and(bounds));
+        }
+        for node in (1..inner.len()).rev() {
+            self.nodes[node] = self.nodes[2 * node].and(self.nodes[2 * node + 1]);
+        }
+    }
+
+    /// Visits every two triangles whose boxes overlap, once.
+    pub(super) fn pairs(&self, mut visit: impl FnMut(usize, usize)) {
+        // Both of two are of one level; each level leaves three of four behind at the most.
+        let mut open = [[0usize; 2]; 4 * usize::BITS as usize];
+        let mut count = 1;
+        open[0] = [1, 1];
+        let push = |open: &mut [[usize; 2]], count: &mut usize, pair: [usize; 2]| {
+            if pair[0] == pair[1] || self.nodes[pair[0]].overlaps(&self.nodes[pair[1]]) {
+                open[*count] = pair;
+                *count += 1;
+            }
+        };
+        while count > 0 {
+            count -= 1;
+            let [a, b] = open[count];
+            if a >= self.blocks {
+                self.within([a - self.blocks, b - self.blocks], &mut visit);
+                continue;
+            }
+            if a != b {
+                push(&mut open, &mut count, [2 * a + 1, 2 * b]);
+            }
+            for pair in [[2 * a, 2 * b + 1], [2 * a + 1, 2 * b + 1], [2 * a, 2 * b]] {
+                push(&mut open, &mut count, pair);
+            }
+        }
+    }
+
+    /// Visits the triangles of two blocks whose boxes overlap.
+    fn within(&self, [a, b]: [usize; 2], visit: &mut impl FnMut(usize, usize)) {
+        let all = |block: usize| (block * BLOCK).min(self.faces.len())..((block + 1) * BLOCK).min(self.faces.len());
+        for i in all(a) {
+            for j in all(b) {
+                if (a != b || i < j) && self.faces[i].overlaps(&self.faces[j]) {
+                    visit(i, j);
+                }
+            }
+        }
+    }
+}
