@@ -8,11 +8,11 @@ use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::draw::{
-    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, body, links, solid, springs,
-    sprite, surface,
+    Appearance, Instance, Knot, Line, Lock, Ring, Sprite, StrandLight, Trails, Vertex, View, appearance, body, links,
+    solid, springs, sprite, strands, surface,
 };
 use pointmass::force::State;
-use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
+use pointmass::scene::{Light, Material, Model, PatchBuf, SceneFile};
 use pointmass::{Color, ConstraintKind, Heap, RigidBox, System};
 use std::collections::HashMap;
 
@@ -103,6 +103,9 @@ impl<'m> Cast<'m> {
         for RigidBox { first, count, .. } in model.constraints.1.boxes.iter().filter(|_| style.is_none()) {
             covered[*first as usize..][..*count as usize].fill(true);
         }
+        for lock in model.locks.iter().filter(|_| style.is_none()) {
+            covered[lock.first as usize..][..(lock.points * lock.count) as usize].fill(true);
+        }
         let form = |shape: &Option<_>| shape.as_ref().map_or_else(Surface::default, |shape| tessellate(shape, 1.0));
         let forms = model.shapes.iter().map(form).collect();
         let Memory { rings, knots } = memory;
@@ -165,6 +168,8 @@ impl<'m> Cast<'m> {
                 seen.ribbons.truncate(count);
             }
             if self.style.is_none() {
+                let light = light_on_strands(file, self.view.eye);
+                seen.ribbons.extend(model.locks.iter().flat_map(|lock| hair(state, lock, &light)));
                 seen.pieces.extend(model.patches.iter().filter_map(|patch| cloth(state, patch, file)));
                 let boxes = model.constraints.1.boxes.iter().filter_map(|of| body(state, of, &model.particles));
                 seen.pieces.extend(boxes.map(|instance| cuboid(&instance, file)));
@@ -264,6 +269,24 @@ fn styled(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnce(&
     let least = if style == Style::Sprites { size } else { 0.0 };
     let radius: Vec<_> = state.radius.iter().map(|radius| radius.max(least)).collect();
     see(&State { material: &material, materials: &materials, radius: &radius, ..*state });
+}
+
+/// The light on strands: the first that comes from far away, and what there is of it everywhere.
+fn light_on_strands(file: &SceneFile, eye: Vec3) -> StrandLight {
+    let far = file.lights.iter().find_map(|light| match light {
+        Light::Directional { direction, .. } => Some(Vec3::from_array(*direction)),
+        _ => None,
+    });
+    let ambient = (file.ambient.iter().sum::<f32>() / 3.0).clamp(0.0, 1.0);
+    StrandLight { direction: far.unwrap_or(Vec3::new(-0.4, -0.7, -0.8)), eye, ambient, gloss: 0.25 }
+}
+
+/// Strands as lit lines.
+fn hair(state: &State<'_>, lock: &Lock, light: &StrandLight) -> Vec<Line> {
+    let mut all = vec![Line::NONE; (lock.count * lock.points) as usize];
+    let (count, _) = strands(state, lock, light, &mut all);
+    all.truncate(count);
+    all
 }
 
 /// The surface of a cloth, lit.

@@ -10,6 +10,7 @@ mod debug;
 mod line;
 mod solid;
 mod sprite;
+mod strand;
 mod surface;
 mod trail;
 
@@ -18,6 +19,7 @@ pub use debug::{arrow, arrows, cells};
 pub use line::{Line, edges, links, springs, velocities};
 pub use solid::{Instance, solid, solids};
 pub use sprite::{Sprite, View, back_to_front, sprite, sprites};
+pub use strand::{Lock, StrandLight, strands};
 pub use surface::{Patch, Vertex, surface};
 pub use trail::{Knot, Ring, Trails};
 

@@ -37,6 +37,7 @@ mod sheet_contacts;
 mod sheets;
 mod springs;
 mod storage;
+mod strands;
 mod tunnelling;
 #[path = "walls/main.rs"]
 mod walls;

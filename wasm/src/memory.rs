@@ -34,7 +34,7 @@ pub(crate) fn room_to_read(text: &str) -> Result<(), JsError> {
     room(objects.saturating_mul(OBJECT).saturating_add(text.len().saturating_mul(12)), "the scene")
 }
 
-/// Makes sure of the memory that the cloths and boxes of a scene take.
+/// Makes sure of the memory that the cloths, boxes and strands of a scene take.
 ///
 /// # Errors
 /// If there is not so much.
@@ -49,5 +49,7 @@ pub(crate) fn room_to_build(file: &SceneFile, files: &Files) -> Result<(), JsErr
     let particles = particles.fold(0_usize, usize::saturating_add);
     room(particles.saturating_mul(WOVEN), "the cloths of the scene")?;
     let boxes = file.boxes.iter().map(|boxes| product(&boxes.count, 0)).fold(0_usize, usize::saturating_add);
-    room(boxes.saturating_mul(BOX), "the boxes of the scene")
+    room(boxes.saturating_mul(BOX), "the boxes of the scene")?;
+    let strands = file.strands.iter().map(|tuft| tuft.particles() as usize).fold(0_usize, usize::saturating_add);
+    room(strands.saturating_mul(WOVEN), "the strands of the scene")
 }

@@ -1,6 +1,6 @@
 //! The constraints that a scene file names.
 
-use super::{Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell};
+use super::{Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, Strands};
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
 
@@ -19,6 +19,8 @@ pub enum ConstraintKind {
     Attach(Attach<Vec<u32>, MotionBuf>),
     /// A thin sheet that stretches, shears and bends.
     Shell(Shell<Vec<u32>, Vec<[u32; 3]>, Vec<Hinge>>),
+    /// Hair, wires, stalks: strands that stretch, bend and twist.
+    Strands(Strands<Vec<u32>, Vec<u32>>),
 }
 
 impl ConstraintKind {
@@ -30,6 +32,7 @@ impl ConstraintKind {
             Self::Cluster(cluster) => cluster,
             Self::Attach(attach) => attach,
             Self::Shell(shell) => shell,
+            Self::Strands(strands) => strands,
         }
     }
 
@@ -42,6 +45,7 @@ impl ConstraintKind {
             Self::Cluster(cluster) => cluster.fault().or_else(|| twice(&cluster.particles)),
             Self::Attach(attach) => attach.motion.fault().map(|why| ("motion", why)),
             Self::Shell(shell) => shell.fault().or_else(|| twice(&shell.particles)),
+            Self::Strands(strands) => strands.fault().or_else(|| twice(&strands.particles)),
         }
     }
 
@@ -50,7 +54,7 @@ impl ConstraintKind {
         let (list, closed) = match self {
             Self::Distance(distance) => (&distance.ends[..], false),
             Self::Rope(rope) => (&rope.particles[..], rope.closed),
-            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) => (&[][..], false),
+            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) | Self::Strands(_) => (&[][..], false),
         };
         let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
@@ -65,6 +69,7 @@ impl ConstraintKind {
             Self::Cluster(cluster) => &cluster.particles,
             Self::Attach(attach) => &attach.particles,
             Self::Shell(shell) => &shell.particles,
+            Self::Strands(strands) => &strands.particles,
         }
     }
 }

@@ -16,6 +16,7 @@ mod rope;
 mod shape_matching;
 mod sheet_contacts;
 mod shell;
+mod strand;
 mod turn;
 
 pub use attach::Attach;
@@ -30,6 +31,7 @@ pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
 pub use sheet_contacts::SheetContacts;
 pub use shell::{Shell, ShellParams};
+pub use strand::{StrandParams, Strands};
 
 pub use crate::cloth::Hinge;
 #[cfg(feature = "alloc")]

@@ -73,6 +73,7 @@ impl SceneFile {
         }
         self.check_fabrics()?;
         self.check_boxes()?;
+        self.check_strands()?;
         for (i, emitter) in self.emitters.iter().enumerate() {
             self.check_emitter(&format!("emitters[{i}]"), emitter)?;
             self.check_group(&format!("emitters[{i}]"), emitter.group)?;
@@ -94,8 +95,8 @@ impl SceneFile {
                 ReaperKind::Dense(dense) => zero_or_more(&format!("reapers[{i}].radius"), dense.radius)?,
             }
         }
-        // The number of particles that cloths bring is known when their meshes have been read.
-        if self.cloths.is_empty() {
+        // The number of particles that cloths and strands bring is known when their meshes have been read.
+        if self.cloths.is_empty() && self.strands.is_empty() {
             let boxes: u64 = self.boxes.iter().map(Boxes::particles).sum();
             self.check_corners(self.particles.len().saturating_add(boxes as usize))?;
         }
@@ -398,7 +399,7 @@ impl Group {
     }
 }
 
-fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
+pub(super) fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
     let rows = |rows: &[Vec3]| rows.iter().try_for_each(|row| finite(at, &row.to_array()));
     let sizes = |sizes: &[f32]| {
         finite(at, sizes)?;

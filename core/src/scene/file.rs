@@ -1,6 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::{Boxes, Cloth, Fog, Material, PeriodicRoom, Response, Sky};
+use super::{Boxes, Cloth, Fog, Material, PeriodicRoom, Response, Sky, Tuft};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::emit::Emitter;
@@ -43,6 +43,9 @@ pub struct SceneFile {
     /// Rigid boxes, whose particles follow those above.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub boxes: Vec<Boxes>,
+    /// Hair, grass, wires: elastic strands, whose particles follow those above.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub strands: Vec<Tuft>,
     /// Emitters, which bring further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub emitters: Vec<Emitter<Shape<String>, Option<MotionBuf>>>,
@@ -244,6 +247,7 @@ impl SceneFile {
             springs: Vec::new(),
             cloths: Vec::new(),
             boxes: Vec::new(),
+            strands: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),
             contacts: None,

@@ -39,6 +39,8 @@ mod rules;
 mod schema;
 pub mod scn;
 #[cfg(feature = "alloc")]
+mod tuft;
+#[cfg(feature = "alloc")]
 mod write;
 
 #[cfg(feature = "alloc")]
@@ -64,6 +66,8 @@ pub use room::PeriodicRoom;
 pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
+#[cfg(feature = "alloc")]
+pub use tuft::{Curl, Field, Growth, Tuft};
 #[cfg(feature = "alloc")]
 pub use write::write_scn;
 

@@ -2,11 +2,11 @@
 
 use super::Response;
 use super::Scene;
-use super::{Files, Form, Material, SceneError, SceneFile, beside};
+use super::{Files, Form, Growth, Material, SceneError, SceneFile, beside};
 use crate::collide::Meetings;
 use crate::constrain::{ConstraintKind, Contacts, RigidBodies, RigidBox, SheetContacts};
 use crate::custom::CustomBuf;
-use crate::draw::Patch;
+use crate::draw::{Lock, Patch};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Penalty, Sink, Spring};
 use crate::index::{Periodic, Room, Structure};
@@ -45,7 +45,8 @@ pub struct Model {
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
-    /// The constraints that bind them, those of cloths that are shells, the rigid bodies, then contacts by position, and those of cloths.
+    /// The constraints that bind them, those of cloths that are shells and of strands, the rigid bodies, then contacts by position, and those of
+    /// cloths.
     pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>>, Option<Contacts>, SheetContactsBuf),
     /// Parts that each step is cut into.
     pub substeps: u32,
@@ -71,6 +72,8 @@ pub struct Model {
     pub boxes: Vec<usize>,
     /// The surfaces of cloths that have one.
     pub patches: Vec<PatchBuf>,
+    /// The strands, to be drawn as curves.
+    pub locks: Vec<Lock>,
     /// The shapes that particles are drawn as, by the numbers of their materials.
     pub shapes: Vec<Option<Shape<Arc<MeshBuf>>>>,
 }
@@ -199,6 +202,7 @@ impl Model {
             cloths: start.cloths,
             boxes: start.blocks,
             patches: start.patches,
+            locks: start.locks,
             shapes,
         })
     }
@@ -300,7 +304,7 @@ struct Start {
     springs: Vec<Spring>,
     /// Those of gas in cloths, and of the air around them.
     forces: Vec<ForceKind>,
-    /// What holds those together that are shells.
+    /// What holds those together that are shells, and strands.
     constraints: Vec<ConstraintKind>,
     /// Where they begin.
     cloths: Vec<[usize; 2]>,
@@ -310,6 +314,7 @@ struct Start {
     blocks: Vec<usize>,
     /// The contacts of those that have a thickness.
     contacts: SheetContactsBuf,
+    locks: Vec<Lock>,
 }
 
 impl Start {
@@ -324,6 +329,7 @@ impl Start {
             boxes: Vec::new(),
             blocks: Vec::new(),
             contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
+            locks: Vec::new(),
         };
         for (i, cloth) in file.cloths.iter().enumerate() {
             let mesh = match &cloth.form {
@@ -366,10 +372,30 @@ impl Start {
             start.particles.extend(particles);
             start.boxes.extend(bodies);
         }
+        start.grow(file, meshes)?;
         for particle in &mut start.particles {
             particle.color = color(file, particle.color, particle.material);
         }
         Ok(start)
+    }
+
+    /// Adds the strands.
+    fn grow(&mut self, file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<(), SceneError> {
+        for (i, tuft) in file.strands.iter().enumerate() {
+            let shape = match &tuft.form {
+                Growth::On(field) => Some(meshes.shape(&format!("strands[{i}].form.on.shape"), &field.shape)?),
+                Growth::Curve(_) => None,
+            };
+            let grown = tuft.make(shape.as_ref(), self.particles.len() as u32);
+            if !grown.particles.iter().all(Particle::is_sound) {
+                let message = "leaves some points too little mass, or puts them beyond the range of a 32-bit float";
+                return Err(SceneError::value(format!("strands[{i}]"), message).in_file(meshes.path));
+            }
+            self.particles.extend(grown.particles);
+            self.constraints.extend(grown.constraints);
+            self.locks.push(grown.lock);
+        }
+        Ok(())
     }
 }
 

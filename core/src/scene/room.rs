@@ -77,5 +77,6 @@ impl SceneFile {
             .or(part("constraints", self.constraints.is_empty(), "constraints"))
             .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))
             .or(part("boxes", self.boxes.is_empty(), "rigid bodies"))
+            .or(part("strands", self.strands.is_empty(), "strands"))
     }
 }

@@ -129,6 +129,9 @@ impl Writer {
         if !scene.boxes.is_empty() {
             self.warn("boxes: .scn has no rigid bodies; they are left out");
         }
+        if !scene.strands.is_empty() {
+            self.warn("strands: .scn has none; they are left out");
+        }
         (particles, springs)
     }
 

@@ -1,10 +1,11 @@
 //! What holds together, computed alike by every target: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
-//! A rope that hangs from a nail, a ring of soft links, a die, a jelly, a sheet and two boxes are thrown onto the floor, one after the
-//! other and all at once.
+//! A rope that hangs from a nail, a ring of soft links, a die, a jelly, a sheet, two boxes and a bent wire are thrown onto the floor, one
+//! after the other, and all but the wire at once.
 
 use pointmass::constrain::{
-    Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams,
+    Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams, StrandParams,
+    Strands,
 };
 use pointmass::index::Structure;
 use pointmass::motion::Motion;
@@ -66,7 +67,9 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         motion: Motion { spin: 0.7, pivot: Vec3::new(0.0, 1.0, 0.1), axis: Vec3::Y, ..Motion::STILL },
     };
     let all = &(hand, (leash, rope, ring), (die, jelly), sheet, Contacts::HARD);
-    let bonds: [(&str, &dyn Constraint); 8] = [
+    let wire = StrandParams { damping: 1e-3, ..StrandParams::round(2e-3, 3e9, 0.3) };
+    let wire = Strands { twist: 1.0, ..Strands::of(RING, [8], wire) };
+    let bonds: [(&str, &dyn Constraint); 9] = [
         ("rope", &rope),
         ("ring", &ring),
         ("die", &die),
@@ -74,6 +77,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         ("leash", &leash),
         ("sheet", &sheet),
         ("chests", &chests),
+        ("wire", &wire),
         ("bonds", all),
     ];
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };

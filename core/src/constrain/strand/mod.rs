@@ -1,0 +1,343 @@
+//! Strands that stretch, bend and twist by the numbers of their material: hair, wires, cables, stalks.
+
+mod band;
+mod frame;
+mod piece;
+
+use super::turn::Turn;
+use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::math::{length, sin_cos};
+use crate::memory::take;
+use crate::rows::BLOCKS;
+use band::Band;
+use bytemuck::Pod;
+use core::f32::consts::PI;
+use frame::{bring, frame, strain};
+use glam::Vec3;
+use piece::{EQUATIONS, Piece, Step, Writer, act};
+
+/// What a strand is made of, by numbers that do not depend on how finely it is divided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StrandParams {
+    /// Young's modulus times the area of the section, E A \[N\]: a pull of a hundredth of that makes it longer by a hundredth. Without it
+    /// the strand does not stretch.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub stretch: Option<f32>,
+    /// Bending stiffness E I \[N m²\] about the two principal axes of the section: a moment of so much over R bends it to a radius R.
+    pub bending: [f32; 2],
+    /// Twisting stiffness G J \[N m²\]: a torque of so much over l twists a length l of it by a radian.
+    pub twisting: f32,
+    /// How long stresses take to fade whose strain stands still \[s\] (Kelvin and Voigt): a stress is that of the strain and of so
+    /// many seconds of its rate.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub damping: f32,
+}
+
+impl StrandParams {
+    /// A solid round strand of a radius \[m\], of a material of Young's modulus \[Pa\] and Poisson's ratio, without damping: E A = E π r²,
+    /// E I = E π r⁴ / 4 and G J = E π r⁴ / (4 + 4 ν). Hair has 40 µm, 4 GPa and 0.35, grass some 1 GPa, rubber 5 MPa and 0.5, steel 200 GPa and
+    /// 0.3.
+    #[must_use]
+    pub const fn round(radius: f32, young: f32, poisson: f32) -> Self {
+        let stretch = young * PI * radius * radius;
+        let bending = 0.25 * stretch * radius * radius;
+        Self { stretch: Some(stretch), bending: [bending; 2], twisting: bending / (1.0 + poisson), damping: 0.0 }
+    }
+
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        let stretches = self.stretch.is_none_or(|stretch| stretch > 0.0 && stretch < f32::INFINITY);
+        let faults = [
+            (!stretches, "stretch", "has to be above zero, in N"),
+            (!self.bending.into_iter().all(not_negative), "bending", "must not be below zero, in N m²"),
+            (!not_negative(self.twisting), "twisting", "must not be below zero, in N m²"),
+            (!not_negative(self.damping), "damping", "must not be below zero, in s"),
+        ];
+        faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))
+    }
+}
+
+/// Elastic strands, in the shape in which they begin at rest: straight ones, and curls.
+///
+/// A strand is a chain of points. Each edge between two of them has a material frame, kept from sub-step to sub-step: it is taken along on the
+/// shortest way as the edge turns (parallel transport in time: Bergou, Audoly, Vouga, Wardetzky and Grinspun, "Discrete Viscous
+/// Threads", SIGGRAPH 2010), and turned about the edge so that twist is in balance at each instant. Where two edges meet, the
+/// rotation from one frame to the next is what it is bent and twisted by (Bergou, Wardetzky, Robinson, Audoly and Grinspun, "Discrete
+/// Elastic Rods", SIGGRAPH 2008): ½ Σ (g − g₀)ᵀ B (g − g₀) / l, with g = 2 tan(φ/2) along the axis, and l half of each edge beside.
+///
+/// Stretching, bending and twisting of a strand are solved as one, for its places at the sub-step's end: forces are those of
+/// the material whatever the sub-steps, and however stiff it is. The system has a narrow band and is solved directly, so that the time that it takes
+/// grows with the number of points alone; several strands are solved eight at once. Forces act along the directions of the sub-step's
+/// beginning, and both momenta of a strand that nothing holds are kept to rounding. What swings so fast that a sub-step does not
+/// resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h.
+///
+/// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
+/// cannot turn about itself there; a single one is a hinge. Where a particle has died the strand is in two. Edges whose ends are in one place
+/// do nothing.
+///
+/// ```
+/// use pointmass::constrain::{StrandParams, Strands};
+/// use pointmass::{Gravity, Heap, Particle, Scene, System, Time, Vec3};
+///
+/// // A steel wire of 1 m and 2 mm across, clamped behind its second point.
+/// let wire = StrandParams { damping: 0.05, ..StrandParams::round(1e-3, 2e11, 0.3) };
+/// let mass = 7850.0 * 3.1416e-6 * 0.05;
+/// let point = |i: u32| Particle { position: Vec3::X * (0.05 * i as f32 - 0.05), mass, fixed: i < 2, ..Particle::REST };
+/// let start: Vec<Particle> = (0..22).map(point).collect();
+/// let strands = Strands::of((0..22).collect::<Vec<u32>>(), [22], wire);
+/// let scene = Scene { start: &start, forces: &Gravity::EARTH, constraints: &strands, substeps: 10, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// for frame in 1..=240 {
+///     system.step_to(&scene, Time::frame(frame, 60));
+/// }
+/// // It sags by w L⁴ / (8 E I), and a little more as half an edge's mass is beyond its end.
+/// let sag = -system.particles().position[21].y;
+/// assert!((0.17..0.21).contains(&sag), "{sag}");
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Strands<P, L> {
+    /// The particles of all strands, by their place in the scene's start: one strand after the other, each from its root to its tip.
+    pub particles: P,
+    /// The number of points of each strand; the last of these holds for all further strands.
+    pub points: L,
+    /// What they are made of.
+    pub params: StrandParams,
+    /// The direction of the first principal axis of the section where a strand begins, as far as that is upright on it; it
+    /// counts where bending differs.
+    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub across: Vec3,
+    /// How much the material at rest is twisted against the shape in which it begins \[rad/m\], right-handed above zero.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub twist: f32,
+    /// True if the first and the last edge do not turn about themselves, though their ends are free to move.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub held: [bool; 2],
+}
+
+/// What is kept of a point: of the edge from it to the next one toward the root, and of the bend at it.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Joint {
+    /// The edge's frame: a unit quaternion.
+    turn: [f32; 4],
+    /// The pull in it at the end of the last sub-step \[N\].
+    tension: f32,
+    /// How long it is at rest \[m\].
+    length: f32,
+    /// How it is bent and twisted at rest against the edge before.
+    rest: Vec3,
+}
+
+/// The words that a joint takes.
+const KEPT: usize = size_of::<Joint>() / 4;
+/// Strands that are solved at once, where there are several.
+const WIDE: usize = if BLOCKS { 8 } else { 1 };
+
+impl<P, L> Strands<P, L> {
+    /// Strands of round sections whose ends are free to turn.
+    #[must_use]
+    pub const fn of(particles: P, points: L, params: StrandParams) -> Self {
+        Self { particles, points, params, across: Vec3::ZERO, twist: 0.0, held: [false; 2] }
+    }
+}
+
+impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let faults = [
+            (self.points.as_ref().is_empty(), "points", "has to hold the number of points of a strand at least"),
+            (self.points.as_ref().iter().any(|&points| points < 2), "points", "have to be two or more"),
+            (!self.across.is_finite(), "across", "has to be finite"),
+            (!self.twist.is_finite(), "twist", "has to be finite, in rad/m"),
+        ];
+        let wrong = faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message));
+        wrong.or_else(|| self.params.fault())
+    }
+
+    /// The particles of each strand, from its root to its tip: where they begin in the list, and where they end.
+    pub fn strands(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let (all, points) = (self.particles.as_ref().len(), self.points.as_ref());
+        let mut next = (0usize, 0usize);
+        core::iter::from_fn(move || {
+            let (number, first) = next;
+            let count = points.get(number).or(points.last()).map_or(all, |&count| (count as usize).max(1));
+            let last = first.saturating_add(count).min(all);
+            next = (number + 1, last);
+            (first < last).then_some([first, last])
+        })
+    }
+
+    /// The points of the longest strand, and how many are solved at once.
+    fn widest(&self) -> [usize; 2] {
+        let longest = self.strands().map(|[first, last]| last - first).max().unwrap_or(0);
+        [longest, if self.strands().nth(1).is_some() { WIDE } else { 1 }]
+    }
+
+    /// What is kept of all joints, and whether that is known.
+    fn joints<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [u32], &'m mut [Joint]) {
+        let mut rest = kept;
+        let known = take(&mut rest, 1);
+        let whole = rest.len() - rest.len() % KEPT;
+        (known, bytemuck::cast_slice_mut(take(&mut rest, whole)))
+    }
+
+    /// Takes the shape at rest from where all are, at the first of all.
+    fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
+        let (known, joints) = self.joints(kept);
+        let [0] = *known else { return };
+        known[0] = 1;
+        for [first, last] in self.strands() {
+            let Some(joints) = joints.get_mut(first..last) else { return };
+            let place = |number: usize| {
+                let particle = self.particles.as_ref()[last - 1 - number];
+                bodies.row_of_start(particle).map_or(Vec3::ZERO, |row| bodies.position[row])
+            };
+            let way = |number: usize| place(number + 1) - place(number);
+            let edges = last - first - 1;
+            let mut turn = None;
+            for (number, joint) in joints[..edges].iter_mut().enumerate().rev() {
+                joint.length = length(way(number));
+                let direction = way(number) / joint.length;
+                if direction.is_finite() {
+                    turn = Some(turn.map_or_else(|| frame(direction, self.across), |turn| bring(turn, direction)));
+                }
+                joint.turn = turn.unwrap_or(Turn::NONE).0;
+            }
+            for number in 1..edges {
+                let [before, own] = [joints[number - 1], joints[number]];
+                let (sin, cos) = sin_cos(0.25 * self.twist * (before.length + own.length));
+                let rest = strain(Turn(before.turn), Turn(own.turn)) + Vec3::Z * (2.0 * sin / cos);
+                joints[number].rest = if rest.is_finite() { rest } else { Vec3::ZERO };
+            }
+        }
+    }
+
+    /// The row of a particle by its place in the list, if it lives and is somewhere.
+    fn row(&self, bodies: &Bodies<'_>, number: usize) -> Option<u32> {
+        let row = bodies.row_of_start(*self.particles.as_ref().get(number)?)?;
+        (bodies.position[row].is_finite() && bodies.velocity[row].is_finite()).then_some(row as u32)
+    }
+
+    /// The next part of a strand that lives, from a joint of it on.
+    fn piece(&self, bodies: &Bodies<'_>, [first, last]: [usize; 2], from: usize, rows: &mut [u32]) -> Piece {
+        let mut piece = Piece { first: from, count: 0, held: [false; 2] };
+        for joint in from..last {
+            match (self.row(bodies, first + last - 1 - joint), rows.get_mut(piece.count)) {
+                (Some(row), Some(to)) => {
+                    *to = row;
+                    piece.count += 1;
+                }
+                _ if piece.count > 0 => break,
+                _ => piece.first = joint + 1,
+            }
+        }
+        piece.held = [self.held[1] && piece.first == first, self.held[0] && piece.first + piece.count == last];
+        piece
+    }
+
+    /// Solves all strands, so many at once.
+    fn solve<const LANES: usize>(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, longest: usize)
+    where
+        [f32; LANES]: Pod,
+    {
+        let (_, joints) = self.joints(share.kept.fixed);
+        let mut rest = &mut *share.scratch;
+        let rows = take(&mut rest, longest * LANES);
+        let (mut pieces, mut count) = ([Piece::default(); LANES], 0);
+        for strand in self.strands() {
+            let mut from = strand[0];
+            while from < strand[1] {
+                let Some(rows_of) = rows.get_mut(count * longest..(count + 1) * longest) else { return };
+                let piece = self.piece(bodies, strand, from, rows_of);
+                from = piece.first + piece.count;
+                if piece.count > 1 {
+                    pieces[count] = piece;
+                    count += 1;
+                }
+                if count == LANES {
+                    self.solve_some::<LANES>(bodies, joints, &pieces, [rows, rest], longest);
+                    count = 0;
+                }
+            }
+        }
+        self.solve_some::<LANES>(bodies, joints, &pieces[..count], [rows, rest], longest);
+    }
+
+    /// Solves some of them at once.
+    fn solve_some<const LANES: usize>(
+        &self,
+        bodies: &mut Bodies<'_>,
+        joints: &mut [Joint],
+        pieces: &[Piece],
+        [rows, memory]: [&mut [u32]; 2],
+        longest: usize,
+    ) where
+        [f32; LANES]: Pod,
+    {
+        let Some(most) = pieces.iter().map(|piece| piece.count).max() else { return };
+        let step = Step { params: &self.params, h: bodies.substep.seconds() };
+        let mut band = Band::<LANES>::new(memory, most * EQUATIONS);
+        let mut masses = [0.0; LANES];
+        for (lane, piece) in pieces.iter().enumerate() {
+            let rows = &rows[lane * longest..][..piece.count];
+            let joints = &mut joints[piece.first..][..piece.count];
+            masses[lane] = mean_mass(bodies, rows);
+            Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.write(piece, joints);
+        }
+        band.solve();
+        for (lane, piece) in pieces.iter().enumerate() {
+            let rows = &rows[lane * longest..][..piece.count];
+            let joints = &mut joints[piece.first..][..piece.count];
+            let is_solved = act(&band, lane, bodies, rows, joints, masses[lane]);
+            bodies.report.effort.solved(1, 0.0, !is_solved);
+        }
+    }
+}
+
+/// The mean mass of those that move \[kg\]; one, if none does.
+fn mean_mass(bodies: &Bodies<'_>, rows: &[u32]) -> f32 {
+    let moving = || rows.iter().map(|&row| row as usize).filter(|&row| bodies.inverse_mass[row] > 0.0);
+    let count = moving().count();
+    if count > 0 { moving().map(|row| bodies.mass[row]).sum::<f32>() / count as f32 } else { 1.0 }
+}
+
+impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L> {
+    fn demand(&self) -> Demand {
+        let [longest, lanes] = self.widest();
+        let band = band::words(longest.saturating_mul(EQUATIONS), lanes);
+        let words = |fixed| Words { per_row: 0, fixed };
+        Demand {
+            kept: words(self.particles.as_ref().len().saturating_mul(KEPT).saturating_add(1)),
+            scratch: words(longest.saturating_mul(lanes).saturating_add(band)),
+            ..Demand::NONE
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.particles.as_ref().len() < 2
+    }
+
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.learn(bodies, share.kept.fixed);
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if !(bodies.substep.seconds() > 0.0) {
+            return;
+        }
+        match self.widest() {
+            [longest, 1] => self.solve::<1>(bodies, share, longest),
+            [longest, _] => self.solve::<WIDE>(bodies, share, longest),
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! A strand in a sub-step: the equations of its places, its material's turns and what pulls, bends and twists it.
+
+use super::band::Band;
+use super::frame::{Edge, bring, gradients, strain};
+use super::{Joint, StrandParams};
+use crate::constrain::Bodies;
+use crate::constrain::turn::{Turn, outer, solve};
+use crate::math::{clamp, dot, length, max};
+use bytemuck::Pod;
+use glam::{Mat3, Vec3};
+
+/// The equations that each point brings: its place, the pull in the edge before it, the bending and twisting at it, and the turn of that
+/// edge's material about itself.
+///
+/// In this order, from the tip to the root, what each equation is solved for is known from the material or from masses, and never from a
+/// small difference: stiffness may be as high as one likes (Vanderbei, "Symmetric quasidefinite matrices", SIAM J. Optimization 5, 1995).
+pub(super) const EQUATIONS: usize = 8;
+const PULL: usize = 3;
+const BEND: usize = 4;
+const TURN: usize = 7;
+
+/// How firmly the material's turns are held, as a share of what resists twisting: all of a free strand's turning as one is undetermined.
+const HOLD: f32 = 1e-4;
+/// How far a stiff edge gives way, as a share of what its ends do: an edge between ends that are held is undetermined.
+const RIDGE: f32 = 1e-6;
+/// How far the material of an edge may turn in a solution \[rad\].
+const FARTHEST: f32 = 1.0;
+/// As good as nothing, and not zero.
+const NOTHING: f32 = 1e-30;
+
+/// A part of a strand whose points all live, by its place among them from the tip on.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Piece {
+    /// The first of its joints among all.
+    pub(super) first: usize,
+    /// The number of its points.
+    pub(super) count: usize,
+    /// True if its first and its last edge do not turn about themselves.
+    pub(super) held: [bool; 2],
+}
+
+/// What all pieces have in common.
+pub(super) struct Step<'a> {
+    pub(super) params: &'a StrandParams,
+    pub(super) h: f32,
+}
+
+impl Step<'_> {
+    /// The seconds of a strain's rate that count as strain, in sub-steps.
+    fn lag(&self) -> f32 {
+        self.params.damping / self.h
+    }
+
+    /// What a strain asks for, having been another when the sub-step began.
+    fn asks(&self, now: f32, before: f32) -> f32 {
+        -(now + self.lag() * (now - before)) / (1.0 + self.lag())
+    }
+
+    /// How far something of a stiffness gives way, × 1/h².
+    fn softness(&self, stiffness: f32) -> f32 {
+        1.0 / (stiffness * (self.h * self.h) * (1.0 + self.lag()))
+    }
+}
+
+/// A point of a piece: the row it is in, and its inverse mass in units of that of the piece's mean.
+#[derive(Clone, Copy)]
+struct Point {
+    row: usize,
+    weight: f32,
+}
+
+/// The equations of a piece, being written.
+pub(super) struct Writer<'a, 'm, 'b, const LANES: usize> {
+    pub(super) step: &'a Step<'a>,
+    pub(super) band: &'a mut Band<'m, LANES>,
+    pub(super) lane: usize,
+    pub(super) bodies: &'a Bodies<'b>,
+    pub(super) rows: &'a [u32],
+    /// The mean mass of the points that move \[kg\].
+    pub(super) mass: f32,
+}
+
+impl<const LANES: usize> Writer<'_, '_, '_, LANES>
+where
+    [f32; LANES]: Pod,
+{
+    fn point(&self, number: usize) -> Point {
+        let row = self.rows[number] as usize;
+        Point { row, weight: self.bodies.inverse_mass[row] * self.mass }
+    }
+
+    fn add(&mut self, row: usize, column: usize, more: f32) {
+        self.band.add(self.lane, row, column, more);
+    }
+
+    /// Writes all equations of a piece, and leaves in its joints the frames of its edges where the method has moved them.
+    pub(super) fn write(&mut self, piece: &Piece, joints: &mut [Joint]) {
+        let mut last: Option<Edge> = None;
+        for number in 0..piece.count {
+            self.inertia(number);
+            let is_held = |edge: usize| edge == 0 && piece.held[0] || edge + 2 == piece.count && piece.held[1];
+            let edge = if number + 1 < piece.count { self.edge(number, joints, is_held(number)) } else { None };
+            if let (Some(first), Some(second)) = (&last, &edge) {
+                let is_held = [number - 1, number].map(is_held);
+                self.bend(number, [first, second], &joints[number - 1..=number], is_held);
+            }
+            last = edge;
+        }
+    }
+
+    /// The masses of a point.
+    fn inertia(&mut self, number: usize) {
+        let Point { weight, .. } = self.point(number);
+        let mass = if weight > 0.0 { 1.0 / weight } else { 1.0 };
+        for axis in 0..3 {
+            let own = number * EQUATIONS + axis;
+            // What its neighbours have added stays.
+            self.add(own, own, mass - 1.0);
+        }
+    }
+
+    /// The edge from a point to the next: the pull in it, and what that resists to being moved across.
+    fn edge(&mut self, number: usize, joints: &mut [Joint], is_held: bool) -> Option<Edge> {
+        let ends = [number, number + 1].map(|end| self.point(end));
+        let [p, q] = ends.map(|end| end.row);
+        let (x, v, x0, h) = (&*self.bodies.position, &*self.bodies.velocity, self.bodies.before[0], self.step.h);
+        let way = x[q] - x[p];
+        let embedded = !(ends[0].weight + ends[1].weight > 0.0);
+        let joint = &mut joints[number];
+        let edge = Edge::of(Turn(joint.turn), [way, way - (v[q] - v[p]) * h, x0[q] - x0[p]], embedded)?;
+        joint.turn = edge.frame[0].0;
+        if !is_held && !embedded {
+            // Nothing but the material's stiffness holds it.
+            let turn = (number + 1) * EQUATIONS + TURN;
+            self.band.set(self.lane, turn, turn, NOTHING);
+        }
+        if embedded {
+            return Some(edge);
+        }
+        let (rest, tension) = (joint.length, joint.tension);
+        let soft = self.step.params.stretch.map_or(0.0, |stretch| rest * self.mass * self.step.softness(stretch));
+        let soft = max(soft, RIDGE * (ends[0].weight + ends[1].weight));
+        if !(soft < f32::INFINITY) {
+            return Some(edge);
+        }
+        let own = (number + 1) * EQUATIONS + PULL;
+        self.band.set(self.lane, own, own, -soft);
+        let [now, _, before] = edge.length.map(|length| length - rest);
+        self.band.ask(
+            self.lane,
+            own,
+            if self.step.params.stretch.is_some() { self.step.asks(now, before) } else { -now },
+        );
+        // What is tense swings to and fro across: a quarter of that keeps any step stable, and takes nothing from the motion.
+        let taut = 0.25 * h * h * max(tension, 0.0) / (self.mass * edge.length[1]);
+        let taut = if taut < f32::INFINITY { taut } else { 0.0 };
+        for (axis, along) in edge.along.to_array().into_iter().enumerate() {
+            let columns = [number, number + 1].map(|end| end * EQUATIONS + axis);
+            for ((column, end), sign) in columns.into_iter().zip(ends).zip([-1.0, 1.0]) {
+                if end.weight > 0.0 {
+                    self.band.set(self.lane, own, column, sign * along);
+                    self.add(column, column, taut);
+                }
+            }
+            if ends[0].weight > 0.0 && ends[1].weight > 0.0 {
+                self.band.set(self.lane, columns[0], columns[1], -taut);
+            }
+        }
+        Some(edge)
+    }
+
+    /// The bending and twisting at a point between two edges.
+    fn bend(&mut self, number: usize, edges: [&Edge; 2], joints: &[Joint], is_held: [bool; 2]) {
+        let half = |i: usize| if edges[i].embedded { 0.0 } else { 0.5 * joints[i].length };
+        let share = half(0) + half(1);
+        let [now, along, before] = [0, 1, 2].map(|i| strain(edges[0].frame[i], edges[1].frame[i]));
+        let is_sound = now.is_finite() && along.is_finite() && before.is_finite() && share > 0.0;
+        if !is_sound {
+            return;
+        }
+        let ([now, before], [first, second]) = ([now, before].map(|g| g - joints[1].rest), self.step.params.bending);
+        let stiffness = [first, second, self.step.params.twisting];
+        for (k, gradient) in gradients(edges[1].frame[1], along).into_iter().enumerate() {
+            let soft = share * self.mass * self.step.softness(stiffness[k]);
+            if !(soft < f32::INFINITY) {
+                continue;
+            }
+            let own = number * EQUATIONS + BEND + k;
+            self.band.set(self.lane, own, own, -soft);
+            self.band.ask(self.lane, own, self.step.asks(now[k], before[k]));
+            // A frame turns as its edge does, t × de / length, and about itself.
+            let ways = edges.map(|edge| gradient.cross(edge.along) / edge.length[1]);
+            let pushes = [ways[0], -ways[0] - ways[1], ways[1]];
+            for (point, push) in (number - 1..).zip(pushes) {
+                if self.point(point).weight > 0.0 {
+                    for (axis, push) in push.to_array().into_iter().enumerate() {
+                        self.band.set(self.lane, own, point * EQUATIONS + axis, push);
+                    }
+                }
+            }
+            for (i, edge) in edges.into_iter().enumerate() {
+                let turn = dot(gradient, edge.along) * [-1.0, 1.0][i];
+                let column = (number + i) * EQUATIONS + TURN;
+                if edge.embedded || is_held[i] || turn == 0.0 {
+                    continue;
+                }
+                self.band.set(self.lane, own, column, turn);
+                self.add(column, column, HOLD * turn * turn / soft);
+            }
+        }
+    }
+}
+
+/// Moves the points of a piece as its system says, and turns the frames of its edges; nothing, where the solution is no number. Tells whether it is.
+pub(super) fn act<const LANES: usize>(
+    band: &Band<'_, LANES>,
+    lane: usize,
+    bodies: &mut Bodies<'_>,
+    rows: &[u32],
+    joints: &mut [Joint],
+    mass: f32,
+) -> bool
+where
+    [f32; LANES]: Pod,
+{
+    let equations = rows.len() * EQUATIONS;
+    if !(0..equations).all(|row| band.answer(lane, row).is_finite()) {
+        return false;
+    }
+    let shift = |number: usize| Vec3::from_array([0, 1, 2].map(|axis| band.answer(lane, number * EQUATIONS + axis)));
+    let [drift, turn, middle] = stray(bodies, rows, shift);
+    let h = bodies.substep.seconds();
+    for (number, &row) in rows.iter().enumerate() {
+        let row = row as usize;
+        if bodies.inverse_mass[row] > 0.0 {
+            let place = bodies.position[row] - bodies.velocity[row] * h;
+            bodies.shift(row, shift(number) - drift - turn.cross(place - middle));
+        }
+    }
+    for (number, (ends, joint)) in rows.windows(2).zip(joints).enumerate() {
+        let own = (number + 1) * EQUATIONS;
+        let way = bodies.position[ends[1] as usize] - bodies.position[ends[0] as usize];
+        let direction = way / length(way);
+        if direction.is_finite() {
+            let turn = clamp(band.answer(lane, own + TURN), -FARTHEST, FARTHEST);
+            joint.turn = bring(Turn(joint.turn), direction).on(direction * turn).0;
+        }
+        joint.tension = band.answer(lane, own + PULL) * mass / (h * h);
+    }
+    true
+}
+
+/// What shifts would change of the momenta of a piece that nothing holds: how far its middle would go, how it would turn as a whole about
+/// where its middle was, and where that is. Forces within a strand change neither; rounding, and what is tense, would.
+fn stray(bodies: &Bodies<'_>, rows: &[u32], shift: impl Fn(usize) -> Vec3) -> [Vec3; 3] {
+    let none = [Vec3::ZERO; 3];
+    let Some(&origin) = rows.first() else { return none };
+    let (h, origin) = (bodies.substep.seconds(), origin as usize);
+    let place = |row: usize| {
+        bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
+    };
+    let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
+    for (number, row) in rows.iter().map(|&row| row as usize).enumerate() {
+        if !(bodies.inverse_mass[row] > 0.0) {
+            return none;
+        }
+        mass += bodies.mass[row];
+        middle += place(row) * bodies.mass[row];
+        drift += shift(number) * bodies.mass[row];
+    }
+    let (middle, drift) = (middle / mass, drift / mass);
+    let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+    for (number, row) in rows.iter().map(|&row| row as usize).enumerate() {
+        let arm = place(row) - middle;
+        torque += arm.cross(shift(number) - drift) * bodies.mass[row];
+        spread += outer(arm, arm * bodies.mass[row]);
+    }
+    let origin = bodies.position[origin] - bodies.velocity[origin] * h;
+    let all = [drift, solve(spread, torque), middle + origin];
+    if all.iter().all(|part| part.is_finite()) { all } else { none }
+}
