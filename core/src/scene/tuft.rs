@@ -9,6 +9,7 @@ use crate::motion::{Motion, MotionBuf};
 use crate::particles::{Color, Particle};
 use crate::rng::Stream;
 use crate::shape::{MeshBuf, Shape, Surface};
+use alloc::boxed::Box;
 use alloc::format;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -69,7 +70,7 @@ pub enum Growth {
     /// One strand along a line through these places \[m\], in equal segments.
     Curve(#[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 3]>"))] Vec<Vec3>),
     /// Many that grow on a surface.
-    On(Field),
+    On(Box<Field>),
 }
 
 /// Strands that grow on a surface, each clamped at its root, which two fixed points hold, one of them a segment beneath.

@@ -70,10 +70,12 @@ impl StrandParams {
 /// Elastic Rods", SIGGRAPH 2008): ½ Σ (g − g₀)ᵀ B (g − g₀) / l, with g = 2 tan(φ/2) along the axis, and l half of each edge beside.
 ///
 /// Stretching, bending and twisting of a strand are solved as one, for its places at the sub-step's end: forces are those of
-/// the material whatever the sub-steps, and however stiff it is. The system has a narrow band and is solved directly, so that the time that it takes
-/// grows with the number of points alone; several strands are solved eight at once. Forces act along the directions of the sub-step's
-/// beginning, and both momenta of a strand that nothing holds are kept to rounding. What swings so fast that a sub-step does not
-/// resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h.
+/// the material whatever the sub-steps. Single precision sets a limit: where points of mass m are l apart, bending is off by up to a
+/// share of 1e-6 E I h²/(m l³) in a sub-step h, less than 0.01 % for hair of 1 cm; longer edges and shorter sub-steps lessen it. The
+/// system has a narrow band and is solved directly, so that the time that it takes grows with the number of points alone; several
+/// strands are solved eight at once. Forces act along the directions of the sub-step's beginning, and both momenta of a strand that
+/// nothing holds are kept to rounding. What swings so fast that a sub-step does not resolve it fades: a motion of angular frequency ω
+/// by (ω h)²/2 in a sub-step h.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
 /// cannot turn about itself there; a single one is a hinge. Where a particle has died the strand is in two. Edges whose ends are in one place
