@@ -1,5 +1,6 @@
 //! Means of the benches to measure with: systems of a given size, and a hand-written loop to hold them against.
 
+pub mod dice;
 pub mod drop;
 
 use pointmass::rng::Stream;

@@ -7,13 +7,14 @@ use crate::stage::{look, tessellate};
 use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
+use pointmass::constrain::{Hull, HullList};
 use pointmass::draw::{
     Appearance, Instance, Knot, Line, Lock, Ring, Sprite, StrandLight, Trails, Vertex, View, appearance, body, links,
     solid, springs, sprite, strands, surface,
 };
 use pointmass::force::State;
 use pointmass::scene::{Light, Material, Model, PatchBuf, SceneFile};
-use pointmass::{Color, ConstraintKind, Heap, RigidBox, System};
+use pointmass::{Color, ConstraintKind, Heap, RigidBodies, RigidBox, System};
 use std::collections::HashMap;
 
 /// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
@@ -171,8 +172,12 @@ impl<'m> Cast<'m> {
                 let light = light_on_strands(file, self.view.eye);
                 seen.ribbons.extend(model.locks.iter().flat_map(|lock| hair(state, lock, &light)));
                 seen.pieces.extend(model.patches.iter().filter_map(|patch| cloth(state, patch, file)));
-                let boxes = model.constraints.1.boxes.iter().filter_map(|of| body(state, of, &model.particles));
-                seen.pieces.extend(boxes.map(|instance| cuboid(&instance, file)));
+                let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
+                let standing = boxes.iter().filter_map(|of| Some((of, body(state, of, &model.particles)?)));
+                seen.pieces.extend(standing.map(|(of, instance)| {
+                    let hull = of.hull.and_then(|number| hulls.hull(usize::from(number)));
+                    rigid(&instance, hull.as_ref().map(|hull| (hull, of.half)), file)
+                }));
             }
         });
         seen
@@ -305,12 +310,20 @@ fn cloth(state: &State<'_>, patch: &PatchBuf, file: &SceneFile) -> Option<Piece>
     Some(Piece { surface, material: painted(material, color), endless: false, lift })
 }
 
-/// The box of a rigid body.
-fn cuboid(instance: &Instance, file: &SceneFile) -> Piece {
+/// A rigid body: the box that it is, or its hull in a box of so much about its centroid.
+fn rigid(instance: &Instance, hull: Option<(&Hull<'_>, Vec3)>, file: &SceneFile) -> Piece {
     let Instance { center, axes, color, material } = *instance;
-    let surface = shapes::cuboid(Vec3::ZERO, Vec3::splat(2.0)).transformed(axes, center);
+    let surface = match hull {
+        None => shapes::cuboid(Vec3::ZERO, Vec3::splat(2.0)),
+        Some((hull, half)) => {
+            let corners = hull.faces.iter().flat_map(|face| hull.triangles(face)).flatten();
+            let places: Vec<_> = corners.map(|corner| corner / half).collect();
+            let triangles: Vec<_> = (0..places.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            shapes::mesh(&places, &triangles)
+        }
+    };
     let material = painted(file.materials.get(usize::from(material)), color);
-    Piece { surface, material, endless: false, lift: 0.0 }
+    Piece { surface: surface.transformed(axes, center), material, endless: false, lift: 0.0 }
 }
 
 /// A material in the colour of a particle.

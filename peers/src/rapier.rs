@@ -1,4 +1,4 @@
-//! The drop of many balls into an open box by rapier3d, to be held against the same drop by pointmass.
+//! The drop of many balls into an open box, and a throw of dice, by rapier3d, to be held against the same by pointmass.
 
 use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, SharedShape, Vector};
 
@@ -84,6 +84,62 @@ impl Pile {
     #[must_use]
     pub fn positions(&self) -> Vec<[f32; 3]> {
         self.balls.iter().map(|&ball| self.world.bodies[ball].translation().into()).collect()
+    }
+}
+
+/// A die as it is thrown.
+#[derive(Clone, Copy, Debug)]
+pub struct Die {
+    /// Its middle \[m\].
+    pub place: [f32; 3],
+    /// How it is turned: an angle \[rad\] along its axis.
+    pub turn: [f32; 3],
+    /// Its velocity \[m/s\].
+    pub velocity: [f32; 3],
+    /// How it turns \[rad/s\].
+    pub spin: [f32; 3],
+}
+
+/// Dice thrown on a half-space below y = 0 in rapier: one thread, its defaults for everything, steps of 1/60 s.
+pub struct Cuboids {
+    world: PhysicsWorld,
+    dice: Vec<RigidBodyHandle>,
+}
+
+impl Cuboids {
+    /// Dice of half a side \[m\] and a mass \[kg\] as they are thrown, and the table; `touch` are the coefficients of friction and restitution.
+    #[must_use]
+    pub fn new(dice: &[Die], half: f32, mass: f32, touch: [f32; 2], sleeps: bool) -> Self {
+        let mut world = PhysicsWorld { gravity: Vector::new(0.0, -GRAVITY, 0.0), ..PhysicsWorld::default() };
+        let touching = |collider: ColliderBuilder| collider.friction(touch[0]).restitution(touch[1]);
+        world.insert_collider(touching(ColliderBuilder::new(SharedShape::halfspace(Vector::Y))), None);
+        let throw = |die: &Die| {
+            let body = RigidBodyBuilder::dynamic().translation(die.place.into()).rotation(die.turn.into());
+            let body = body.linvel(die.velocity.into()).angvel(die.spin.into()).can_sleep(sleeps);
+            world.insert(body, touching(ColliderBuilder::cuboid(half, half, half)).mass(mass)).0
+        };
+        let dice = dice.iter().map(throw).collect();
+        Self { world, dice }
+    }
+
+    /// Goes on by one step.
+    pub fn step(&mut self) {
+        self.world.step();
+    }
+
+    /// The middle of each \[m\], and the unit vectors along its sides.
+    pub fn poses(&self) -> impl Iterator<Item = ([f32; 3], [[f32; 3]; 3])> + '_ {
+        self.dice.iter().map(|&die| {
+            let die = &self.world.bodies[die];
+            let turned = |axis: Vector| (*die.rotation() * axis).into();
+            (die.translation().into(), [Vector::X, Vector::Y, Vector::Z].map(turned))
+        })
+    }
+
+    /// The speed of the fastest one's middle \[m/s\].
+    #[must_use]
+    pub fn fastest(&self) -> f32 {
+        self.dice.iter().map(|&die| self.world.bodies[die].linvel().length()).fold(0.0, f32::max)
     }
 }
 

@@ -1,6 +1,7 @@
 //! All tests of laws in one program, so that the engine is compiled for them once: `cargo test -p pointmass-tests --test laws walls`.
 
 mod adaptive;
+mod balls;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;
 mod births;
@@ -16,6 +17,7 @@ mod faces;
 #[path = "forces/main.rs"]
 mod forces;
 mod goals;
+mod hulls;
 mod identity;
 mod implicit;
 #[path = "indices/main.rs"]

@@ -95,7 +95,7 @@ fn a_box_slides_down_a_slope_if_it_is_steeper_than_friction_holds() {
             ..RigidBox::new(Vec3::new(0.1, 0.05, 0.1) * scale, from + normal * 0.05 * scale, 0)
         };
         let start = cuboid.solid(Particle { mass: 2.0, material: Some(0), ..Particle::REST });
-        let (bodies, materials) = (RigidBodies { boxes: [cuboid] }, rough(mu));
+        let (bodies, materials) = (RigidBodies::boxes([cuboid]), rough(mu));
         let forces = Gravity { acceleration: Vec3::NEG_Y * 9.81 * scale };
         let parts = Scene { start: &start, forces: &forces, colliders: &slope, materials: &materials, ..Scene::EMPTY };
         let scene = Scene { constraints: &bodies, substeps: 20, integrator: method.integrator(), ..parts };
@@ -118,7 +118,7 @@ fn a_box_dropped_flat_bounces_to_e_squared_of_its_height() {
     ] {
         let cuboid = RigidBox::new(Vec3::new(0.05, 0.04, 0.06) * scale, Vec3::new(2.0, 1.04, -1.0) * scale, 0);
         let start = cuboid.solid(Particle { elasticity, material: Some(0), ..Particle::REST });
-        let (bodies, materials) = (RigidBodies { boxes: [cuboid] }, rough(0.5));
+        let (bodies, materials) = (RigidBodies::boxes([cuboid]), rough(0.5));
         let forces = Gravity { acceleration: Vec3::NEG_Y * 9.81 * scale };
         let parts = Scene { start: &start, forces: &forces, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
         let scene = Scene { constraints: &bodies, substeps, integrator: method.integrator(), ..parts };
@@ -155,7 +155,7 @@ fn two_boxes_exchange_their_momenta() {
             let part = Particle { elasticity, material: Some(0), ..Particle::REST };
             let mut start = boxes[0].solid(Particle { velocity: Vec3::X * 2.0, ..part }).to_vec();
             start.extend(boxes[1].solid(Particle { mass, ..part }));
-            let (bodies, materials) = (RigidBodies { boxes }, rough(0.5));
+            let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
             let scene = Scene { start: &start, constraints: &bodies, materials: &materials, ..Scene::EMPTY };
             let scene = Scene { substeps: 12, integrator: method.integrator(), ..scene };
             let mut system = started(&scene, 16, 0);
@@ -190,7 +190,7 @@ fn a_melee_keeps_its_momenta() {
             start.extend(thrown(&of, whole, random.direction() * 6.0));
             boxes.push(of);
         }
-        let (bodies, materials) = (RigidBodies { boxes }, rough(0.4));
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
         let scene = Scene { start: &start, constraints: &bodies, materials: &materials, substeps: 20, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 0);
         let before = Measures::of(&system, &scene);
@@ -211,7 +211,7 @@ fn a_free_box_turns_as_a_cluster_does() {
     let of = RigidBox::new(Vec3::new(0.3, 0.2, 0.1), Vec3::new(0.0, 1.0, 0.0), 0);
     for (spin, method) in [(Vec3::new(0.05, 4.0, 0.0), Method::Rk4), (Vec3::new(3.0, 1.0, 2.0), Method::Symplectic)] {
         let start = thrown(&of, Particle { velocity: Vec3::X, ..Particle::REST }, spin);
-        let (bodies, cluster) = (RigidBodies { boxes: [of] }, ShapeMatching::rigid([0, 1, 2, 3, 4, 5, 6, 7]));
+        let (bodies, cluster) = (RigidBodies::boxes([of]), ShapeMatching::rigid([0, 1, 2, 3, 4, 5, 6, 7]));
         let parts =
             Scene { start: &start, forces: &DOWN, substeps: 20, integrator: method.integrator(), ..Scene::EMPTY };
         let scenes = [Scene { constraints: &bodies, ..parts }, Scene { constraints: &cluster, ..parts }];
@@ -241,7 +241,7 @@ fn a_tower_of_ten_stands() {
     let boxes: Vec<_> = (0..10).map(|i| RigidBox::new(Vec3::splat(0.05), at(i), 8 * i)).collect();
     let part = Particle { material: Some(0), ..Particle::REST };
     let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(part)).collect();
-    let (bodies, materials) = (RigidBodies { boxes }, rough(0.5));
+    let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
     let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
     let scene = Scene { constraints: &bodies, substeps: 20, ..parts };
     let mut system = started(&scene, start.len(), 0);
@@ -298,7 +298,7 @@ fn fallen(boxes: &[RigidBox], x: &[Vec3]) -> [u32; 6] {
 /// Throws dice that do not meet each other.
 fn throw(seed: u64, count: u32, load: f32) -> [u32; 6] {
     let (start, boxes) = dice(seed, count, 3.0, load);
-    let (bodies, materials) = (RigidBodies { boxes }, rough(0.5));
+    let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
     let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
     let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
     let mut system = started(&scene, start.len(), 0);
@@ -333,7 +333,7 @@ fn thrown_dice_come_to_rest() {
             let inward = middle - particle.position;
             particle.velocity += Vec3::new(inward.x, 0.0, inward.z) * 1.5;
         }
-        let (bodies, materials) = (RigidBodies { boxes }, rough(0.4));
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
         let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
         let scene = Scene { constraints: &bodies, substeps: 20, integrator: method.integrator(), ..parts };
         let mut system = started(&scene, start.len(), 0);
@@ -380,7 +380,7 @@ fn what_is_smaller_than_a_box_holds_it_up() {
 #[test]
 fn any_number_of_threads_and_any_index_gives_the_same_bits() {
     let (start, boxes) = dice(9, 20, 0.14, 0.0);
-    let (bodies, materials) = (RigidBodies { boxes }, rough(0.4));
+    let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
     let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
     let mut hashes = Vec::new();
     for structure in Structure::ALL {
@@ -425,7 +425,7 @@ fn hostile_bodies_do_no_harm() {
             let mut start = sound.solid(part).to_vec();
             let shape = RigidBox::new(Vec3::splat(0.1), other.center, 8);
             start.extend(shape.solid(Particle { velocity, fixed, ..part }));
-            let (bodies, materials) = (RigidBodies { boxes: [sound, other] }, rough(0.5));
+            let (bodies, materials) = (RigidBodies::boxes([sound, other]), rough(0.5));
             let parts =
                 Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
             let scene = Scene { constraints: &bodies, substeps: 4, ..parts };

@@ -5,7 +5,7 @@ use super::packet::{Outcome, Paths, Riders};
 use super::path::Path;
 use super::sweep::{Sweep, facing, surroundings};
 use super::waiting::{Packet, Queue, ones};
-use crate::constrain::{SHIFTED, TOUCHING};
+use crate::constrain::{CARRIED, SHIFTED, TOUCHING};
 use crate::lanes::{Eight, Kernel, LANES, Vectors, run, widest};
 use crate::material::on_surface;
 use crate::math::{largest, max};
@@ -392,6 +392,11 @@ impl TileSweep<'_, '_> {
             return;
         }
         let sinks = (!scene.sinks.is_empty()).then_some(scene.sinks);
+        if mark & CARRIED != 0 && sinks.is_none() {
+            return;
+        }
+        let (walls, known): (&dyn Collider, _) =
+            if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
         let before = report.hits;
         let sweep = Sweep {
             scene,

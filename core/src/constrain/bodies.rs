@@ -16,6 +16,8 @@ use glam::Vec3;
 pub(crate) const SHIFTED: u32 = 1;
 /// A constraint keeps the particle from what it touches: the sweep only keeps its middle from passing through.
 pub(crate) const TOUCHING: u32 = 2;
+/// The particle belongs to a body that meets the scenery as a whole: the sweep looks for sinks on its path, and for nothing else.
+pub(crate) const CARRIED: u32 = 4;
 
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,6 +148,24 @@ impl fmt::Debug for Near<'_> {
 }
 
 impl Near<'_> {
+    /// Puts points into an index, and calls `then` with a function that visits those within `reach` \[m\] of any place, by their rows: in an order of
+    /// the index's own.
+    pub fn ask(&mut self, points: &[Vec3], reach: f32, then: &mut dyn FnMut(&dyn Fn(Vec3, &mut dyn FnMut(u32)))) {
+        let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
+        self.index.with_index(&mut self.memory[..words], points, reach, &mut |index| match index {
+            Some(index) => then(&|place, visit| {
+                index.within(place, reach, &mut |rows| rows.iter().for_each(|&row| visit(row)));
+            }),
+            None => then(&|place, visit| {
+                let near = |&(_, &point): &(usize, &Vec3)| {
+                    let d = point - place;
+                    d.x * d.x + d.y * d.y + d.z * d.z <= reach * reach
+                };
+                points.iter().enumerate().filter(near).for_each(|(row, _)| visit(row as u32));
+            }),
+        });
+    }
+
     /// Visits every two of the points within `reach` \[m\] of each other once, by their rows: in an order of the index's own.
     pub fn pairs(&mut self, points: &[Vec3], reach: f32, visit: &mut dyn FnMut(u32, u32)) {
         // No more memory than these points call for: more would make another structure.

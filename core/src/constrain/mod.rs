@@ -21,12 +21,14 @@ mod turn;
 
 pub use attach::Attach;
 pub use bodies::{Bodies, Near, Share, Substep};
-pub(crate) use bodies::{SHIFTED, TOUCHING};
+pub(crate) use bodies::{CARRIED, SHIFTED, TOUCHING};
 pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
-pub use rigid::{RigidBodies, RigidBox};
+pub use rigid::{Hull, HullEdge, HullFace, HullList, RigidBodies, RigidBox};
+#[cfg(feature = "alloc")]
+pub use rigid::{HullBuf, HullError};
 pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
 pub use sheet_contacts::SheetContacts;

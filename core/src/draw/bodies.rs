@@ -56,7 +56,7 @@ pub fn body(state: &State<'_>, body: &RigidBox, start: &[Particle]) -> Option<In
 /// let cuboid = RigidBox::new(Vec3::new(0.3, 0.2, 0.1), Vec3::ZERO, 0);
 /// let spin = Vec3::Z * core::f32::consts::PI;
 /// let start = cuboid.solid(Particle::REST).map(|p| Particle { velocity: spin.cross(p.position), ..p });
-/// let boxes = RigidBodies { boxes: [cuboid] };
+/// let boxes = RigidBodies::boxes([cuboid]);
 /// let scene = Scene { start: &start, constraints: &boxes, substeps: 20, ..Scene::EMPTY };
 /// let mut system = System::with(Heap::new(scene.size()));
 /// system.start(&scene, 1)?;

@@ -1,27 +1,32 @@
-//! Rigid boxes in scene files: one, or a block of many that differ by chance.
+//! Rigid boxes and other convex bodies in scene files: one, or a block of many that differ by chance.
 
 use super::numbers::{Checked, above_zero, finite, zero_or_more};
 use super::{SceneError, SceneFile};
-use crate::constrain::RigidBox;
-use crate::math::{length, sin_cos, unit};
+use crate::constrain::{Hull, HullBuf, HullError, RigidBox};
+use crate::math::{high, length, low, sin_cos, unit};
 use crate::particles::{Color, Particle};
 use crate::rng::Stream;
+use crate::shape::MeshBuf;
 use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
 
-/// Solid boxes that collide as boxes, each of eight particles (see [`RigidBodies`](crate::RigidBodies)). The particles follow the
+/// Solid boxes, dice or stones that collide as such, each of eight particles (see [`RigidBodies`](crate::RigidBodies)). The particles follow the
 /// scene's own and those of cloths, in order.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Boxes {
-    /// The lengths of a box's sides \[m\].
+    /// What they are: a box unless it says otherwise, or the convex hull of some points.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "BoxForm::is_box"))]
+    pub form: BoxForm,
+    /// The lengths of a box's sides \[m\]; of the sides of the upright box around another form, which is stretched to fill it.
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub sides: Vec3,
     /// The mass of each \[kg\].
     pub mass: f32,
-    /// Where the middle of the first is \[m\].
+    /// Where the middle of the first is, its centroid \[m\].
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub position: Vec3,
     /// How many there are along x, y and z.
@@ -67,6 +72,58 @@ pub struct Boxes {
     pub colors: Vec<Color>,
 }
 
+/// The form of boxes.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum BoxForm {
+    /// A box, or a die of six faces.
+    #[default]
+    Box,
+    /// A die of four triangles.
+    Tetrahedron,
+    /// A die of eight triangles.
+    Octahedron,
+    /// A die of twelve pentagons.
+    Dodecahedron,
+    /// A die of twenty triangles.
+    Icosahedron,
+    /// The convex hull of these points.
+    #[cfg_attr(feature = "schema", schemars(with = "alloc::vec::Vec<[f32; 3]>"))]
+    Points(Vec<Vec3>),
+    /// The convex hull of a triangle mesh by its file, relative to the scene's.
+    Mesh(String),
+}
+
+impl BoxForm {
+    fn is_box(&self) -> bool {
+        *self == Self::Box
+    }
+
+    /// Points whose convex hull it is; `mesh` is that of its file. A box has none.
+    fn points(&self, mesh: Option<&MeshBuf>) -> Option<Vec<Vec3>> {
+        /// The golden ratio.
+        const PHI: f32 = 1.618_034;
+        let signs = |x: f32, y: f32, z: f32| {
+            (0..8).map(move |i| {
+                let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                Vec3::new(x * sign(0), y * sign(1), z * sign(2))
+            })
+        };
+        // Both signs of nothing are one: a hull does not mind points twice.
+        let turned = |y: f32, z: f32| signs(0.0, y, z).chain(signs(z, 0.0, y)).chain(signs(y, z, 0.0));
+        Some(match self {
+            Self::Box => return None,
+            Self::Tetrahedron => signs(1.0, 1.0, 1.0).filter(|v| v.x * v.y * v.z > 0.0).collect(),
+            Self::Octahedron => turned(0.0, 1.0).collect(),
+            Self::Dodecahedron => signs(1.0, 1.0, 1.0).chain(turned(1.0 / PHI, PHI)).collect(),
+            Self::Icosahedron => turned(1.0, PHI).collect(),
+            Self::Points(points) => points.clone(),
+            Self::Mesh(_) => mesh?.vertices().to_vec(),
+        })
+    }
+}
+
 /// How much boxes differ by chance: along each axis evenly between less and more by so much.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
@@ -104,15 +161,32 @@ impl Boxes {
         self.number().saturating_mul(8)
     }
 
-    /// Its particles and bodies, the first particle having number `first` in the scene's start.
-    pub(super) fn make(&self, first: u32) -> (Vec<Particle>, Vec<RigidBox>) {
+    /// The hull of each, if they are no boxes; `mesh` is that of their form.
+    pub(super) fn hull(&self, mesh: Option<&MeshBuf>) -> Option<Result<HullBuf, HullError>> {
+        let mut points = self.form.points(mesh)?;
+        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (least, most) = points.iter().fold(start, |(a, b), &point| (low(a, point), high(b, point)));
+        let (middle, stretch) = ((least + most) * 0.5, self.sides / (most - least));
+        if !(points.iter().all(|point| point.is_finite()) && stretch.is_finite()) {
+            return Some(Err(if (least - most).is_finite() { HullError::Flat } else { HullError::NotFinite }));
+        }
+        points.iter_mut().for_each(|point| *point = (*point - middle) * stretch);
+        Some(HullBuf::of(&points))
+    }
+
+    /// Its particles and bodies, the first particle having number `first` in the scene's start; `hull` is that of each, and its number.
+    pub(super) fn make(&self, first: u32, hull: Option<(u16, Hull<'_>)>) -> (Vec<Particle>, Vec<RigidBox>) {
         let [nx, ny, nz] = self.count;
         let places = (0..ny).flat_map(|y| (0..nz).flat_map(move |z| (0..nx).map(move |x| [x, y, z])));
         let (mut particles, mut bodies) = (Vec::new(), Vec::new());
         for (number, place) in places.enumerate() {
-            let (body, whole, spin) = self.body(number as u32, place, first + particles.len() as u32);
+            let (mut body, whole, spin) = self.body(number as u32, place, first + particles.len() as u32);
+            if let Some((number, hull)) = hull {
+                (body.hull, body.half) = (Some(number), hull.half());
+            }
+            let solid = hull.map_or_else(|| body.solid(whole), |(_, hull)| body.solid_hull(&hull, whole));
             let load = |i: usize, axis: usize| if i >> axis & 1 == 1 { self.load[axis] } else { -self.load[axis] };
-            particles.extend(body.solid(whole).into_iter().enumerate().map(|(i, corner)| Particle {
+            particles.extend(solid.into_iter().enumerate().map(|(i, corner)| Particle {
                 velocity: corner.velocity + spin.cross(corner.position - body.center),
                 mass: corner.mass * (0..3).map(|axis| 1.0 + load(i, axis)).product::<f32>(),
                 ..corner

@@ -46,7 +46,7 @@ mod write;
 #[cfg(feature = "alloc")]
 pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
-pub use boxes::{Boxes, Scatter};
+pub use boxes::{BoxForm, Boxes, Scatter};
 #[cfg(feature = "alloc")]
 pub use cloth::{Air, Cloth, Form, Gas};
 #[cfg(feature = "alloc")]

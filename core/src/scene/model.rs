@@ -2,9 +2,9 @@
 
 use super::Response;
 use super::Scene;
-use super::{Files, Form, Growth, Material, SceneError, SceneFile, beside};
+use super::{BoxForm, Files, Form, Growth, Material, SceneError, SceneFile, beside};
 use crate::collide::Meetings;
-use crate::constrain::{ConstraintKind, Contacts, RigidBodies, RigidBox, SheetContacts};
+use crate::constrain::{ConstraintKind, Contacts, HullBuf, RigidBodies, RigidBox, SheetContacts};
 use crate::custom::CustomBuf;
 use crate::draw::{Lock, Patch};
 use crate::emit::Emitter;
@@ -47,7 +47,7 @@ pub struct Model {
     pub contacts: Option<Response>,
     /// The constraints that bind them, those of cloths that are shells and of strands, the rigid bodies, then contacts by position, and those of
     /// cloths.
-    pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>>, Option<Contacts>, SheetContactsBuf),
+    pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>, Vec<HullBuf>>, Option<Contacts>, SheetContactsBuf),
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// The things that they bounce off.
@@ -173,6 +173,7 @@ impl Model {
                 SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
             })
         });
+        let balls = balls(file, &start);
         let forces = (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals);
         file.check_reach(&forces).map_err(|error| error.in_file(path))?;
         let room = file.room.map_or(Room::OPEN, |room| room.room());
@@ -187,7 +188,7 @@ impl Model {
             contacts: file.contacts,
             constraints: (
                 constraints,
-                RigidBodies { boxes: start.boxes },
+                RigidBodies { boxes: start.boxes, hulls: start.hulls, balls },
                 file.contacts.and_then(|response| response.contacts()),
                 start.contacts,
             ),
@@ -315,6 +316,7 @@ struct Start {
     /// The contacts of those that have a thickness.
     contacts: SheetContactsBuf,
     locks: Vec<Lock>,
+    hulls: Vec<HullBuf>,
 }
 
 impl Start {
@@ -330,6 +332,7 @@ impl Start {
             blocks: Vec::new(),
             contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
             locks: Vec::new(),
+            hulls: Vec::new(),
         };
         for (i, cloth) in file.cloths.iter().enumerate() {
             let mesh = match &cloth.form {
@@ -363,7 +366,18 @@ impl Start {
             start.forces.extend(cloth.aerodynamics(mesh.as_deref(), first, &file.forces));
         }
         for (i, boxes) in file.boxes.iter().enumerate() {
-            let (particles, bodies) = boxes.make(start.particles.len() as u32);
+            let mesh = match &boxes.form {
+                BoxForm::Mesh(name) => Some(meshes.load(&format!("boxes[{i}].form"), name)?),
+                _ => None,
+            };
+            let hull = boxes.hull(mesh.as_deref()).transpose();
+            let hull = hull.map_err(|error| {
+                SceneError::value(format!("boxes[{i}].form"), error.to_string()).in_file(meshes.path)
+            })?;
+            let number = start.hulls.len() as u16;
+            let lent = hull.as_ref().map(|hull| (number, hull.lend()));
+            let (particles, bodies) = boxes.make(start.particles.len() as u32, lent);
+            start.hulls.extend(hull);
             if !particles.iter().all(Particle::is_sound) {
                 let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
                 return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));
@@ -403,6 +417,14 @@ impl Start {
 fn widest<S, M>(particles: &[Particle], emitters: &[Emitter<S, M>]) -> f32 {
     let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
     particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
+}
+
+/// Loose balls that may be near bodies at a time: all that there may be, but no more than 64 for each body, or 1,024 if that is more.
+fn balls(file: &SceneFile, start: &Start) -> u32 {
+    let loose = start.particles.iter().filter(|particle| particle.radius > 0.0).count();
+    let born = if widest(&[], &file.emitters) > 0.0 { u32::MAX } else { 0 };
+    let most = start.boxes.len().saturating_mul(64).max(1024);
+    if start.boxes.is_empty() { 0 } else { born.max(loose as u32).min(most as u32) }
 }
 
 /// The uniform acceleration of all.

@@ -60,7 +60,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let jelly = ShapeMatching { compliance: 2e-3, damping: 0.5, ..ShapeMatching::rigid(JELLY) };
     let sheet = sheet();
     let chest = |place: Vec3, first| RigidBox::new(Vec3::splat(0.1), place + 0.1, first);
-    let chests = RigidBodies { boxes: [chest(THROWN[0], DIE[0]), chest(THROWN[1], JELLY[0])] };
+    let chests = RigidBodies::boxes([chest(THROWN[0], DIE[0]), chest(THROWN[1], JELLY[0])]);
     let leash = Distance { compliance: 1e-3, ..Distance::string([11, 20], 0.3) };
     let hand = Attach {
         particles: [0],

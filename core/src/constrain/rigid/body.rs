@@ -1,7 +1,7 @@
 //! A rigid body as a whole: what its particles tell of it, how it moves, and what it tells them.
 
 use super::super::turn::{Turn, keeping, outer, solve};
-use super::super::{Bodies, SHIFTED};
+use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
 use crate::math::{length, max, min, sqrt};
 use glam::{Mat3, Vec3};
@@ -117,6 +117,12 @@ impl Body {
         self.velocity + self.omega.cross(arm)
     }
 
+    /// The same when the sub-step began.
+    pub(super) fn velocity_before(&self, arm: Vec3) -> Vec3 {
+        let [velocity, omega] = self.before;
+        velocity + omega.cross(arm)
+    }
+
     /// How much an impulse there changes the speed there along a direction \[1/kg\].
     pub(super) fn yielding(&self, arm: Vec3, direction: Vec3) -> f32 {
         let lever = arm.cross(direction);
@@ -130,6 +136,65 @@ impl Body {
         self.velocity += change;
         self.spin += torque;
         self.omega += self.inverse * torque;
+    }
+
+    /// Takes a ball as it is at the beginning of a sub-step: the particle in a row.
+    pub(super) fn follow(&mut self, bodies: &Bodies<'_>, row: usize) {
+        let Turn(turn) = Turn::NONE;
+        let radius = bodies.radius[row];
+        let (half, inverse_mass) = (Vec3::splat(radius), bodies.inverse_mass[row]);
+        let state = if inverse_mass > 0.0 { MOVING } else { FIXED };
+        let velocity = if inverse_mass > 0.0 { bodies.velocity[row] } else { Vec3::ZERO };
+        let (center, elasticity, material) =
+            (bodies.position[row], bodies.elasticity[row], u32::from(bodies.material[row]));
+        let (known, spare, leash) = (self.known, self.spare, self.leash);
+        let ball = Self {
+            known,
+            spare,
+            leash,
+            state,
+            turn,
+            center,
+            velocity,
+            inverse_mass,
+            half,
+            radius,
+            elasticity,
+            material,
+            ..Self::world()
+        };
+        *self = ball;
+        if !(center + velocity).is_finite() {
+            (self.state, self.inverse_mass) = (ABSENT, 0.0);
+        }
+    }
+
+    /// Takes in what has been done to a ball in the sub-step, as [`gather`](Self::gather) does.
+    pub(super) fn gather_ball(&mut self, bodies: &Bodies<'_>, row: usize) {
+        self.before = [self.velocity, Vec3::ZERO];
+        self.pressed = 0;
+        let (to, velocity) = (bodies.position[row], bodies.velocity[row]);
+        if self.moves() && (to + velocity).is_finite() {
+            self.velocity = velocity;
+            self.drift = to - self.center - velocity * bodies.substep.seconds();
+        }
+    }
+
+    /// Puts a ball where it says, if something has been done to it; `on_scenery`: by scenery as well.
+    pub(super) fn tell_ball(&self, bodies: &mut Bodies<'_>, row: usize, on_scenery: bool) {
+        if !self.moves() || !(self.center + self.velocity).is_finite() {
+            return;
+        }
+        if self.pressed != 0 {
+            bodies.position[row] = self.center;
+        }
+        if self.pressed != 0 || bodies.velocity[row] != self.velocity {
+            bodies.velocity[row] = self.velocity;
+            bodies.marks[row] |= SHIFTED;
+        }
+        if on_scenery {
+            bodies.mark_touching(row);
+        }
     }
 
     /// Looks which of its particles live; tells whether that is news.
@@ -279,10 +344,7 @@ impl Body {
                 let arm = self.rotation * (Vec3::new(x, y, z) - self.rest);
                 bodies.position[row] = self.center + arm;
                 bodies.velocity[row] = self.velocity_at(arm);
-                bodies.marks[row] |= SHIFTED;
-                if self.pressed != 0 {
-                    bodies.mark_touching(row);
-                }
+                bodies.marks[row] |= SHIFTED | CARRIED;
             }
         }
     }

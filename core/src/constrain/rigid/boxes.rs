@@ -1,6 +1,7 @@
-//! Where two boxes touch: by separating axes, and by clipping one's face to the other's.
+//! How two boxes are apart: by separating axes.
 
-use crate::math::{clamp, dot, max, min, sqrt};
+use super::facets::{Apart, By, Edge, Facet, Faceted};
+use crate::math::{clamp, dot, length, min, sqrt};
 use glam::{Mat3, Vec3};
 
 /// A box that stands anywhere.
@@ -14,39 +15,10 @@ pub(super) struct Oriented {
     pub(super) half: Vec3,
 }
 
-/// The direction along which two boxes are farthest apart, or overlap least.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Apart {
-    /// How far apart they are \[m\]; below zero where they overlap.
-    pub(super) gap: f32,
-    /// From the first to the second.
-    normal: Vec3,
-    by: By,
-}
-
-/// The features that the direction belongs to.
-#[derive(Clone, Copy, Debug)]
-enum By {
-    /// A face across an axis of the first, or of the second.
-    Face(usize, usize),
-    /// Edges along an axis of each.
-    Edges(usize, usize),
-}
-
-/// A place where two boxes touch, or are about to: on the surface of each \[m\].
-pub(super) type Spot = [Vec3; 2];
-
-/// How two boxes touch: the direction from the first to the second, and where.
-#[derive(Clone, Debug)]
-pub(super) struct Touching {
-    pub(super) normal: Vec3,
-    pub(super) spots: heapless::Vec<Spot, 8>,
-}
-
 /// By how much of the smaller boxes' size an axis of edges has to be the better one: faces hold steadier.
-const FACES_FIRST: f32 = 0.02;
+pub(super) const FACES_FIRST: f32 = 0.02;
 /// The squared sine of an angle at which edges count as parallel.
-const PARALLEL: f32 = 1e-4;
+pub(super) const PARALLEL: f32 = 1e-4;
 
 impl Oriented {
     /// How far it reaches along a direction from its middle \[m\].
@@ -55,21 +27,52 @@ impl Oriented {
         self.half.x * dot(x, along).abs() + self.half.y * dot(y, along).abs() + self.half.z * dot(z, along).abs()
     }
 
-    /// A face: its middle, its outward normal and, as its half sides, two vectors.
-    fn face(&self, axis: usize, toward: Vec3) -> [Vec3; 4] {
-        let out = facing(self.axes.col(axis), toward);
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    /// Its corner with a number from 0 to 7, from its middle along its own axes \[m\].
+    pub(super) fn corner(half: Vec3, number: u32) -> Vec3 {
+        let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        half * Vec3::new(side(0), side(1), side(2))
+    }
+
+    pub(super) fn least(&self) -> f32 {
+        min(self.half.x, min(self.half.y, self.half.z))
+    }
+}
+
+/// The place on the surface of a box of these half sides about the origin that is nearest to a place \[m\], the way out there, and how far out the
+/// place is \[m\]: below zero inside.
+pub(super) fn nearest(half: Vec3, place: Vec3) -> (Vec3, Vec3, f32) {
+    let held = Vec3::from_array([0, 1, 2].map(|k| clamp(place[k], -half[k], half[k])));
+    let away = held - place;
+    let distance = length(away);
+    if distance > 0.0 {
+        return (held, away * (-1.0 / distance), distance);
+    }
+    let depth = [0, 1, 2].map(|k| half[k] - place[k].abs());
+    let axis = if depth[0] <= depth[1] && depth[0] <= depth[2] {
+        0
+    } else if depth[1] <= depth[2] {
+        1
+    } else {
+        2
+    };
+    let side = if place[axis] < 0.0 { -1.0 } else { 1.0 };
+    let (mut on, mut normal) = (held, Vec3::ZERO);
+    (on[axis], normal[axis]) = (side * half[axis], side);
+    (on, normal, -depth[axis])
+}
+
+impl Faceted for Oriented {
+    fn face(&self, number: usize, toward: Vec3) -> Facet {
+        let out = facing(self.axes.col(number), toward);
+        let (i, j) = ((number + 1) % 3, (number + 2) % 3);
         let side = |k: usize| self.axes.col(k) * self.half[k];
-        [self.middle + out * self.half[axis], out, side(i), side(j)]
+        let (middle, u, v) = (self.middle + out * self.half[number], side(i), side(j));
+        let mut facet = Facet { middle, out, sides: heapless::Vec::new(), corners: heapless::Vec::new() };
+        facet.sides.extend([u, v, -u, -v].map(|side| (side, middle, dot(side, side))));
+        facet.corners.extend([middle - u - v, middle + u - v, middle + u + v, middle - u + v]);
+        facet
     }
 
-    /// The middle of the edge along an axis that is farthest in a direction.
-    fn edge(&self, axis: usize, toward: Vec3) -> Vec3 {
-        let side = |k: usize| facing(self.axes.col(k), toward) * self.half[k];
-        self.middle + side((axis + 1) % 3) + side((axis + 2) % 3)
-    }
-
-    /// Its face that looks most in a direction.
     fn across(&self, toward: Vec3) -> usize {
         let [x, y, z] = [0, 1, 2].map(|k| dot(self.axes.col(k), toward).abs());
         if x >= y && x >= z {
@@ -81,14 +84,10 @@ impl Oriented {
         }
     }
 
-    /// Its corner with a number from 0 to 7, from its middle along its own axes \[m\].
-    pub(super) fn corner(half: Vec3, number: u32) -> Vec3 {
-        let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
-        half * Vec3::new(side(0), side(1), side(2))
-    }
-
-    fn least(&self) -> f32 {
-        min(self.half.x, min(self.half.y, self.half.z))
+    fn edge(&self, number: usize, toward: Vec3) -> Edge {
+        let side = |k: usize| facing(self.axes.col(k), toward) * self.half[k];
+        let middle = self.middle + side((number + 1) % 3) + side((number + 2) % 3);
+        Edge { middle, along: self.axes.col(number), half: self.half[number] }
     }
 }
 
@@ -134,100 +133,4 @@ pub(super) fn apart(a: &Oriented, b: &Oriented, bound: f32) -> Option<Apart> {
         }
     }
     Some(best)
-}
-
-impl Apart {
-    /// The places where they touch, or are at most `reach` \[m\] apart.
-    pub(super) fn touching(&self, a: &Oriented, b: &Oriented, reach: f32) -> Touching {
-        let normal = self.normal;
-        let mut spots = heapless::Vec::new();
-        match self.by {
-            By::Face(0, axis) => clip(&a.face(axis, normal), b, reach, &mut |on, off| push(&mut spots, [on, off])),
-            By::Face(_, axis) => clip(&b.face(axis, -normal), a, reach, &mut |on, off| push(&mut spots, [off, on])),
-            By::Edges(i, j) => {
-                let (p, q) = (a.edge(i, normal), b.edge(j, -normal));
-                if self.gap <= reach {
-                    push(&mut spots, nearest([p, a.axes.col(i)], [q, b.axes.col(j)], [a.half[i], b.half[j]]));
-                }
-            }
-        }
-        Touching { normal, spots }
-    }
-}
-
-/// Two convex quadrangles share eight corners at the most, for which there is room.
-fn push(spots: &mut heapless::Vec<Spot, 8>, spot: Spot) {
-    let _ = spots.push(spot);
-}
-
-/// The points of two edges that are nearest to each other: each given by its middle, its direction and half its length.
-fn nearest([p, u]: [Vec3; 2], [q, v]: [Vec3; 2], [half, other]: [f32; 2]) -> Spot {
-    let (way, cos) = (q - p, dot(u, v));
-    let sine = max(1.0 - cos * cos, PARALLEL);
-    let s = clamp((dot(u, way) - cos * dot(v, way)) / sine, -half, half);
-    let t = clamp(cos * s - dot(v, way), -other, other);
-    [p + u * s, q + v * t]
-}
-
-/// Visits the places where the face of `of` that looks at a face is within `reach` of it, clipped to that: on the face, and on `of`
-/// (Sutherland and Hodgman, "Reentrant Polygon Clipping", CACM 17, 1974).
-fn clip(&[middle, out, u, v]: &[Vec3; 4], of: &Oriented, reach: f32, visit: &mut dyn FnMut(Vec3, Vec3)) {
-    let [center, _, s, t] = of.face(of.across(out), -out);
-    let mut polygon = heapless::Vec::<Vec3, 8>::new();
-    polygon.extend([center - s - t, center + s - t, center + s + t, center - s + t]);
-    for side in [u, v, -u, -v] {
-        let beyond = |x: Vec3| dot(side, x - middle) - dot(side, side);
-        let mut kept = heapless::Vec::<Vec3, 8>::new();
-        let last = polygon.last().copied().unwrap_or(center);
-        let (mut from, mut before) = (last, beyond(last));
-        for &to in &polygon {
-            let after = beyond(to);
-            if (before > 0.0) != (after > 0.0) {
-                let _ = kept.push(from + (to - from) * (before / (before - after)));
-            }
-            if !(after > 0.0) {
-                let _ = kept.push(to);
-            }
-            (from, before) = (to, after);
-        }
-        polygon = kept;
-    }
-    for &x in &polygon {
-        let gap = dot(out, x - middle);
-        if gap <= reach {
-            visit(x - out * gap, x);
-        }
-    }
-}
-
-/// The four of many spots that hold two best: the deepest, that farthest from it, that farthest from their line, and that farthest from it
-/// on the other side.
-pub(super) fn four(touching: &Touching) -> heapless::Vec<Spot, 4> {
-    let Touching { normal, spots } = touching;
-    let mut chosen = heapless::Vec::new();
-    if spots.len() <= 4 {
-        chosen.extend(spots.iter().copied());
-        return chosen;
-    }
-    let most = |value: &dyn Fn(&Spot) -> f32| {
-        let mut best = (0, f32::NEG_INFINITY);
-        for (i, spot) in spots.iter().enumerate() {
-            let value = value(spot);
-            if value > best.1 {
-                best = (i, value);
-            }
-        }
-        spots[best.0]
-    };
-    let first = most(&|[p, q]| -dot(*normal, *q - *p));
-    let second = most(&|[p, _]| dot(*p - first[0], *p - first[0]));
-    let area = |p: Vec3| dot((second[0] - first[0]).cross(p - first[0]), *normal);
-    let third = most(&|[p, _]| area(*p));
-    let fourth = most(&|[p, _]| -area(*p));
-    for spot in [first, second, third, fourth] {
-        if !chosen.contains(&spot) {
-            let _ = chosen.push(spot);
-        }
-    }
-    chosen
 }

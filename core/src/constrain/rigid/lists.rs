@@ -1,7 +1,9 @@
 //! The list of bodies that may touch each other, made anew when one has gone far.
 
 use super::super::{Bodies, Words};
+use super::balls::{self, Around, Ball, NEAR};
 use super::body::Body;
+use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
 use super::scenery::{DIRECTIONS, leash};
 use crate::material::of_two;
@@ -26,13 +28,23 @@ pub(super) struct Lists {
 /// The memory of bodies in its parts.
 pub(super) struct Kept<'a> {
     pub(super) lists: &'a mut Lists,
-    /// The world, then the bodies.
+    /// The world, the scene's bodies, then the balls near them.
     pub(super) bodies: &'a mut [Body],
     pub(super) pairs: &'a mut [Manifold],
     /// So many for each body as it can be pressed in directions.
     pub(super) scenery: &'a mut [Manifold],
+    /// The balls near bodies.
+    pub(super) balls: &'a mut [Ball],
     /// The places of all particles, of one body after the other.
     pub(super) places: &'a mut [u32],
+}
+
+/// How many bodies there are, how many particles of theirs, and how many balls may be near them.
+#[derive(Clone, Copy)]
+pub(super) struct Sizes {
+    pub(super) bodies: usize,
+    pub(super) particles: usize,
+    pub(super) balls: usize,
 }
 
 /// Words of a thing.
@@ -40,65 +52,98 @@ const fn words<T>() -> usize {
     size_of::<T>() / 4
 }
 
-/// How many pairs there is room for.
-fn room(count: usize) -> usize {
-    count.saturating_mul(PAIRS).min(count.saturating_mul(count.saturating_sub(1)) / 2)
-}
+impl Sizes {
+    /// How many pairs there is room for.
+    fn pairs(&self) -> usize {
+        let Self { bodies, balls, .. } = *self;
+        let among = bodies.saturating_mul(PAIRS).min(bodies.saturating_mul(bodies.saturating_sub(1)) / 2);
+        among.saturating_add(balls.saturating_mul(NEAR))
+    }
 
-/// The words kept for so many bodies of so many particles in all, and those to work with.
-pub(super) fn demand(count: usize, particles: usize) -> [Words; 2] {
-    let each = |count: usize, words: usize| count.saturating_mul(words);
-    let kept = words::<Lists>()
-        .saturating_add(each(count.saturating_add(1), words::<Body>()))
-        .saturating_add(each(room(count), words::<Manifold>()))
-        .saturating_add(each(count, DIRECTIONS * words::<Manifold>()))
-        .saturating_add(each(particles, 3));
-    let scratch = each(room(count), words::<Manifold>()).saturating_add(each(count, 3 + 2 * CANDIDATES));
-    [kept, scratch].map(|fixed| Words { per_row: 0, fixed })
+    /// How many pairs may be looked at for that.
+    fn candidates(&self) -> usize {
+        self.bodies.saturating_mul(CANDIDATES).saturating_add(self.balls.saturating_mul(NEAR))
+    }
+
+    /// The words kept of them, and those to work with.
+    pub(super) fn demand(&self) -> [Words; 2] {
+        let each = |count: usize, words: usize| count.saturating_mul(words);
+        let all = self.bodies.saturating_add(self.balls);
+        let kept = words::<Lists>()
+            .saturating_add(each(all.saturating_add(1), words::<Body>()))
+            .saturating_add(each(self.pairs(), words::<Manifold>()))
+            .saturating_add(each(all, DIRECTIONS * words::<Manifold>()))
+            .saturating_add(each(self.balls, words::<Ball>()))
+            .saturating_add(each(self.particles, 3));
+        let scratch = each(self.pairs(), words::<Manifold>())
+            .saturating_add(each(self.bodies, 3))
+            .saturating_add(each(self.candidates(), 2));
+        let per_row = usize::from(self.balls > 0);
+        [Words { per_row: 0, fixed: kept }, Words { per_row, fixed: scratch }]
+    }
 }
 
 impl<'a> Kept<'a> {
     /// None: the memory is too small.
-    pub(super) fn of(mut memory: &'a mut [u32], count: usize) -> Option<Self> {
+    pub(super) fn of(mut memory: &'a mut [u32], sizes: Sizes) -> Option<Self> {
+        let all = sizes.bodies + sizes.balls;
         let lists = bytemuck::try_cast_slice_mut(take(&mut memory, words::<Lists>())).ok()?.first_mut()?;
-        let bodies = bytemuck::try_cast_slice_mut(take(&mut memory, (count + 1) * words::<Body>())).ok()?;
-        let pairs = bytemuck::try_cast_slice_mut(take(&mut memory, room(count) * words::<Manifold>())).ok()?;
-        let scenery = take(&mut memory, count * DIRECTIONS * words::<Manifold>());
+        let bodies = bytemuck::try_cast_slice_mut(take(&mut memory, (all + 1) * words::<Body>())).ok()?;
+        let pairs = bytemuck::try_cast_slice_mut(take(&mut memory, sizes.pairs() * words::<Manifold>())).ok()?;
+        let scenery = take(&mut memory, all * DIRECTIONS * words::<Manifold>());
         let scenery = bytemuck::try_cast_slice_mut(scenery).ok()?;
-        Some(Self { lists, bodies, pairs, scenery, places: memory })
+        let balls = bytemuck::try_cast_slice_mut(take(&mut memory, sizes.balls * words::<Ball>())).ok()?;
+        Some(Self { lists, bodies, pairs, scenery, balls, places: memory })
+    }
+
+    /// The number of the first ball: the scene's bodies come before.
+    pub(super) fn first_ball(&self) -> usize {
+        self.bodies.len() - self.balls.len()
     }
 }
 
 /// Lists all that may touch before one of them has gone as far as it may, and looks where they do.
-pub(super) fn gather(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, scratch: &mut [u32], is_news: bool) {
+pub(super) fn gather(
+    bodies: &mut Bodies<'_>,
+    kept: &mut Kept<'_>,
+    forms: Forms<'_>,
+    scratch: &mut [u32],
+    is_news: bool,
+) {
     let (h, step) = (bodies.substep.seconds(), bodies.substep.step.seconds());
     let mut is_over = is_news || kept.lists.known == 0;
-    for body in kept.bodies.iter_mut().filter(|body| body.moves()) {
+    let first = kept.first_ball();
+    for body in kept.bodies[..first].iter_mut().filter(|body| body.moves()) {
         body.leash -= body.speed() * h;
         is_over |= !(body.leash >= body.speed() * h);
     }
+    if !kept.balls.is_empty() {
+        is_over |= bodies.substep.number == 0 || balls::are_far(bodies, kept, h);
+    }
     if is_over {
-        for body in kept.bodies.iter_mut() {
+        for body in kept.bodies[..first].iter_mut() {
             body.leash = if body.moves() { leash(body, step) } else { 0.0 };
         }
-        list(bodies, kept, scratch);
+        list(bodies, kept, forms, scratch);
     }
     let Kept { lists, bodies: all, pairs, .. } = kept;
     for pair in &mut pairs[..lists.pairs as usize] {
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
         let way = (length(a.velocity - b.velocity) + length(a.omega) * a.radius + length(b.omega) * b.radius) * h;
         if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
-            pair.find(a, b, 2.0 * way);
+            pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);
         }
         pair.spare -= way;
     }
 }
 
 /// Makes the list. Those that were in the list before go on with what they have.
-fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, scratch: &mut [u32]) {
-    let Kept { lists, bodies: all, pairs, .. } = kept;
-    let count = all.len() - 1;
+fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch: &mut [u32]) {
+    let count = forms.boxes.len();
+    let sizes = Sizes { bodies: count, particles: 0, balls: kept.balls.len() };
     let (mut rest, mut widest) = (scratch, 0.0);
+    let rows = take(&mut rest, if kept.balls.is_empty() { 0 } else { bodies.len() });
+    let all = &*kept.bodies;
     let middles = take_vectors(&mut rest, count);
     for (middle, body) in middles.iter_mut().zip(&all[1..]) {
         *middle = if body.is_there() { body.center } else { glam::Vec3::NAN };
@@ -106,7 +151,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, scratch: &mut [u32]) {
             widest = max(widest, body.radius + body.leash);
         }
     }
-    let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * CANDIDATES * count));
+    let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * sizes.candidates()));
     let mut found = 0;
     let report = &mut *bodies.report;
     bodies.near.pairs(middles, 2.0 * widest, &mut |row, other| {
@@ -122,9 +167,21 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, scratch: &mut [u32]) {
         }
         found += 1;
     });
+    if !kept.balls.is_empty() {
+        let mut left_out = 0;
+        balls::invite(bodies, kept, forms, Around { middles, widest, rows }, &mut |pair| {
+            match candidates.get_mut(found) {
+                Some(place) => *place = pair,
+                None => left_out += 1,
+            }
+            found += 1;
+        });
+        bodies.report.caps.contacts += left_out;
+    }
     let found = found.min(candidates.len());
     let candidates = &mut candidates[..found];
     candidates.sort_unstable();
+    let Kept { lists, bodies: all, pairs, balls, .. } = kept;
     // The old list, beside the new one.
     let old = lists.pairs as usize;
     let room = rest.len() - rest.len() % words::<Manifold>();
@@ -136,10 +193,12 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, scratch: &mut [u32]) {
         while before.peek().is_some_and(|pair| pair.bodies < key) {
             before.next();
         }
-        let known = before.peek().filter(|pair| pair.bodies == key);
-        let [a, b] = key.map(|number| &all[number as usize]);
+        let ball = (key[1] as usize).checked_sub(count + 1).and_then(|ball| balls.get(ball));
+        let known = before.peek().filter(|pair| pair.bodies == key && !ball.is_some_and(Ball::is_new));
+        let pair = key.map(|number| &all[number as usize]);
         let holds = known.is_some_and(|pair| pair.count > 0);
-        if !holds && !are_near(a, b, a.leash + b.leash) {
+        let [a, b] = pair;
+        if ball.is_none() && !holds && !are_near(pair, key.map(|number| forms.of(number)), a.leash + b.leash) {
             continue;
         }
         let Some(place) = pairs.get_mut(len) else {
@@ -154,6 +213,10 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, scratch: &mut [u32]) {
             },
             |pair| **pair,
         );
+        if ball.is_some() {
+            // Whatever else has moved the ball: where it touches is looked for again.
+            place.spare = 0.0;
+        }
     }
     (lists.pairs, lists.known) = (len as u32, 1);
 }

@@ -1,7 +1,8 @@
 //! Two bodies that touch, or a body and the scenery: where, and what they have done to each other.
 
 use super::body::Body;
-use super::boxes::{Oriented, Spot, apart, four};
+use super::facets::{Spot, four};
+use super::forms::{Form, with_apart};
 use crate::material::Mixed;
 use crate::math::{dot, max, min};
 use glam::Vec3;
@@ -73,39 +74,50 @@ impl Manifold {
         }
     }
 
-    /// Looks where two boxes touch, or will when they have gone `reach` \[m\] against each other.
-    pub(super) fn find(&mut self, a: &Body, b: &Body, reach: f32) {
+    /// Looks where two bodies touch, or will when they have gone `reach` \[m\] against each other.
+    pub(super) fn find(&mut self, [a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) {
         let (before, count) = (self.points, (self.count as usize).min(4));
-        let small = min(a.small(), b.small());
+        let (before, small) = (&before[..count], min(a.small(), b.small()));
         self.count = 0;
-        let [one, other] = [a, b].map(oriented);
-        // Boxes farther apart than this are let go for as long as they stay so.
+        let [form, other] = forms;
+        if let Form::Ball = other {
+            let (on, out, far) = form.nearest(a, a.place(b.center));
+            let gap = far - b.radius;
+            self.spare = if gap > reach + small { gap } else { small };
+            if gap <= reach + small {
+                self.normal = out;
+                self.put([on, a.rotation * out * -b.radius], before, f32::INFINITY);
+            }
+            return;
+        }
+        // Bodies farther apart than this are let go for as long as they stay so.
         let far = f32::MAX;
-        let Some(gap) = apart(&one, &other, far) else {
+        let found = with_apart([a, b], forms, far, |gap, [one, other]| {
+            let touches = gap.gap <= reach + small;
+            (gap.gap, touches.then(|| gap.touching(one, other, reach + small)))
+        });
+        let Some((gap, touching)) = found else {
             self.spare = 0.0;
             return;
         };
-        if gap.gap > reach + small {
-            self.spare = gap.gap;
+        let Some(touching) = touching else {
+            self.spare = gap;
             return;
-        }
+        };
         self.spare = small;
-        let touching = gap.touching(&one, &other, reach + small);
         self.normal = a.rotation.transpose() * touching.normal;
         for [p, q] in four(&touching) {
-            self.put([a.place(p), b.place(q)], &before[..count], 5.0 * small);
+            self.put([a.place(p), b.place(q)], before, 5.0 * small);
         }
     }
 }
 
-/// A body's box.
-pub(super) fn oriented(body: &Body) -> Oriented {
-    Oriented { middle: body.middle(), axes: body.rotation, half: body.half }
-}
-
-/// Tells whether the boxes of two bodies are within `reach` \[m\] of each other.
-pub(super) fn are_near(a: &Body, b: &Body, reach: f32) -> bool {
-    apart(&oriented(a), &oriented(b), reach).is_some()
+/// Tells whether two bodies are within `reach` \[m\] of each other.
+pub(super) fn are_near([a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) -> bool {
+    if let [form, Form::Ball] = forms {
+        return form.nearest(a, a.place(b.center)).2 - b.radius <= reach;
+    }
+    with_apart([a, b], forms, reach, |_, _| ()).is_some()
 }
 
 /// The middle of a spot.

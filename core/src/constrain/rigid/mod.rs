@@ -1,42 +1,58 @@
 //! Rigid bodies of particles that collide as boxes.
 
+mod balls;
 mod body;
 mod boxes;
+mod facets;
+mod forms;
+mod hull;
+#[cfg(feature = "alloc")]
+mod hull_buf;
 mod lists;
 mod manifold;
 mod scenery;
 mod solver;
+mod tell;
 
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share};
 use crate::math::sqrt;
 use crate::memory::take;
 use crate::particles::Particle;
+use balls::Ball;
 use body::{Body, Made};
 use boxes::Oriented;
+use forms::Forms;
 use glam::{Mat3, Vec3};
-use lists::Kept;
+pub use hull::{Hull, HullEdge, HullFace, HullList};
+#[cfg(feature = "alloc")]
+pub use hull_buf::{HullBuf, HullError};
+use lists::{Kept, Sizes};
 use manifold::Manifold;
 use scenery::DIRECTIONS;
 use solver::Span;
 
-/// Rigid bodies, each a few particles and a box: they fly as their particles do, all as one, and touch each other and the scene's colliders
-/// as boxes, with friction and elasticity.
+/// Rigid bodies, each a few particles and a box or a convex hull: they fly as their particles do, all as one, and touch each other, the scene's
+/// colliders and loose balls as such, with friction and elasticity.
 ///
 /// A body has the mass, centre and inertia of its particles, and their momenta; it turns by Euler's equations as
 /// [`ShapeMatching`](crate::ShapeMatching) does, and in the end its particles are put where it says. Eight equal particles at 1/√3 of the way to the
-/// corners have the inertia of a solid box, others that of loaded dice. A body with a fixed particle stays where it is; particles that have died no
+/// corners have the inertia of a solid box, those of [`Hull::particles`] that of a solid hull, others that of loaded dice. A body with a fixed particle stays where it is; particles that have died no
 /// longer count. Particles of bodies should have no radius, so that no other constraint takes them for balls.
 ///
-/// Where two boxes touch is found by separating axes: face on face by clipping (four points), edge on edge by their nearest points. Against colliders
-/// a box's corners count, and what of the scenery is nearest to its middle, where that lies in the box: of what is smaller than the box, edges and
-/// balls, one place each. Impulses at these points, with those of the last sub-step to begin with, keep bodies from passing into each other within
+/// Where two bodies touch is found by separating axes: face on face by clipping (four points), edge on edge by their nearest points. Against
+/// colliders a body's corners count, and what of the scenery is nearest to its middle, where that lies in it: of what is smaller than the body, edges
+/// and balls, one place each. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does not spin,
+/// and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to begin with, keep bodies from passing into each other within
 /// the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019; Catto, "Soft Constraints", GDC 2011), then velocities are brought to
 /// part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020, section 3.6).
 /// Friction is Coulomb's. All impulses act on both at one place, so that linear and angular momentum are kept to rounding.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
-/// touching pairs a body and three directions of the scenery; what finds none is counted (`caps.contacts`).
+/// touching pairs a body, two for each ball and three directions of the scenery; what finds none is counted (`caps.contacts`).
+///
+/// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands, with the
+/// mass of the whole and the velocities of the body where it was struck.
 ///
 /// ```
 /// use pointmass::constrain::{RigidBodies, RigidBox};
@@ -46,7 +62,7 @@ use solver::Span;
 /// // A solid box of 0.2 m × 0.1 m × 0.1 m and 1 kg, 0.3 m above the ground.
 /// let cuboid = RigidBox::new(Vec3::new(0.1, 0.05, 0.05), Vec3::Y * 0.3, 0);
 /// let start = cuboid.solid(Particle { mass: 1.0, ..Particle::REST });
-/// let bodies = RigidBodies { boxes: [cuboid] };
+/// let bodies = RigidBodies::boxes([cuboid]);
 /// let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
 /// let scene = Scene {
 ///     start: &start,
@@ -67,31 +83,43 @@ use solver::Span;
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RigidBodies<L> {
+pub struct RigidBodies<L, H = ()> {
     /// The bodies.
     pub boxes: L,
+    /// The hulls of those that are no boxes ([`RigidBox::hull`]).
+    pub hulls: H,
+    /// Loose balls that may be near bodies at a time. More fly through them, counted (`caps.contacts`).
+    pub balls: u32,
 }
 
-/// A rigid body: some particles, and the box they are in.
+/// A rigid body: some particles, and the box or hull they are in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBox {
     /// The first of its particles, by its place in the scene's start, and their number: the next ones are the others.
     pub first: u32,
     /// How many there are.
     pub count: u32,
-    /// Half the sides of the box \[m\].
+    /// Half the sides of the box \[m\]; of the box about its centroid that holds a hull.
     pub half: Vec3,
-    /// The middle of the box at the scene's start \[m\].
+    /// The middle of the box, or the centroid of the hull, at the scene's start \[m\].
     pub center: Vec3,
-    /// How the box is turned then: a quaternion x, y, z, w of any length but zero.
+    /// How it is turned then: a quaternion x, y, z, w of any length but zero.
     pub turn: [f32; 4],
+    /// The number of its hull among those of [`RigidBodies::hulls`]; none: it is a box, as it is where there is no such hull.
+    pub hull: Option<u16>,
 }
 
 impl RigidBox {
     /// An upright box of eight particles, `first` and those that follow.
     #[must_use]
     pub const fn new(half: Vec3, center: Vec3, first: u32) -> Self {
-        Self { first, count: 8, half, center, turn: [0.0, 0.0, 0.0, 1.0] }
+        Self { first, count: 8, half, center, turn: [0.0, 0.0, 0.0, 1.0], hull: None }
+    }
+
+    /// An upright body of eight particles that is the hull with a number.
+    #[must_use]
+    pub fn with_hull(hull: &Hull<'_>, number: u16, center: Vec3, first: u32) -> Self {
+        Self { hull: Some(number), ..Self::new(hull.half(), center, first) }
     }
 
     /// How it is turned at the scene's start.
@@ -104,12 +132,20 @@ impl RigidBox {
     /// axis across half sides a and b.
     #[must_use]
     pub fn solid(&self, whole: Particle) -> [Particle; 8] {
-        let turn = self.rotation();
         let half = self.half * sqrt(1.0 / 3.0);
-        core::array::from_fn(|i| {
-            let position = self.center + turn * Oriented::corner(half, i as u32);
-            Particle { position, mass: whole.mass * 0.125, ..whole }
-        })
+        self.at(core::array::from_fn(|i| Oriented::corner(half, i as u32)), whole)
+    }
+
+    /// The same of a solid hull.
+    #[must_use]
+    pub fn solid_hull(&self, hull: &Hull<'_>, whole: Particle) -> [Particle; 8] {
+        self.at(hull.particles(), whole)
+    }
+
+    /// Eight equal particles at places in its frame.
+    fn at(&self, places: [Vec3; 8], whole: Particle) -> [Particle; 8] {
+        let turn = self.rotation();
+        places.map(|place| Particle { position: self.center + turn * place, mass: whole.mass * 0.125, ..whole })
     }
 
     /// The first of its numbers that cannot be used, and what it has to be.
@@ -127,11 +163,31 @@ impl RigidBox {
     }
 }
 
-impl<L: AsRef<[RigidBox]>> RigidBodies<L> {
+impl<L> RigidBodies<L> {
+    /// Boxes, which balls fly through.
+    pub const fn boxes(boxes: L) -> Self {
+        Self { boxes, hulls: (), balls: 0 }
+    }
+}
+
+impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
     /// The first number of any body that cannot be used, and what it has to be.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
-        self.boxes.as_ref().iter().find_map(RigidBox::fault)
+        let hull = |body: &RigidBox| self.hulls.hull(usize::from(body.hull?))?.fault();
+        let boxes = self.boxes.as_ref();
+        boxes.iter().find_map(RigidBox::fault).or_else(|| boxes.iter().find_map(hull))
+    }
+
+    /// How many there are of all.
+    fn sizes(&self) -> Sizes {
+        let boxes = self.boxes.as_ref();
+        let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));
+        Sizes { bodies: boxes.len(), particles, balls: self.balls as usize }
+    }
+
+    fn forms(&self) -> Forms<'_> {
+        Forms { boxes: self.boxes.as_ref(), hulls: &self.hulls }
     }
 
     /// Does something with each body, and the places of its particles.
@@ -143,14 +199,46 @@ impl<L: AsRef<[RigidBox]>> RigidBodies<L> {
     }
 }
 
-impl<L: AsRef<[RigidBox]> + Sync> Constraint for RigidBodies<L> {
+/// Does something with each ball that is near bodies: its number among them, itself as a body, and its row.
+fn each_ball(
+    bodies: &mut Bodies<'_>,
+    kept: &mut Kept<'_>,
+    visit: &mut dyn FnMut(&mut Bodies<'_>, usize, &mut Body, usize),
+) {
+    let first = kept.first_ball();
+    let balls = kept.balls.iter().zip(kept.bodies[first..].iter_mut());
+    for (i, (ball, body)) in balls.enumerate() {
+        if let Some(row) = Ball::row(ball, bodies) {
+            visit(bodies, first + i, body, row);
+        }
+    }
+}
+
+/// Looks where bodies meet the scenery, or will; balls that touch no body leave that to the sweep.
+fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) {
+    let first = kept.first_ball();
+    for pair in &kept.pairs[..kept.lists.pairs as usize] {
+        if pair.bodies[1] as usize >= first && pair.count > 0 {
+            kept.bodies[pair.bodies[1] as usize].pressed = 1;
+        }
+    }
+    let slots = kept.scenery.chunks_exact_mut(DIRECTIONS);
+    for (number, (body, slots)) in kept.bodies[1..].iter_mut().zip(slots).enumerate() {
+        let number = number + 1;
+        if body.moves() && (number < first || body.pressed != 0) {
+            scenery::meet(bodies, body, forms.of(number as u32), number as u32, slots);
+        } else {
+            slots.iter_mut().for_each(|slot| slot.count = 0);
+        }
+    }
+}
+
+impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> {
     fn demand(&self) -> Demand {
-        let boxes = self.boxes.as_ref();
-        if boxes.is_empty() {
+        if self.is_empty() {
             return Demand::NONE;
         }
-        let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));
-        let [kept, scratch] = lists::demand(boxes.len(), particles);
+        let [kept, scratch] = self.sizes().demand();
         Demand { kept, scratch, finds_near: true, ..Demand::NONE }
     }
 
@@ -159,25 +247,18 @@ impl<L: AsRef<[RigidBox]> + Sync> Constraint for RigidBodies<L> {
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let Some(mut kept) = Kept::of(share.kept.fixed, self.boxes.as_ref().len()) else { return };
+        let Some(mut kept) = Kept::of(share.kept.fixed, self.sizes()) else { return };
         let mut is_news = false;
         if bodies.substep.number == 0 {
             kept.bodies[0] = Body::world();
             self.each(&mut kept, |body, of, places| is_news |= body.look(bodies, of, places));
         }
-        lists::gather(bodies, &mut kept, share.scratch, is_news);
-        let slots = kept.scenery.chunks_exact_mut(DIRECTIONS);
-        for (number, (body, slots)) in kept.bodies[1..].iter_mut().zip(slots).enumerate() {
-            if body.moves() {
-                scenery::meet(bodies, body, number as u32 + 1, slots);
-            } else {
-                slots.iter_mut().for_each(|slot| slot.count = 0);
-            }
-        }
+        lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news);
+        meet_scenery(bodies, &mut kept, self.forms());
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let Some(mut kept) = Kept::of(share.kept.fixed, self.boxes.as_ref().len()) else { return };
+        let Some(mut kept) = Kept::of(share.kept.fixed, self.sizes()) else { return };
         let span = Span { h: bodies.substep.seconds(), step: bodies.substep.step.seconds() };
         if !(span.h > 0.0) {
             return;
@@ -187,6 +268,7 @@ impl<L: AsRef<[RigidBox]> + Sync> Constraint for RigidBodies<L> {
             solver::begin(kept.bodies, manifold);
         }
         self.each(&mut kept, |body, of, places| body.gather(bodies, Made { of, places }));
+        each_ball(bodies, &mut kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
         for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
             solver::expect(kept.bodies, manifold, span);
             solver::hold_on(kept.bodies, manifold);
@@ -196,6 +278,17 @@ impl<L: AsRef<[RigidBox]> + Sync> Constraint for RigidBodies<L> {
         solver::part(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
         self.each(&mut kept, |body, of, places| body.tell(bodies, Made { of, places }));
         let presses = |manifold: &&Manifold| manifold.points().iter().any(|point| point.pressed > 0.0);
+        let scenery = &*kept.scenery;
+        let pressed = |number: usize| {
+            scenery.chunks(DIRECTIONS).nth(number - 1).is_some_and(|slots| slots.iter().any(|slot| presses(&slot)))
+        };
+        let first = kept.bodies.len() - kept.balls.len();
+        for (i, (ball, body)) in kept.balls.iter().zip(&kept.bodies[first..]).enumerate() {
+            if let Some(row) = ball.row(bodies) {
+                body.tell_ball(bodies, row, pressed(first + i));
+            }
+        }
+        tell::all(bodies, &kept, self.forms());
         bodies.report.contacts += kept.pairs[..len].iter().filter(presses).count() as u64;
         bodies.report.hits += kept.scenery.iter().filter(presses).count() as u64;
     }

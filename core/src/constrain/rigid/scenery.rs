@@ -2,10 +2,10 @@
 
 use super::super::Bodies;
 use super::body::Body;
-use super::boxes::Oriented;
+use super::forms::Form;
 use super::manifold::Manifold;
 use crate::material::on_surface;
-use crate::math::{clamp, dot, length, max, min};
+use crate::math::{dot, length, max, min};
 use crate::shape::{Aabb, Contact, Segment};
 use glam::Vec3;
 
@@ -19,6 +19,7 @@ const ALIKE: f32 = 0.9;
 /// A body among the scenery.
 struct Visit<'a> {
     body: &'a Body,
+    form: Form<'a>,
     number: u32,
     slots: &'a mut [Manifold],
     before: [Manifold; DIRECTIONS],
@@ -28,8 +29,8 @@ struct Visit<'a> {
 /// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time.
 ///
 /// Its corners are asked for, as points: one that is beyond a surface, as seen from the body's middle, is met where the way there crosses it.
-/// Then the places of the scenery nearest to the body's middle, where they lie in its box: edges and spheres smaller than it.
-pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, number: u32, slots: &mut [Manifold]) {
+/// Then the places of the scenery nearest to the body's middle, where they lie in it: edges and spheres smaller than it. A ball has no corners.
+pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, number: u32, slots: &mut [Manifold]) {
     let h = bodies.substep.seconds();
     let (way, small) = (body.speed() * h, body.small());
     let is_new = bodies.substep.number == 0;
@@ -53,8 +54,8 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, number: u32, slots:
         body.spare = small;
         return;
     }
-    let mut visit = Visit { body, number, slots, before, reach };
-    (0..8).for_each(|corner| visit.corner(bodies, corner));
+    let mut visit = Visit { body, form, number, slots, before, reach };
+    (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
     visit.scenery(bodies);
     let is_moving = visit.slots.iter().any(|slot| slot.count > 0 && slot.surface != Vec3::ZERO);
     body.spare = if is_moving { 0.0 } else { small };
@@ -62,8 +63,7 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, number: u32, slots:
 
 impl Visit<'_> {
     /// Looks around a corner.
-    fn corner(&mut self, bodies: &mut Bodies<'_>, corner: u32) {
-        let place = Oriented::corner(self.body.half, corner);
+    fn corner(&mut self, bodies: &mut Bodies<'_>, place: Vec3) {
         let (middle, at, colliders) = (self.body.middle(), bodies.substep.during[0], bodies.colliders);
         let mut point = self.body.point(place);
         let path = Segment { from: middle, to: point, radius: 0.0, during: [at, at] };
@@ -93,7 +93,7 @@ impl Visit<'_> {
         }
     }
 
-    /// Looks for places of the scenery in the box.
+    /// Looks for places of the scenery in the body.
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
         let (body, at) = (self.body, bodies.substep.during[0]);
         let (middle, half) = (body.middle(), body.half);
@@ -105,27 +105,11 @@ impl Visit<'_> {
         bodies.report.caps.contacts += left_out;
         for contact in &near {
             let place = body.place(contact.point);
-            let held = [0, 1, 2].map(|k| clamp(place[k], -half[k], half[k]));
-            let away = Vec3::from_array(held) - place;
-            let distance = length(away);
+            let (on, out, distance) = self.form.nearest(body, place);
             if distance > self.reach {
                 continue;
             }
-            let (mut on, mut normal) = (Vec3::from_array(held), away * (1.0 / distance));
-            if !(distance > 0.0) {
-                let depth = [0, 1, 2].map(|k| half[k] - place[k].abs());
-                let axis = if depth[0] <= depth[1] && depth[0] <= depth[2] {
-                    0
-                } else if depth[1] <= depth[2] {
-                    1
-                } else {
-                    2
-                };
-                let side = if place[axis] < 0.0 { -1.0 } else { 1.0 };
-                normal = Vec3::ZERO;
-                (on[axis], normal[axis]) = (side * half[axis], -side);
-            }
-            let normal = body.rotation * normal;
+            let normal = body.rotation * -out;
             let is_met = |slot: &Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
             if dot(normal, contact.normal) > 0.0 && !self.slots.iter().any(is_met) {
                 self.put(bodies, &Contact { normal, ..*contact }, on);
