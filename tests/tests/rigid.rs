@@ -250,7 +250,7 @@ fn a_tower_of_ten_stands() {
     }
     for of in &bodies.boxes {
         let (middle, _) = pose(of, system.particles().position);
-        assert!(gap(middle, f64s(of.center)) < 0.01, "{of:?}: {middle:?}");
+        assert!(gap(middle, f64s(of.center)) < 5e-4, "{of:?}: {middle:?}");
     }
 }
 

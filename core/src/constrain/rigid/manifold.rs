@@ -5,7 +5,7 @@ use super::facets::{Spot, four};
 use super::forms::{Form, with_apart};
 use crate::material::Mixed;
 use crate::math::{dot, max, min};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// Where two touch.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -26,6 +26,8 @@ pub(super) struct Point {
     pub(super) calm: f32,
     /// The impulse that makes them part by 1 m/s \[kg\].
     pub(super) mass: f32,
+    /// How far the second has crept along the first since friction has held them there \[m\].
+    pub(super) crept: Vec3,
 }
 
 /// Two that may touch.
@@ -60,14 +62,17 @@ impl Manifold {
         &self.points[..(self.count as usize).min(4)]
     }
 
-    /// Puts a point in, with what a point of before near it has done.
-    pub(super) fn put(&mut self, places: [Vec3; 2], before: &[Point], near: f32) {
+    /// Puts a point in, with what a point of before near it has done. `axes` are those of the first's frame.
+    pub(super) fn put(&mut self, places: [Vec3; 2], before: &[Point], near: f32, axes: &Mat3) {
         let is_near = |point: &&Point| {
             let way = point.places[1] - places[1];
             dot(way, way) <= near * near
         };
         let fresh = Point { places, ..bytemuck::Zeroable::zeroed() };
-        let point = before.iter().find(is_near).map_or(fresh, |&point| Point { places, ..point });
+        let point = before.iter().find(is_near).map_or(fresh, |&point| {
+            let back = axes.transpose() * point.crept;
+            Point { places: [places[0] - back, places[1]], ..point }
+        });
         if let Some(place) = self.points.get_mut(self.count as usize) {
             *place = point;
             self.count += 1;
@@ -86,7 +91,7 @@ impl Manifold {
             self.spare = if gap > reach + small { gap } else { small };
             if gap <= reach + small {
                 self.normal = out;
-                self.put([on, a.rotation * out * -b.radius], before, f32::INFINITY);
+                self.put([on, a.rotation * out * -b.radius], before, f32::INFINITY, &a.rotation);
             }
             return;
         }
@@ -107,7 +112,7 @@ impl Manifold {
         self.spare = small;
         self.normal = a.rotation.transpose() * touching.normal;
         for [p, q] in four(&touching) {
-            self.put([a.place(p), b.place(q)], before, 5.0 * small);
+            self.put([a.place(p), b.place(q)], before, 5.0 * small, &a.rotation);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::manifold::Manifold;
 use crate::material::on_surface;
 use crate::math::{dot, length, max, min};
 use crate::shape::{Aabb, Contact, Segment};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// Directions that one body can be pressed in by the scenery at a time.
 pub(super) const DIRECTIONS: usize = 3;
@@ -132,6 +132,9 @@ impl Visit<'_> {
             let mixed = on_surface(bodies.materials, self.body.elasticity, own, material);
             *slot = Manifold { normal, surface: velocity, ..Manifold::of([0, self.number], mixed) };
         }
+        // Where it is over the surface, whatever the way on which that was met.
+        let over = self.body.point(place);
+        let on = over - normal * dot(normal, over - point);
         let twice = slot.points().iter().any(|other| other.places[1] == place);
         let gap = |point: Vec3| dot(normal, self.body.point(place) - point);
         if twice {
@@ -140,7 +143,7 @@ impl Visit<'_> {
         let near = |slot: &&Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
         let before = self.before.iter().find(near).map_or(&[][..], Manifold::points);
         if slot.count < 4 {
-            slot.put([point, place], before, 0.0);
+            slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
             return;
         }
         // Of more than four on a face the deepest count.
@@ -155,7 +158,7 @@ impl Visit<'_> {
             let last = slot.points[3];
             slot.points[least.0] = last;
             slot.count = 3;
-            slot.put([point, place], before, 0.0);
+            slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
         }
     }
 }

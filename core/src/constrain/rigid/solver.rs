@@ -18,6 +18,9 @@ const WITHIN: u32 = 2;
 /// The share of an overlap that is taken back in a sub-step.
 const RECOVERY: f32 = 0.1;
 
+/// The share of the friction there can be below which a point counts as held.
+const HOLDS: f32 = 0.99;
+
 /// A sub-step \[s\], and the step it is a part of.
 #[derive(Clone, Copy)]
 pub(super) struct Span {
@@ -28,6 +31,7 @@ pub(super) struct Span {
 /// Looks how two stand to each other: gaps, and how fast they come together.
 pub(super) fn begin(bodies: &mut [Body], manifold: &mut Manifold) {
     let Some(mut pair) = Pair::of(bodies, manifold) else { return };
+    pair.let_slide();
     pair.stand();
     for i in 0..pair.count {
         let speed = -pair.parting(i);
@@ -80,7 +84,7 @@ pub(super) fn keep_apart(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], s
                     let share = if point.gap > 0.0 { 1.0 } else { RECOVERY };
                     -point.gap * share / span.h
                 });
-                pair.rub_all();
+                pair.rub_all(RECOVERY / span.h);
             }
         }
     }
@@ -115,7 +119,7 @@ pub(super) fn part(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: S
             let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
             for _ in 0..WITHIN {
                 pair.press_all(&mut |point| point.bounce);
-                pair.rub_all();
+                pair.rub_all(0.0);
             }
         }
     }
@@ -154,8 +158,21 @@ impl<'a> Pair<'a> {
             let spot = [a.point(point.places[0]), b.point(point.places[1])];
             let middle = middle(spot);
             point.gap = dot(normal, spot[1] - spot[0]);
+            point.crept = aside(spot[1] - spot[0], normal);
             point.arms = [middle - a.center, middle - b.center];
             point.mass = 1.0 / (a.yielding(point.arms[0], normal) + b.yielding(point.arms[1], normal));
+        }
+    }
+
+    /// Takes the places where points are that slide, or do not touch, for those where friction begins to hold them.
+    fn let_slide(&mut self) {
+        let [a, b] = &self.bodies;
+        for point in &mut self.points[..self.count] {
+            if !(length(point.held) < HOLDS * self.friction[1] * point.pressed) {
+                let way = b.point(point.places[1]) - a.point(point.places[0]);
+                point.places[0] += a.rotation.transpose() * aside(way, self.normal);
+                point.crept = Vec3::ZERO;
+            }
         }
     }
 
@@ -221,15 +238,15 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Takes from their slip what Coulomb's friction can, by all that presses.
-    fn rub_all(&mut self) {
+    /// Takes from their slip, and from what they have crept at so many times a second, what Coulomb's friction can, by all that presses.
+    fn rub_all(&mut self, back: f32) {
         let [sticks, slides] = self.friction;
         if !(sticks + slides > 0.0) {
             return;
         }
         for i in 0..self.count {
-            let Point { pressed, held, arms, .. } = self.points[i];
-            let slip = aside(self.slip(i), self.normal);
+            let Point { pressed, held, arms, crept, .. } = self.points[i];
+            let slip = aside(self.slip(i), self.normal) + crept * back;
             let speed = length(slip);
             if !(speed > 0.0) {
                 continue;
