@@ -40,7 +40,7 @@ pub struct SceneFile {
     /// Sheets and meshes of springs, whose particles and springs follow those above.
     #[cfg_attr(feature = "serde", serde(alias = "fabrics", skip_serializing_if = "Vec::is_empty"))]
     pub cloths: Vec<Cloth>,
-    /// Rigid boxes, whose particles follow those above.
+    /// Rigid boxes and other convex bodies, whose particles follow those above.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub boxes: Vec<Boxes>,
     /// Hair, grass, wires: elastic strands, whose particles follow those above.

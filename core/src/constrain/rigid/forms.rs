@@ -77,10 +77,20 @@ pub(super) fn with_apart<T>(
         let [a, b] = [a, b].map(oriented);
         return boxes::apart(&a, &b, bound).map(|apart| then(&apart, [&a, &b]));
     }
+    let (mut then, mut result) = (Some(then), None);
+    with_hulls([a, b], forms, bound, &mut |apart, features| result = then.take().map(|then| then(apart, features)));
+    result
+}
+
+/// The same where one is a hull, and the other a hull or a box. It takes much of the stack, of which boxes alone are spared.
+#[inline(never)]
+fn with_hulls([a, b]: [&Body; 2], forms: [Form<'_>; 2], bound: f32, then: &mut dyn FnMut(&Apart, [&dyn Faceted; 2])) {
     let lends = [BoxHull::of(a.half), BoxHull::of(b.half)];
     let hull = |side: usize| if let Form::Hull(hull) = forms[side] { hull } else { lends[side].lend() };
     let (a, b) = (Posed::new(a, hull(0)), Posed::new(b, hull(1)));
-    apart(&a, &b, bound).map(|apart| then(&apart, [&a, &b]))
+    if let Some(apart) = apart(&a, &b, bound) {
+        then(&apart, [&a, &b]);
+    }
 }
 
 /// A body's box.
@@ -228,6 +238,7 @@ fn apart(a: &Posed<'_>, b: &Posed<'_>, bound: f32) -> Option<Apart> {
 
 /// The two edges that are farthest apart across both, if that is more than `least` \[m\]: of those whose arcs on the Gauss map, the second's
 /// turned round, cross each other, so that they make a face of the Minkowski difference.
+#[inline(never)]
 fn apart_by_edges(a: &Posed<'_>, b: &Posed<'_>, way: Vec3, mut least: f32) -> Option<Apart> {
     let mut others = heapless::Vec::<([Vec3; 2], [Vec3; 2]), { CORNERS + FACES }>::new();
     others.extend(b.hull.edges.iter().take(CORNERS + FACES).map(|edge| b.edge_of(edge)));
