@@ -9,7 +9,7 @@ use pointmass::constrain::{Hinge, RigidBox, Shell};
 use pointmass::scene::Model;
 use pointmass::shape::Aabb;
 use pointmass::stability::Limit;
-use pointmass::{ConstraintKind, Vec3};
+use pointmass::{ConstraintKind, Strands, Vec3};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -54,6 +54,7 @@ pub(crate) enum Kind {
     Cluster,
     Attach,
     Shell,
+    Strands,
     Boxes,
 }
 
@@ -65,6 +66,7 @@ impl Kind {
             Self::Cluster => "cluster",
             Self::Attach => "attach",
             Self::Shell => "shell",
+            Self::Strands => "strands",
             Self::Boxes => "boxes",
         }
     }
@@ -76,7 +78,8 @@ impl Hold {
         let hanging = Hanging::of(model);
         let owed = hanging.owed(model);
         let kinds = &model.constraints.0;
-        let alike = |a: &ConstraintKind, b: &ConstraintKind| kind(a) == kind(b) && kind(a) != Kind::Shell;
+        let is_body = |of: &ConstraintKind| matches!(kind(of), Kind::Shell | Kind::Strands);
+        let alike = |a: &ConstraintKind, b: &ConstraintKind| kind(a) == kind(b) && !is_body(a);
         let mut first = 0;
         let mut all: Vec<_> = kinds
             .chunk_by(alike)
@@ -123,6 +126,11 @@ impl Hold {
                 let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
                 Self { place, gives: hung(model, shell), ..this }
             }
+            ConstraintKind::Strands(strands) => {
+                let at = strands.particles.first().map(|&first| place(model, 0, first as usize));
+                let place = at.filter(|at| at.starts_with("strands")).unwrap_or(this.place);
+                Self { place, count: each(strands).count(), gives: weighed(model, strands), ..this }
+            }
             _ => this,
         }
     }
@@ -158,7 +166,7 @@ impl Hold {
     /// Its name: the first of it, and how many follow.
     pub(crate) fn name(&self) -> String {
         match (self.kind, self.count) {
-            (Kind::Boxes, _) | (_, 1) => self.place.clone(),
+            (Kind::Boxes | Kind::Strands, _) | (_, 1) => self.place.clone(),
             (_, count) => format!("{} and {} more", self.place, count - 1),
         }
     }
@@ -176,6 +184,7 @@ impl Hold {
             Kind::Rope => format!("link by link, directly: exact{}", fades()),
             Kind::Cluster => format!("as one: exact at rest{}", fades()),
             Kind::Attach => "go where the script says".into(),
+            Kind::Strands => format!("each as one, directly{}", fades()),
             Kind::Shell => format!("as one, {} iterations at most{}", self.iterations(h), fades()),
             Kind::Boxes => {
                 let half = self.half.unwrap_or(0.0);
@@ -217,6 +226,7 @@ fn kind(constraint: &ConstraintKind) -> Kind {
         ConstraintKind::Cluster(_) => Kind::Cluster,
         ConstraintKind::Attach(_) => Kind::Attach,
         ConstraintKind::Shell(_) => Kind::Shell,
+        ConstraintKind::Strands(_) => Kind::Strands,
     }
 }
 
@@ -236,6 +246,13 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
             (cluster.compliance, 1.0 / masses.sum::<f64>())
         }
         ConstraintKind::Attach(_) => (0.0, 0.0),
+        ConstraintKind::Strands(strands) => {
+            let at = |i: u32| model.particles[i as usize].position;
+            let edges =
+                each(strands).flat_map(|strand| strand.windows(2).map(|ends| at(ends[0]).distance(at(ends[1]))));
+            let shortest = edges.filter(|length| *length > 0.0).fold(f32::INFINITY, f32::min);
+            (strands.params.stretch.map_or(0.0, |stretch| shortest / stretch), 4.0 * lightest())
+        }
         ConstraintKind::Shell(shell) => {
             let stretch = f64::from(shell.params.stretch[0].max(shell.params.stretch[1]));
             return Some([stretch, 2.0 * (stretch * lightest()).sqrt()]);
@@ -243,6 +260,37 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
     };
     let stiffness = 1.0 / f64::from(compliance);
     (compliance > 0.0).then(|| [stiffness, (stiffness * weight).sqrt()])
+}
+
+/// The points of each strand.
+fn each(strands: &Strands<Vec<u32>, Vec<u32>>) -> impl Iterator<Item = &[u32]> {
+    let mut left = &strands.particles[..];
+    let mut counts = strands.points.iter().chain(std::iter::repeat(strands.points.last().unwrap_or(&1)));
+    std::iter::from_fn(move || {
+        let count = left.len().min((*counts.next()?).max(1) as usize);
+        let (strand, rest) = left.split_at(count);
+        left = rest;
+        (count > 0).then_some(strand)
+    })
+}
+
+/// The strain at the root of the heaviest strand that hangs from there: weight / stretch.
+fn weighed(model: &Model, strands: &Strands<Vec<u32>, Vec<u32>>) -> f64 {
+    let particle = |&i: &u32| model.particles[i as usize];
+    let mass = |strand: &[u32]| {
+        strand
+            .iter()
+            .map(particle)
+            .filter(|particle| !particle.fixed)
+            .map(|particle| f64::from(particle.mass))
+            .sum::<f64>()
+    };
+    let heaviest = each(strands).map(mass).fold(0.0, f64::max);
+    let strain = strands
+        .params
+        .stretch
+        .map_or(0.0, |stretch| heaviest * f64::from(gravity(model).length()) / f64::from(stretch));
+    if strain.is_finite() { strain } else { 0.0 }
 }
 
 /// The strain at the top of a sheet that hangs from the box around what is fixed of it: density × g × length / stretch. One that

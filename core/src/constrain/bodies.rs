@@ -147,12 +147,15 @@ impl fmt::Debug for Near<'_> {
     }
 }
 
+/// Visits the rows of those near a place.
+pub type Around<'a> = dyn Fn(Vec3, &mut dyn FnMut(u32)) + 'a;
+
 impl Near<'_> {
     /// Puts points into an index, and calls `then` with a function that visits those within `reach` \[m\] of any place, by their rows: in an order of
     /// the index's own.
-    pub fn ask(&mut self, points: &[Vec3], reach: f32, then: &mut dyn FnMut(&dyn Fn(Vec3, &mut dyn FnMut(u32)))) {
+    pub fn ask(&mut self, points: &[Vec3], reach: f32, then: &mut dyn FnMut(&Around<'_>)) {
         let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
-        self.index.with_index(&mut self.memory[..words], points, reach, &mut |index| match index {
+        self.index.with_index(&mut self.memory[..words], points, reach, None, &mut |index| match index {
             Some(index) => then(&|place, visit| {
                 index.within(place, reach, &mut |rows| rows.iter().for_each(|&row| visit(row)));
             }),

@@ -20,7 +20,7 @@ mod strand;
 mod turn;
 
 pub use attach::Attach;
-pub use bodies::{Bodies, Near, Share, Substep};
+pub use bodies::{Around, Bodies, Near, Share, Substep};
 pub(crate) use bodies::{CARRIED, SHIFTED, TOUCHING};
 pub use contacts::Contacts;
 pub use distance::Distance;

@@ -57,7 +57,7 @@ pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use material::{CurveBuf, LifeBuf, Material, ParticleShape, Sides, Sprite, VaryingBuf};
 #[cfg(feature = "alloc")]
-pub use model::{Forces, Model, PatchBuf, SheetContactsBuf, Solid};
+pub use model::{Constraints, Forces, Model, PatchBuf, SheetContactsBuf, Solid};
 #[cfg(feature = "alloc")]
 pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
 pub use response::{Position, Response};

@@ -32,6 +32,10 @@ pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Go
 /// The contacts of cloths with each other.
 pub type SheetContactsBuf = SheetContacts<Vec<u32>, Vec<[u32; 3]>, Vec<f32>>;
 
+/// The constraints of files, of cloths that are shells and of strands, the rigid bodies, then contacts by position, and those of cloths.
+pub type Constraints =
+    (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>, Vec<HullBuf>>, Option<Contacts>, SheetContactsBuf);
+
 /// A scene file made ready to run, owned: lend it to a system with [`Model::scene`].
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -45,9 +49,8 @@ pub struct Model {
     pub forces: Forces,
     /// How those that have a radius answer each other's touch.
     pub contacts: Option<Response>,
-    /// The constraints that bind them, those of cloths that are shells and of strands, the rigid bodies, then contacts by position, and those of
-    /// cloths.
-    pub constraints: (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>, Vec<HullBuf>>, Option<Contacts>, SheetContactsBuf),
+    /// What binds them and keeps them apart.
+    pub constraints: Constraints,
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// The things that they bounce off.

@@ -131,7 +131,7 @@ impl BoxHull {
     fn of(half: Vec3) -> Self {
         let face = |number: usize| {
             let mut normal = Vec3::ZERO;
-            normal[number / 2] = if number % 2 == 0 { 1.0 } else { -1.0 };
+            normal[number / 2] = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
             HullFace { normal, offset: half[number / 2], first: 4 * number as u16, count: 4 }
         };
         Self { corners: core::array::from_fn(|i| Oriented::corner(half, i as u32)), faces: core::array::from_fn(face) }
