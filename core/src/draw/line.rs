@@ -2,6 +2,7 @@
 
 use super::{appearance, fill};
 use crate::force::{Held, State};
+use crate::index::image_beside;
 use crate::math::{clamp, length};
 use crate::particles::{Color, WHITE};
 use crate::shape::Aabb;
@@ -54,12 +55,18 @@ const LONG: Color = [235, 70, 50, 255];
 /// ```
 pub fn springs(state: &State<'_>, full: f32, into: &mut [Line]) -> (usize, usize) {
     let line = |Held { spring, rows: [a, b], .. }: Held<'_>| {
-        let ends = [state.position[a], state.position[a] + state.between(a, b)];
+        let ends = ends(state, [a, b]);
         let rest = spring.rest(state.time);
         let strain = if rest > 0.0 { length(ends[1] - ends[0]) / rest - 1.0 } else { 0.0 };
         Line::plain(ends, strained(strain / full))
     };
     fill(state.springs.held().map(line), into)
+}
+
+/// Where two particles are, the second in the image that is nearest to the first.
+fn ends(state: &State<'_>, [a, b]: [usize; 2]) -> [Vec3; 2] {
+    let [a, b] = [state.position[a], state.position[b]];
+    [a, image_beside(state.near.room(), a, b)]
 }
 
 /// Writes lines between pairs of particles, by their numbers in the scene's start, as far as both live and there is room: the links of
@@ -71,7 +78,7 @@ pub fn links(
     into: &mut [Line],
 ) -> (usize, usize) {
     let row = |number: u32| state.springs.row(number);
-    let line = |[a, b]: [usize; 2]| Line::plain([state.position[a], state.position[a] + state.between(a, b)], color);
+    let line = |rows| Line::plain(ends(state, rows), color);
     fill(pairs.filter_map(|[a, b]| Some(line([row(a)?, row(b)?]))), into)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Line, appearance, fill};
 use crate::force::State;
-use crate::index::between;
+use crate::index::image_beside;
 use crate::material::TrailMaterial;
 use crate::math::min;
 use crate::particles::Color;
@@ -133,7 +133,7 @@ impl<'m> Trails<'m> {
             let mut from = head;
             ring.backward(knots).map_while(move |to| {
                 // Whoever has left a room at one side and come in at the other has gone on straight.
-                let to = Knot { place: from.place + between(room, from.place, to.place), ..to };
+                let to = Knot { place: image_beside(room, from.place, to.place), ..to };
                 let line = pen.line(from, to)?;
                 from = to;
                 Some(line)

@@ -72,7 +72,7 @@ pub use nearest::Neighbour;
 pub use neighbours::Neighbours;
 pub use octree::{Octree, Quadtree};
 pub use room::Room;
-pub(crate) use room::{between, wrapped_in};
+pub(crate) use room::{between, image_beside, wrapped_in};
 pub use structure::{AnyIndex, Structure, UnknownStructure};
 pub use tree::Tree;
 

@@ -195,6 +195,14 @@ pub(crate) fn between(room: Option<&Room>, from: Vec3, to: Vec3) -> Vec3 {
     }
 }
 
+/// The image of a point that is nearest to another, in a room if there is one.
+pub(crate) fn image_beside(room: Option<&Room>, of: Vec3, point: Vec3) -> Vec3 {
+    match room {
+        Some(room) => of + room.between(of, point),
+        None => point,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
