@@ -123,7 +123,7 @@ fn taut(check: &Study, stand: &Stand) -> Option<String> {
     })
 }
 
-/// What to do about constraints that are off by much.
+/// Advice about constraints that are off by much.
 fn held(check: &Study, hold: &Hold) -> Option<String> {
     let warning = hold.warning(check.h())?;
     let Limit::Step(enough) = hold.largest_step() else { return None };

@@ -27,7 +27,7 @@ pub(crate) struct Hold {
     /// Where the first stands in the file.
     pub(crate) place: String,
     pub(crate) kind: Kind,
-    /// How many there are, and of how many particles.
+    /// Their number, and that of their particles.
     pub(crate) count: usize,
     pub(crate) particles: usize,
     /// The stiffness of the stiffest \[N/m\]; none: rigid.
@@ -171,7 +171,7 @@ impl Hold {
         }
     }
 
-    /// What it does in sub-steps of `h` \[s\], in words.
+    /// The words for what it does in sub-steps of `h` \[s\].
     pub(crate) fn told(&self, h: f64) -> String {
         let about = if self.estimated { "about " } else { "" };
         let percent = |share: f64| format!("{about}{} %", short(100.0 * share));
@@ -196,7 +196,7 @@ impl Hold {
         }
     }
 
-    /// How many iterations of a shell's conjugate gradients take the error to 1e-4 in sub-steps of `h` \[s\]: ½ √κ ln(2/ε) at the
+    /// The number of iterations of a shell's conjugate gradients that take the error to 1e-4 in sub-steps of `h` \[s\]: ½ √κ ln(2/ε) at the
     /// most (Shewchuk, "An Introduction to the Conjugate Gradient Method Without the Agonizing Pain", 1994, section 9), with κ = 1 + h² ω².
     pub(crate) fn iterations(&self, h: f64) -> u64 {
         let rate = h * self.rate.unwrap_or(0.0);

@@ -162,7 +162,7 @@ impl Observer for Notes {
 /// Two who watch the same step.
 pub(crate) struct Both<'a>(pub(crate) &'a mut dyn Observer, pub(crate) &'a mut dyn Observer);
 
-/// What is told to both.
+/// The calls that both are told of.
 macro_rules! both {
     ($($event:ident($($what:ident: $of:ty),+))+) => {$(
         fn $event(&mut self, $($what: $of),+) {

@@ -86,7 +86,7 @@ pub struct Model {
 pub struct PatchBuf {
     /// The number that its first corner has among all particles.
     pub first: u32,
-    /// How many corners it has.
+    /// The number of its corners.
     pub count: u32,
     /// Its triangles, by corners counted from 0.
     pub triangles: Vec<[u32; 3]>,

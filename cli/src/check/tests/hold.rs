@@ -1,4 +1,4 @@
-//! What is said of constraints, held against scenes that come to rest.
+//! The words about constraints, held against scenes that come to rest.
 
 use super::super::bounds::Bounds;
 use super::super::hold::{Hold, Kind};

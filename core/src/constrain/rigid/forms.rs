@@ -1,4 +1,4 @@
-//! What bodies are to what touches them: boxes, hulls, balls.
+//! The forms of bodies for those that touch them: boxes, hulls, balls.
 
 use super::RigidBox;
 use super::body::Body;
@@ -48,7 +48,7 @@ impl Form<'_> {
         }
     }
 
-    /// How many corners it has.
+    /// The number of its corners.
     pub(super) fn corners(&self) -> usize {
         match self {
             Self::Box => 8,
