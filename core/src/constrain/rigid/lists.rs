@@ -39,7 +39,7 @@ pub(super) struct Kept<'a> {
     pub(super) places: &'a mut [u32],
 }
 
-/// How many bodies there are, how many particles of theirs, and how many balls may be near them.
+/// The numbers of bodies, of their particles, and of balls that may be near them.
 #[derive(Clone, Copy)]
 pub(super) struct Sizes {
     pub(super) bodies: usize,
@@ -53,14 +53,14 @@ const fn words<T>() -> usize {
 }
 
 impl Sizes {
-    /// How many pairs there is room for.
+    /// The number of pairs there is room for.
     fn pairs(&self) -> usize {
         let Self { bodies, balls, .. } = *self;
         let among = bodies.saturating_mul(PAIRS).min(bodies.saturating_mul(bodies.saturating_sub(1)) / 2);
         among.saturating_add(balls.saturating_mul(NEAR))
     }
 
-    /// How many pairs may be looked at for that.
+    /// The number of pairs that may be looked at for that.
     fn candidates(&self) -> usize {
         self.bodies.saturating_mul(CANDIDATES).saturating_add(self.balls.saturating_mul(NEAR))
     }

@@ -179,7 +179,7 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         boxes.iter().find_map(RigidBox::fault).or_else(|| boxes.iter().find_map(hull))
     }
 
-    /// How many there are of all.
+    /// The numbers of them all.
     fn sizes(&self) -> Sizes {
         let boxes = self.boxes.as_ref();
         let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));

@@ -11,7 +11,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// How many of the four corners belong to the first.
+    /// The number of the four corners that belong to the first.
     pub(super) const fn split(self) -> usize {
         match self {
             Self::PointTriangle => 1,
@@ -116,7 +116,7 @@ pub(super) struct Meeting {
 const STEPS: u32 = 24;
 
 impl Meeting {
-    /// What happens between two things whose corners go straight from the first places to the second ones, in which their first
+    /// The encounter of two things whose corners go straight from the first places to the second ones, in which their first
     /// corner counts as the origin. None: they never come within `reach`, or nothing can be said of them since they begin in one place.
     ///
     /// A direction in which they are apart at both ends keeps them apart all the way. Without one, they are followed by steps within which

@@ -20,7 +20,7 @@ pub(super) const NOBODY: u32 = u32::MAX;
 #[repr(C)]
 pub(super) struct Contact {
     pub(super) corners: [u32; 4],
-    /// How many of the corners are the first one's.
+    /// The number of the corners that are the first one's.
     pub(super) split: u32,
     /// The shares of the corners in the places that touch; they add up to zero.
     pub(super) weights: [f32; 4],
@@ -82,7 +82,7 @@ pub(super) struct Counts {
     pub(super) surfaces: u32,
 }
 
-/// What lasts through a step, by places in the list of particles.
+/// The words that last through a step, by places in the list of particles.
 pub(super) struct Kept<'m> {
     pub(super) counts: &'m mut Counts,
     pub(super) rows: &'m mut [u32],
