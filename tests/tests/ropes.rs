@@ -33,10 +33,13 @@ fn a_soft_chain_hangs_longer_by_its_closed_form_whatever_the_sub_steps() {
     let cases = [(0.05f32, 0.1f32, 0.01f32), (2.0, 0.1, 1e-5), (1e-6, 1e-3, 2.0)];
     for (mass, length, compliance) in cases {
         let start = chain(n, length, Vec3::ZERO, Vec3::NEG_Y, Particle { mass, drag: 0.6 * mass, ..Particle::REST });
-        for (substeps, damping, tether) in [(5, 0.0, false), (10, 0.0, true), (20, 0.1 * mass, false), (50, 0.0, false)]
-        {
+        let ways = [(5, 0.0, false), (10, 0.0, true), (20, 0.1 * mass, false), (50, 0.0, false)];
+        for (i, (substeps, damping, tether)) in ways.into_iter().enumerate() {
             let rope = Rope { compliance, damping, tether, ..Rope::rigid(all(&start), [length]) };
-            for method in Method::ALL {
+            // With all checks it takes long: every other method for these sub-steps, the rest for those.
+            let methods =
+                Method::ALL.into_iter().enumerate().filter(|(j, _)| !cfg!(debug_assertions) || (i + j) % 2 == 0);
+            for (_, method) in methods {
                 let forces = (DOWN, Drag {});
                 let integrator = method.integrator();
                 let scene =

@@ -72,7 +72,7 @@ fn history(scene: &Scene<'_>, columns: usize, h: f64) -> (Vec<u64>, Effort) {
 /// by all methods, at slow and fast steps, while some are born and die, in threads too.
 #[test]
 fn however_neighbours_are_found_runs_are_the_same() {
-    let start = cloud(320);
+    let start = cloud(if cfg!(debug_assertions) { 160 } else { 320 });
     let force = (SOFT, THICK, Gravity::EARTH);
     let jet = Emitter { lifetime: Varied::exactly(0.02), ..Emitter::new(point(Vec3::ZERO), 150.0) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
