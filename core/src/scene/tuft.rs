@@ -201,7 +201,7 @@ impl Tuft {
             zero_or_more(&format!("{at}.{name}"), number)?;
         }
         if !(0.0..=0.5).contains(&self.poisson) {
-            return refuse("poisson", "has to be from 0 to 0.5");
+            return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
         }
         finite(&format!("{at}.elasticity"), &[self.elasticity])?;
         if let Some(message) = self.motion.as_ref().and_then(Motion::fault) {
@@ -214,7 +214,9 @@ impl Tuft {
             Growth::Curve(places) => {
                 finite(&format!("{at}.form.curve"), &places.iter().flat_map(Vec3::to_array).collect::<Vec<_>>())?;
                 let way: f32 = places.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
-                above_zero(&format!("{at}.form.curve"), way)?;
+                if !(way > 0.0 && way.is_finite()) {
+                    return refuse("form.curve", "has to lead through two places at least that are not the same");
+                }
             }
             Growth::On(field) => field.check(&format!("{at}.form.on"))?,
         }
