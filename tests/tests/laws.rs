@@ -35,6 +35,7 @@ mod ropes;
 mod rounding;
 mod sampling;
 mod scripted;
+#[path = "sheet_contacts/main.rs"]
 mod sheet_contacts;
 mod sheets;
 mod springs;

@@ -40,7 +40,7 @@ impl Touch {
     }
 
     /// Tells whether the two touch in this sub-step, and not smoothly.
-    pub(in crate::constrain) fn rubs(&self) -> bool {
+    pub(super) fn rubs(&self) -> bool {
         self.is_on() && self.has_friction()
     }
 
@@ -54,7 +54,7 @@ impl Touch {
     }
 
     /// Friction counts in this many times what presses, besides that itself.
-    pub(in crate::constrain) fn carry(&mut self, times: f32) {
+    pub(super) fn carry(&mut self, times: f32) {
         self.carried = times * self.pressed;
     }
 
@@ -72,7 +72,7 @@ impl Touch {
     }
 
     /// The part of a slip that friction takes \[m/s\]: all that it can by what presses, which counts `weight` times.
-    pub(in crate::constrain) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
+    pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
         let speed = length(slip);
         let left = |share: f32| max(share * self.load() * weight - self.held, 0.0);
         let taken = if speed <= left(self.static_) { speed } else { min(speed, left(self.kinetic)) };
@@ -81,6 +81,36 @@ impl Touch {
         }
         self.held += taken;
         if taken < speed { slip * (-taken / speed) } else { -slip }
+    }
+}
+
+/// The part of a slip that friction has taken, with its direction, of two in touch.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(in crate::constrain) struct Grip(Vec3);
+
+impl Grip {
+    /// Tells whether friction has something to take, or to give back.
+    pub(in crate::constrain) fn acts(&self, touch: &Touch) -> bool {
+        touch.has_friction() && (touch.pressed > 0.0 || self.0 != Vec3::ZERO)
+    }
+
+    /// The change of a slip that friction makes by what presses now \[m/s\]. What it has taken before counts, and what of that was too
+    /// much for what presses now it gives back.
+    pub(in crate::constrain) fn hold(&mut self, touch: &Touch, slip: Vec3, load: f32) -> Vec3 {
+        let wanted = self.0 - slip;
+        let (far, load) = (length(wanted), max(load, 0.0));
+        let given = if far <= touch.static_ * load {
+            wanted
+        } else {
+            wanted * min(touch.kinetic * load / far, 1.0)
+        };
+        if !given.is_finite() {
+            return Vec3::ZERO;
+        }
+        let change = given - self.0;
+        self.0 = given;
+        change
     }
 }
 

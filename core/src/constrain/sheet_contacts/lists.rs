@@ -1,6 +1,6 @@
 //! The memory of contacts between sheets: what lasts through a step, and what a sub-step is worked out in.
 
-use super::super::contacts::Touch;
+use super::super::contacts::{Grip, Touch};
 use super::super::{Bodies, Demand, Words};
 use super::closest::Kind;
 use super::rest::{KEPT, LEARNING};
@@ -33,6 +33,7 @@ pub(super) struct Contact {
     /// 1 if the two would pass each other.
     pub(super) meets: u32,
     pub(super) touch: Touch,
+    pub(super) grip: Grip,
 }
 
 impl Contact {
@@ -42,6 +43,11 @@ impl Contact {
 
     pub(super) fn meets(&self) -> bool {
         self.meets != 0
+    }
+
+    /// Tells whether it is other than a point over a triangle: the line between the two can lean against both sheets.
+    pub(super) fn leans(&self) -> bool {
+        self.split != Kind::PointTriangle.split() as u32 || self.weights.contains(&0.0)
     }
 
     /// The particles that stand for both.
@@ -72,6 +78,7 @@ pub(super) struct Surface {
     /// How it moves there \[m/s\].
     pub(super) velocity: Vec3,
     pub(super) touch: Touch,
+    pub(super) grip: Grip,
 }
 
 /// How long the lists are.

@@ -5,6 +5,7 @@ mod lists;
 mod rest;
 mod scenery;
 mod search;
+mod settle;
 mod solver;
 mod tree;
 mod zones;
@@ -29,12 +30,11 @@ use rest::Rest;
 /// [`Effort::capped`](crate::Effort::capped). That holds for what this constraint sees: it has to be the last, and what the
 /// scenery's sweep, or a script, does to particles after it can bring sheets through each other. Sheets that begin through each other stay so.
 ///
-/// Friction counts what presses by position: its coefficient is right within some 10 % from five sub-steps of 1/60 s on, with
-/// [`Symplectic`](crate::Symplectic). With methods of higher order, whose places do not follow from their last velocities alone, a part of it
-/// is lost, up to half with one or two sub-steps.
+/// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method. What leans against
+/// a sheet (edges on edges, points beyond a rim) pushes only where points over triangles leave it too near.
 ///
-/// What is nearer at rest than twice the thickness is kept only half as far apart as it is there, so that a mesh may be as fine as it likes, and
-/// triangles with a common corner do not mind each other. What begins exactly in one place has no sides, and is not kept apart.
+/// What is nearer at rest than twice the thickness in one sheet is kept only half as far apart as it is there, so that a mesh may be as fine as
+/// it likes, and triangles with a common corner do not mind each other. Two sheets that begin nearer than they may be are let apart slowly. What begins exactly in one place has no sides, and is not kept apart.
 ///
 /// ```
 /// use pointmass::constrain::SheetContacts;
@@ -136,7 +136,7 @@ where
         let Some(rest) = Rest::of(share.kept.fixed, self.counts()).filter(Rest::is_known) else { return };
         let Some(mut kept) = Kept::of(share.step, particles).filter(|_| !rest.faces.is_empty()) else { return };
         if bodies.substep.seconds() > 0.0 {
-            solver::settle(&mut kept, bodies);
+            settle::settle(&mut kept, bodies);
         }
     }
 }

@@ -50,11 +50,13 @@ pub(super) struct Rest<'m> {
     pub(super) places: &'m mut [Vec3],
     /// Half the thickness at each \[m\].
     pub(super) half: &'m mut [f32],
+    /// The first particle of the sheet to which each belongs.
+    pub(super) sheet: &'m mut [u32],
     pub(super) faces: &'m mut [Face],
 }
 
 /// The words of facts, of a particle, and of a triangle.
-pub(super) const KEPT: [usize; 3] = [size_of::<Facts>() / 4, 4, size_of::<Face>() / 4];
+pub(super) const KEPT: [usize; 3] = [size_of::<Facts>() / 4, 5, size_of::<Face>() / 4];
 /// The words of a particle and a triangle that it takes to learn.
 pub(super) const LEARNING: [usize; 2] = [1, 9];
 
@@ -65,8 +67,9 @@ impl<'m> Rest<'m> {
         let facts = bytemuck::cast_slice_mut(take(&mut rest, KEPT[0])).first_mut()?;
         let places = crate::memory::take_vectors(&mut rest, particles);
         let half = bytemuck::cast_slice_mut(take(&mut rest, particles));
+        let sheet = take(&mut rest, particles);
         let faces = bytemuck::cast_slice_mut(rest.get_mut(..triangles * KEPT[2])?);
-        Some(Self { facts, places, half, faces })
+        Some(Self { facts, places, half, sheet, faces })
     }
 
     /// Tells whether it has been learnt.
@@ -96,9 +99,25 @@ impl<'m> Rest<'m> {
                 }
             }
         }
+        self.part();
         self.sort();
         let edge = self.own(scratch);
         *self.facts = Facts { known: 1, budget: 0.25 * min(thinnest, edge) };
+    }
+
+    /// Finds the sheets: what hangs together.
+    fn part(&mut self) {
+        for (i, sheet) in self.sheet.iter_mut().enumerate() {
+            *sheet = i as u32;
+        }
+        let there = self.sheet.len() as u32;
+        for &Face { corners: [a, b, c], .. } in self.faces.iter().filter(|face| face.corners.iter().all(|&i| i < there)) {
+            unite(self.sheet, a, b);
+            unite(self.sheet, a, c);
+        }
+        for i in 0..there {
+            self.sheet[i as usize] = root(self.sheet, i);
+        }
     }
 
     fn center(places: &[Vec3], face: &Face) -> Vec3 {
@@ -187,4 +206,19 @@ fn halve(faces: &mut [Face], middle: usize, center: impl Fn(&Face) -> Vec3) {
     };
     let along = |face: &Face| center(face).to_array()[axis];
     faces.select_nth_unstable_by(middle, |a, b| along(a).total_cmp(&along(b)).then(a.corners.cmp(&b.corners)));
+}
+
+/// The lowest particle of those that are bound to each other, each being bound to a lower one.
+pub(super) fn root(bound: &mut [u32], mut of: u32) -> u32 {
+    while bound[of as usize] != of {
+        bound[of as usize] = bound[bound[of as usize] as usize];
+        of = bound[of as usize];
+    }
+    of
+}
+
+/// Binds two, and so all that are bound to them.
+pub(super) fn unite(bound: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(bound, a), root(bound, b));
+    bound[a.max(b) as usize] = a.min(b);
 }

@@ -73,7 +73,7 @@ fn look(
         let (offset, limit) = (surface + gap, surface + min(LEAST * half, 0.5 * distance));
         let mut touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
         touch.begin(0.0);
-        *place = Surface { particle: i as u32, normal, offset, limit, recovery, velocity, touch };
+        *place = Surface { particle: i as u32, normal, offset, limit, recovery, velocity, touch, grip: bytemuck::Zeroable::zeroed() };
     });
 }
 

@@ -43,14 +43,51 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     let meetings = search.meetings;
     let contacts = &mut kept.contacts[..kept.counts.contacts as usize];
     contacts.sort_unstable_by_key(Contact::key);
+    kept.counts.contacts = thin(contacts, work.now) as u32;
+    let contacts = &mut kept.contacts[..kept.counts.contacts as usize];
     let old = &work.old[..known];
     for contact in contacts {
-        contact.touch = match old.binary_search_by_key(&contact.key(), Contact::key) {
-            Ok(place) => old[place].touch,
-            Err(_) => touch(bodies, contact.sides().map(|side| kept.rows[side] as usize)),
-        };
+        match old.binary_search_by_key(&contact.key(), Contact::key) {
+            Ok(place) => (contact.touch, contact.grip) = (old[place].touch, old[place].grip),
+            Err(_) => contact.touch = touch(bodies, contact.sides().map(|side| kept.rows[side] as usize)),
+        }
     }
     meetings
+}
+
+/// Leaves out points at the rim of a triangle that are nearer to another one there: in a plane they are over that one, and pushes askew
+/// would brake them from triangle to triangle. Returns how many contacts are left.
+fn thin(contacts: &mut [Contact], now: &[Vec3]) -> usize {
+    let (mut left, mut first) = (0, 0);
+    while first < contacts.len() {
+        let point = contacts[first].corners[0];
+        let count = contacts[first..].iter().take_while(|contact| contact.corners[0] == point).count();
+        let group = &contacts[first..first + count];
+        // What more there is stays.
+        let idle = (0..count.min(64)).fold(0u64, |idle, i| idle | u64::from(is_idle(&group[i], group, now)) << i);
+        for i in 0..count {
+            if i >= 64 || idle >> i & 1 == 0 {
+                contacts[left] = contacts[first + i];
+                left += 1;
+            }
+        }
+        first += count;
+    }
+    left
+}
+
+/// Tells whether a point is nearer to another triangle that has the corner or edge of this one which it is nearest to.
+fn is_idle(contact: &Contact, others: &[Contact], now: &[Vec3]) -> bool {
+    let points = |contact: &Contact| contact.split == Kind::PointTriangle.split() as u32 && !contact.meets();
+    let rim = || contact.corners.iter().zip(contact.weights).skip(1).filter(|&(_, weight)| weight != 0.0);
+    if !points(contact) || rim().count() == 3 {
+        return false;
+    }
+    let far = |contact: &Contact| contact.between(|i| now[i]).dot(contact.normal);
+    let own = far(contact);
+    others
+        .iter()
+        .any(|other| points(other) && rim().all(|(corner, _)| other.corners[1..].contains(corner)) && far(other) < own)
 }
 
 /// The touch of particles in two rows, which does nothing as yet.
@@ -107,6 +144,16 @@ impl Search<'_, '_> {
         }
     }
 
+    /// How far apart two are kept: in one sheet no farther than half of what they are at rest.
+    fn wanted(&self, kind: Kind, corners: [u32; 4], thickness: f32) -> f32 {
+        let sheet = |corner: u32| self.rest.sheet.get(corner as usize);
+        if sheet(corners[0]) != sheet(corners[kind.split()]) {
+            return thickness;
+        }
+        let places = corners.map(|corner| self.rest.places[corner as usize] - self.rest.places[corners[0] as usize]);
+        min(0.5 * length(Closest::of(kind, places).gap), thickness)
+    }
+
     /// Lists the two if they come near, `with` being the triangle that the second belongs to.
     fn look(&mut self, kind: Kind, corners: [u32; 4], with: &Face) {
         let [first, second] = [corners[0], corners[kind.split()]];
@@ -121,8 +168,7 @@ impl Search<'_, '_> {
             return;
         }
         let Some(meeting) = Meeting::of(kind, &ends, reach, NEAR * thickness) else { return };
-        let at_rest = length(Closest::of(kind, seen(self.rest.places)).gap);
-        let thickness = min(0.5 * at_rest, thickness);
+        let thickness = self.wanted(kind, corners, thickness);
         let Meeting { closest, distance: [begun, ended], meets } = meeting;
         if !meets && ended >= thickness + 2.0 * budget {
             return;
@@ -144,8 +190,8 @@ impl Search<'_, '_> {
         match self.contacts.get_mut(*self.count as usize) {
             Some(place) => {
                 let (split, weights, meets) = (kind.split() as u32, closest.weights, u32::from(meets));
-                let touch = bytemuck::Zeroable::zeroed();
-                *place = Contact { corners, split, weights, normal, target, recovery, meets, touch };
+                let (touch, grip) = (bytemuck::Zeroable::zeroed(), bytemuck::Zeroable::zeroed());
+                *place = Contact { corners, split, weights, normal, target, recovery, meets, touch, grip };
                 *self.count += 1;
             }
             None => self.report.caps.contacts += 1,

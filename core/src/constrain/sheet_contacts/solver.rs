@@ -1,12 +1,10 @@
-//! Sheets kept apart in a sub-step: by position, then by velocity.
+//! Sheets kept apart in a sub-step by position.
 
 use super::super::Bodies;
-use super::super::contacts::Touch;
 use super::lists::{Contact, Kept, NOBODY, Surface, Work};
 use super::rest::Rest;
 use super::{scenery, search, zones};
-use crate::collide::RESTING;
-use crate::math::{aside, length, max, min, unit};
+use crate::math::{aside, length, min};
 use glam::Vec3;
 
 /// Searches of who is near whom, at the most, before what would pass is held.
@@ -33,8 +31,8 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
         let before = torque;
         for _ in 0..SWEEPS {
             torque += sweep(kept, work, h);
+            torque += rub(kept, work, h);
         }
-        torque += rub(kept, work, h);
         if meetings == 0 {
             let share = share(work);
             if share >= 1.0 || round + 1 == ROUNDS {
@@ -89,12 +87,15 @@ fn act(kept: &Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'_>) {
 fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
     let mut torque = Vec3::ZERO;
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
-    for contact in &mut kept.contacts[..contacts] {
-        let ease = ease(contact, kept.weight);
-        let distance = contact.between(|i| work.now[i]).dot(contact.normal);
-        let change = contact.touch.press(contact.target / h, distance / h) * h;
-        if change != 0.0 && ease > 0.0 {
-            torque += push(contact, kept.weight, work, contact.normal * (change / ease));
+    // Points over triangles first: what leans pushes only where that leaves it too near.
+    for leaning in [false, true] {
+        for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.leans() == leaning) {
+            let ease = ease(contact, kept.weight);
+            let distance = contact.between(|i| work.now[i]).dot(contact.normal);
+            let change = contact.touch.press(contact.target / h, distance / h) * h;
+            if change != 0.0 && ease > 0.0 {
+                torque += push(contact, kept.weight, work, contact.normal * (change / ease));
+            }
         }
     }
     for Surface { particle, normal, offset, touch, .. } in &mut kept.surfaces[..surfaces] {
@@ -105,37 +106,31 @@ fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
     torque
 }
 
-/// Takes from the slip of all what friction can by what has pressed them; returns the moment of that.
+/// Takes from the slip of all what friction can by what has pressed them, but for the speed that gives a missing gap back, which
+/// `settle` takes again; returns the moment of that.
 fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
     let mut torque = Vec3::ZERO;
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
-    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.touch.rubs()) {
+    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.grip.acts(&contact.touch)) {
         let ease = ease(contact, kept.weight);
-        weigh(&mut contact.touch, contact.recovery / h);
         let slip = aside(contact.between(|i| work.now[i] - work.from[i]), contact.normal);
-        let taken = contact.touch.hold(slip / h, 1.0) * h;
-        if taken != Vec3::ZERO && ease > 0.0 {
-            torque += push(contact, kept.weight, work, taken / ease);
+        let load = contact.touch.pressed() - contact.recovery / h;
+        let change = contact.grip.hold(&contact.touch, slip / h, load) * h;
+        if change != Vec3::ZERO && ease > 0.0 {
+            torque += push(contact, kept.weight, work, change / ease);
         }
     }
-    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.touch.rubs()) {
+    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.grip.acts(&surface.touch)) {
         let i = surface.particle as usize;
-        weigh(&mut surface.touch, surface.recovery / h);
         let slip = aside((work.now[i] - work.from[i]) / h - surface.velocity, surface.normal);
-        work.shift(i, surface.touch.hold(slip, 1.0) * h);
+        let load = surface.touch.pressed() - surface.recovery / h;
+        work.shift(i, surface.grip.hold(&surface.touch, slip, load) * h);
     }
     torque
 }
 
-/// Lets friction count only what presses beyond the speed that gives a missing gap back, which `settle` takes again.
-fn weigh(touch: &mut Touch, recovery: f32) {
-    if touch.pressed() > 0.0 {
-        touch.carry(-min(recovery / touch.pressed(), 1.0));
-    }
-}
-
 /// How far two move apart by a unit push \[1/kg\].
-fn ease(contact: &Contact, weight: &[f32]) -> f32 {
+pub(super) fn ease(contact: &Contact, weight: &[f32]) -> f32 {
     let parts = contact.corners.iter().zip(contact.weights);
     parts.fold(0.0, |sum, (&corner, share)| sum + share * share * weight[corner as usize])
 }
@@ -146,50 +141,4 @@ fn push(contact: &Contact, weight: &[f32], work: &mut Work<'_>, by: Vec3) -> Vec
         work.shift(corner as usize, by * (share * weight[corner as usize]));
     }
     contact.between(|i| work.arm[i]).cross(by)
-}
-
-/// Lets what has been moved apart part as fast as its elasticity wants, and no faster.
-pub(super) fn settle(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
-    let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
-    for contact in &mut kept.contacts[..contacts] {
-        let ease = ease(contact, kept.weight);
-        if !(contact.touch.pressed() > 0.0 && ease > 0.0) {
-            continue;
-        }
-        bodies.report.contacts += 1;
-        let row = |i: usize| kept.rows[i] as usize;
-        // Along the line between them no moment comes of it.
-        let normal = unit(contact.between(|i| bodies.position[row(i)]));
-        let normal = if normal.dot(contact.normal) > 0.5 { normal } else { continue };
-        let approach = contact.between(|i| kept.pushed[i]).dot(normal);
-        let begun = contact.between(|i| bodies.before[1][row(i)]).dot(normal);
-        let wanted = bounce(bodies, contact.touch.elasticity, [begun, approach]);
-        let parting = contact.between(|i| bodies.velocity[row(i)]).dot(normal);
-        let by = normal * (contact.touch.press(wanted, parting) / ease);
-        for (&corner, share) in contact.corners.iter().zip(contact.weights) {
-            let i = corner as usize;
-            bodies.velocity[row(i)] += by * (share * kept.weight[i]);
-        }
-    }
-    for surface in &mut kept.surfaces[..surfaces] {
-        let (i, normal) = (surface.particle as usize, surface.normal);
-        if !(surface.touch.pressed() > 0.0) {
-            continue;
-        }
-        let row = kept.rows[i] as usize;
-        bodies.report.hits += 1;
-        bodies.mark_touching(row);
-        let along = |v: Vec3| (v - surface.velocity).dot(normal);
-        let wanted = bounce(bodies, surface.touch.elasticity, [along(bodies.before[1][row]), along(kept.pushed[i])]);
-        let change = surface.touch.press(wanted, along(bodies.velocity[row]));
-        bodies.velocity[row] += normal * change;
-    }
-}
-
-/// The speed at which two are to part that came together with the second speed, and had the first before forces pressed them: none where
-/// the bounce would be over within a part of the step.
-fn bounce(bodies: &Bodies<'_>, elasticity: f32, [begun, approach]: [f32; 2]) -> f32 {
-    let bounce = max(-approach * elasticity, 0.0);
-    let pressing = max(begun - approach, 0.0) / bodies.substep.seconds();
-    if 2.0 * bounce < RESTING * bodies.substep.step.seconds() * pressing { 0.0 } else { bounce }
 }

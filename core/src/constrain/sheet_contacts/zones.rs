@@ -3,14 +3,14 @@
 use super::super::Bodies;
 use super::super::turn::turn_of;
 use super::lists::{Kept, NOBODY, Work};
-use super::rest::Rest;
+use super::rest::{Rest, root, unite};
 use super::{scenery, search};
 use glam::{Mat3, Vec3};
 
 /// Times that zones grow, at the most, before all sheets are one.
 const GROWTH: u32 = 12;
 /// An angle by which all sheets may be turned \[rad\].
-const LITTLE: f32 = 0.02;
+pub(super) const LITTLE: f32 = 0.02;
 
 /// Lets what would pass each other move as one, with its momenta (rigid impact zones: Provot, "Collision and self-collision handling in
 /// cloth model dedicated to design garments", 1997): each zone goes by a shift and a turn of first order, x + u + ω × r, and since
@@ -43,20 +43,6 @@ pub(super) fn hold(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bo
             }
         }
     }
-}
-
-/// The lowest particle of a zone.
-fn root(zone: &mut [u32], mut of: u32) -> u32 {
-    while zone[of as usize] != of {
-        zone[of as usize] = zone[zone[of as usize] as usize];
-        of = zone[of as usize];
-    }
-    of
-}
-
-fn unite(zone: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(zone, a), root(zone, b));
-    zone[a.max(b) as usize] = a.min(b);
 }
 
 /// Moves a zone as one: with its momenta, or as what in it is fixed.
@@ -110,7 +96,7 @@ pub(super) fn keep_spin(kept: &Kept<'_>, work: &mut Work<'_>, torque: Vec3) {
         middle += (work.now[i] - work.now[origin]) / kept.weight[i];
     }
     let (arms, middle) = (work.arm[origin] + arms / mass, work.now[origin] + middle / mass);
-    let mut whole = Whole { torque, ..Whole::NONE };
+    let mut whole = Whole::of(torque);
     for i in members() {
         whole.add(work.arm[i] - arms, work.now[i] - middle, 1.0 / kept.weight[i], Vec3::ZERO);
     }
@@ -124,7 +110,7 @@ pub(super) fn keep_spin(kept: &Kept<'_>, work: &mut Work<'_>, torque: Vec3) {
 }
 
 /// Masses that turn as one.
-struct Whole {
+pub(super) struct Whole {
     torque: Vec3,
     spread: Mat3,
 }
@@ -132,14 +118,19 @@ struct Whole {
 impl Whole {
     const NONE: Self = Self { torque: Vec3::ZERO, spread: Mat3::ZERO };
 
+    /// None, with this moment.
+    pub(super) fn of(torque: Vec3) -> Self {
+        Self { torque, ..Self::NONE }
+    }
+
     /// Adds a mass at a place about the middle, whose way counts as from another.
-    fn add(&mut self, arm: Vec3, place: Vec3, mass: f32, way: Vec3) {
+    pub(super) fn add(&mut self, arm: Vec3, place: Vec3, mass: f32, way: Vec3) {
         self.torque += arm.cross(way) * mass;
         let [x, y, z] = arm.to_array().map(|along| place * (along * mass));
         self.spread += Mat3::from_cols(x, y, z);
     }
 
-    fn turn(&self) -> Vec3 {
+    pub(super) fn turn(&self) -> Vec3 {
         turn_of(self.spread, self.torque)
     }
 }

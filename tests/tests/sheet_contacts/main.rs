@@ -1,102 +1,16 @@
 //! Sheets that touch themselves and each other: nothing passes, layers stay layers, friction holds by its angle, momenta are kept.
 
-use pointmass::constrain::{Hinge, SheetContacts, Shell, ShellParams};
+mod cloths;
+mod friction;
+
+use cloths::{Cloths, G, cotton, crosses, square};
+use pointmass::constrain::SheetContacts;
 use pointmass::force::Friction;
 use pointmass::material::ContactMaterial;
 use pointmass::scene::{Model, SceneFile};
 use pointmass::shape::{Collider, Plane, Sphere};
-use pointmass::{Force, Gravity, Measures, Method, Particle, Scene, Sheet, Time, Vec3};
+use pointmass::{Force, Gravity, Measures, Method, Scene, Sheet, Time, Vec3};
 use pointmass_tests::{Random, gap, started};
-
-const G: f32 = 9.81;
-
-type Cloth = Shell<Vec<u32>, Vec<[u32; 3]>, Vec<Hinge>>;
-
-/// Sheets of cloth that touch each other.
-#[derive(Default)]
-struct Cloths {
-    start: Vec<Particle>,
-    shells: Vec<Cloth>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Cloths {
-    /// Adds a sheet, its particles where `place` puts them and as fast as `velocity` says.
-    fn add(&mut self, sheet: &Sheet, params: ShellParams, place: impl Fn(Vec3) -> Vec3, velocity: Vec3) {
-        let first = self.start.len() as u32;
-        let mut all: Vec<Particle> =
-            sheet.particles(Particle { mass: 0.0, elasticity: 0.0, velocity, ..Particle::REST }).collect();
-        for corners in sheet.triangles() {
-            let [a, b, c] = corners.map(|corner| all[corner as usize].position);
-            let third = 0.2 * (b - a).cross(c - a).length() / 6.0;
-            corners.iter().for_each(|&corner| all[corner as usize].mass += third);
-        }
-        all.iter_mut().for_each(|particle| particle.position = place(particle.position));
-        self.shells.push(Shell {
-            particles: (first..first + all.len() as u32).collect(),
-            triangles: sheet.triangles().collect(),
-            hinges: sheet.hinges().collect(),
-            warp: sheet.sides[0],
-            params,
-        });
-        self.triangles.extend(sheet.triangles().map(|corners| corners.map(|corner| first + corner)));
-        self.start.extend(all);
-    }
-
-    fn contacts(&self, thickness: f32) -> SheetContacts<Vec<u32>, Vec<[u32; 3]>, [f32; 1]> {
-        SheetContacts {
-            particles: (0..self.start.len() as u32).collect(),
-            triangles: self.triangles.clone(),
-            thickness: [thickness],
-        }
-    }
-
-    /// The edges, each once.
-    fn edges(&self) -> Vec<[u32; 2]> {
-        let of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
-        let mut edges: Vec<_> = self.triangles.iter().flat_map(of).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        edges
-    }
-
-    /// Edges that go through triangles, exactly.
-    fn crossings(&self, x: &[Vec3]) -> usize {
-        let bounds = |of: &[u32]| {
-            let all = of.iter().map(|&corner| x[corner as usize]);
-            all.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-        };
-        let triangles: Vec<_> = self.triangles.iter().map(|corners| (corners, bounds(corners))).collect();
-        let mut count = 0;
-        for edge in self.edges() {
-            let [low, high] = bounds(&edge);
-            for &(corners, [from, to]) in &triangles {
-                let apart = low.cmpgt(to).any() || from.cmpgt(high).any();
-                if !apart && !corners.iter().any(|corner| edge.contains(corner)) {
-                    count += usize::from(crosses(edge.map(|i| x[i as usize]), corners.map(|i| x[i as usize])));
-                }
-            }
-        }
-        count
-    }
-}
-
-/// The sign of the volume of a tetrahedron, without error.
-fn side(all: [Vec3; 4]) -> i32 {
-    let [a, b, c, d] = all.map(|x| {
-        let [x, y, z] = x.to_array().map(f64::from);
-        robust::Coord3D { x, y, z }
-    });
-    let volume = robust::orient3d(a, b, c, d);
-    i32::from(volume > 0.0) - i32::from(volume < 0.0)
-}
-
-/// Tells whether an edge goes through a triangle.
-fn crosses([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
-    let sides = [side([a, b, c, p]), side([a, b, c, q])];
-    let around = [side([p, q, a, b]), side([p, q, b, c]), side([p, q, c, a])];
-    sides[0] * sides[1] <= 0 && sides != [0, 0] && (around.iter().all(|&s| s >= 0) || around.iter().all(|&s| s <= 0))
-}
 
 #[test]
 fn the_test_of_crossings_tells_them() {
@@ -105,16 +19,6 @@ fn the_test_of_crossings_tells_them() {
     assert!(crosses(at(0.2, 0.2), triangle) && crosses(at(0.4999, 0.4999), triangle));
     assert!(!crosses(at(0.50001, 0.5), triangle) && !crosses(at(-1e-6, 0.2), triangle));
     assert!(!crosses(at(0.2, 0.2).map(|x| x - Vec3::Y), triangle));
-}
-
-/// A soft cloth of a size \[m\]: it falls alike at every size.
-fn cotton(size: f32) -> ShellParams {
-    ShellParams { stretch: [200.0 * size; 2], shear: 60.0 * size, bending: 1e-5 * size * size * size, damping: 2e-3 }
-}
-
-/// A square of cloth about `center`.
-fn square(center: Vec3, [u, v]: [Vec3; 2], cells: u32) -> Sheet {
-    Sheet { corner: center - (u + v) * 0.5, sides: [u, v], cells: [cells; 2] }
 }
 
 /// Heaps on a floor, and over a ball: they fall onto themselves from all sides.
@@ -292,57 +196,6 @@ fn a_fast_cloth_does_not_pass_another() {
             assert!(report.contacts > 0 && report.caps.contacts == 0, "{report:?}");
             // It has been stopped by the other, which goes on before it.
             assert!(mean(below) < -0.02 * speed && mean(above) > -0.98 * speed, "{} {}", mean(below), mean(above));
-        }
-    }
-}
-
-/// A sheet on another one that is fixed, on a slope: it stays below the angle of friction, and slides above it as a block does.
-#[test]
-fn a_sheet_slides_on_another_by_the_angle_of_friction() {
-    for (mu, substeps, size, method) in [
-        (0.3f32, 5u32, 1.0f32, Method::Symplectic),
-        (0.6, 20, 0.01, Method::Verlet),
-        (0.2, 10, 1.0, Method::Symplectic),
-    ] {
-        for over in [0.9f32, 1.3] {
-            let mut cloths = Cloths::default();
-            let slope = square(Vec3::ZERO, [Vec3::X, Vec3::Z * 0.6].map(|side| side * size), 5);
-            cloths.add(&slope, cotton(size), |x| x, Vec3::ZERO);
-            cloths.start.iter_mut().for_each(|particle| particle.fixed = true);
-            let thickness = 0.005 * size;
-            let center = Vec3::new(-0.2 * size, thickness, 0.013 * size);
-            let sides = [Vec3::new(0.2, 0.0, 0.03), Vec3::new(-0.03, 0.0, 0.2)].map(|side| side * size);
-            let stiff = ShellParams { bending: 1e-3 * size * size * size, ..cotton(size) };
-            cloths.add(&square(center, sides, 4), stiff, |x| x, Vec3::ZERO);
-            cloths.start.iter_mut().for_each(|particle| particle.material = Some(0));
-            let rough = [ContactMaterial { friction: Some(Friction { static_: mu, kinetic: mu }), elasticity: None }];
-            let angle = (over * mu).atan();
-            let g = G * size;
-            let gravity = Gravity { acceleration: Vec3::new(g * angle.sin(), -g * angle.cos(), 0.0) };
-            let constraints = (&cloths.shells[..], cloths.contacts(thickness));
-            let integrator = method.integrator();
-            let scene = Scene {
-                start: &cloths.start,
-                forces: &gravity,
-                materials: &rough,
-                constraints: &constraints,
-                substeps,
-                integrator,
-                ..Scene::EMPTY
-            };
-            let mut system = started(&scene, cloths.start.len(), 0);
-            for frame in 1..=30 {
-                system.step_to(&scene, Time::frame(frame, 60));
-            }
-            let mean = |of: &[Vec3]| of[36..].iter().map(|x| x.x).sum::<f32>() / 25.0;
-            let way = (mean(system.particles().position) - center.x) / size;
-            // It holds but for a creep, and its coefficient is right within 10 %.
-            let (wanted, most) = if over < 1.0 {
-                (0.0, 0.125 * G * 0.04 * angle.sin())
-            } else {
-                (0.125 * G * (angle.sin() - mu * angle.cos()), 0.125 * G * 0.1 * mu * angle.cos())
-            };
-            assert!((way - wanted).abs() < most, "{mu} {substeps} {size} m {over}: {way}, not {wanted}");
         }
     }
 }

@@ -1,0 +1,146 @@
+//! What has been moved apart, by velocity: how fast it parts, and what friction takes of its slip.
+
+use super::super::Bodies;
+use super::super::contacts::Touch;
+use super::lists::{Contact, Kept, NOBODY, Surface};
+use super::solver::ease;
+use super::zones::{LITTLE, Whole};
+use crate::collide::RESTING;
+use crate::math::{aside, length, max, min};
+use glam::Vec3;
+
+/// Passes over all contacts.
+const PASSES: u32 = 4;
+/// The share of the distance they are to have by which two may be farther and still touch, unless one is at the rim of the other.
+const SLACK: f32 = 1e-3;
+
+/// Lets what touches part as fast as its elasticity wants, and no faster; then friction by all that presses, here and by position. What it
+/// took by what turns out to press less it gives back, so that methods that leave half of the pressure to this are held as others.
+pub(super) fn settle(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
+    let mut torque = Vec3::ZERO;
+    for pass in 0..PASSES {
+        torque += press(kept, bodies, pass == 0);
+        torque += rub(kept, bodies);
+    }
+    keep_spin(kept, bodies, torque);
+    count(kept, bodies);
+}
+
+/// Counts what touches, and leaves it to the sweep only to see that no particle goes through a surface.
+fn count(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
+    let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
+    let touches = |touch: &Touch| touch.pressed() > 0.0;
+    bodies.report.contacts += kept.contacts[..contacts].iter().filter(|contact| touches(&contact.touch)).count() as u64;
+    for surface in kept.surfaces[..surfaces].iter().filter(|surface| touches(&surface.touch)) {
+        bodies.report.hits += 1;
+        bodies.mark_touching(kept.rows[surface.particle as usize] as usize);
+    }
+}
+
+fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
+    let mut torque = Vec3::ZERO;
+    let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
+    for leaning in [false, true] {
+        for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.leans() == leaning) {
+            let Some(ease) = ease_of(contact, kept.rows, kept.weight, bodies) else { continue };
+            let normal = contact.normal;
+            let along = |of: &[Vec3]| contact.between(|i| of[kept.rows[i] as usize]).dot(normal);
+            let parting = along(bodies.velocity);
+            let approach = contact.between(|i| kept.pushed[i]).dot(normal);
+            let mut wanted = bounce(bodies, contact.touch.elasticity, [along(bodies.before[1]), approach]);
+            if leaning {
+                let most = if first { contact.touch.pressed() } else { 0.0 };
+                wanted = min(parting + most, wanted);
+            }
+            let by = normal * (contact.touch.press(wanted, parting) / ease);
+            torque += push(contact, kept.rows, kept.weight, bodies, by);
+        }
+    }
+    for surface in &mut kept.surfaces[..surfaces] {
+        let (i, normal) = (surface.particle as usize, surface.normal);
+        let row = kept.rows[i] as usize;
+        if touches(surface, bodies.position[row]) {
+            let along = |v: Vec3| (v - surface.velocity).dot(normal);
+            let ends = [along(bodies.before[1][row]), along(kept.pushed[i])];
+            let wanted = bounce(bodies, surface.touch.elasticity, ends);
+            let change = surface.touch.press(wanted, along(bodies.velocity[row]));
+            bodies.velocity[row] += normal * change;
+        }
+    }
+    torque
+}
+
+/// Takes from the slip of all what friction can by all that has pressed them; returns the moment of that.
+fn rub(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) -> Vec3 {
+    let mut torque = Vec3::ZERO;
+    let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
+    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.grip.acts(&contact.touch)) {
+        let Some(ease) = ease_of(contact, kept.rows, kept.weight, bodies) else { continue };
+        let slip = aside(contact.between(|i| bodies.velocity[kept.rows[i] as usize]), contact.normal);
+        let by = contact.grip.hold(&contact.touch, slip, contact.touch.pressed()) / ease;
+        torque += push(contact, kept.rows, kept.weight, bodies, by);
+    }
+    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.grip.acts(&surface.touch)) {
+        let row = kept.rows[surface.particle as usize] as usize;
+        let slip = aside(bodies.velocity[row] - surface.velocity, surface.normal);
+        bodies.velocity[row] += surface.grip.hold(&surface.touch, slip, surface.touch.pressed());
+    }
+    torque
+}
+
+/// How fast two that touch part by a unit push \[1/kg\].
+fn ease_of(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &Bodies<'_>) -> Option<f32> {
+    let far = || contact.between(|i| bodies.position[rows[i] as usize]).dot(contact.normal);
+    let pushes = contact.touch.pressed() > 0.0 || contact.grip.acts(&contact.touch);
+    let touches = pushes || !contact.leans() && far() < contact.target * (1.0 + SLACK);
+    Some(ease(contact, weight)).filter(|&ease| touches && ease > 0.0)
+}
+
+fn touches(surface: &Surface, place: Vec3) -> bool {
+    let slack = SLACK * (surface.offset - surface.limit);
+    surface.touch.pressed() > 0.0 || place.dot(surface.normal) < surface.offset + slack
+}
+
+/// Pushes two apart by equal and opposite pushes; returns their moment.
+fn push(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &mut Bodies<'_>, by: Vec3) -> Vec3 {
+    for (&corner, share) in contact.corners.iter().zip(contact.weights) {
+        let i = corner as usize;
+        bodies.velocity[rows[i] as usize] += by * (share * weight[i]);
+    }
+    contact.between(|i| bodies.position[rows[i] as usize]).cross(by)
+}
+
+/// The speed at which two are to part that came together with the second speed, and had the first before forces pressed them: none where
+/// the bounce would be over within a part of the step.
+fn bounce(bodies: &Bodies<'_>, elasticity: f32, [begun, approach]: [f32; 2]) -> f32 {
+    let bounce = max(-approach * elasticity, 0.0);
+    let pressing = max(begun - approach, 0.0) / bodies.substep.seconds();
+    if 2.0 * bounce < RESTING * bodies.substep.step.seconds() * pressing { 0.0 } else { bounce }
+}
+
+/// Turns all sheets together by what pushes would change of their angular momentum that do not go along the line between two, where nothing else holds them.
+fn keep_spin(kept: &Kept<'_>, bodies: &mut Bodies<'_>, torque: Vec3) {
+    let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
+    let members = || kept.rows.iter().zip(&*kept.weight).filter_map(living);
+    let Some((origin, _)) = members().next().filter(|_| torque != Vec3::ZERO) else { return };
+    if kept.counts.surfaces > 0 || members().any(|(_, weight)| weight == 0.0) {
+        return;
+    }
+    let origin = bodies.position[origin];
+    let (mass, middle) = members().fold((0.0, Vec3::ZERO), |(mass, middle), (row, weight)| {
+        (mass + 1.0 / weight, middle + (bodies.position[row] - origin) / weight)
+    });
+    let middle = origin + middle / mass;
+    let mut whole = Whole::of(torque);
+    for (row, weight) in members() {
+        let arm = bodies.position[row] - middle;
+        whole.add(arm, arm, 1.0 / weight, Vec3::ZERO);
+    }
+    let turn = whole.turn();
+    if length(turn) * bodies.substep.seconds() > LITTLE {
+        return;
+    }
+    for (row, _) in members() {
+        bodies.velocity[row] -= turn.cross(bodies.position[row] - middle);
+    }
+}
