@@ -16,7 +16,8 @@ use glam::Vec3;
 pub(crate) const SHIFTED: u32 = 1;
 /// A constraint keeps the particle from what it touches: the sweep only keeps its middle from passing through.
 pub(crate) const TOUCHING: u32 = 2;
-/// The particle belongs to a body that meets the scenery as a whole: the sweep looks for sinks on its path, and for nothing else.
+/// The particle belongs to a body that meets the scenery as a whole, or its way has been followed past that in each sub-step: the sweep looks
+/// for sinks on its path, and for nothing else.
 pub(crate) const CARRIED: u32 = 4;
 
 /// A part of a step.
@@ -126,6 +127,11 @@ impl Bodies<'_> {
     /// Tells whoever watches that a particle is kept from another thing with which it came together.
     pub fn tell(&mut self, touch: &Impact) {
         self.observer.touched(touch);
+    }
+
+    /// Says that the particle in a row has not passed through the scenery on any of its ways through the step's sub-steps.
+    pub(crate) fn mark_followed(&mut self, row: usize) {
+        self.marks[row] |= SHIFTED | CARRIED;
     }
 
     /// Says that the particle in a row is kept from the surface it touches, and needs no other answer to it in this step:

@@ -100,7 +100,9 @@ impl Slide {
         let center = (self.far + high(upper) + across * 0.013) * size;
         let sides = [down * 0.2 + across * 0.03, across * 0.2 - down * 0.03].map(|side| side * size);
         cloths.add(&square(center, sides, 4), stiff, |x| x, down * (self.speed * size));
-        cloths.start[count..].iter_mut().for_each(|particle| particle.material = Some(if self.ground == Ground::Loose { 2 } else { 0 }));
+        cloths.start[count..]
+            .iter_mut()
+            .for_each(|particle| particle.material = Some(if self.ground == Ground::Loose { 2 } else { 0 }));
         (cloths, count)
     }
 }

@@ -1,6 +1,7 @@
 //! Sheets that touch themselves and each other: nothing passes, layers stay layers, friction holds by its angle, momenta are kept.
 
 mod cloths;
+mod curved;
 mod friction;
 
 use cloths::{Cloths, G, cotton, crosses, square};

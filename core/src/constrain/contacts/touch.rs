@@ -100,11 +100,7 @@ impl Grip {
     pub(in crate::constrain) fn hold(&mut self, touch: &Touch, slip: Vec3, load: f32) -> Vec3 {
         let wanted = self.0 - slip;
         let (far, load) = (length(wanted), max(load, 0.0));
-        let given = if far <= touch.static_ * load {
-            wanted
-        } else {
-            wanted * min(touch.kinetic * load / far, 1.0)
-        };
+        let given = if far <= touch.static_ * load { wanted } else { wanted * min(touch.kinetic * load / far, 1.0) };
         if !given.is_finite() {
             return Vec3::ZERO;
         }

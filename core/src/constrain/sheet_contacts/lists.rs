@@ -75,6 +75,8 @@ pub(super) struct Surface {
     pub(super) limit: f32,
     /// How much of the first gives a gap back that was missing \[m\].
     pub(super) recovery: f32,
+    /// How far off it is as the sub-step begins \[m\].
+    pub(super) distance: f32,
     /// How it moves there \[m/s\].
     pub(super) velocity: Vec3,
     pub(super) touch: Touch,
@@ -99,6 +101,8 @@ pub(super) struct Kept<'m> {
     pub(super) pushed: &'m mut [Vec3],
     /// How far off the scenery is, at the least \[m\].
     pub(super) clear: &'m mut [f32],
+    /// Whether its way through the step may pass through the scenery (1), and whether a face is listed near it in the sub-step (2).
+    pub(super) followed: &'m mut [u32],
     pub(super) contacts: &'m mut [Contact],
     pub(super) surfaces: &'m mut [Surface],
 }
@@ -139,7 +143,7 @@ pub(super) fn demand([particles, triangles]: [usize; 2]) -> Demand {
     let contacts = each(contacts, words::<Contact>());
     let surfaces = each(surfaces, words::<Surface>());
     let kept = sum([KEPT[0], each(particles, KEPT[1]), each(triangles, KEPT[2])]);
-    let step = sum([words::<Counts>().saturating_add(each(particles, 6)), contacts, surfaces]);
+    let step = sum([words::<Counts>().saturating_add(each(particles, 7)), contacts, surfaces]);
     let learning = sum([0, each(particles, LEARNING[0]), each(triangles, LEARNING[1])]);
     let working = sum([each(particles, 18), contacts, tree::words(triangles)]);
     Demand { kept, step, scratch: learning.or(working), finds_near: false }
@@ -154,10 +158,11 @@ impl<'m> Kept<'m> {
         let weight = bytemuck::cast_slice_mut(take(&mut rest, particles));
         let pushed = take_vectors(&mut rest, particles);
         let clear = bytemuck::cast_slice_mut(take(&mut rest, particles));
+        let followed = take(&mut rest, particles);
         let [contacts, surfaces] = room(particles);
         let contacts = bytemuck::try_cast_slice_mut(take(&mut rest, contacts * words::<Contact>())).ok()?;
         let surfaces = bytemuck::try_cast_slice_mut(take(&mut rest, surfaces * words::<Surface>())).ok()?;
-        Some(Self { counts, rows, weight, pushed, clear, contacts, surfaces })
+        Some(Self { counts, rows, weight, pushed, clear, followed, contacts, surfaces })
     }
 
     /// The contacts of now with each other, and those with scenery.

@@ -111,7 +111,8 @@ impl<'m> Rest<'m> {
             *sheet = i as u32;
         }
         let there = self.sheet.len() as u32;
-        for &Face { corners: [a, b, c], .. } in self.faces.iter().filter(|face| face.corners.iter().all(|&i| i < there)) {
+        for &Face { corners: [a, b, c], .. } in self.faces.iter().filter(|face| face.corners.iter().all(|&i| i < there))
+        {
             unite(self.sheet, a, b);
             unite(self.sheet, a, c);
         }

@@ -44,10 +44,11 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
         }
     }
     work.held.fill(0);
-    if scenery::hold(kept, work, h) || !safe {
+    if scenery::hold(kept, work, bodies) || !safe {
         zones::hold(rest, kept, work, bodies);
     }
     zones::keep_spin(kept, work, torque);
+    scenery::follow(kept, work, bodies);
     act(kept, work, bodies);
 }
 

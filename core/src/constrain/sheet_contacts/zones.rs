@@ -21,7 +21,7 @@ pub(super) fn hold(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bo
         *zone = i as u32;
     }
     for growth in 0..GROWTH {
-        let holds = scenery::hold(kept, work, bodies.substep.seconds());
+        let holds = scenery::hold(kept, work, bodies);
         if search::search(rest, kept, work, bodies) == 0 && !holds {
             return;
         }
