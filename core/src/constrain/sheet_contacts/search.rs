@@ -5,7 +5,7 @@ use super::super::contacts::Touch;
 use super::closest::{Closest, Kind, Meeting};
 use super::lists::{Contact, Kept, Work};
 use super::rest::{Face, Rest};
-use super::tree::Ways;
+use super::tree::{Bounds, Ways};
 use crate::material::of_two;
 use crate::math::{high, length, low, max, min};
 use crate::report::Report;
@@ -33,6 +33,7 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
         rest,
         from: work.from,
         now: work.now,
+        drift: ways.drift,
         room: work.room,
         contacts: kept.contacts,
         count: &mut kept.counts.contacts,
@@ -114,6 +115,7 @@ struct Search<'m, 'r> {
     rest: &'m Rest<'r>,
     from: &'m [Vec3],
     now: &'m [Vec3],
+    drift: Vec3,
     room: &'m mut [f32],
     contacts: &'m mut [Contact],
     count: &'m mut u32,
@@ -122,26 +124,37 @@ struct Search<'m, 'r> {
 }
 
 impl Search<'_, '_> {
-    /// The corners of one with the other, and the edges of one with those of the other, as far as they are their own and have no corner
-    /// in common.
+    /// The corners of one with the other, and the edges of one with those of the other, as far as they are their own, have no corner
+    /// in common, and boxes around their ways are near.
     fn triangles(&mut self, one: &Face, other: &Face) {
-        for (of, with) in [(one, other), (other, one)] {
+        let ways = [one, other].map(|face| face.corners.map(|corner| self.way(corner)));
+        let widest = |face: &Face| face.corners.iter().fold(0.0, |most, &corner| max(half(self.rest, corner), most));
+        let reach = widest(one) + widest(other) + 2.0 * self.rest.facts.budget;
+        for ((of, with), [own, [p, q, r]]) in [((one, other), ways), ((other, one), [ways[1], ways[0]])] {
+            let around = p.and(q).and(r).wider(reach);
             for (i, &corner) in of.corners.iter().enumerate() {
                 let [a, b, c] = with.corners;
-                if of.owns_corner(i) && ![a, b, c].contains(&corner) {
+                if of.owns_corner(i) && own[i].overlaps(&around) && ![a, b, c].contains(&corner) {
                     self.look(Kind::PointTriangle, [corner, a, b, c], with);
                 }
             }
         }
+        let edges = ways.map(|[a, b, c]| [a.and(b), b.and(c), c.and(a)]);
         for i in (0..3).filter(|&i| one.owns_edge(i)) {
-            let [a, b] = one.edge(i);
-            for j in (0..3).filter(|&j| other.owns_edge(j)) {
+            let ([a, b], around) = (one.edge(i), edges[0][i].wider(reach));
+            for j in (0..3).filter(|&j| other.owns_edge(j) && edges[1][j].overlaps(&around)) {
                 let [c, d] = other.edge(j);
                 if a != c && a != d && b != c && b != d {
                     self.look(Kind::EdgeEdge, [a, b, c, d], other);
                 }
             }
         }
+    }
+
+    /// A box around the way of a particle, but for that of all together.
+    fn way(&self, corner: u32) -> Bounds {
+        let place = |of: &[Vec3]| of.get(corner as usize).copied().unwrap_or(Vec3::NAN);
+        Bounds::EMPTY.with(place(self.from)).with(place(self.now) - self.drift)
     }
 
     /// How far apart two are kept: in one sheet no farther than half of what they are at rest.
@@ -200,13 +213,13 @@ impl Search<'_, '_> {
 }
 
 /// Tells whether boxes around two things at both ends are farther than `reach` from each other.
-fn are_apart(kind: Kind, ends: &[[Vec3; 4]; 2], reach: f32) -> bool {
-    let around = |from: usize, to: usize| {
-        let all = ends.iter().flat_map(|end| &end[from..to]);
-        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        all.fold(empty, |(least, most), &place| (low(place, least), high(place, most)))
+fn are_apart(kind: Kind, [begun, ended]: &[[Vec3; 4]; 2], reach: f32) -> bool {
+    let around = |i: usize| (low(begun[i], ended[i]), high(begun[i], ended[i]));
+    let join = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (low(a.0, b.0), high(a.1, b.1));
+    let ((a, b), (c, d)) = match kind {
+        Kind::PointTriangle => (around(0), join(join(around(1), around(2)), around(3))),
+        Kind::EdgeEdge => (join(around(0), around(1)), join(around(2), around(3))),
     };
-    let ((a, b), (c, d)) = (around(0, kind.split()), around(kind.split(), 4));
     let gap = high(a - d, c - b);
     gap.x > reach || gap.y > reach || gap.z > reach
 }

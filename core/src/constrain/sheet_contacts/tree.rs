@@ -14,17 +14,17 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
+    pub(super) const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
 
-    fn with(self, place: Vec3) -> Self {
+    pub(super) fn with(self, place: Vec3) -> Self {
         Self { low: low(place, self.low), high: high(place, self.high) }
     }
 
-    fn and(self, other: Self) -> Self {
+    pub(super) fn and(self, other: Self) -> Self {
         Self { low: low(other.low, self.low), high: high(other.high, self.high) }
     }
 
-    fn wider(self, by: f32) -> Self {
+    pub(super) fn wider(self, by: f32) -> Self {
         Self { low: self.low - by, high: self.high + by }
     }
 
