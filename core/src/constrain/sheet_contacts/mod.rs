@@ -27,8 +27,9 @@ use rest::Rest;
 /// all that it is no part of (Chen et al., "Offset Geometric Contact", SIGGRAPH 2025; Wu, Wang and Wang, "A Safe and Fast Repulsion
 /// Method for GPU-based Cloth Self Collisions", ACM Transactions on Graphics 40, 2021). What would pass all the same moves as one
 /// (rigid impact zones: Provot 1997; Harmon et al., "Robust Treatment of Simultaneous Collisions", SIGGRAPH 2008) and is counted in
-/// [`Effort::capped`](crate::Effort::capped). That holds for what this constraint sees: it has to be the last, and what the
-/// scenery's sweep, or a script, does to particles after it can bring sheets through each other. Sheets that begin through each other stay so.
+/// [`Effort::capped`](crate::Effort::capped). That holds for what this constraint sees: it has to be the last, and what a script does to
+/// particles after it can bring sheets through each other. So can the scenery's sweep, to which only those are left that something without
+/// [`contacts`](crate::shape::Collider::contacts) stops in the step. Sheets that begin through each other stay so.
 ///
 /// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method. What leans against
 /// a sheet (edges on edges, points beyond a rim) pushes only where points over triangles leave it too near.

@@ -127,28 +127,36 @@ impl Search<'_, '_> {
     /// The corners of one with the other, and the edges of one with those of the other, as far as they are their own, have no corner
     /// in common, and boxes around their ways are near.
     fn triangles(&mut self, one: &Face, other: &Face) {
-        let ways = [one, other].map(|face| face.corners.map(|corner| self.way(corner)));
-        let widest = |face: &Face| face.corners.iter().fold(0.0, |most, &corner| max(half(self.rest, corner), most));
-        let reach = widest(one) + widest(other) + 2.0 * self.rest.facts.budget;
-        for ((of, with), [own, [p, q, r]]) in [((one, other), ways), ((other, one), [ways[1], ways[0]])] {
-            let around = p.and(q).and(r).wider(reach);
-            for (i, &corner) in of.corners.iter().enumerate() {
-                let [a, b, c] = with.corners;
-                if of.owns_corner(i) && own[i].overlaps(&around) && ![a, b, c].contains(&corner) {
-                    self.look(Kind::PointTriangle, [corner, a, b, c], with);
-                }
-            }
-        }
-        let edges = ways.map(|[a, b, c]| [a.and(b), b.and(c), c.and(a)]);
+        let [a, b] = [self.ways(one), self.ways(other)];
+        let widest = |[a, b, c]: [u32; 3]| max(half(self.rest, a), max(half(self.rest, b), half(self.rest, c)));
+        let reach = widest(one.corners) + widest(other.corners) + 2.0 * self.rest.facts.budget;
+        self.points(one, other, &a, reach, &b);
+        self.points(other, one, &b, reach, &a);
         for i in (0..3).filter(|&i| one.owns_edge(i)) {
-            let ([a, b], around) = (one.edge(i), edges[0][i].wider(reach));
-            for j in (0..3).filter(|&j| other.owns_edge(j) && edges[1][j].overlaps(&around)) {
-                let [c, d] = other.edge(j);
-                if a != c && a != d && b != c && b != d {
-                    self.look(Kind::EdgeEdge, [a, b, c, d], other);
+            let ([p, q], around) = (one.edge(i), a[i].and(a[(i + 1) % 3]).wider(reach));
+            for j in (0..3).filter(|&j| other.owns_edge(j)) {
+                let [r, s] = other.edge(j);
+                let strangers = p != r && p != s && q != r && q != s;
+                if strangers && b[j].and(b[(j + 1) % 3]).overlaps(&around) {
+                    self.look(Kind::EdgeEdge, [p, q, r, s], other);
                 }
             }
         }
+    }
+
+    fn points(&mut self, of: &Face, with: &Face, ways: &[Bounds; 3], reach: f32, [p, q, r]: &[Bounds; 3]) {
+        let (around, [a, b, c]) = (p.and(*q).and(*r).wider(reach), with.corners);
+        for i in (0..3).filter(|&i| of.owns_corner(i)) {
+            let corner = of.corners[i];
+            if corner != a && corner != b && corner != c && ways[i].overlaps(&around) {
+                self.look(Kind::PointTriangle, [corner, a, b, c], with);
+            }
+        }
+    }
+
+    fn ways(&self, face: &Face) -> [Bounds; 3] {
+        let [a, b, c] = face.corners;
+        [self.way(a), self.way(b), self.way(c)]
     }
 
     /// A box around the way of a particle, but for that of all together.
@@ -172,9 +180,10 @@ impl Search<'_, '_> {
         let [first, second] = [corners[0], corners[kind.split()]];
         let (thickness, budget) = (half(self.rest, first) + half(self.rest, second), self.rest.facts.budget);
         let reach = thickness + 2.0 * budget;
+        let [a, b, c, d] = corners;
         let seen = |of: &[Vec3]| {
-            let place = |corner: u32| of[corner as usize];
-            corners.map(|corner| place(corner) - place(corners[0]))
+            let place = |corner: u32| of[corner as usize] - of[a as usize];
+            [place(a), place(b), place(c), place(d)]
         };
         let ends = [seen(self.from), seen(self.now)];
         if are_apart(kind, &ends, reach) {
