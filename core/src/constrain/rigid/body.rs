@@ -20,25 +20,28 @@ pub(super) struct Body {
     /// The number of its particles that live, plus one; zero before it is seen for the first time.
     known: u32,
     state: u32,
-    turn: [f32; 4],
-    /// Its centre of mass \[m\].
-    pub(super) center: Vec3,
+    /// The tick of the clock of passes at which it was changed last.
+    pub(super) changed: u32,
+    /// One over its mass \[1/kg\]; zero: it stays.
+    pub(super) inverse_mass: f32,
     /// Its velocity \[m/s\].
     pub(super) velocity: Vec3,
     /// Its angular momentum about its centre over its mass \[m²/s\].
-    spin: Vec3,
+    pub(super) spin: Vec3,
     /// How it turns \[rad/s\].
     pub(super) omega: Vec3,
+    /// The inverse of its inertia over its mass in the world \[1/m²\].
+    pub(super) inverse: Mat3,
+    /// Its centre of mass \[m\].
+    pub(super) center: Vec3,
+    turn: [f32; 4],
     /// Its centre of mass in the box's frame \[m\].
     pub(super) rest: Vec3,
-    /// One over its mass \[1/kg\]; zero: it stays.
-    pub(super) inverse_mass: f32,
     /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
     spread: Mat3,
     inverse_inertia: Mat3,
-    /// Its rotation, and the inverse of its inertia over its mass in the world.
+    /// Its rotation.
     pub(super) rotation: Mat3,
-    inverse: Mat3,
     /// Its velocity and rate of turning when the sub-step began.
     pub(super) before: [Vec3; 2],
     /// How much farther the method has moved it than its velocity says \[m\].
@@ -123,10 +126,9 @@ impl Body {
         velocity + omega.cross(arm)
     }
 
-    /// How much an impulse there changes the speed there along a direction \[1/kg\].
-    pub(super) fn yielding(&self, arm: Vec3, direction: Vec3) -> f32 {
-        let lever = arm.cross(direction);
-        self.inverse_mass * (1.0 + lever.dot(self.inverse * lever))
+    /// How an impulse there along a direction changes the velocity there \[1/kg\].
+    pub(super) fn answer(&self, arm: Vec3, direction: Vec3) -> Vec3 {
+        (direction + (self.inverse * arm.cross(direction)).cross(arm)) * self.inverse_mass
     }
 
     /// Gives it an impulse \[N s\] there.

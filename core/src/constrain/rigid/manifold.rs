@@ -24,8 +24,14 @@ pub(super) struct Point {
     pub(super) bounce: f32,
     /// The speed below which they come together by their weight, not by a blow \[m/s\].
     pub(super) calm: f32,
-    /// The impulse that makes them part by 1 m/s \[kg\].
+    /// The impulse that makes them part by 1 m/s \[kg\], and how the second's velocity there, as seen from the first, changes by one along the
+    /// normal \[1/kg\].
     pub(super) mass: f32,
+    pub(super) answer: Vec3,
+    /// The impulse along the surface that takes a slip of 1 m/s away \[kg\]: a symmetric matrix, uu, uv, vv.
+    pub(super) rub: [f32; 3],
+    /// How fast they shall part in the passes under way \[m/s\].
+    pub(super) wanted: f32,
     /// How far the second has crept along the first since friction has held them there \[m\].
     pub(super) crept: Vec3,
 }
@@ -46,6 +52,11 @@ pub(super) struct Manifold {
     pub(super) surface: Vec3,
     pub(super) elasticity: f32,
     pub(super) friction: [f32; 2],
+    /// The normal, and two directions across it, in the world.
+    pub(super) axis: Vec3,
+    pub(super) along: [Vec3; 2],
+    /// The tick of the clock of passes at which it was gone over last.
+    pub(super) seen: u32,
     pub(super) points: [Point; 4],
 }
 

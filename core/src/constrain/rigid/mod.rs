@@ -10,6 +10,7 @@ mod hull;
 mod hull_buf;
 mod lists;
 mod manifold;
+mod pass;
 mod scenery;
 mod solver;
 mod tell;

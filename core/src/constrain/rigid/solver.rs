@@ -2,18 +2,20 @@
 
 use super::body::Body;
 use super::manifold::{Manifold, Point, middle};
+use super::pass;
 use crate::collide::RESTING;
-use crate::math::{aside, dot, length, max, min, sqrt};
+use crate::math::{aside, dot, length, max, sqrt};
 use glam::Vec3;
 
-/// Passes over those that bounce, for their points share one blow.
-const BLOWS: u32 = 12;
-/// Passes over all others.
-const PASSES: u32 = 4;
+/// Passes at the most where anything bounces, for the points of bodies that touch share one blow.
+const BLOWS: u32 = 24;
+/// Passes at the most where nothing does.
+const PASSES: u32 = 8;
+/// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
+/// by in a step, or of the speed that they shall part with.
+pub(super) const SETTLED: f32 = 1e-3;
 /// The share of the last sub-step's impulses that the next one begins with: all of them would let towers swing.
 const AGAIN: f32 = 0.9;
-/// Passes over the points of two before those of the next two.
-const WITHIN: u32 = 2;
 
 /// The share of an overlap that is taken back in a sub-step.
 const RECOVERY: f32 = 0.1;
@@ -33,6 +35,7 @@ pub(super) fn begin(bodies: &mut [Body], manifold: &mut Manifold) {
     let Some(mut pair) = Pair::of(bodies, manifold) else { return };
     pair.let_slide();
     pair.stand();
+    pair.weigh();
     for i in 0..pair.count {
         let speed = -pair.parting(i);
         pair.points[i].bounce = speed;
@@ -76,18 +79,12 @@ pub(super) fn hold_on(bodies: &mut [Body], manifold: &mut Manifold) {
 /// Keeps all from passing into each other within the sub-step, by velocities: before they go.
 pub(super) fn keep_apart(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: Span) {
     let [pairs, scenery] = manifolds;
-    for _ in 0..PASSES {
-        for manifold in pairs.iter_mut().chain(&mut *scenery) {
-            let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
-            for _ in 0..WITHIN {
-                pair.press_all(&mut |point| {
-                    let share = if point.gap > 0.0 { 1.0 } else { RECOVERY };
-                    -point.gap * share / span.h
-                });
-                pair.rub_all(RECOVERY / span.h);
-            }
+    for manifold in pairs.iter_mut().chain(&mut *scenery) {
+        for point in &mut manifold.points[..(manifold.count as usize).min(4)] {
+            point.wanted = -point.gap * if point.gap > 0.0 { 1.0 } else { RECOVERY } / span.h;
         }
     }
+    go_over(bodies, [&mut *pairs, &mut *scenery], PASSES, RECOVERY / span.h);
     for manifold in pairs.iter().chain(&*scenery) {
         if manifold.points().iter().any(|point| point.pressed > 0.0) {
             manifold.bodies.iter().for_each(|&body| bodies[body as usize].pressed = 1);
@@ -100,27 +97,42 @@ pub(super) fn part(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: S
     let [pairs, scenery] = manifolds;
     let mut bounces = false;
     for manifold in pairs.iter_mut().chain(&mut *scenery) {
-        if let Some(mut pair) = Pair::of(bodies, manifold) {
-            pair.stand();
-            for i in 0..pair.count {
-                let closing = -pair.parting(i);
-                let point = &mut pair.points[i];
-                if !(point.pressed > 0.0 || point.gap <= 0.0) {
-                    // Who does not touch yet closes the gap in the next sub-step at the most, or meets for a blow then.
-                    let is_calm = closing <= point.calm;
-                    point.bounce = if is_calm { -point.gap / span.h } else { f32::NEG_INFINITY };
-                }
-                bounces |= point.bounce > 0.0;
+        let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
+        pair.stand();
+        for i in 0..pair.count {
+            let closing = -pair.parting(i);
+            let point = &mut pair.points[i];
+            point.wanted = point.bounce;
+            if !(point.pressed > 0.0 || point.gap <= 0.0) {
+                // Who does not touch yet closes the gap in the next sub-step at the most, or meets for a blow then.
+                let is_calm = closing <= point.calm;
+                point.wanted = if is_calm { -point.gap / span.h } else { f32::NEG_INFINITY };
             }
+            bounces |= point.wanted > 0.0;
         }
     }
-    for _ in 0..if bounces { BLOWS } else { PASSES } {
+    go_over(bodies, [pairs, scenery], if bounces { BLOWS } else { PASSES }, 0.0);
+}
+
+/// Goes over all that touch so many times at the most, and over those again whose bodies have been changed since.
+fn go_over(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], passes: u32, back: f32) {
+    let [pairs, scenery] = manifolds;
+    bodies.iter_mut().for_each(|body| body.changed = 0);
+    pairs.iter_mut().chain(&mut *scenery).for_each(|manifold| manifold.seen = 0);
+    let mut clock = 0;
+    for _ in 0..passes {
+        let before = clock;
         for manifold in pairs.iter_mut().chain(&mut *scenery) {
-            let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
-            for _ in 0..WITHIN {
-                pair.press_all(&mut |point| point.bounce);
-                pair.rub_all(0.0);
+            if manifold.count > 0 {
+                let changed = manifold.bodies.map(|number| bodies.get(number as usize).map_or(0, |body| body.changed));
+                if changed[0].max(changed[1]) >= manifold.seen {
+                    clock += 1;
+                    pass::over(bodies, manifold, back, clock);
+                }
             }
+        }
+        if clock == before {
+            return;
         }
     }
 }
@@ -134,6 +146,7 @@ struct Pair<'a> {
     friction: [f32; 2],
     points: &'a mut [Point; 4],
     count: usize,
+    along: &'a mut [Vec3; 2],
 }
 
 impl<'a> Pair<'a> {
@@ -147,7 +160,8 @@ impl<'a> Pair<'a> {
         let bodies = bodies.get_disjoint_mut(numbers).ok()?;
         let normal = bodies[0].rotation * manifold.normal;
         let Manifold { surface, friction, .. } = *manifold;
-        Some(Self { bodies, normal, surface, friction, points: &mut manifold.points, count })
+        manifold.axis = normal;
+        Some(Self { bodies, normal, surface, friction, points: &mut manifold.points, count, along: &mut manifold.along })
     }
 
     /// Follows the bodies' places.
@@ -160,7 +174,23 @@ impl<'a> Pair<'a> {
             point.gap = dot(normal, spot[1] - spot[0]);
             point.crept = aside(spot[1] - spot[0], normal);
             point.arms = [middle - a.center, middle - b.center];
-            point.mass = 1.0 / (a.yielding(point.arms[0], normal) + b.yielding(point.arms[1], normal));
+        }
+    }
+
+    /// Finds what impulses at each point do to the speeds there.
+    fn weigh(&mut self) {
+        let (normal, [a, b]) = (self.normal, &self.bodies);
+        let along = [across(normal), normal.cross(across(normal))];
+        *self.along = along;
+        for point in &mut self.points[..self.count] {
+            let answer = |direction: Vec3| a.answer(point.arms[0], direction) + b.answer(point.arms[1], direction);
+            let [u, v] = along.map(answer);
+            let [uu, uv, vv] = [dot(u, along[0]), dot(u, along[1]), dot(v, along[1])];
+            point.answer = answer(normal);
+            point.mass = 1.0 / dot(point.answer, normal);
+            let by = 1.0 / (uu * vv - uv * uv);
+            let rub = [vv * by, -uv * by, uu * by];
+            point.rub = if rub.iter().all(|x| x.is_finite()) { rub } else { [0.0; 3] };
         }
     }
 
@@ -191,76 +221,11 @@ impl<'a> Pair<'a> {
         a.push(arms[0], -impulse);
         b.push(arms[1], impulse);
     }
+}
 
-    /// Brings the speed at which they part to what is wanted, as far as pushing alone does it.
-    fn press_all(&mut self, wanted: &mut dyn FnMut(&Point) -> f32) {
-        self.press_evenly(wanted);
-        for i in 0..self.count {
-            let parting = self.parting(i);
-            let point = &mut self.points[i];
-            let pressed = max(point.pressed + (wanted(point) - parting) * point.mass, 0.0);
-            let impulse = pressed - point.pressed;
-            if impulse.is_finite() && impulse != 0.0 {
-                point.pressed = pressed;
-                let arms = point.arms;
-                self.push(arms, self.normal * impulse);
-            }
-        }
-    }
-
-    /// Changes the impulses of all points that press, or should, by the same: what presses evenly, as a box that lies flat, is done with at
-    /// once, whatever the order of points.
-    fn press_evenly(&mut self, wanted: &mut dyn FnMut(&Point) -> f32) {
-        let (mut lack, mut least, mut levers, mut number) = (0.0, f32::INFINITY, [Vec3::ZERO; 2], 0.0);
-        let mut counts = [false; 4];
-        for (i, counts) in counts.iter_mut().enumerate().take(self.count) {
-            let missing = wanted(&self.points[i]) - self.parting(i);
-            let Point { pressed, arms, .. } = self.points[i];
-            *counts = missing > 0.0 || pressed > 0.0;
-            if *counts {
-                (lack, least, number) = (lack + missing, min(least, pressed), number + 1.0);
-                levers[0] += arms[0];
-                levers[1] += arms[1];
-            }
-        }
-        if !(number > 1.0) {
-            return;
-        }
-        let mean = levers.map(|lever| lever * (1.0 / number));
-        let [a, b] = &self.bodies;
-        let yielding = a.yielding(mean[0], self.normal) + b.yielding(mean[1], self.normal);
-        let each = max(lack / (number * number * yielding), -least);
-        if each.is_finite() && each != 0.0 {
-            for (point, _) in self.points.iter_mut().zip(counts).filter(|&(_, counts)| counts) {
-                point.pressed += each;
-            }
-            self.push(mean, self.normal * (each * number));
-        }
-    }
-
-    /// Takes from their slip, and from what they have crept at so many times a second, what Coulomb's friction can, by all that presses.
-    fn rub_all(&mut self, back: f32) {
-        let [sticks, slides] = self.friction;
-        if !(sticks + slides > 0.0) {
-            return;
-        }
-        for i in 0..self.count {
-            let Point { pressed, held, arms, crept, .. } = self.points[i];
-            let slip = aside(self.slip(i), self.normal) + crept * back;
-            let speed = length(slip);
-            if !(speed > 0.0) {
-                continue;
-            }
-            let along = slip * (1.0 / speed);
-            let [a, b] = &self.bodies;
-            let wanted = held - along * (speed / (a.yielding(arms[0], along) + b.yielding(arms[1], along)));
-            let size = length(wanted);
-            let holds = if size <= sticks * pressed { wanted } else { wanted * (min(slides * pressed, size) / size) };
-            let change = holds - held;
-            if change.is_finite() {
-                self.points[i].held = holds;
-                self.push(arms, change);
-            }
-        }
-    }
+/// A unit vector across another.
+fn across(normal: Vec3) -> Vec3 {
+    let Vec3 { x, y, z } = normal;
+    let side = if x.abs() < 0.6 { Vec3::new(0.0, -z, y) } else { Vec3::new(-y, x, 0.0) };
+    side * (1.0 / length(side))
 }
