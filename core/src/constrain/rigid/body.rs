@@ -34,7 +34,7 @@ pub(super) struct Body {
     pub(super) inverse: Mat3,
     /// Its centre of mass \[m\].
     pub(super) center: Vec3,
-    turn: [f32; 4],
+    pub(super) turn: [f32; 4],
     /// Its centre of mass in the box's frame \[m\].
     pub(super) rest: Vec3,
     /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
@@ -45,7 +45,21 @@ pub(super) struct Body {
     /// Its velocity and rate of turning when the sub-step began.
     pub(super) before: [Vec3; 2],
     /// How much farther the method has moved it than its velocity says \[m\].
-    drift: Vec3,
+    pub(super) drift: Vec3,
+    /// What forces change its velocity and spin by, last seen while it was awake \[m/s², m²/s²\].
+    pub(super) drive: [Vec3; 2],
+    /// 1 if it sleeps; 1 if those who sleep with it are to wake; the least number among them.
+    pub(super) asleep: u32,
+    pub(super) calls: u32,
+    pub(super) island: u32,
+    /// How many places of the scenery were near when it fell asleep.
+    pub(super) faces: u32,
+    /// For how long it has been near a place, and how it was turned there \[s, m\].
+    pub(super) still: f32,
+    /// 1 if that was long enough to sleep.
+    pub(super) lull: u32,
+    pub(super) home: Vec3,
+    pub(super) home_turn: [f32; 4],
     /// 1 if something presses on it in this sub-step.
     pub(super) pressed: u32,
     /// Half the sides of its box \[m\].
@@ -309,18 +323,21 @@ impl Body {
         if !(way + push + torque).is_finite() {
             self.state = ABSENT;
             self.inverse_mass = 0.0;
+            self.asleep = 0;
             return;
         }
+        let seconds = bodies.substep.seconds();
+        self.drive = [push, torque].map(|change| change * (1.0 / seconds));
         self.velocity += push;
         self.spin += torque;
         self.omega = self.inverse * self.spin;
-        self.drift = way - self.velocity * bodies.substep.seconds();
+        self.drift = way - self.velocity * seconds;
     }
 
     /// Moves it through the sub-step of `h` \[s\] by its velocity, and turns it so that its angular momentum stays (the discrete
     /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)).
     pub(super) fn go(&mut self, h: f32) {
-        if !self.moves() {
+        if !self.moves() || self.sleeps() && self.velocity == Vec3::ZERO && self.spin == Vec3::ZERO {
             return;
         }
         self.center += self.velocity * h;

@@ -113,7 +113,7 @@ pub(super) fn gather(
     let (h, step) = (bodies.substep.seconds(), bodies.substep.step.seconds());
     let mut is_over = is_news || kept.lists.known == 0;
     let first = kept.first_ball();
-    for body in kept.bodies[..first].iter_mut().filter(|body| body.moves()) {
+    for body in kept.bodies[..first].iter_mut().filter(|body| body.is_awake()) {
         body.leash -= body.speed() * h;
         is_over |= !(body.leash >= body.speed() * h);
     }
@@ -129,6 +129,9 @@ pub(super) fn gather(
     let Kept { lists, bodies: all, pairs, .. } = kept;
     for pair in &mut pairs[..lists.pairs as usize] {
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
+        if !(a.is_awake() || b.is_awake()) {
+            continue;
+        }
         let way = (length(a.velocity - b.velocity) + length(a.omega) * a.radius + length(b.omega) * b.radius) * h;
         if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
             pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);

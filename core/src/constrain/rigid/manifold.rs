@@ -24,11 +24,13 @@ pub(super) struct Point {
     pub(super) bounce: f32,
     /// The speed below which they come together by their weight, not by a blow \[m/s\].
     pub(super) calm: f32,
+    /// What forces change the speeds of the two by in a sub-step \[m/s\].
+    pub(super) driven: f32,
     /// The impulse that makes them part by 1 m/s \[kg\], and how the second's velocity there, as seen from the first, changes by one along the
     /// normal \[1/kg\].
     pub(super) mass: f32,
     pub(super) answer: Vec3,
-    /// The impulse along the surface that takes a slip of 1 m/s away \[kg\]: a symmetric matrix, uu, uv, vv.
+    /// How much the slip (u, v) along the surface changes by an impulse along itself \[1/kg\]: the factors of u², uv and v².
     pub(super) rub: [f32; 3],
     /// How fast they shall part in the passes under way \[m/s\].
     pub(super) wanted: f32,

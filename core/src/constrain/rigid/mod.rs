@@ -12,6 +12,7 @@ mod lists;
 mod manifold;
 mod pass;
 mod scenery;
+mod sleep;
 mod solver;
 mod tell;
 
@@ -191,6 +192,17 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         Forms { boxes: self.boxes.as_ref(), hulls: &self.hulls }
     }
 
+    /// Wakes who sleeps and is about to be touched, or is driven otherwise than when it fell asleep; all others who sleep stay where they are.
+    fn stir(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, span: Span) {
+        sleep::look_out(kept, span.h);
+        self.each(kept, |body, of, places| {
+            if body.sleeps() && !body.lies(bodies, Made { of, places }) {
+                body.calls |= sleep::STIRRED;
+            }
+        });
+        sleep::rouse(kept.bodies);
+    }
+
     /// Does something with each body, and the places of its particles.
     fn each(&self, kept: &mut Kept<'_>, mut visit: impl FnMut(&mut Body, &RigidBox, &mut [u32])) {
         let mut places = &mut *kept.places;
@@ -226,6 +238,9 @@ fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) 
     let slots = kept.scenery.chunks_exact_mut(DIRECTIONS);
     for (number, (body, slots)) in kept.bodies[1..].iter_mut().zip(slots).enumerate() {
         let number = number + 1;
+        if body.sleeps() {
+            continue;
+        }
         if body.moves() && (number < first || body.pressed != 0) {
             scenery::meet(bodies, body, forms.of(number as u32), number as u32, slots);
         } else {
@@ -253,6 +268,10 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         if bodies.substep.number == 0 {
             kept.bodies[0] = Body::world();
             self.each(&mut kept, |body, of, places| is_news |= body.look(bodies, of, places));
+            if is_news {
+                sleep::wake_all(kept.bodies);
+            }
+            sleep::look_around(bodies, &mut kept);
         }
         lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news);
         meet_scenery(bodies, &mut kept, self.forms());
@@ -265,10 +284,15 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
             return;
         }
         let len = kept.lists.pairs as usize;
+        self.stir(bodies, &mut kept, span);
         for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
             solver::begin(kept.bodies, manifold);
         }
-        self.each(&mut kept, |body, of, places| body.gather(bodies, Made { of, places }));
+        self.each(&mut kept, |body, of, places| {
+            if !body.sleeps() {
+                body.gather(bodies, Made { of, places });
+            }
+        });
         each_ball(bodies, &mut kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
         for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
             solver::expect(kept.bodies, manifold, span);
@@ -277,7 +301,15 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         solver::keep_apart(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
         kept.bodies.iter_mut().for_each(|body| body.go(span.h));
         solver::part(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
-        self.each(&mut kept, |body, of, places| body.tell(bodies, Made { of, places }));
+        sleep::feel(kept.bodies);
+        if bodies.substep.is_last() {
+            sleep::settle(bodies, &mut kept);
+        }
+        self.each(&mut kept, |body, of, places| {
+            if body.has_news() {
+                body.tell(bodies, Made { of, places });
+            }
+        });
         let presses = |manifold: &&Manifold| manifold.points().iter().any(|point| point.pressed > 0.0);
         let scenery = &*kept.scenery;
         let pressed = |number: usize| {

@@ -136,14 +136,15 @@ impl Touch<'_> {
         let new = max(pressed + (wanted - dot(slip, self.normal)) * point.mass, 0.0);
         let impulse = new - pressed;
         let (mut holds, mut change) = (held, self.normal * impulse);
-        let mut counts = max(wanted.abs(), point.calm) * SETTLED;
+        let mut counts = max(max(wanted, 0.0), point.driven) * SETTLED;
         counts = if counts < f32::INFINITY { counts * point.mass } else { 0.0 };
         if let Some(back) = back {
             let slip = slip + answer * impulse + crept * back;
             let [u, v] = self.along.map(|along| dot(slip, along));
             let [uu, uv, vv] = point.rub;
-            let [x, y] = [uu * u + uv * v, uv * u + vv * v];
-            let [x, y] = [dot(held, self.along[0]) - x, dot(held, self.along[1]) - y];
+            let (square, yields) = (u * u + v * v, uu * u * u + uv * u * v + vv * v * v);
+            let mass = if square > 0.0 { square / yields } else { 0.0 };
+            let [x, y] = [dot(held, self.along[0]) - u * mass, dot(held, self.along[1]) - v * mass];
             let (square, sticks) = (x * x + y * y, self.friction[0] * new);
             let size = if square <= sticks * sticks { 1.0 } else { sqrt(square) };
             let share = if square <= sticks * sticks { 1.0 } else { min(self.friction[1] * new, size) / size };

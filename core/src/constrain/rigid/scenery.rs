@@ -61,6 +61,33 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
     body.spare = if is_moving { 0.0 } else { small };
 }
 
+/// How many places of the scenery are near a body; none if one of them moves.
+pub(super) fn faces(bodies: &Bodies<'_>, body: &Body) -> Option<u32> {
+    let (mut count, mut moves) = (0, false);
+    if !bodies.colliders.is_empty() {
+        let reach = length(body.half) + body.small();
+        bodies.colliders.contacts(body.middle(), reach, bodies.substep.during[0], &mut |contact| {
+            count += 1;
+            moves |= contact.velocity != Vec3::ZERO;
+        });
+    }
+    (!moves).then_some(count)
+}
+
+/// Tells whether the scenery still is where a body touches it.
+pub(super) fn holds(bodies: &Bodies<'_>, body: &Body, slots: &[Manifold]) -> bool {
+    let (at, small) = (bodies.substep.during[0], body.small());
+    slots.iter().all(|slot| {
+        slot.points().iter().all(|point| {
+            let (place, mut is_there) = (point.places[0], false);
+            bodies.colliders.contacts(place, small, at, &mut |contact| {
+                is_there |= length(contact.point - place) <= 0.1 * small;
+            });
+            is_there
+        })
+    })
+}
+
 impl Visit<'_> {
     /// Looks around a corner.
     fn corner(&mut self, bodies: &mut Bodies<'_>, place: Vec3) {

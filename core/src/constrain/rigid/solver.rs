@@ -8,12 +8,12 @@ use crate::math::{aside, dot, length, max, sqrt};
 use glam::Vec3;
 
 /// Passes at the most where anything bounces, for the points of bodies that touch share one blow.
-const BLOWS: u32 = 24;
+const BLOWS: u32 = 12;
 /// Passes at the most where nothing does.
-const PASSES: u32 = 8;
+const PASSES: u32 = 4;
 /// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
-/// by in a step, or of the speed that they shall part with.
-pub(super) const SETTLED: f32 = 1e-3;
+/// by in a sub-step, or of the speed that they shall part with.
+pub(super) const SETTLED: f32 = 1e-2;
 /// The share of the last sub-step's impulses that the next one begins with: all of them would let towers swing.
 const AGAIN: f32 = 0.9;
 
@@ -42,6 +42,15 @@ pub(super) fn begin(bodies: &mut [Body], manifold: &mut Manifold) {
     }
 }
 
+/// Tells whether two may touch within a sub-step of `h` \[s\], driven as they were.
+pub(super) fn may_touch(bodies: &mut [Body], manifold: &mut Manifold, h: f32) -> bool {
+    let Some(mut pair) = Pair::of(bodies, manifold) else { return false };
+    pair.stand();
+    let [a, b] = [0, 1].map(|side| if pair.bodies[side].sleeps() { Vec3::ZERO } else { pair.bodies[side].drive[0] });
+    let driven = 2.0 * h * dot(b - a, pair.normal);
+    (0..pair.count).any(|i| pair.points[i].gap + (pair.parting(i) + driven) * h <= 0.0)
+}
+
 /// Says how fast two that come together shall part, when forces have changed their velocities: the elastic answer to the speed at which they
 /// meet, u² = u₀² + 2 a s over the gap s, so that a bounce neither gains nor loses by when in the sub-step it happens. Where it would be over
 /// within a part of the step, they stay together.
@@ -58,6 +67,7 @@ pub(super) fn expect(bodies: &mut [Body], manifold: &mut Manifold, span: Span) {
         let bounce = if now > 0.0 { elasticity * meets } else { 0.0 };
         point.bounce = if 2.0 * bounce * span.h < RESTING * span.step * driven { 0.0 } else { bounce };
         point.calm = driven * span.step / span.h;
+        point.driven = driven;
         if max(now.abs(), before.abs()) > point.calm {
             // What held the last sub-step says nothing of a blow.
             (point.pressed, point.held) = (0.0, Vec3::ZERO);
@@ -118,17 +128,21 @@ pub(super) fn part(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: S
 fn go_over(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], passes: u32, back: f32) {
     let [pairs, scenery] = manifolds;
     bodies.iter_mut().for_each(|body| body.changed = 0);
-    pairs.iter_mut().chain(&mut *scenery).for_each(|manifold| manifold.seen = 0);
+    for manifold in pairs.iter_mut().chain(&mut *scenery) {
+        let is_awake = |&number: &u32| bodies.get(number as usize).is_some_and(Body::is_awake);
+        manifold.seen = if manifold.count > 0 && manifold.bodies.iter().any(is_awake) { 0 } else { u32::MAX };
+    }
     let mut clock = 0;
     for _ in 0..passes {
         let before = clock;
         for manifold in pairs.iter_mut().chain(&mut *scenery) {
-            if manifold.count > 0 {
-                let changed = manifold.bodies.map(|number| bodies.get(number as usize).map_or(0, |body| body.changed));
-                if changed[0].max(changed[1]) >= manifold.seen {
-                    clock += 1;
-                    pass::over(bodies, manifold, back, clock);
-                }
+            if manifold.seen == u32::MAX {
+                continue;
+            }
+            let changed = manifold.bodies.map(|number| bodies.get(number as usize).map_or(0, |body| body.changed));
+            if changed[0].max(changed[1]) >= manifold.seen {
+                clock += 1;
+                pass::over(bodies, manifold, back, clock);
             }
         }
         if clock == before {
@@ -158,10 +172,21 @@ impl<'a> Pair<'a> {
         }
         let numbers = manifold.bodies.map(|number| number as usize);
         let bodies = bodies.get_disjoint_mut(numbers).ok()?;
+        if !(bodies[0].is_awake() || bodies[1].is_awake()) {
+            return None;
+        }
         let normal = bodies[0].rotation * manifold.normal;
         let Manifold { surface, friction, .. } = *manifold;
         manifold.axis = normal;
-        Some(Self { bodies, normal, surface, friction, points: &mut manifold.points, count, along: &mut manifold.along })
+        Some(Self {
+            bodies,
+            normal,
+            surface,
+            friction,
+            points: &mut manifold.points,
+            count,
+            along: &mut manifold.along,
+        })
     }
 
     /// Follows the bodies' places.
@@ -185,12 +210,9 @@ impl<'a> Pair<'a> {
         for point in &mut self.points[..self.count] {
             let answer = |direction: Vec3| a.answer(point.arms[0], direction) + b.answer(point.arms[1], direction);
             let [u, v] = along.map(answer);
-            let [uu, uv, vv] = [dot(u, along[0]), dot(u, along[1]), dot(v, along[1])];
+            point.rub = [dot(u, along[0]), 2.0 * dot(u, along[1]), dot(v, along[1])];
             point.answer = answer(normal);
             point.mass = 1.0 / dot(point.answer, normal);
-            let by = 1.0 / (uu * vv - uv * uv);
-            let rub = [vv * by, -uv * by, uu * by];
-            point.rub = if rub.iter().all(|x| x.is_finite()) { rub } else { [0.0; 3] };
         }
     }
 
