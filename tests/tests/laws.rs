@@ -38,6 +38,7 @@ mod scripted;
 #[path = "sheet_contacts/main.rs"]
 mod sheet_contacts;
 mod sheets;
+mod sleep;
 mod springs;
 mod storage;
 mod strands;

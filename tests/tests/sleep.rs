@@ -1,0 +1,175 @@
+//! Rigid bodies that sleep: they wake when anything is done to them, and what is done to them has the effect it has on others.
+
+use pointmass::constrain::{RigidBodies, RigidBox};
+use pointmass::force::Friction;
+use pointmass::motion::{Key, Motion};
+use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
+use pointmass::{ContactMaterial, Gravity, Heap, Particle, Scene, System, Time, Vec3};
+use pointmass_tests::started;
+
+const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
+const GROUND: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+const PART: Particle = Particle { material: Some(0), elasticity: 0.0, ..Particle::REST };
+
+fn rough(mu: f32) -> [ContactMaterial; 1] {
+    [ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: mu }) }]
+}
+
+/// Goes on for so many frames.
+fn go(system: &mut System<Heap>, scene: &Scene<'_>, frames: u32) {
+    for _ in 0..frames {
+        system.step(scene, Time::frame(1, 60));
+    }
+}
+
+/// The middle of a body's particles, and their mean velocity.
+fn mean(system: &System<Heap>, of: &RigidBox) -> (Vec3, Vec3) {
+    let rows = of.first as usize..(of.first + of.count) as usize;
+    let (x, v) = (&system.particles().position[rows.clone()], &system.particles().velocity[rows]);
+    (x.iter().sum::<Vec3>() / x.len() as f32, v.iter().sum::<Vec3>() / v.len() as f32)
+}
+
+/// Two boxes on top of each other on the ground.
+fn pile(scale: f32) -> [RigidBox; 2] {
+    [0, 1].map(|i| RigidBox::new(Vec3::splat(0.1) * scale, Vec3::Y * (0.1 + 0.2 * i as f32) * scale, 8 * i))
+}
+
+/// What lies for long is at rest to the bit, and stays where it is to the bit.
+#[test]
+fn a_pile_that_lies_is_still() {
+    for (scale, substeps) in [(1.0f32, 8), (0.1, 20), (5.0, 4)] {
+        let boxes = pile(scale);
+        let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(PART)).collect();
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
+        let forces = Gravity { acceleration: Vec3::NEG_Y * 9.81 };
+        let parts = Scene { start: &start, forces: &forces, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+        let scene = Scene { constraints: &bodies, substeps, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        go(&mut system, &scene, 360);
+        let places = system.particles().position.to_vec();
+        assert!(system.particles().velocity.iter().all(|v| *v == Vec3::ZERO), "{scale}");
+        go(&mut system, &scene, 60);
+        assert!(places == system.particles().position, "{scale}");
+    }
+}
+
+/// A box slides into another that has lain there for a time or has just been put there: it makes no difference.
+#[test]
+fn who_is_hit_asleep_is_pushed_as_if_it_were_awake() {
+    let ways = [0, 180].map(|frames| {
+        let target = RigidBox::new(Vec3::splat(0.1), Vec3::new(0.0, 0.1, 0.0), 0);
+        let puck = RigidBox::new(Vec3::splat(0.1), Vec3::new(-0.5, 0.1, 0.0), 8);
+        let mut start = target.solid(PART).to_vec();
+        start.extend(puck.solid(PART));
+        let (bodies, materials) = (RigidBodies::boxes([target, puck]), rough(0.3));
+        let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+        let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        // Frames of rest, then a kick by a force that lasts a tenth of a second: 3 m/s.
+        go(&mut system, &scene, frames);
+        go(&mut system, &Scene { forces: &(DOWN, Kick), ..scene }, 6);
+        go(&mut system, &scene, 114);
+        bodies.boxes.map(|of| mean(&system, &of).0 - of.center)
+    });
+    let [[a, b], [c, d]] = ways;
+    assert!(a.x > 0.1 && b.x > 0.3, "{ways:?}");
+    assert!((a - c).length() < 0.03 * a.length() && (b - d).length() < 0.03 * b.length(), "{ways:?}");
+}
+
+/// It pushes what is left of −0.15 m along x by 30 m/s².
+#[derive(Debug)]
+struct Kick;
+
+impl pointmass::Force for Kick {
+    fn add_to(&self, state: &pointmass::force::State<'_>, rows: core::ops::Range<usize>, forces: &mut [Vec3]) {
+        for (row, force) in rows.zip(forces) {
+            if state.position[row].x < -0.15 {
+                *force += Vec3::X * 30.0 * state.mass[row];
+            }
+        }
+    }
+}
+
+/// Gravity that leans over wakes a pile, which then slides as one that never slept.
+#[test]
+fn other_forces_wake() {
+    let boxes = pile(1.0);
+    let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(PART)).collect();
+    let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.2));
+    let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+    let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
+    let lean = Gravity { acceleration: Vec3::new(3.0, -9.81, 0.0) };
+    let mut system = started(&scene, start.len(), 0);
+    go(&mut system, &scene, 240);
+    assert!(system.particles().velocity.iter().all(|v| *v == Vec3::ZERO));
+    go(&mut system, &Scene { forces: &lean, ..scene }, 60);
+    let right = 0.5 * (3.0 - 0.2 * 9.81);
+    for of in &bodies.boxes {
+        let way = mean(&system, of).0 - of.center;
+        assert!((way.x - right).abs() < 0.02 * right, "{way} for {right}");
+    }
+}
+
+/// A table that begins to tilt, sink or slide after what lies on it has fallen asleep takes it along or lets it go.
+#[test]
+fn scenery_that_begins_to_move_wakes() {
+    let still = Key { time: 3.0, place: Vec3::ZERO, rotation: Vec3::ZERO };
+    for (place, rotation) in [(Vec3::ZERO, Vec3::Z * 0.6), (Vec3::NEG_Y * 0.5, Vec3::ZERO), (Vec3::X * 0.5, Vec3::ZERO)]
+    {
+        let keys = [still, Key { time: 4.0, place, rotation }];
+        let slab = Cuboid { min: Vec3::new(-2.0, -0.5, -2.0), max: Vec3::new(2.0, 0.0, 2.0) };
+        let bounds = Aabb { min: slab.min, max: slab.max };
+        let table = Moving::new(slab, &bounds, Motion::with_keys(keys, 0.0));
+        let boxes = pile(0.5);
+        let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(PART)).collect();
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.2));
+        let parts = Scene { start: &start, forces: &DOWN, colliders: &table, materials: &materials, ..Scene::EMPTY };
+        let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        go(&mut system, &scene, 175);
+        assert!(system.particles().velocity.iter().all(|v| *v == Vec3::ZERO), "{place}, {rotation}");
+        go(&mut system, &scene, 65);
+        for of in &bodies.boxes {
+            let (x, _) = mean(&system, of);
+            let way = x - of.center;
+            assert!(way.length() > 0.1, "{place}, {rotation}: {way}");
+            if rotation == Vec3::ZERO && place.y < 0.0 {
+                assert!((way - place).length() < 0.02, "{place}: {way}");
+            }
+        }
+    }
+}
+
+/// Who lies on another falls when that dies or is taken away.
+#[test]
+fn who_lies_on_what_goes_away_falls() {
+    let boxes = pile(1.0);
+    let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(PART)).collect();
+    let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
+    let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+    let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
+    let mut system = started(&scene, start.len(), 0);
+    go(&mut system, &scene, 240);
+    // The same without the ground.
+    go(&mut system, &Scene { colliders: &(), ..scene }, 60);
+    for of in &bodies.boxes {
+        let way = mean(&system, of).0 - of.center;
+        assert!((way.y + 0.5 * 9.81).abs() < 0.1, "{way}");
+    }
+}
+
+/// Where nothing drives bodies they never sleep: one that drifts slowly past another keeps its momentum for ever.
+#[test]
+fn nothing_sleeps_in_space() {
+    let boxes = [0, 1].map(|i| RigidBox::new(Vec3::splat(0.1), Vec3::X * 0.2 * i as f32, 8 * i));
+    let velocity = Vec3::X * 1e-4;
+    let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(Particle { velocity, ..PART })).collect();
+    let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
+    let scene = Scene { start: &start, constraints: &bodies, materials: &materials, substeps: 4, ..Scene::EMPTY };
+    let mut system = started(&scene, start.len(), 0);
+    go(&mut system, &scene, 1200);
+    for of in &bodies.boxes {
+        let (x, v) = mean(&system, of);
+        assert!((v - velocity).length() < 1e-6 && (x - of.center - velocity * 20.0).length() < 1e-4, "{x}, {v}");
+    }
+}
