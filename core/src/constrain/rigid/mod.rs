@@ -48,7 +48,13 @@ use solver::Span;
 /// and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to begin with, keep bodies from passing into each other within
 /// the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019; Catto, "Soft Constraints", GDC 2011), then velocities are brought to
 /// part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020, section 3.6).
-/// Friction is Coulomb's. All impulses act on both at one place, so that linear and angular momentum are kept to rounding.
+/// Friction is Coulomb's. All impulses act on both at one place, so that linear and angular momentum are kept to rounding. Points are gone over until
+/// what is left to change is a hundredth of what forces change in a sub-step, a few times at the most.
+///
+/// Bodies that lie still sleep: they stay where they are, at rest, and cost little. Those near each other fall asleep together, when for 5 √(r/a), r being
+/// half the size of one and a what forces accelerate it by, none has gone farther than 4 % of its least half side. They wake together when a body or
+/// ball that moves is about to touch one of them, when forces on one change by a thousandth, when the scenery that one touches or has near it moves,
+/// comes or goes, and when any body loses a particle. What creeps more slowly than that stops. Without forces nothing sleeps.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
 /// touching pairs a body, two for each ball and three directions of the scenery; what finds none is counted (`caps.contacts`).
