@@ -241,7 +241,7 @@ fn stays_in_a_room_that_turns(turns: f32) {
             ..Particle::REST
         })
         .collect();
-    for (i, method) in Method::ALL.into_iter().enumerate() {
+    for (i, method) in Method::ALL.iter().enumerate() {
         // With all checks it takes long: every other method at 25 frames a second, the rest at 60.
         let rates = if cfg!(debug_assertions) { &[25u32, 60][i % 2..=i % 2] } else { &[25, 60] };
         for &fps in rates {

@@ -101,7 +101,7 @@ impl Touch<'_> {
     /// once, whatever the order of points.
     fn press_evenly(&mut self) {
         let (mut lack, mut least, mut levers, mut number) = (0.0, f32::INFINITY, [Vec3::ZERO; 2], 0.0);
-        let mut counts = [false; 4];
+        let (mut counts, mut little) = ([false; 4], 0.0);
         for (point, counts) in self.points.iter().zip(&mut counts) {
             let missing = point.wanted - dot(self.slip(point.arms), self.normal);
             *counts = missing > 0.0 || point.pressed > 0.0;
@@ -109,6 +109,7 @@ impl Touch<'_> {
                 (lack, least, number) = (lack + missing, min(least, point.pressed), number + 1.0);
                 levers[0] += point.arms[0];
                 levers[1] += point.arms[1];
+                little += max(max(point.wanted, 0.0), point.driven) * SETTLED;
             }
         }
         if !(number > 1.0) {
@@ -123,6 +124,8 @@ impl Touch<'_> {
                 point.pressed += each;
             }
             self.push(mean, self.normal * (each * number));
+            // The lack without its sign: what is not a number counts.
+            self.is_changed |= !(lack * lack <= little * little);
         }
     }
 
