@@ -37,8 +37,7 @@ fn a_soft_chain_hangs_longer_by_its_closed_form_whatever_the_sub_steps() {
         for (i, (substeps, damping, tether)) in ways.into_iter().enumerate() {
             let rope = Rope { compliance, damping, tether, ..Rope::rigid(all(&start), [length]) };
             // With all checks it takes long: every other method for these sub-steps, the rest for those.
-            let methods =
-                Method::ALL.iter().enumerate().filter(|(j, _)| !cfg!(debug_assertions) || (i + j) % 2 == 0);
+            let methods = Method::ALL.iter().enumerate().filter(|(j, _)| !cfg!(debug_assertions) || (i + j) % 2 == 0);
             for (_, method) in methods {
                 let forces = (DOWN, Drag {});
                 let integrator = method.integrator();
