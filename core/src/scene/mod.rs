@@ -28,6 +28,8 @@ mod model;
 #[cfg(feature = "alloc")]
 mod numbers;
 #[cfg(feature = "alloc")]
+mod placing;
+#[cfg(feature = "alloc")]
 mod read;
 #[cfg(feature = "alloc")]
 mod remarks;
@@ -38,6 +40,8 @@ mod rules;
 #[cfg(feature = "schema")]
 mod schema;
 pub mod scn;
+#[cfg(feature = "alloc")]
+mod start;
 #[cfg(feature = "alloc")]
 mod tuft;
 #[cfg(feature = "alloc")]

@@ -1,8 +1,8 @@
 //! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
 
-use super::Response;
-use super::Scene;
-use super::{BoxForm, Files, Form, Growth, Material, SceneError, SceneFile, beside};
+use super::placing::{Placing, colliders};
+use super::start::{Start, widest};
+use super::{Files, Material, Response, Scene, SceneError, SceneFile};
 use crate::collide::Meetings;
 use crate::constrain::{ConstraintKind, Contacts, HullBuf, RigidBodies, RigidBox, SheetContacts};
 use crate::custom::CustomBuf;
@@ -11,20 +11,15 @@ use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Penalty, Sink, Spring};
 use crate::index::{Periodic, Room, Structure};
 use crate::integrate::Tuned;
-use crate::math::max;
 use crate::memory::{Heap, Size};
 use crate::motion::MotionBuf;
-use crate::particles::{Color, Particle};
-use crate::rays;
+use crate::particles::Particle;
 use crate::reap::ReaperKind;
 use crate::shape::{Affine, MeshBuf, Moving, Placed, Scenery, Shape};
 use crate::system::System;
-use alloc::collections::{BTreeMap, TryReserveError};
-use alloc::format;
-use alloc::string::{String, ToString};
+use alloc::collections::TryReserveError;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use glam::Vec3;
 
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
@@ -122,61 +117,19 @@ impl Model {
     /// If a value cannot be used or a mesh cannot be read.
     pub fn load(file: &SceneFile, path: &str, files: &mut dyn Files) -> Result<Self, SceneError> {
         file.check().map_err(|error| error.in_file(path))?;
-        let mut meshes = Meshes { loaded: BTreeMap::new(), path, files, index: file.run.collision_index };
-        let start = Start::of(file, &mut meshes)?;
+        let mut placed = Placing::new(path, files, file.run.collision_index);
+        let start = Start::of(file, &mut placed)?;
         file.check_corners(start.particles.len()).map_err(|error| error.in_file(path))?;
-        let mut emitters = Vec::with_capacity(file.emitters.len());
-        for (i, emitter) in file.emitters.iter().enumerate() {
-            let to_world = placement(file, emitter.group);
-            let shape = meshes.moved(&format!("emitters[{i}]"), &emitter.shape, &to_world)?;
-            emitters.push(with_shape(emitter, shape, &to_world, file));
-        }
-        let mut sinks = Vec::with_capacity(file.sinks.len());
-        for (i, sink) in file.sinks.iter().enumerate() {
-            let shape = meshes.moved(&format!("sinks[{i}]"), &sink.shape, &placement(file, sink.group))?;
-            let Sink { intensity, ca, la, qa, softening, .. } = *sink;
-            sinks.push(Sink { shape, group: None, intensity, ca, la, qa, softening });
-        }
-        let mut goals = Vec::with_capacity(file.goals.len());
-        for (i, goal) in file.goals.iter().enumerate() {
-            let shape = meshes.moved(&format!("goals[{i}]"), &goal.shape, &placement(file, goal.group))?;
-            let against = goal.against.or_else(|| Some(gravity(file)));
-            let Goal { start, arrive, release, settle, material, .. } = *goal;
-            goals.push(Goal { shape, group: None, start, arrive, release, settle, against, material });
-        }
-        let mut scenery = Vec::with_capacity(file.scenery.len());
-        for (i, item) in file.scenery.iter().enumerate() {
-            let shape = meshes.shape(&format!("scenery[{i}].shape"), &item.shape)?;
-            let material = item.material.or_else(|| file.material_of(item.group));
-            let motion = item.motion.clone().unwrap_or_default();
-            scenery.push(Solid { shape, to_world: placement(file, item.group), material, motion });
-        }
-        let shapes = file.materials.iter().enumerate().map(|(i, material)| {
-            let form = material.shape.as_ref().map(|shape| &shape.form);
-            form.map(|form| meshes.shape(&format!("materials[{i}].shape.form"), form)).transpose()
-        });
-        let shapes = shapes.collect::<Result<_, _>>()?;
+        let (emitters, sinks, goals) = (placed.emitters(file)?, placed.sinks(file)?, placed.goals(file)?);
+        let (scenery, shapes) = (placed.scenery(file)?, placed.forms(file)?);
+        let widest = widest(&start.particles, &file.emitters);
         let pushes = file.contacts.iter().filter_map(|response| match response {
-            Response::Force(penalty) => Some(penalty.reaching(2.0 * widest(&start.particles, &file.emitters))),
+            Response::Force(penalty) => Some(penalty.reaching(2.0 * widest)),
             _ => None,
         });
         let pushes = pushes.collect();
-        let solid = scenery.iter().enumerate().filter(|(_, solid)| !matches!(solid.shape, Shape::Line(_)));
-        let has_balls = widest(&start.particles, &file.emitters) > 0.0;
-        let colliders = solid.map(|(i, solid)| {
-            if has_balls && !solid.shape.meets_balls(&solid.to_world) {
-                let message = "its groups squash what is round: particles with a radius can only meet it as a mesh";
-                return Err(SceneError::value(format!("scenery[{i}].group"), message).in_file(path));
-            }
-            let placed = Placed::new(solid.shape.clone(), solid.to_world);
-            let placed = placed.map(|placed| placed.made_of(solid.material));
-            let moving = placed.map(|placed| Moving::new(placed.clone(), &placed.bounds(), solid.motion.clone()));
-            moving.map(|moving| (moving.clone(), moving.reach())).ok_or_else(|| {
-                let message = "its groups together flatten space: there is no inverse";
-                SceneError::value(format!("scenery[{i}].group"), message).in_file(path)
-            })
-        });
-        let balls = balls(file, &start);
+        let colliders = colliders(&scenery, widest > 0.0).map_err(|error| error.in_file(path))?;
+        let balls = start.balls(file);
         let forces = (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals);
         file.check_reach(&forces).map_err(|error| error.in_file(path))?;
         let room = file.room.map_or(Room::OPEN, |room| room.room());
@@ -186,7 +139,7 @@ impl Model {
             particles: start.particles,
             springs: start.springs,
             emitters,
-            colliders: Scenery::new(colliders.collect::<Result<_, _>>()?),
+            colliders,
             forces,
             contacts: file.contacts,
             constraints: (
@@ -267,226 +220,5 @@ impl Model {
     pub fn size(&self, particles: usize) -> Size {
         let scene = self.scene();
         Size { particles, columns: scene.columns_with_lists(), ..scene.size() }
-    }
-}
-
-/// Meshes by name, each read once.
-struct Meshes<'a> {
-    loaded: BTreeMap<String, Arc<MeshBuf>>,
-    path: &'a str,
-    files: &'a mut dyn Files,
-    /// How those with more than a few triangles are organised.
-    index: rays::Structure,
-}
-
-impl Meshes<'_> {
-    fn shape(&mut self, at: &str, shape: &Shape<String>) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
-        shape.with_mesh(|name| self.load(at, name))
-    }
-
-    /// The shape of what stands at a place in the file, where its groups take it.
-    fn moved(&mut self, at: &str, shape: &Shape<String>, to_world: &Affine) -> Result<Shape<Arc<MeshBuf>>, SceneError> {
-        let moved = self.shape(&format!("{at}.shape"), shape)?.moved(to_world, self.index);
-        moved.map_err(|message| SceneError::value(format!("{at}.group"), message).in_file(self.path))
-    }
-
-    fn load(&mut self, at: &str, name: &str) -> Result<Arc<MeshBuf>, SceneError> {
-        if let Some(mesh) = self.loaded.get(name) {
-            return Ok(mesh.clone());
-        }
-        let mesh = self.files.mesh(&beside(self.path, name));
-        let mesh = mesh.map_err(|message| SceneError::value(at, message).in_file(self.path))?;
-        let mesh = Arc::new(mesh.organised(self.index));
-        self.loaded.insert(name.to_string(), mesh.clone());
-        Ok(mesh)
-    }
-}
-
-/// A scene's own particles, springs and forces, with those of its cloths and boxes.
-struct Start {
-    particles: Vec<Particle>,
-    springs: Vec<Spring>,
-    /// Those of gas in cloths, and of the air around them.
-    forces: Vec<ForceKind>,
-    /// What holds those together that are shells, and strands.
-    constraints: Vec<ConstraintKind>,
-    /// Where they begin.
-    cloths: Vec<[usize; 2]>,
-    patches: Vec<PatchBuf>,
-    boxes: Vec<RigidBox>,
-    /// Where those of each of the file's boxes begin.
-    blocks: Vec<usize>,
-    /// The contacts of those that have a thickness.
-    contacts: SheetContactsBuf,
-    locks: Vec<Lock>,
-    hulls: Vec<HullBuf>,
-}
-
-impl Start {
-    fn of(file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<Self, SceneError> {
-        let mut start = Self {
-            particles: file.particles.clone(),
-            springs: file.springs.clone(),
-            forces: Vec::new(),
-            constraints: Vec::new(),
-            cloths: Vec::new(),
-            patches: Vec::new(),
-            boxes: Vec::new(),
-            blocks: Vec::new(),
-            contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
-            locks: Vec::new(),
-            hulls: Vec::new(),
-        };
-        for (i, cloth) in file.cloths.iter().enumerate() {
-            let mesh = match &cloth.form {
-                Form::Mesh(name) => Some(meshes.load(&format!("cloths[{i}].form"), name)?),
-                Form::Sheet(_) => None,
-            };
-            let first = start.particles.len() as u32;
-            let (particles, springs) = cloth.make(mesh.as_deref(), first);
-            let refuse = |field: &str, message: String| {
-                Err(SceneError::value(format!("cloths[{i}].{field}"), message).in_file(meshes.path))
-            };
-            if particles.iter().any(|particle| !particle.position.is_finite()) {
-                return refuse("form", "reaches beyond the range of a 32-bit float".into());
-            }
-            if let Some(particle) = particles.iter().find(|particle| !particle.is_sound()) {
-                return refuse("mass", format!("leaves {:e} kg to each particle, too little", particle.mass));
-            }
-            if let Some(number) = cloth.fixed.iter().find(|&&number| number as usize >= particles.len()) {
-                return refuse(
-                    "fixed",
-                    format!("particle {number} is out of range; there are {}, from 0", particles.len()),
-                );
-            }
-            start.constraints.extend(cloth.shell(mesh.as_deref(), first, particles.len() as u32));
-            cloth.touch(mesh.as_deref(), first, particles.len() as u32, &mut start.contacts);
-            start.cloths.push([start.particles.len(), start.springs.len()]);
-            start.particles.extend(particles);
-            start.springs.extend(springs);
-            start.patches.extend(cloth.patch(mesh.as_deref(), first));
-            start.forces.extend(cloth.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
-            start.forces.extend(cloth.aerodynamics(mesh.as_deref(), first, &file.forces));
-        }
-        for (i, boxes) in file.boxes.iter().enumerate() {
-            let mesh = match &boxes.form {
-                BoxForm::Mesh(name) => Some(meshes.load(&format!("boxes[{i}].form"), name)?),
-                _ => None,
-            };
-            let hull = boxes.hull(mesh.as_deref()).transpose();
-            let hull = hull.map_err(|error| {
-                SceneError::value(format!("boxes[{i}].form"), error.to_string()).in_file(meshes.path)
-            })?;
-            let number = start.hulls.len() as u16;
-            let lent = hull.as_ref().map(|hull| (number, hull.lend()));
-            let (particles, bodies) = boxes.make(start.particles.len() as u32, lent);
-            start.hulls.extend(hull);
-            if !particles.iter().all(Particle::is_sound) {
-                let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
-                return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));
-            }
-            start.blocks.push(start.particles.len());
-            start.particles.extend(particles);
-            start.boxes.extend(bodies);
-        }
-        start.grow(file, meshes)?;
-        for particle in &mut start.particles {
-            particle.color = color(file, particle.color, particle.material);
-        }
-        Ok(start)
-    }
-
-    /// Adds the strands.
-    fn grow(&mut self, file: &SceneFile, meshes: &mut Meshes<'_>) -> Result<(), SceneError> {
-        for (i, tuft) in file.strands.iter().enumerate() {
-            let shape = match &tuft.form {
-                Growth::On(field) => Some(meshes.shape(&format!("strands[{i}].form.on.shape"), &field.shape)?),
-                Growth::Curve(_) => None,
-            };
-            let grown = tuft.make(shape.as_ref(), self.particles.len() as u32);
-            if !grown.particles.iter().all(Particle::is_sound) {
-                let message = "leaves some points too little mass, or puts them beyond the range of a 32-bit float";
-                return Err(SceneError::value(format!("strands[{i}]"), message).in_file(meshes.path));
-            }
-            self.particles.extend(grown.particles);
-            self.constraints.extend(grown.constraints);
-            self.locks.push(grown.lock);
-        }
-        Ok(())
-    }
-}
-
-/// The largest radius that a particle of the scene may have \[m\].
-fn widest<S, M>(particles: &[Particle], emitters: &[Emitter<S, M>]) -> f32 {
-    let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
-    particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
-}
-
-/// Loose balls that may be near bodies at a time: all that there may be, but no more than 64 for each body, or 1,024 if that is more.
-fn balls(file: &SceneFile, start: &Start) -> u32 {
-    let loose = start.particles.iter().filter(|particle| particle.radius > 0.0).count();
-    let born = if widest(&[], &file.emitters) > 0.0 { u32::MAX } else { 0 };
-    let most = start.boxes.len().saturating_mul(64).max(1024);
-    if start.boxes.is_empty() { 0 } else { born.max(loose as u32).min(most as u32) }
-}
-
-/// The uniform acceleration of all.
-fn gravity(file: &SceneFile) -> Vec3 {
-    let of =
-        |force: &ForceKind| if let ForceKind::Gravity(gravity) = force { gravity.acceleration } else { Vec3::ZERO };
-    file.forces.iter().map(of).sum()
-}
-
-/// The product of the transforms of all groups around.
-fn placement(file: &SceneFile, group: Option<u32>) -> Affine {
-    file.chain(group).iter().fold(Affine::IDENTITY, |outer, &index| {
-        let inner = file.groups.get(index as usize).and_then(|group| group.affine().ok());
-        outer.after(&inner.unwrap_or(Affine::IDENTITY))
-    })
-}
-
-fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<Color> {
-    own.or_else(|| Some(file.materials.get(usize::from(material?))?.color()))
-}
-
-fn with_shape(
-    emitter: &Emitter<Shape<String>, Option<MotionBuf>>,
-    shape: Shape<Arc<MeshBuf>>,
-    to_world: &Affine,
-    file: &SceneFile,
-) -> Emitter<Shape<Arc<MeshBuf>>, Option<MotionBuf>> {
-    let Emitter { inside, where_sparse, rate, burst, start, stop, speed, direction, spread, velocity, inherit, .. } =
-        *emitter;
-    let Emitter {
-        radius, mass, fixed, drag, charge, elasticity, lifetime, material, color: own, color_half_width, ..
-    } = *emitter;
-    let material = material.or_else(|| file.material_of(emitter.group));
-    let color = color(file, own, material);
-    let (direction, velocity) = (direction.map(|d| to_world.linear * d), to_world.linear * velocity);
-    Emitter {
-        shape,
-        inside,
-        where_sparse,
-        group: None,
-        rate,
-        burst,
-        start,
-        stop,
-        speed,
-        direction,
-        spread,
-        velocity,
-        motion: emitter.motion.clone(),
-        inherit,
-        radius,
-        mass,
-        fixed,
-        drag,
-        charge,
-        elasticity,
-        lifetime,
-        material,
-        color,
-        color_half_width,
     }
 }

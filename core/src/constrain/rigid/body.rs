@@ -46,13 +46,13 @@ pub(super) struct Body {
     pub(super) before: [Vec3; 2],
     /// How much farther the method has moved it than its velocity says \[m\].
     pub(super) drift: Vec3,
-    /// What forces change its velocity and spin by, last seen while it was awake \[m/s², m²/s²\].
+    /// The rates at which forces changed its velocity and spin when it was awake last \[m/s², m²/s²\].
     pub(super) drive: [Vec3; 2],
     /// 1 if it sleeps; 1 if those who sleep with it are to wake; the least number among them.
     pub(super) asleep: u32,
     pub(super) calls: u32,
     pub(super) island: u32,
-    /// How many places of the scenery were near when it fell asleep.
+    /// The number of places of the scenery that were near when it fell asleep.
     pub(super) faces: u32,
     /// For how long it has been near a place, and how it was turned there \[s, m\].
     pub(super) still: f32,

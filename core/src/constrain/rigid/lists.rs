@@ -9,6 +9,7 @@ use super::scenery::{DIRECTIONS, leash};
 use crate::material::of_two;
 use crate::math::{length, max};
 use crate::memory::{take, take_vectors};
+use glam::Vec3;
 
 /// Pairs of near bodies that there is room for, for each body.
 const PAIRS: usize = 8;
@@ -144,17 +145,38 @@ pub(super) fn gather(
 fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch: &mut [u32]) {
     let count = forms.boxes.len();
     let sizes = Sizes { bodies: count, particles: 0, balls: kept.balls.len() };
-    let (mut rest, mut widest) = (scratch, 0.0);
+    let mut rest = scratch;
     let rows = take(&mut rest, if kept.balls.is_empty() { 0 } else { bodies.len() });
-    let all = &*kept.bodies;
     let middles = take_vectors(&mut rest, count);
+    let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * sizes.candidates()));
+    let found = invite(bodies, kept, forms, (middles, rows), candidates);
+    let candidates = &mut candidates[..found];
+    candidates.sort_unstable();
+    // The old list, beside the new one.
+    let old = kept.lists.pairs as usize;
+    let room = rest.len() - rest.len() % words::<Manifold>();
+    let before: &mut [Manifold] = bytemuck::cast_slice_mut(&mut rest[..room]);
+    let Some(before) = before.get_mut(..old) else { return };
+    before.copy_from_slice(&kept.pairs[..old]);
+    let len = admit(bodies, kept, forms, candidates, before);
+    *kept.lists = Lists { pairs: len as u32, known: 1 };
+}
+
+/// Writes down the numbers of all two that may touch, in whatever order; returns how many that are.
+fn invite(
+    bodies: &mut Bodies<'_>,
+    kept: &mut Kept<'_>,
+    forms: Forms<'_>,
+    (middles, rows): (&mut [Vec3], &mut [u32]),
+    candidates: &mut [[u32; 2]],
+) -> usize {
+    let (all, mut widest) = (&*kept.bodies, 0.0);
     for (middle, body) in middles.iter_mut().zip(&all[1..]) {
-        *middle = if body.is_there() { body.center } else { glam::Vec3::NAN };
+        *middle = if body.is_there() { body.center } else { Vec3::NAN };
         if body.is_there() && body.radius + body.leash < f32::INFINITY {
             widest = max(widest, body.radius + body.leash);
         }
     }
-    let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * sizes.candidates()));
     let mut found = 0;
     let report = &mut *bodies.report;
     bodies.near.pairs(middles, 2.0 * widest, &mut |row, other| {
@@ -181,22 +203,24 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
         });
         bodies.report.caps.contacts += left_out;
     }
-    let found = found.min(candidates.len());
-    let candidates = &mut candidates[..found];
-    candidates.sort_unstable();
-    let Kept { lists, bodies: all, pairs, balls, .. } = kept;
-    // The old list, beside the new one.
-    let old = lists.pairs as usize;
-    let room = rest.len() - rest.len() % words::<Manifold>();
-    let before: &mut [Manifold] = bytemuck::cast_slice_mut(&mut rest[..room]);
-    let Some(before) = before.get_mut(..old) else { return };
-    before.copy_from_slice(&pairs[..old]);
+    found.min(candidates.len())
+}
+
+/// Takes into the list who of the candidates is near enough; returns how many that are. Those that were in it before go on with what they have.
+fn admit(
+    bodies: &mut Bodies<'_>,
+    kept: &mut Kept<'_>,
+    forms: Forms<'_>,
+    candidates: &[[u32; 2]],
+    before: &[Manifold],
+) -> usize {
+    let Kept { bodies: all, pairs, balls, .. } = kept;
     let (mut before, mut len) = (before.iter().peekable(), 0);
-    for &key in &*candidates {
+    for &key in candidates {
         while before.peek().is_some_and(|pair| pair.bodies < key) {
             before.next();
         }
-        let ball = (key[1] as usize).checked_sub(count + 1).and_then(|ball| balls.get(ball));
+        let ball = (key[1] as usize).checked_sub(forms.boxes.len() + 1).and_then(|ball| balls.get(ball));
         let known = before.peek().filter(|pair| pair.bodies == key && !ball.is_some_and(Ball::is_new));
         let pair = key.map(|number| &all[number as usize]);
         let holds = known.is_some_and(|pair| pair.count > 0);
@@ -221,5 +245,5 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
             place.spare = 0.0;
         }
     }
-    (lists.pairs, lists.known) = (len as u32, 1);
+    len
 }

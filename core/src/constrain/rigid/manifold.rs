@@ -24,7 +24,7 @@ pub(super) struct Point {
     pub(super) bounce: f32,
     /// The speed below which they come together by their weight, not by a blow \[m/s\].
     pub(super) calm: f32,
-    /// What forces change the speeds of the two by in a sub-step \[m/s\].
+    /// The change that forces make to the speed of either in a sub-step \[m/s\].
     pub(super) driven: f32,
     /// The impulse that makes them part by 1 m/s \[kg\], and how the second's velocity there, as seen from the first, changes by one along the
     /// normal \[1/kg\].

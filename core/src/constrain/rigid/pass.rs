@@ -54,7 +54,7 @@ struct Touch<'a> {
     surface: Vec3,
     friction: [f32; 2],
     points: &'a mut [Point],
-    /// What is left to change is above what counts.
+    /// True if some change was large enough to go over their neighbours again.
     is_changed: bool,
 }
 

@@ -61,7 +61,7 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
     body.spare = if is_moving { 0.0 } else { small };
 }
 
-/// How many places of the scenery are near a body; none if one of them moves.
+/// The number of places of the scenery that are near a body; none if one of them moves.
 pub(super) fn faces(bodies: &Bodies<'_>, body: &Body) -> Option<u32> {
     let (mut count, mut moves) = (0, false);
     if !bodies.colliders.is_empty() {

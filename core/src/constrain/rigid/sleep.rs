@@ -15,12 +15,12 @@ use glam::Vec3;
 
 /// How long bodies lie still before they sleep: in units of the time √(r/a) in which one falls half its size r.
 const AFTER: f32 = 5.0;
-/// How many times as fast as one may be that goes a small share of its size in that time.
+/// A body is too fast to sleep at so many times the speed at which it would go a small share of its size in that time.
 const SLOW: f32 = 3.0;
 /// The share by which forces may change before they wake a body.
 const ALIKE: f32 = 1e-3;
 
-/// Who sleeps with it is to wake.
+/// All that sleep with it are to wake.
 const CALLED: u32 = 1;
 /// It is to wake at once.
 pub(super) const STIRRED: u32 = 2;

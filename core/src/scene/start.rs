@@ -1,0 +1,156 @@
+//! What a scene begins with: its own particles and springs, and those of its cloths, boxes and strands.
+
+use super::model::{PatchBuf, SheetContactsBuf};
+use super::placing::Placing;
+use super::{BoxForm, Form, Growth, SceneError, SceneFile};
+use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts};
+use crate::draw::Lock;
+use crate::emit::Emitter;
+use crate::force::{ForceKind, Spring};
+use crate::math::max;
+use crate::particles::{Color, Particle};
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+/// A scene's own particles, springs and forces, with those of its cloths and boxes.
+pub(super) struct Start {
+    pub(super) particles: Vec<Particle>,
+    pub(super) springs: Vec<Spring>,
+    /// Those of gas in cloths, and of the air around them.
+    pub(super) forces: Vec<ForceKind>,
+    /// What holds those together that are shells, and strands.
+    pub(super) constraints: Vec<ConstraintKind>,
+    /// Where they begin.
+    pub(super) cloths: Vec<[usize; 2]>,
+    pub(super) patches: Vec<PatchBuf>,
+    pub(super) boxes: Vec<RigidBox>,
+    /// Where those of each of the file's boxes begin.
+    pub(super) blocks: Vec<usize>,
+    /// The contacts of those that have a thickness.
+    pub(super) contacts: SheetContactsBuf,
+    pub(super) locks: Vec<Lock>,
+    pub(super) hulls: Vec<HullBuf>,
+}
+
+impl Start {
+    pub(super) fn of(file: &SceneFile, meshes: &mut Placing<'_>) -> Result<Self, SceneError> {
+        let mut start = Self {
+            particles: file.particles.clone(),
+            springs: file.springs.clone(),
+            forces: Vec::new(),
+            constraints: Vec::new(),
+            cloths: Vec::new(),
+            patches: Vec::new(),
+            boxes: Vec::new(),
+            blocks: Vec::new(),
+            contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
+            locks: Vec::new(),
+            hulls: Vec::new(),
+        };
+        start.add_cloths(file, meshes)?;
+        start.add_boxes(file, meshes)?;
+        start.add_strands(file, meshes)?;
+        for particle in &mut start.particles {
+            particle.color = color(file, particle.color, particle.material);
+        }
+        Ok(start)
+    }
+
+    fn add_cloths(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+        for (i, cloth) in file.cloths.iter().enumerate() {
+            let mesh = match &cloth.form {
+                Form::Mesh(name) => Some(meshes.load(&format!("cloths[{i}].form"), name)?),
+                Form::Sheet(_) => None,
+            };
+            let first = self.particles.len() as u32;
+            let (particles, springs) = cloth.make(mesh.as_deref(), first);
+            let refuse = |field: &str, message: String| {
+                Err(SceneError::value(format!("cloths[{i}].{field}"), message).in_file(meshes.path))
+            };
+            if particles.iter().any(|particle| !particle.position.is_finite()) {
+                return refuse("form", "reaches beyond the range of a 32-bit float".into());
+            }
+            if let Some(particle) = particles.iter().find(|particle| !particle.is_sound()) {
+                return refuse("mass", format!("leaves {:e} kg to each particle, too little", particle.mass));
+            }
+            if let Some(number) = cloth.fixed.iter().find(|&&number| number as usize >= particles.len()) {
+                return refuse(
+                    "fixed",
+                    format!("particle {number} is out of range; there are {}, from 0", particles.len()),
+                );
+            }
+            self.constraints.extend(cloth.shell(mesh.as_deref(), first, particles.len() as u32));
+            cloth.touch(mesh.as_deref(), first, particles.len() as u32, &mut self.contacts);
+            self.cloths.push([self.particles.len(), self.springs.len()]);
+            self.particles.extend(particles);
+            self.springs.extend(springs);
+            self.patches.extend(cloth.patch(mesh.as_deref(), first));
+            self.forces.extend(cloth.pressure(mesh.as_deref(), first).map(ForceKind::Pressure));
+            self.forces.extend(cloth.aerodynamics(mesh.as_deref(), first, &file.forces));
+        }
+        Ok(())
+    }
+
+    fn add_boxes(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+        for (i, boxes) in file.boxes.iter().enumerate() {
+            let mesh = match &boxes.form {
+                BoxForm::Mesh(name) => Some(meshes.load(&format!("boxes[{i}].form"), name)?),
+                _ => None,
+            };
+            let hull = boxes.hull(mesh.as_deref()).transpose();
+            let hull = hull.map_err(|error| {
+                SceneError::value(format!("boxes[{i}].form"), error.to_string()).in_file(meshes.path)
+            })?;
+            let number = self.hulls.len() as u16;
+            let lent = hull.as_ref().map(|hull| (number, hull.lend()));
+            let (particles, bodies) = boxes.make(self.particles.len() as u32, lent);
+            self.hulls.extend(hull);
+            if !particles.iter().all(Particle::is_sound) {
+                let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
+                return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));
+            }
+            self.blocks.push(self.particles.len());
+            self.particles.extend(particles);
+            self.boxes.extend(bodies);
+        }
+        Ok(())
+    }
+
+    fn add_strands(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+        for (i, tuft) in file.strands.iter().enumerate() {
+            let shape = match &tuft.form {
+                Growth::On(field) => Some(meshes.shape(&format!("strands[{i}].form.on.shape"), &field.shape)?),
+                Growth::Curve(_) => None,
+            };
+            let grown = tuft.make(shape.as_ref(), self.particles.len() as u32);
+            if !grown.particles.iter().all(Particle::is_sound) {
+                let message = "leaves some points too little mass, or puts them beyond the range of a 32-bit float";
+                return Err(SceneError::value(format!("strands[{i}]"), message).in_file(meshes.path));
+            }
+            self.particles.extend(grown.particles);
+            self.constraints.extend(grown.constraints);
+            self.locks.push(grown.lock);
+        }
+        Ok(())
+    }
+
+    /// Loose balls that may be near bodies at a time: all that there may be, but no more than 64 for each body, or 1,024 if that is more.
+    pub(super) fn balls(&self, file: &SceneFile) -> u32 {
+        let loose = self.particles.iter().filter(|particle| particle.radius > 0.0).count();
+        let born = if widest(&[], &file.emitters) > 0.0 { u32::MAX } else { 0 };
+        let most = self.boxes.len().saturating_mul(64).max(1024);
+        if self.boxes.is_empty() { 0 } else { born.max(loose as u32).min(most as u32) }
+    }
+}
+
+/// The largest radius that a particle of the scene may have \[m\].
+pub(super) fn widest<S, M>(particles: &[Particle], emitters: &[Emitter<S, M>]) -> f32 {
+    let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
+    particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
+}
+
+/// The colour that a particle has by itself, or by its material.
+pub(super) fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<Color> {
+    own.or_else(|| Some(file.materials.get(usize::from(material?))?.color()))
+}
