@@ -13,7 +13,7 @@ use pointmass::draw::{
     solid, springs, sprite, strands, surface,
 };
 use pointmass::force::State;
-use pointmass::scene::{Light, Material, Model, PatchBuf, SceneFile};
+use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
 use pointmass::{Color, ConstraintKind, Heap, RigidBodies, RigidBox, System};
 use std::collections::HashMap;
 
@@ -169,7 +169,7 @@ impl<'m> Cast<'m> {
                 seen.ribbons.truncate(count);
             }
             if self.style.is_none() {
-                let light = light_on_strands(file, self.view.eye);
+                let light = file.light_on_strands(self.view.eye);
                 seen.ribbons.extend(model.locks.iter().flat_map(|lock| hair(state, lock, &light)));
                 seen.pieces.extend(model.patches.iter().filter_map(|patch| cloth(state, patch, file)));
                 let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
@@ -274,16 +274,6 @@ fn styled(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnce(&
     let least = if style == Style::Sprites { size } else { 0.0 };
     let radius: Vec<_> = state.radius.iter().map(|radius| radius.max(least)).collect();
     see(&State { material: &material, materials: &materials, radius: &radius, ..*state });
-}
-
-/// The light on strands: the first that comes from far away, and what there is of it everywhere.
-fn light_on_strands(file: &SceneFile, eye: Vec3) -> StrandLight {
-    let far = file.lights.iter().find_map(|light| match light {
-        Light::Directional { direction, .. } => Some(Vec3::from_array(*direction)),
-        _ => None,
-    });
-    let ambient = (file.ambient.iter().sum::<f32>() / 3.0).clamp(0.0, 1.0);
-    StrandLight { direction: far.unwrap_or(Vec3::new(-0.4, -0.7, -0.8)), eye, ambient, gloss: 0.25 }
 }
 
 /// Strands as lit lines.

@@ -198,7 +198,30 @@ test("what there is to draw is in lists of numbers", () => {
   const dice = new World({ boxes: [{ sides: [0.2, 0.1, 0.4], mass: 1, position: [1, 2, 3], count: [2, 1, 1], spacing: [1, 0, 0] }] });
   assert.equal(dice.boxes().length, 2 * 17);
   near([...dice.boxes().slice(17, 29)], [2, 2, 3, 0.1, 0, 0, 0, 0.05, 0, 0, 0, 0.2]);
+  assert.equal(dice.surfaces().length, 0);
   dice.free();
+  const held = new World({
+    boxes: [{ form: "octahedron", sides: [2, 2, 2], mass: 1, position: [0, 1, 0] }],
+    cloths: [{ form: { sheet: { corner: [5, 0, 0], sides: [[0, 0, 1], [1, 0, 0]], cells: [1, 1] } }, mass: 1, springs: { structural: { ks: 1 } }, color: [255, 0, 0, 255] }],
+    strands: [{ form: { curve: [[0, 0, 0], [0, -1, 0]] }, segments: 4, radius: 1e-3, young: 1e6, density: 1000, width: 0.01 }],
+    lights: [{ directional: { color: [1, 1, 1], direction: [1, 0, 0] } }],
+    ambient: [0.5, 0.5, 0.5],
+  });
+  assert.equal(held.boxes().length, 0);
+  const surfaces = held.surfaces();
+  assert.equal(surfaces.length, (2 + 8) * 30);
+  near([...surfaces.slice(3, 10)], [0, 1, 0, 1, 0, 0, 1]);
+  for (let at = 2 * 30; at < surfaces.length; at += 10) {
+    const [place, normal] = [surfaces.slice(at, at + 3), surfaces.slice(at + 3, at + 6)];
+    place[1] -= 1; // Its corners are one from its middle, its faces 1/√3, and these look away from it.
+    near([Math.hypot(...place), place.reduce((sum, x, i) => sum + x * normal[i], 0)], [1, Math.sqrt(1 / 3)]);
+  }
+  const strands = held.strands([0, 0, 9]);
+  assert.equal(strands.length, 4 * 16);
+  near([...strands.slice(0, 8)], [0, 0, 0, 0, -0.25, 0, 0.01, 0.01]);
+  assert.ok(strands[8] > 0.99 && strands[11] === 1, "the light falls across it");
+  refuses(() => held.strands([0, 1]), /^eye has to be three finite numbers/);
+  held.free();
   const spring = world.springs();
   near([...spring.slice(0, 8)], [0, 5, 0, 0, 7.2, 0, 0, 0]);
   assert.ok(spring[8] > 0.9 && spring[10] < 0.25, "longer by a tenth is red");

@@ -20,7 +20,7 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
     draw(world.velocities(), world.capacity);
     draw(world.radii(), world.time);
     if (world.count > 5) draw(world.custom("heat"), world.count);
-    const lists: Float32Array[] = [world.sprites([0, 1, 9]), world.sprites(new Float32Array(3), [0, 1, 0]), world.shapes(), world.boxes(), world.trails()];
+    const lists: Float32Array[] = [world.sprites([0, 1, 9]), world.sprites(new Float32Array(3), [0, 1, 0]), world.shapes(), world.boxes(), world.trails(), world.surfaces(), world.strands([0, 1, 9])];
     draw(world.springs(), lists.length + world.springs(0.5).length);
     const [colors, ids]: [Uint8Array, Uint32Array] = [world.colors(), world.ids()];
     const said: string[] = [world.hash(), world.report(), ...world.warnings];

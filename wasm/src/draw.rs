@@ -2,7 +2,11 @@
 
 use js_sys::Float32Array;
 use pointmass::Color;
-use pointmass::draw::{Instance, Line, Sprite, View, back_to_front, bodies, solids, springs, sprites};
+use pointmass::constrain::HullList;
+use pointmass::draw::{
+    Instance, Line, Lock, Sprite, StrandLight, Vertex, View, back_to_front, body, solids, springs, sprites, strands,
+    surface,
+};
 use pointmass::force::State;
 use pointmass::material::Blend;
 use pointmass::scene::Model;
@@ -53,10 +57,48 @@ pub(crate) fn shapes_of(state: &State<'_>) -> Float32Array {
 
 /// The rigid boxes of a state, 17 numbers each.
 pub(crate) fn boxes_of(state: &State<'_>, model: &Model) -> Float32Array {
-    let boxes = &model.constraints.1.boxes;
-    let mut list = vec![Instance::NONE; boxes.len()];
-    let (count, _) = bodies(state, boxes, &model.particles, &mut list);
-    instances(&list[..count])
+    let boxes = model.constraints.1.boxes.iter().filter(|of| of.hull.is_none());
+    let list: Vec<_> = boxes.filter_map(|of| body(state, of, &model.particles)).collect();
+    instances(&list)
+}
+
+/// The triangles of cloths and of hulls, 30 numbers each.
+pub(crate) fn surfaces_of(state: &State<'_>, model: &Model) -> Float32Array {
+    let cloths = model.patches.iter().flat_map(|patch| {
+        let mut vertices = vec![Vertex::NONE; patch.count as usize];
+        let mut triangles = vec![[0; 3]; patch.triangles.len()];
+        let (_, count) = surface(state, &patch.lend(), &mut vertices, &mut triangles);
+        triangles.truncate(count);
+        triangles.into_iter().map(move |corners| corners.map(|corner| vertices[corner as usize]))
+    });
+    let bodies = &model.constraints.1;
+    let hulls = bodies.boxes.iter().filter_map(|of| {
+        let hull = bodies.hulls.hull(usize::from(of.hull?))?;
+        let Instance { center, axes, color, .. } = body(state, of, &model.particles)?;
+        let triangles = hull.faces.iter().flat_map(|face| hull.triangles(face)).map(|corners| {
+            let [a, b, c] = corners.map(|corner| center + axes * (corner / of.half));
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            [a, b, c].map(|place| Vertex { place, normal, color })
+        });
+        Some(triangles.collect::<Vec<_>>())
+    });
+    packed(cloths.chain(hulls.flatten()).map(|corners| {
+        let corners = corners.map(|Vertex { place, normal, color }| {
+            joined::<10>(&[&place.to_array(), &normal.to_array(), &shares(color)])
+        });
+        joined::<30>(&[corners.as_flattened()])
+    }))
+}
+
+/// The segments of strands, 16 numbers each.
+pub(crate) fn strands_of(state: &State<'_>, model: &Model, light: &StrandLight) -> Float32Array {
+    let segments = |lock: &Lock| (lock.count as usize).saturating_mul(lock.points as usize);
+    let mut list = vec![Line::NONE; model.locks.iter().map(segments).sum()];
+    let mut count = 0;
+    for lock in &model.locks {
+        count += strands(state, lock, light, &mut list[count..]).0;
+    }
+    lines(&list[..count])
 }
 
 fn instances(list: &[Instance]) -> Float32Array {

@@ -21,7 +21,7 @@ pub use files::Files;
 
 use arguments::{capacity, place, seconds, seed, text};
 use js_sys::{Float32Array, JsString, Uint8Array, Uint32Array};
-use pointmass::draw::{Appearance, Knot, Line, Ring, Trails, View, appearance};
+use pointmass::draw::{Appearance, Knot, Line, Ring, StrandLight, Trails, View, appearance};
 use pointmass::scene::{Model, SceneFile, read_scn};
 use pointmass::{Heap, Storage, System, Vec3};
 use wasm_bindgen::prelude::*;
@@ -41,6 +41,8 @@ pub struct World {
     system: System<Heap>,
     seed: u64,
     warnings: Vec<String>,
+    /// The light on strands, for an eye at the origin.
+    light: StrandLight,
     /// The memory of trails, where some material leaves one.
     rings: Vec<Ring>,
     knots: Vec<Knot>,
@@ -102,8 +104,8 @@ impl World {
         let slots = if has_trails { capacity as usize } else { 0 };
         memory::room(slots.saturating_mul(size_of::<[Knot; KNOTS]>() + size_of::<Ring>()), "the trails of the scene")?;
         let (rings, knots) = (vec![Ring::NONE; slots], vec![Knot::NONE; slots * KNOTS]);
-        let seed = seed.unwrap_or(file.run.seed);
-        let mut world = Self { model, system: System::with(heap), seed, warnings, rings, knots };
+        let (seed, light) = (seed.unwrap_or(file.run.seed), file.light_on_strands(Vec3::ZERO));
+        let mut world = Self { model, system: System::with(heap), seed, warnings, light, rings, knots };
         world.restart()?;
         Ok(world)
     }
@@ -243,6 +245,25 @@ impl World {
     #[must_use]
     pub fn boxes(&self) -> Float32Array {
         draw::boxes_of(&self.system.state(&self.model.scene()), &self.model)
+    }
+
+    /// The surfaces of cloths and of rigid bodies that are no boxes, 30 numbers a triangle, which is seen anticlockwise from outside: for each
+    /// corner its place \[m\], the normal there, red, green, blue, opacity from 0 to 1. Triangles where a cloth is torn are left out. A copy.
+    #[must_use]
+    pub fn surfaces(&self) -> Float32Array {
+        draw::surfaces_of(&self.system.state(&self.model.scene()), &self.model)
+    }
+
+    /// The segments of strands as lines like `springs`, in the scene's light as it is seen from `eye`, each strand from root to tip. A copy.
+    ///
+    /// # Errors
+    /// If that is not three finite numbers.
+    pub fn strands(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
+    ) -> Result<Float32Array, JsError> {
+        let light = StrandLight { eye: place("eye", eye)?, ..self.light };
+        Ok(draw::strands_of(&self.system.state(&self.model.scene()), &self.model, &light))
     }
 
     /// The springs that hold, as lines of 16 numbers each: both ends \[m\], the widths there \[m\], zero for about a pixel, and the colours there,

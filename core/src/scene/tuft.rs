@@ -1,9 +1,9 @@
 //! Strands in scene files: hair and grass that grow on a surface, wires and cables along curves.
 
 use super::numbers::{Checked, above_zero, finite, zero_or_more};
-use super::{SceneError, SceneFile};
+use super::{Light, SceneError, SceneFile};
 use crate::constrain::{Attach, ConstraintKind, StrandParams, Strands};
-use crate::draw::Lock;
+use crate::draw::{Lock, StrandLight};
 use crate::math::{frame, length, sin_cos, sqrt, unit};
 use crate::motion::{Motion, MotionBuf};
 use crate::particles::{Color, Particle};
@@ -295,6 +295,18 @@ fn along(places: &[Vec3], segments: u32) -> Vec<Vec3> {
 }
 
 impl SceneFile {
+    /// The light on strands for an eye at a place \[m\]: the first of the scene's lights that comes from far away, or one from above where there
+    /// is none, and what there is of it everywhere.
+    #[must_use]
+    pub fn light_on_strands(&self, eye: Vec3) -> StrandLight {
+        let far = self.lights.iter().find_map(|light| match light {
+            Light::Directional { direction, .. } => Some(Vec3::from_array(*direction)),
+            _ => None,
+        });
+        let ambient = (self.ambient.iter().sum::<f32>() / 3.0).clamp(0.0, 1.0);
+        StrandLight { direction: far.unwrap_or(Vec3::new(-0.4, -0.7, -0.8)), eye, ambient, gloss: 0.25 }
+    }
+
     pub(super) fn check_strands(&self) -> Checked {
         let mut count = 0u64;
         for (i, tuft) in self.strands.iter().enumerate() {
