@@ -1,4 +1,4 @@
-//! What has a shape in a scene file, where its groups take it: each mesh is read once.
+//! Things with a shape in a scene file, placed where their groups take them: each mesh is read once.
 
 use super::start::color;
 use super::{Files, SceneError, SceneFile, Solid, beside};

@@ -1,4 +1,4 @@
-//! What a scene begins with: its own particles and springs, and those of its cloths, boxes and strands.
+//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes and strands.
 
 use super::model::{PatchBuf, SheetContactsBuf};
 use super::placing::Placing;
@@ -19,7 +19,7 @@ pub(super) struct Start {
     pub(super) springs: Vec<Spring>,
     /// Those of gas in cloths, and of the air around them.
     pub(super) forces: Vec<ForceKind>,
-    /// What holds those together that are shells, and strands.
+    /// The constraints that hold shells and strands together.
     pub(super) constraints: Vec<ConstraintKind>,
     /// Where they begin.
     pub(super) cloths: Vec<[usize; 2]>,

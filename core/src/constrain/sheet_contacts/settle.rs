@@ -1,4 +1,4 @@
-//! What has been moved apart, by velocity: how fast it parts, and what friction takes of its slip.
+//! Velocities of sheets that have been moved apart: how fast they part, and what friction takes of their slip.
 
 use super::super::Bodies;
 use super::super::contacts::Touch;
