@@ -34,7 +34,7 @@ fn pile(scale: f32) -> [RigidBox; 2] {
     [0, 1].map(|i| RigidBox::new(Vec3::splat(0.1) * scale, Vec3::Y * (0.1 + 0.2 * i as f32) * scale, 8 * i))
 }
 
-/// What lies for long is at rest to the bit, and stays where it is to the bit.
+/// Bodies that lie for long are at rest to the bit, and stay where they are to the bit.
 #[test]
 fn a_pile_that_lies_is_still() {
     for (scale, substeps) in [(1.0f32, 8), (0.1, 20), (5.0, 4)] {
@@ -140,7 +140,7 @@ fn scenery_that_begins_to_move_wakes() {
     }
 }
 
-/// Who lies on another falls when that dies or is taken away.
+/// A body that lies on another falls when that dies or is taken away.
 #[test]
 fn who_lies_on_what_goes_away_falls() {
     let boxes = pile(1.0);
