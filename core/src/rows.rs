@@ -3,7 +3,11 @@
 //! A column of `Vec3` is a flat list of numbers with period three. Where every number is treated alike the flat list
 //! does; where each row has a factor of its own, four rows and their four factors make blocks of twelve.
 
-use crate::lanes::{Eight, Kernel, not, widest};
+mod fall;
+
+pub(crate) use fall::{Accelerate, Extents, Fall, Leap};
+
+use crate::lanes::widest;
 use crate::math::max;
 use glam::Vec3;
 
@@ -66,139 +70,6 @@ pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f:
     for (total, &factor) in t_rest.iter_mut().zip(k_rest) {
         one(total, vector, factor, &f);
     }
-}
-
-/// What makes rows fall, each braked by its own drag.
-#[derive(Clone, Copy)]
-pub(crate) struct Fall<'a, const FALLS: bool, const DRAGS: bool> {
-    pub(crate) g: Vec3,
-    pub(crate) mass: &'a [f32],
-    pub(crate) drag: &'a [f32],
-    pub(crate) inverse_mass: &'a [f32],
-}
-
-/// Finds their accelerations.
-pub(crate) struct Accelerate<'a, const FALLS: bool, const DRAGS: bool> {
-    pub(crate) fall: Fall<'a, FALLS, DRAGS>,
-    pub(crate) velocity: &'a [Vec3],
-    pub(crate) acceleration: &'a mut [Vec3],
-}
-
-/// Moves their places and velocities by a step of `h` \[s\] of an Euler method: the symplectic one goes by the new velocity.
-pub(crate) struct Leap<'a, const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> {
-    pub(crate) fall: Fall<'a, FALLS, DRAGS>,
-    pub(crate) ends: [&'a mut [Vec3]; 2],
-    pub(crate) h: f32,
-}
-
-impl<const FALLS: bool, const DRAGS: bool> Kernel for Accelerate<'_, FALLS, DRAGS> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<F: Eight>(self, like: F) {
-        let Self { fall, velocity, acceleration } = self;
-        let (g, (factors, factors_rest)) = (fall.numbers(like), fall.eights());
-        let ((out, out_rest), (v, v_rest)) = (acceleration.as_chunks_mut(), velocity.as_chunks());
-        for ((out, v), factors) in out.iter_mut().zip(v).zip(factors) {
-            *out = stored(Fall::<FALLS, DRAGS>::of(g, loaded(like, v), factors));
-        }
-        if !out_rest.is_empty() {
-            let last: [Vec3; 8] =
-                stored(Fall::<FALLS, DRAGS>::of(g, loaded(like, &filled(v_rest)), factors_rest.each_ref()));
-            out_rest.copy_from_slice(&last[..out_rest.len()]);
-        }
-    }
-}
-
-impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<F: Eight>(self, like: F) {
-        let Self { fall, ends: [position, velocity], h } = self;
-        let (g, (factors, factors_rest), h) = (fall.numbers(like), fall.eights(), like.all(h));
-        let ((x, x_rest), (v, v_rest)) = (position.as_chunks_mut(), velocity.as_chunks_mut());
-        for ((x, v), factors) in x.iter_mut().zip(v).zip(factors) {
-            Self::eight(g, [x, v], factors, h);
-        }
-        if !x_rest.is_empty() {
-            let [mut x, mut v] = [filled(x_rest), filled(v_rest)];
-            Self::eight(g, [&mut x, &mut v], factors_rest.each_ref(), h);
-            x_rest.copy_from_slice(&x[..x_rest.len()]);
-            v_rest.copy_from_slice(&v[..v_rest.len()]);
-        }
-    }
-}
-
-impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
-    #[inline(always)]
-    fn eight<F: Eight>(g: [F; 3], [x, v]: [&mut [Vec3; 8]; 2], factors: [&[f32; 8]; 3], h: F) {
-        let [from, before] = [loaded(h, x), loaded(h, v)];
-        let rate = Fall::<FALLS, DRAGS>::of(g, before, factors);
-        let (mut to, mut after) = (from, before);
-        for i in 0..3 {
-            after[i] = before[i] + rate[i] * h;
-            to[i] = from[i] + if SYMPLECTIC { after[i] } else { before[i] } * h;
-        }
-        [*x, *v] = [stored(to), stored(after)];
-    }
-}
-
-/// Eight factors of each kind.
-type Factors<'a> = [&'a [f32; 8]; 3];
-
-impl<'a, const FALLS: bool, const DRAGS: bool> Fall<'a, FALLS, DRAGS> {
-    /// The steady acceleration, number by number, as those of rows follow one another.
-    #[inline(always)]
-    fn numbers<F: Eight>(&self, like: F) -> [F; 3] {
-        loaded(like, &[self.g; 8])
-    }
-
-    /// The factors of eight rows after the other, and of what rows are left.
-    #[inline(always)]
-    fn eights(&self) -> (impl Iterator<Item = Factors<'a>> + use<'a, FALLS, DRAGS>, [[f32; 8]; 3]) {
-        let [(m, m_rest), (k, k_rest), (inverse, inverse_rest)] =
-            [self.mass.as_chunks(), self.drag.as_chunks(), self.inverse_mass.as_chunks()];
-        let eights = m.iter().zip(k).zip(inverse).map(
-            #[inline(always)]
-            |((m, k), inverse)| [m, k, inverse],
-        );
-        (eights, [filled(m_rest), filled(k_rest), filled(inverse_rest)])
-    }
-
-    /// The sum of forces over the mass, for eight rows: number by number, as they follow one another. What is fixed stays so under a
-    /// force beyond an f32.
-    #[inline(always)]
-    fn of<F: Eight>(g: [F; 3], v: [F; 3], factors: Factors<'_>) -> [F; 3] {
-        let (like, zero) = (g[0], g[0].all(0.0));
-        let [m, k, inverse] =
-            [like.of(*factors[0]).thrice(), like.of(*factors[1]).thrice(), like.of(*factors[2]).thrice()];
-        let mut rate = v;
-        for i in 0..3 {
-            let mut force = zero;
-            if FALLS {
-                force = force + g[i] * m[i];
-            }
-            if DRAGS {
-                force = force - v[i] * k[i];
-            }
-            rate[i] = (force * inverse[i]) & not(inverse[i].simd_eq(zero));
-        }
-        rate
-    }
-}
-
-/// Eight vectors, number by number, in registers.
-#[inline(always)]
-fn loaded<F: Eight>(like: F, vectors: &[Vec3; 8]) -> [F; 3] {
-    let [a, b, c]: [[f32; 8]; 3] = bytemuck::cast(*vectors);
-    [like.of(a), like.of(b), like.of(c)]
-}
-
-/// The same back.
-#[inline(always)]
-fn stored<F: Eight>([a, b, c]: [F; 3]) -> [Vec3; 8] {
-    bytemuck::cast([a.to_array(), b.to_array(), c.to_array()])
 }
 
 /// So many of which the last ones are nothing.

@@ -212,7 +212,8 @@ impl<B: Storage> System<B> {
     }
 
     fn workspace(&mut self) -> Workspace<'_> {
-        Workspace { memory: self.memory.slices(), status: &mut self.status }
+        let memory = self.memory.slices();
+        Workspace { capacity: memory.capacity(), memory, status: &mut self.status }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
 use crate::math::{largest, max};
-use crate::rows::{farthest, filled, flat, largest_of};
+use crate::rows::{Extents, farthest, filled, flat, largest_of};
 use crate::shape::{Aabb, Face};
 use core::ops::Range;
 use glam::Vec3;
@@ -39,13 +39,20 @@ struct Slab<'a, const AXIS: usize> {
 }
 
 impl<'a> Balls<'a> {
-    /// No more than a block of them.
+    /// No more than a block of them, which have `reached` so far, where that is known.
     #[inline]
-    pub(super) fn block(&self, rows: Range<usize>) -> Block<'a> {
+    pub(super) fn block(&self, rows: Range<usize>, reached: Option<Extents>) -> Block<'a> {
         let Self { ends, radius, time } = *self;
         let balls = Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], time };
-        let ([x0, v0, x1, v1], third) = (balls.ends.map(farthest), balls.third());
-        let (fastest, largest) = (max(v0, v1), max(x0 + third * v0, x1 + third * v1));
+        let third = balls.third();
+        let (fastest, largest) = match reached {
+            // From where they are, they have come no faster than that; what rounding adds is in the room for it.
+            Some(Extents { place, speed }) => (speed, place + (time + third) * speed),
+            None => {
+                let [x0, v0, x1, v1] = balls.ends.map(farthest);
+                (max(v0, v1), max(x0 + third * v0, x1 + third * v1))
+            }
+        };
         Block { balls, fastest, largest, radius: largest_of(balls.radius) }
     }
 

@@ -31,23 +31,34 @@ const ROUNDS: usize = 4;
 
 /// The outcome of a packet: a bit for each particle.
 pub(super) struct Outcome {
-    /// Particles that are at the end of the step now, those of them that were hit, were so again ..., and those to be followed alone.
+    /// Particles that are at the end of the step now, and those to be followed alone.
     pub(super) settled: u32,
-    pub(super) hits: [u32; ROUNDS],
     pub(super) left: u32,
+    /// How often those who are at the end were hit, and the largest of their coordinates \[m\].
+    pub(super) hits: u32,
+    pub(super) farthest: f32,
     /// Places and velocities, each with some number behind it.
     pub(super) ends: [[[f32; 4]; LANES]; 2],
 }
 
-impl<F: Eight> Riders<F> {
-    /// Those who lie on a face: along it, from their own places, for a step.
+impl Outcome {
+    /// The outcome for those who are `settled` on their paths, after so many hits, and for those who are `left`.
     #[inline(always)]
-    pub(super) fn lie(&self, paths: &Paths<F>, face: &Face) -> Outcome {
+    fn of<F: Eight>(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
+        let farthest = (paths.x1.largest() & settled).largest_lane();
+        Self { settled: settled.to_bitmask(), left, hits, farthest, ends: paths.ends() }
+    }
+}
+
+impl<F: Eight> Riders<F> {
+    /// Those of who are `present` who lie on a face: along it, from their own places, for a step.
+    #[inline(always)]
+    pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome {
         let acceleration = paths.acceleration();
         let (lying, normal) = self.seated(paths, face, acceleration);
         let lying = lying & paths.are_finite() & not(self.is_fixed);
         if !lying.any() {
-            return Outcome { settled: 0, hits: [0; ROUNDS], left: 0, ends: paths.ends() };
+            return Outcome::of(paths, lying, 0, 0);
         }
         let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
         let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
@@ -55,11 +66,9 @@ impl<F: Eight> Riders<F> {
         let along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
         let straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
         let passes = Segments { from: along.x0, to: along.x1 }.first_hits(face, self.radius).are;
-        let settled = (lying & straight & not(passes)).to_bitmask();
-        let left = lying.to_bitmask() & !settled;
-        let mut hits = [0; ROUNDS];
-        hits[0] = settled;
-        Outcome { settled, hits, left, ends: along.ends() }
+        let settled = lying & straight & not(passes) & along.end_finite();
+        let which = settled.to_bitmask() & present;
+        Outcome::of(&along, settled, lying.to_bitmask() & !which, which.count_ones())
     }
 
     /// Those that begin on the face and leaves it only to come back to it within the step; and the normals toward them.
@@ -87,19 +96,22 @@ impl<F: Eight> Riders<F> {
     #[inline(always)]
     fn slide(&self, velocity: Vectors<F>, drive: Vectors<F>, pressing: F, time: F) -> (Vectors<F>, Vectors<F>) {
         let all = |x| time.all(x);
-        let (speed, zero) = (velocity.length(), all(0.0));
+        let (square, zero) = (velocity.dot(velocity), all(0.0));
         let held = self.kinetic * pressing;
-        let braked = |along: Vectors<F>| drive - along * held;
         let going = |acceleration: Vectors<F>, time: F| (velocity + acceleration * (all(0.5) * time)) * time;
-        let steady = braked((velocity + drive * time).unit());
+        let (stays, brakes) = (square.simd_eq(zero), held.simd_gt(zero));
+        let mut steady = drive;
+        if brakes.any() {
+            let along = (velocity + drive * time).unit();
+            steady = Vectors::select(brakes, drive - along * held, drive);
+        }
         let (mut way, mut end) = (going(steady, time), velocity + steady * time);
-        let stays = speed.simd_eq(zero);
-        let brakes = self.kinetic.simd_gt(zero) & not(stays);
         if (stays | brakes).any() {
+            let speed = square.sqrt();
             let along = velocity / speed;
-            let acceleration = braked(along);
+            let acceleration = drive - along * held;
             let braking = negated(acceleration.dot(along));
-            let stops = brakes & (braking * time).simd_gt(speed);
+            let stops = brakes & not(stays) & (braking * time).simd_gt(speed);
             let until = speed / braking;
             let (rest, velocity) = self.start(drive, pressing, stays.select(time, time - until));
             let stopped = going(acceleration, until) + rest;
@@ -120,10 +132,10 @@ impl<F: Eight> Riders<F> {
         ((acceleration * (all(0.5) * time * time)).masked(starts), (acceleration * time).masked(starts))
     }
 
-    /// Those who bounce off a face, come to rest on it, or miss it, and fly on till the end of a step of so long; not those who are
-    /// hit so many times.
+    /// Those of who are `present` who bounce off a face, come to rest on it, or miss it, and fly on till the end of a step of so long;
+    /// not those who are hit so many times.
     #[inline(always)]
-    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, step: Time, max_bounces: u32) -> Outcome {
+    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, present: u32, step: Time, max_bounces: u32) -> Outcome {
         let (mut onward, mut cubics) = (*paths, paths.cubics());
         let mut clear = paths.are_finite() & not(cubics.lag() | self.is_fixed);
         let mut meetings = paths.first_meetings(&cubics, face, self.radius, clear);
@@ -146,8 +158,9 @@ impl<F: Eight> Riders<F> {
             clear = clear & not(hit & meetings.unclear);
             hit = hit & meetings.hits.are;
         }
-        let settled = (clear & not(hit)).to_bitmask();
-        Outcome { settled, hits: hits.map(|hits| hits & settled), left: !settled, ends: onward.ends() }
+        let settled = clear & not(hit) & onward.end_finite();
+        let which = settled.to_bitmask() & present;
+        Outcome::of(&onward, settled, !which, hits.iter().map(|hits| (hits & which).count_ones()).sum())
     }
 
     /// The ways on from hits in steps of `dt` \[s\], of which so much is left, and whose are free.

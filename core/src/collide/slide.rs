@@ -24,10 +24,18 @@ impl Slide {
         if speed == 0.0 {
             return self.starting(time);
         }
+        let held = self.friction.kinetic * self.pressing;
+        let going = |acceleration: Vec3| {
+            let way = math::along(self.velocity, acceleration, 0.5 * time) * time;
+            (way, math::along(self.velocity, acceleration, time))
+        };
+        if !(held > 0.0) {
+            return going(self.drive);
+        }
         let along = self.velocity / speed;
-        let acceleration = self.drive - along * (self.friction.kinetic * self.pressing);
+        let acceleration = self.drive - along * held;
         let braking = -dot(acceleration, along);
-        if self.friction.kinetic > 0.0 && braking * time > speed {
+        if braking * time > speed {
             let until = speed / braking;
             let way = math::along(self.velocity, acceleration, 0.5 * until) * until;
             // The rest beside the old direction is what the drive has turned it to: friction takes that up anew.
@@ -37,9 +45,7 @@ impl Slide {
         // Friction is against the motion all along. Told by the direction at the end it only ever shortens a velocity;
         // by that at the beginning it would throw a slow one from side to side.
         let along = unit(math::along(self.velocity, self.drive, time));
-        let acceleration = self.drive - along * (self.friction.kinetic * self.pressing);
-        let way = math::along(self.velocity, acceleration, 0.5 * time) * time;
-        (way, math::along(self.velocity, acceleration, time))
+        going(self.drive - along * held)
     }
 
     fn starting(&self, time: f32) -> (Vec3, Vec3) {

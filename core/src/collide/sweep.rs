@@ -210,7 +210,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 
     /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
-    /// touches the surface. A place far along the surface from that on the chord asks for the surface there.
+    /// touches the surface. A place far along the surface from that on the chord asks for the surface there, and where that is another
+    /// plane, for the crossing of it.
     fn on_path(&self, path: &Path, cubic: &Cubic, meeting: Meeting, end: f32) -> Meeting {
         let Meeting { begun, hit, .. } = meeting;
         let drift = dot(hit.velocity, hit.normal) * path.duration();
@@ -225,8 +226,12 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         match self.first_hit(&piece) {
             Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
                 let found = from + (to - from) * near.time;
-                let drift = dot(near.velocity, near.normal) * path.duration();
-                let time = crossing(cubic, drift, &near, piece.at(near.time), [from, found, to]);
+                let (nearby, turn) = (piece.at(near.time), dot(near.velocity, near.normal) * path.duration());
+                let is_flat = near.normal == hit.normal && drift == 0.0 && turn == 0.0;
+                if is_flat && dot(minus(nearby, meeting.place), hit.normal).abs() <= 0.5 * near.slack {
+                    return Meeting { time, place, hit: near, ..meeting };
+                }
+                let time = crossing(cubic, turn, &near, nearby, [from, found, to]);
                 Meeting { time, place: cubic.at(time), hit: near, ..meeting }
             }
             _ => Meeting { time, place, ..meeting },

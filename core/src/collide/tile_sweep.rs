@@ -69,14 +69,14 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
 /// Rows that may lie on a face.
 struct Lie<'t, 's, 'a> {
     of: &'t TileSweep<'s, 'a>,
-    rows: &'t [usize; LANES],
+    packet: &'t Packet,
     face: &'t Face,
 }
 
 /// Rows that may bounce off a face.
 struct Bounce<'t, 's, 'a> {
     of: &'t TileSweep<'s, 'a>,
-    rows: &'t [usize; LANES],
+    packet: &'t Packet,
     face: &'t Face,
 }
 
@@ -84,8 +84,8 @@ impl Kernel for Lie<'_, '_, '_> {
     type Output = Outcome;
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Outcome {
-        let (riders, paths) = self.of.packet(like, self.rows, self.face);
-        riders.lie(&paths, self.face)
+        let (riders, paths) = self.of.packet(like, &self.packet.rows, self.face);
+        riders.lie(&paths, self.face, self.packet.present())
     }
 }
 
@@ -93,8 +93,8 @@ impl Kernel for Bounce<'_, '_, '_> {
     type Output = Outcome;
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Outcome {
-        let (riders, paths) = self.of.packet(like, self.rows, self.face);
-        riders.bounce(&paths, self.face, self.of.tile.dt, self.of.tile.scene.max_bounces)
+        let (riders, paths) = self.of.packet(like, &self.packet.rows, self.face);
+        riders.bounce(&paths, self.face, self.packet.present(), self.of.tile.dt, self.of.tile.scene.max_bounces)
     }
 }
 
@@ -138,7 +138,7 @@ impl TileSweep<'_, '_> {
         let mut waiting = Waiting::before(*face);
         for first in (0..old).step_by(BLOCK) {
             let count = (old - first).min(BLOCK);
-            let marks = self.balls().block(first..first + count).near(face);
+            let marks = self.balls().block(first..first + count, self.tile.reached).near(face);
             let words = marks.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
             for (row, marks) in (first..first + count).step_by(u64::BITS as usize).zip(words) {
                 if in_packets {
@@ -160,7 +160,7 @@ impl TileSweep<'_, '_> {
         let size = max(max(largest(things.min), largest(things.max)), face.map_or(0.0, |face| face.size()));
         for first in (0..old).step_by(BLOCK) {
             let rows = first..old.min(first + BLOCK);
-            let block = self.balls().block(rows.clone());
+            let block = self.balls().block(rows.clone(), self.tile.reached);
             let by_face = face.map_or([0; BLOCK / LANES], |face| block.near(&face));
             let by_things = block.near_box(things);
             // Who gains speed by hits may get anywhere.
@@ -271,7 +271,7 @@ impl TileSweep<'_, '_> {
     /// Lets those who lie on the face do so; the others bounce.
     #[inline(never)]
     fn lie(&mut self, packet: &Packet, Waiting { face, bouncing, .. }: &mut Waiting) {
-        let outcome = run(Lie { of: self, rows: &packet.rows, face });
+        let outcome = run(Lie { of: self, packet, face });
         for i in ones(self.settle(packet, &outcome)) {
             bouncing.push(packet.rows[i % LANES]);
         }
@@ -283,15 +283,18 @@ impl TileSweep<'_, '_> {
     /// Lets those bounce off the face who do so once.
     #[inline(never)]
     fn bounce(&mut self, packet: &Packet, face: &Face) {
-        let outcome = run(Bounce { of: self, rows: &packet.rows, face });
+        let outcome = run(Bounce { of: self, packet, face });
         self.settle(packet, &outcome);
     }
 
     /// Puts rows where they have come to, follows those who have to be, and says which are left: a bit each.
     #[inline(always)]
-    fn settle(&mut self, Packet { rows, len }: &Packet, outcome: &Outcome) -> u32 {
-        let of_all = (1 << *len) - 1;
-        self.report.hits += outcome.hits.iter().map(|hits| u64::from((hits & of_all).count_ones())).sum::<u64>();
+    fn settle(&mut self, packet: &Packet, outcome: &Outcome) -> u32 {
+        let (rows, present) = (&packet.rows, packet.present());
+        self.report.hits += u64::from(outcome.hits);
+        if let Some(reached) = &mut self.tile.reached {
+            reached.place = max(reached.place, outcome.farthest);
+        }
         let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
         let velocity = &mut velocity[..position.len()];
         let [places, velocities] = &outcome.ends;
@@ -301,10 +304,10 @@ impl TileSweep<'_, '_> {
                 (position[row], velocity[row]) = (Vec3::new(*x, *y, *z), Vec3::new(*u, *v, *w));
             }
         }
-        for i in ones(outcome.left & of_all) {
+        for i in ones(outcome.left & present) {
             self.follow(rows[i % LANES]);
         }
-        of_all & !(outcome.settled | outcome.left)
+        present & !(outcome.settled | outcome.left)
     }
 
     /// Rows side by side, none of which is the tile's last.
@@ -429,6 +432,7 @@ impl TileSweep<'_, '_> {
         }
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
             (end.position, end.velocity, end.pending_death);
+        tile.reached = tile.reached.and_then(|reached| reached.with(end.position, end.velocity));
     }
 }
 

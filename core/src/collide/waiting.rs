@@ -16,6 +16,13 @@ pub(super) struct Packet {
     pub(super) len: usize,
 }
 
+impl Packet {
+    /// A bit for each that is not missing.
+    pub(super) fn present(&self) -> u32 {
+        (1 << self.len) - 1
+    }
+}
+
 impl Queue {
     /// Puts a row in, behind no more than there is room for.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Forces that one pass over the columns can work out: what falls, and is braked by the air.
 
 use crate::lanes::run;
-use crate::rows::{Accelerate, Fall, Leap};
+use crate::rows::{Accelerate, Extents, Fall, Leap};
 use glam::Vec3;
 
 /// The sum of forces that are no more than a steady acceleration of all and each particle's own linear drag.
@@ -34,11 +34,18 @@ impl Steady {
     }
 
     /// Moves rows by a step of `h` \[s\] of the symplectic or the explicit Euler method, to the bits of doing it with their accelerations.
-    pub(crate) fn leap(self, rows: Inertia<'_>, ends: [&mut [Vec3]; 2], h: f32, is_symplectic: bool) {
+    /// Says how far they get.
+    pub(crate) fn leap(
+        self,
+        rows: Inertia<'_>,
+        ends: [&mut [Vec3]; 2],
+        h: f32,
+        is_symplectic: bool,
+    ) -> Option<Extents> {
         if is_symplectic { self.leap_by::<true>(rows, ends, h) } else { self.leap_by::<false>(rows, ends, h) }
     }
 
-    fn leap_by<const SYMPLECTIC: bool>(self, rows: Inertia<'_>, ends: [&mut [Vec3]; 2], h: f32) {
+    fn leap_by<const SYMPLECTIC: bool>(self, rows: Inertia<'_>, ends: [&mut [Vec3]; 2], h: f32) -> Option<Extents> {
         match (self.acceleration.is_some(), self.drags) {
             (false, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, false>(rows), ends, h }),
             (true, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, false>(rows), ends, h }),

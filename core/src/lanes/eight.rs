@@ -57,6 +57,13 @@ pub(crate) trait Eight:
         let ([a, e], [b, f], [c, g]) = (halves(x), halves(y), halves(z));
         bytemuck::cast([f32x4::transpose([a, b, c, c]), f32x4::transpose([e, f, g, g])])
     }
+    /// The largest of numbers none of which is below zero; anything, where one is no number.
+    #[inline(always)]
+    fn largest_lane(self) -> f32 {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        let most = crate::math::max;
+        most(most(most(a, e), most(b, f)), most(most(c, g), most(d, h)))
+    }
     /// A bit for each lane of this mask.
     fn to_bitmask(self) -> u32;
 

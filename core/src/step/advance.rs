@@ -44,6 +44,7 @@ impl Tile<'_> {
                 first: old,
                 lists: None,
                 effort: Effort::NONE,
+                reached: None,
                 observer,
             };
             let ends = [&mut *self.position, &mut *self.velocity];
@@ -65,9 +66,12 @@ impl Tile<'_> {
             scratch,
             capacity,
             report,
+            reached: None,
             observer,
         };
         moved.go(now, dt, hint);
+        // Of a step in pieces that of the last one says too little.
+        self.reached = moved.reached.filter(|_| old == len && scene.pieces() == 1);
     }
 }
 

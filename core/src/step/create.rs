@@ -20,10 +20,11 @@ impl Workspace<'_> {
         observer: &mut dyn Observer,
     ) -> usize {
         let (old, now) = (self.status.len, self.status.time);
-        let (layout, reach) = (Layout::of(scene.plan(), self.capacity()), scene.emitters.reach());
+        let capacity = self.capacity();
+        let (layout, reach) = (Layout::of(scene.plan(), capacity), scene.emitters.reach());
         let (mut memory, status) = (self.memory.slices(), &mut *self.status);
         let mut emit = |memory: &mut Slices<'_>, near: Option<&dyn SpatialIndex>| {
-            let workspace = Workspace { memory: memory.slices(), status: &mut *status };
+            let workspace = Workspace { memory: memory.slices(), capacity, status: &mut *status };
             let (report, observer) = (&mut *report, &mut *observer);
             scene.emitters.emit(
                 now,

@@ -6,7 +6,7 @@ use crate::index::{BarnesHut, Found, ListMemory, Search};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
-use crate::rows::{BLOCKS, each_row_with};
+use crate::rows::{BLOCKS, Extents, each_row_with};
 use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
@@ -57,6 +57,8 @@ pub(crate) struct Field<'a> {
     pub(super) lists: Option<ListMemory<'a>>,
     pub(super) first: usize,
     pub(super) effort: Effort,
+    /// How far the last leap took the rows.
+    pub(super) reached: Option<Extents>,
     pub(super) observer: &'a mut dyn Observer,
 }
 
@@ -134,7 +136,8 @@ impl Dynamics for Field<'_> {
     fn euler(&mut self, position: &mut [Vec3], velocity: &mut [Vec3], h: f32, is_symplectic: bool) -> bool {
         let Some((steady, columns)) = self.steady(position.len()) else { return false };
         self.effort.evaluations += u64::from(!position.is_empty());
-        steady.leap(columns, [position, velocity].map(|column| &mut column[self.first..]), h, is_symplectic);
+        let ends = [position, velocity].map(|column| &mut column[self.first..]);
+        self.reached = steady.leap(columns, ends, h, is_symplectic);
         true
     }
 

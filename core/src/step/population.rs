@@ -26,7 +26,7 @@ impl Workspace<'_> {
         if self.is_full() {
             return Err(Full);
         }
-        let (m, status) = (&mut self.memory, &mut *self.status);
+        let (m, capacity, status) = (&mut self.memory, self.capacity, &mut *self.status);
         let row = status.len;
         let slot = if status.free > 0 {
             let slot = status.free - 1;
@@ -54,11 +54,12 @@ impl Workspace<'_> {
         m.charge[row] = particle.charge;
         m.elasticity[row] = particle.elasticity;
         m.born[row] = born;
-        m.dies[row] = death(born, particle.lifetime);
+        let dies = death(born, particle.lifetime);
+        m.dies[row] = dies;
+        status.ends_at(dies);
         m.color[row] = particle.color.unwrap_or(WHITE);
         m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
         m.pending_death[row] = PendingDeath::Lives;
-        let capacity = m.capacity();
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;
         status.changes = status.changes.wrapping_add(1);

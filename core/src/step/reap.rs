@@ -16,6 +16,7 @@ impl Workspace<'_> {
         if let Some(code) = scene.reapers.code().filter(|_| !scene.reapers.is_empty()) {
             self.judge_all(scene, code);
         }
+        let before = report.died.lifetime;
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
         while let Some((row, cause)) = last_doomed(&self.memory.pending_death[..end]) {
@@ -25,6 +26,10 @@ impl Workspace<'_> {
             observer.died(&LifeEvent { id, place: m.position[row], velocity: m.velocity[row], time }, cause);
             self.remove(row, scene.springs, report);
             end = row;
+        }
+        // Where many are born somebody dies all the time; else it is worth knowing when the next one does.
+        if self.status.next_end() <= time && report.died.lifetime == before {
+            self.status.end_at(&self.memory.dies[..self.status.len]);
         }
     }
 

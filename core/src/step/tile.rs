@@ -13,7 +13,7 @@ use crate::memory::Storage;
 use crate::observe::Observer;
 use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
 use crate::report::Report;
-use crate::rows::farthest_of_finite;
+use crate::rows::{Extents, farthest_of_finite};
 use crate::scene::Scene;
 use crate::stall;
 use crate::time::Time;
@@ -47,6 +47,10 @@ pub(crate) struct Tile<'a> {
     /// Memory to work with, and for how many rows it is laid out.
     pub(crate) work: &'a mut [Vec3],
     pub(crate) capacity: usize,
+    /// True if any of them may come to the end of its life in the step.
+    pub(crate) may_end: bool,
+    /// How far the step has taken them, where that is known.
+    pub(crate) reached: Option<Extents>,
 }
 
 impl Scene<'_> {
@@ -149,6 +153,8 @@ impl Workspace<'_> {
             attributes: attributes.rows(rows),
             work: m.work,
             capacity,
+            may_end: self.status.next_end() <= now + dt,
+            reached: None,
         }
     }
 }
@@ -156,7 +162,7 @@ impl Workspace<'_> {
 impl<'a> Tile<'a> {
     /// The first so many rows, and the others, each with its memory.
     fn split_at(self, rows: usize, work: [&'a mut [Vec3]; 2]) -> [Self; 2] {
-        let Self { scene, now, dt, first, old, attributes, capacity, .. } = self;
+        let Self { scene, now, dt, first, old, attributes, capacity, may_end, .. } = self;
         let len = self.position.len();
         let (position, velocity) = (self.position.split_at_mut(rows), self.velocity.split_at_mut(rows));
         let (pending_death, [front, back]) = (self.pending_death.split_at_mut(rows), work);
@@ -172,6 +178,8 @@ impl<'a> Tile<'a> {
             attributes: attributes.rows(rows),
             work,
             capacity,
+            may_end,
+            reached: None,
         };
         [
             part(position.0, velocity.0, pending_death.0, front, 0..rows),
@@ -237,8 +245,13 @@ impl Tile<'_> {
         let rows = 0..self.position.len();
         let state = self.attributes.lives.moved(self.end(), self.position, self.velocity);
         let mut verdicts = Verdicts::on(self.pending_death);
-        Lifetime.judge(&state, rows.clone(), &mut verdicts);
-        let (farthest, are_finite) = farthest_of_finite(self.position, self.velocity);
+        if self.may_end {
+            Lifetime.judge(&state, rows.clone(), &mut verdicts);
+        }
+        let (farthest, are_finite) = match self.reached {
+            Some(Extents { place, .. }) => (place, true),
+            None => farthest_of_finite(self.position, self.velocity),
+        };
         if !are_finite {
             Nonfinite.judge(&state, rows, &mut verdicts);
         }

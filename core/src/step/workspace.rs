@@ -13,6 +13,8 @@ use crate::time::Time;
 #[derive(Debug)]
 pub(crate) struct Workspace<'a> {
     pub(crate) memory: Slices<'a>,
+    /// The number of particles that fit.
+    pub(crate) capacity: usize,
     pub(crate) status: &'a mut Status,
 }
 
@@ -41,6 +43,8 @@ pub(crate) struct Status {
     /// The words that the scene keeps of particles.
     pub(crate) kept: Words,
     pub(crate) time: Time,
+    /// How long before the end of all time the first of them dies of age, or sooner: an empty system is nothing but zeros.
+    pub(crate) ends_before_never: Time,
     /// The step that an integrator which chooses its own goes on with.
     pub(crate) hint: Time,
     pub(crate) seed: u64,
@@ -61,10 +65,26 @@ impl Status {
         changes: 0,
         kept: Words::NONE,
         time: Time::ZERO,
+        ends_before_never: Time::ZERO,
         hint: Time::ZERO,
         seed: 0,
         totals: Report::NOTHING,
     };
+
+    /// An instant before which nobody dies of age.
+    pub(crate) fn next_end(&self) -> Time {
+        Time::NEVER - self.ends_before_never
+    }
+
+    /// Somebody dies of age at an instant.
+    pub(crate) fn ends_at(&mut self, dies: Time) {
+        self.ends_before_never = self.ends_before_never.max(Time::NEVER - dies);
+    }
+
+    /// Forgets who has died, and knows when these do.
+    pub(crate) fn end_at(&mut self, dies: &[Time]) {
+        self.ends_before_never = Time::NEVER - dies.iter().fold(Time::NEVER, |first, &dies| first.min(dies));
+    }
 }
 
 impl Workspace<'_> {
@@ -81,7 +101,7 @@ impl Workspace<'_> {
     }
 
     pub(crate) fn capacity(&self) -> usize {
-        self.memory.capacity()
+        self.capacity
     }
 
     #[inline(never)]

@@ -91,9 +91,10 @@ impl<F: Eight> Meetings<F> {
     #[inline(always)]
     fn put_on_path(&mut self, paths: &Paths<F>, cubics: &Cubics<F>, face: &Face, radius: F, end: F) {
         let all = |x| radius.all(x);
-        let time = cubics.crossings(&self.hits, self.place, [self.begun, end]);
+        let found = self.place;
+        let time = cubics.crossings(&self.hits, found, [self.begun, end]);
         let place = cubics.at(time);
-        let is_far = (place - self.place).length().simd_gt(all(16.0) * self.hits.slack) & self.hits.are;
+        let is_far = (place - found).length().simd_gt(all(16.0) * self.hits.slack) & self.hits.are;
         self.hits.time = time;
         self.place = place;
         if !is_far.any() {
@@ -106,9 +107,16 @@ impl<F: Eight> Meetings<F> {
         let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(all(1.0)), paths.x1, cubics.at(to)) };
         let near = piece.first_hits(face, radius);
         let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(all(0.0));
-        let time = cubics.crossings(&near, piece.at(near.time), [from, to]);
-        self.place = Vectors::select(are, cubics.at(time), self.place);
+        let nearby = piece.at(near.time);
+        let height = (nearby - found).dot(self.hits.normal).abs();
+        let is_flat = (near.normal - self.hits.normal).is_zero() & height.simd_le(all(0.5) * near.slack);
+        let is_other = are & not(is_flat);
         self.hits.take(are, Hits { time, ..near });
+        if is_other.any() {
+            let time = cubics.crossings(&near, nearby, [from, to]);
+            self.place = Vectors::select(is_other, cubics.at(time), self.place);
+            self.hits.time = is_other.select(time, self.hits.time);
+        }
     }
 }
 

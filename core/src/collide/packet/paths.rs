@@ -56,6 +56,14 @@ impl<F: Eight> Paths<F> {
         (x + y + z).simd_eq(zero)
     }
 
+    /// The same of where they lead.
+    #[inline(always)]
+    pub(super) fn end_finite(&self) -> F {
+        let zero = self.time.all(0.0);
+        let [x, y, z] = ((self.x1 + self.v1) * zero).0;
+        (x + y + z).simd_eq(zero)
+    }
+
     #[inline(always)]
     pub(super) fn cubics(&self) -> Cubics<F> {
         let all = |x| self.time.all(x);
@@ -111,7 +119,10 @@ impl<F: Eight> Cubics<F> {
             return one;
         }
         let ratio = all(2.0) * max(c2.sqrt(), end.sqrt()) / all(8.0 * CHORD_ERROR);
-        let whole = like.of(ratio.sqrt().to_array().map(|root| root as u16 as f32));
+        // What is added leaves no room for fractions, and rounds to the nearest whole number. Larger ones are more than any bound.
+        let (root, shift) = (ratio.sqrt(), all(8_388_608.0));
+        let nearest = (root + shift) - shift;
+        let whole = nearest.simd_gt(root).select(nearest - one, nearest);
         (bent & ratio.simd_gt(one)).select(whole + one, one)
     }
 }
