@@ -9,7 +9,7 @@ use glam::Vec3;
 use wide::f32x4;
 
 /// Rows that are held against a face at once.
-pub(super) const BLOCK: usize = 640;
+pub(super) const BLOCK: usize = 1280;
 
 /// A bit for each row of a block.
 pub(super) type Marks = [u8; BLOCK / LANES];

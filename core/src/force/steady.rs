@@ -1,5 +1,6 @@
 //! Forces that one pass over the columns can work out: what falls, and is braked by the air.
 
+use crate::integrate::Drift;
 use crate::lanes::run;
 use crate::rows::{Accelerate, Extents, Fall, Leap};
 use glam::Vec3;
@@ -35,22 +36,33 @@ impl Steady {
 
     /// Moves rows by a step of `h` \[s\] of the symplectic or the explicit Euler method, to the bits of doing it with their accelerations.
     /// Says how far they get.
+    /// Keeps where they were in as many rows as there are of `start`.
     pub(crate) fn leap(
         self,
         rows: Inertia<'_>,
-        ends: [&mut [Vec3]; 2],
+        ends: Ends<'_>,
+        start: Ends<'_>,
         h: f32,
-        is_symplectic: bool,
+        drift: Drift,
     ) -> Option<Extents> {
-        if is_symplectic { self.leap_by::<true>(rows, ends, h) } else { self.leap_by::<false>(rows, ends, h) }
+        match drift {
+            Drift::Before => self.leap_by::<false>(rows, ends, start, h),
+            Drift::After => self.leap_by::<true>(rows, ends, start, h),
+        }
     }
 
-    fn leap_by<const SYMPLECTIC: bool>(self, rows: Inertia<'_>, ends: [&mut [Vec3]; 2], h: f32) -> Option<Extents> {
+    fn leap_by<const SYMPLECTIC: bool>(
+        self,
+        rows: Inertia<'_>,
+        ends: Ends<'_>,
+        start: Ends<'_>,
+        h: f32,
+    ) -> Option<Extents> {
         match (self.acceleration.is_some(), self.drags) {
-            (false, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, false>(rows), ends, h }),
-            (true, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, false>(rows), ends, h }),
-            (false, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, true>(rows), ends, h }),
-            (true, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, true>(rows), ends, h }),
+            (false, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, false>(rows), ends, start, h }),
+            (true, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, false>(rows), ends, start, h }),
+            (false, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, true>(rows), ends, start, h }),
+            (true, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, true>(rows), ends, start, h }),
         }
     }
 
@@ -59,6 +71,9 @@ impl Steady {
         Fall { g: self.acceleration.unwrap_or(Vec3::ZERO), mass, drag, inverse_mass }
     }
 }
+
+/// Columns of places and velocities.
+pub(crate) type Ends<'a> = [&'a mut [Vec3]; 2];
 
 /// The columns of some rows that tell how they fall.
 #[derive(Clone, Copy)]
@@ -72,8 +87,9 @@ pub(crate) struct Inertia<'a> {
 mod tests {
     use super::*;
     use crate::force::{Drag, Force, Gravity, QuadraticDrag, State};
+    use crate::math::max;
     use crate::rng::Stream;
-    use crate::rows::{add_scaled, flat};
+    use crate::rows::{add_scaled, farthest, flat};
 
     /// Numbers of all kinds, those that are none among them.
     fn strange(i: u32) -> f32 {
@@ -110,13 +126,20 @@ mod tests {
                     *sum = if inverse == 0.0 { Vec3::ZERO } else { *sum * inverse };
                 }
                 assert!(is_same(&once, &sum), "{once:?} {sum:?}");
-                for is_symplectic in [false, true] {
+                for (drift, keeps) in [Drift::Before, Drift::After].into_iter().zip([len % 2, 1]) {
                     let (mut x, mut v) = (velocity.clone(), velocity.clone());
-                    steady.leap(rows, [&mut x, &mut v], 0.3, is_symplectic);
+                    let [mut start_x, mut start_v] = [(); 2].map(|()| std::vec![Vec3::ONE; keeps * len]);
+                    let reached = steady.leap(rows, [&mut x, &mut v], [&mut start_x, &mut start_v], 0.3, drift);
+                    let kept = &velocity[..keeps * len];
+                    assert!(is_same(&start_x, kept) && is_same(&start_v, kept));
+                    if let Some(Extents { place, speed }) = reached {
+                        assert!(flat(&x).iter().chain(flat(&v)).all(|number| number.is_finite()));
+                        assert_eq!([place, speed], [farthest(&x), max(farthest(&velocity), farthest(&v))]);
+                    }
                     let (mut place, mut after) = (velocity.clone(), velocity.clone());
                     add_scaled(&mut after, 0.3, &once);
-                    add_scaled(&mut place, 0.3, if is_symplectic { &after } else { &velocity });
-                    assert!(is_same(&x, &place) && is_same(&v, &after), "{len} {is_symplectic}");
+                    add_scaled(&mut place, 0.3, if drift == Drift::After { &after } else { &velocity });
+                    assert!(is_same(&x, &place) && is_same(&v, &after), "{len} {drift:?}");
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The two Euler methods.
 
-use super::{Dynamics, Integrator, Motion, add_scaled};
+use super::{Drift, Dynamics, Integrator, Motion, add_scaled};
 use crate::time::Time;
 
 /// Explicit Euler: x += h v, then v += h a, both from the step's beginning.
@@ -27,13 +27,15 @@ impl Integrator for Euler {
         true
     }
 
+    fn drift(&self) -> Option<Drift> {
+        Some(Drift::Before)
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let ([a], h) = (motion.work.take(), step.seconds());
-        if !world.euler(motion.position, motion.velocity, h, false) {
-            world.accelerations(time, motion.position, motion.velocity, a);
-            add_scaled(motion.position, h, motion.velocity);
-            add_scaled(motion.velocity, h, a);
-        }
+        world.accelerations(time, motion.position, motion.velocity, a);
+        add_scaled(motion.position, h, motion.velocity);
+        add_scaled(motion.velocity, h, a);
     }
 }
 
@@ -46,12 +48,14 @@ impl Integrator for Symplectic {
         true
     }
 
+    fn drift(&self) -> Option<Drift> {
+        Some(Drift::After)
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let ([a], h) = (motion.work.take(), step.seconds());
-        if !world.euler(motion.position, motion.velocity, h, true) {
-            world.accelerations(time, motion.position, motion.velocity, a);
-            add_scaled(motion.velocity, h, a);
-            add_scaled(motion.position, h, motion.velocity);
-        }
+        world.accelerations(time, motion.position, motion.velocity, a);
+        add_scaled(motion.velocity, h, a);
+        add_scaled(motion.position, h, motion.velocity);
     }
 }

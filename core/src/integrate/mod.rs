@@ -46,13 +46,6 @@ pub trait Dynamics {
     /// All slices are equally long. Costs one evaluation of all forces.
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]);
 
-    /// Moves all by a step of `h` \[s\] of the explicit or the symplectic Euler method in one pass, to the bits of doing so by
-    /// their [`accelerations`](Self::accelerations). Returns false, and does nothing, where no such pass is known.
-    fn euler(&mut self, position: &mut [Vec3], velocity: &mut [Vec3], h: f32, is_symplectic: bool) -> bool {
-        let _ = (position, velocity, h, is_symplectic);
-        false
-    }
-
     /// Calls `then` with the forces about a state, to be asked how they change near it.
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>));
 
@@ -137,8 +130,23 @@ pub trait Integrator: Sync {
         false
     }
 
+    /// The Euler method that it is, if it is one: under forces that one pass over the columns can work out, that pass then moves
+    /// everything, to the bits of [`advance`](Self::advance).
+    fn drift(&self) -> Option<Drift> {
+        None
+    }
+
     /// Moves everything from `time` to `time` + `step`.
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics);
+}
+
+/// The velocity by which an Euler method moves places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drift {
+    /// That of the step's beginning: the explicit method.
+    Before,
+    /// That of its end: the symplectic one.
+    After,
 }
 
 /// The state that an integrator moves. All slices are equally long.
@@ -202,6 +210,9 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
     fn is_local(&self) -> bool {
         (**self).is_local()
+    }
+    fn drift(&self) -> Option<Drift> {
+        (**self).drift()
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         (**self).advance(motion, time, step, world);

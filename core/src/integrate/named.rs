@@ -1,8 +1,8 @@
 //! The methods by name.
 
 use super::{
-    Adaptive, Dynamics, Embedded, Euler, Implicit, Integrator, LectureMidpoint, Midpoint, Motion, Rk4, Symplectic,
-    Verlet,
+    Adaptive, Drift, Dynamics, Embedded, Euler, Implicit, Integrator, LectureMidpoint, Midpoint, Motion, Rk4,
+    Symplectic, Verlet,
 };
 use crate::named::by_name;
 use crate::time::Time;
@@ -135,6 +135,9 @@ impl Integrator for Method {
     fn is_local(&self) -> bool {
         self.integrator().is_local()
     }
+    fn drift(&self) -> Option<Drift> {
+        self.integrator().drift()
+    }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.integrator().advance(motion, time, step, world);
     }
@@ -163,6 +166,9 @@ impl Integrator for Tuned {
     }
     fn is_local(&self) -> bool {
         self.with(|integrator| integrator.is_local())
+    }
+    fn drift(&self) -> Option<Drift> {
+        self.with(|integrator| integrator.drift())
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.with(|integrator| integrator.advance(motion, time, step, world));

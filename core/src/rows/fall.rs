@@ -34,6 +34,8 @@ pub(crate) struct Extents {
 pub(crate) struct Leap<'a, const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> {
     pub(crate) fall: Fall<'a, FALLS, DRAGS>,
     pub(crate) ends: [&'a mut [Vec3]; 2],
+    /// Columns to keep in where they were and how fast, of all of them or of none.
+    pub(crate) start: [&'a mut [Vec3]; 2],
     pub(crate) h: f32,
 }
 
@@ -99,16 +101,19 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Le
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let Self { fall, ends: [position, velocity], h } = self;
+        let Self { fall, ends: [position, velocity], start: [start_x, start_v], h } = self;
         let (g, (factors, factors_rest), h) = (fall.numbers(like), fall.eights(), like.all(h));
         let ((x, x_rest), (v, v_rest)) = (position.as_chunks_mut(), velocity.as_chunks_mut());
-        let mut seen = Seen::none(like.all(0.0));
+        let ((x0, x0_rest), (v0, v0_rest)) = (start_x.as_chunks_mut(), start_v.as_chunks_mut());
+        let (mut start, mut seen) = (x0.iter_mut().zip(v0), Seen::none(like.all(0.0)));
         for ((x, v), factors) in x.iter_mut().zip(v).zip(factors) {
-            Self::eight(g, [x, v], factors, h, &mut seen);
+            Self::eight(g, [x, v], start.next(), factors, h, &mut seen);
         }
         if !x_rest.is_empty() {
+            x0_rest.iter_mut().zip(&*x_rest).for_each(|(x0, x)| *x0 = *x);
+            v0_rest.iter_mut().zip(&*v_rest).for_each(|(v0, v)| *v0 = *v);
             let [mut x, mut v] = [filled(x_rest), filled(v_rest)];
-            Self::eight(g, [&mut x, &mut v], factors_rest.each_ref(), h, &mut seen);
+            Self::eight(g, [&mut x, &mut v], None, factors_rest.each_ref(), h, &mut seen);
             x_rest.copy_from_slice(&x[..x_rest.len()]);
             v_rest.copy_from_slice(&v[..v_rest.len()]);
         }
@@ -118,8 +123,18 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Le
 
 impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
     #[inline(always)]
-    fn eight<F: Eight>(g: [F; 3], [x, v]: [&mut [Vec3; 8]; 2], factors: [&[f32; 8]; 3], h: F, seen: &mut Seen<F>) {
+    fn eight<F: Eight>(
+        g: [F; 3],
+        [x, v]: [&mut [Vec3; 8]; 2],
+        start: Option<(&mut [Vec3; 8], &mut [Vec3; 8])>,
+        factors: [&[f32; 8]; 3],
+        h: F,
+        seen: &mut Seen<F>,
+    ) {
         let [from, before] = [loaded(h, x), loaded(h, v)];
+        if let Some((x0, v0)) = start {
+            [*x0, *v0] = [stored(from), stored(before)];
+        }
         let rate = Fall::<FALLS, DRAGS>::of(g, before, factors);
         let (mut to, mut after) = (from, before);
         for i in 0..3 {

@@ -3,8 +3,9 @@
 use super::field::Field;
 use super::substeps::{Carried, Moved, custom};
 use super::tile::Tile;
+use crate::force::Steady;
 use crate::index::ListMemory;
-use crate::integrate::Dynamics;
+use crate::integrate::{Drift, Dynamics};
 use crate::math::along;
 use crate::memory::{Layout, Shares};
 use crate::observe::Observer;
@@ -22,6 +23,9 @@ impl Tile<'_> {
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
+        if let Some(leap) = self.scene.leap().filter(|_| self.old == self.position.len()) {
+            return self.leap(leap, report);
+        }
         let Self { scene, now, dt, old, capacity, ref attributes, .. } = *self;
         let len = self.position.len();
         let Shares { start: [start_x, start_v], before, marks, step: lasting, mut scratch, lists } =
@@ -44,7 +48,6 @@ impl Tile<'_> {
                 first: old,
                 lists: None,
                 effort: Effort::NONE,
-                reached: None,
                 observer,
             };
             let ends = [&mut *self.position, &mut *self.velocity];
@@ -66,12 +69,20 @@ impl Tile<'_> {
             scratch,
             capacity,
             report,
-            reached: None,
             observer,
         };
         moved.go(now, dt, hint);
-        // Of a step in pieces that of the last one says too little.
-        self.reached = moved.reached.filter(|_| old == len && scene.pieces() == 1);
+    }
+
+    /// Moves the rows, none of them newborn, in one pass.
+    #[inline(never)]
+    fn leap(&mut self, (steady, drift): (Steady, Drift), report: &mut Report) {
+        let (len, inertia) = (self.old, self.attributes.inertia(0..self.old));
+        let Shares { start, .. } = Layout::of(self.scene.plan(), self.capacity).shares(self.work);
+        let start = start.map(|column| first(column, len));
+        let ends = [&mut *self.position, &mut *self.velocity];
+        report.effort.evaluations += u64::from(len > 0);
+        self.reached = steady.leap(inertia, ends, start, self.dt.seconds(), drift);
     }
 }
 

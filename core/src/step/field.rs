@@ -6,7 +6,7 @@ use crate::index::{BarnesHut, Found, ListMemory, Search};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
-use crate::rows::{BLOCKS, Extents, each_row_with};
+use crate::rows::each_row_with;
 use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
@@ -28,6 +28,13 @@ impl<'a> Attributes<'a> {
         'a: 's,
     {
         State { custom: custom.rows(0..x.len()), ..self.lives.moved(time, x, v) }
+    }
+
+    /// The columns that tell how some rows fall.
+    pub(super) fn inertia(&self, rows: Range<usize>) -> Inertia<'a> {
+        let Self { lives, inverse_mass, .. } = *self;
+        let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
+        Inertia { mass, drag, inverse_mass }
     }
 
     /// Those of some rows.
@@ -57,8 +64,6 @@ pub(crate) struct Field<'a> {
     pub(super) lists: Option<ListMemory<'a>>,
     pub(super) first: usize,
     pub(super) effort: Effort,
-    /// How far the last leap took the rows.
-    pub(super) reached: Option<Extents>,
     pub(super) observer: &'a mut dyn Observer,
 }
 
@@ -104,14 +109,7 @@ impl Field<'_> {
 impl<'a> Field<'a> {
     /// What one pass over the columns works out, if the forces are no more, and the columns for it.
     fn steady(&self, len: usize) -> Option<(Steady, Inertia<'a>)> {
-        let Attributes { lives, inverse_mass, .. } = self.attributes;
-        let rows = self.first..len;
-        let plain = BLOCKS
-            && lives.springs.force().is_none()
-            && !lives.materials.code().is_some_and(|code| (code.floats)(lives.materials));
-        let steady = if plain { self.scene.forces.steady()? } else { return None };
-        let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
-        Some((steady, Inertia { mass, drag, inverse_mass }))
+        Some((self.scene.steady()?, self.attributes.inertia(self.first..len)))
     }
 }
 
@@ -131,14 +129,6 @@ impl Dynamics for Field<'_> {
             }
         });
         divide_by_masses(acceleration, inverse_mass);
-    }
-
-    fn euler(&mut self, position: &mut [Vec3], velocity: &mut [Vec3], h: f32, is_symplectic: bool) -> bool {
-        let Some((steady, columns)) = self.steady(position.len()) else { return false };
-        self.effort.evaluations += u64::from(!position.is_empty());
-        let ends = [position, velocity].map(|column| &mut column[self.first..]);
-        self.reached = steady.leap(columns, ends, h, is_symplectic);
-        true
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {

@@ -9,7 +9,6 @@ use crate::integrate::{Motion, Work};
 use crate::memory::{Layout, Scratch};
 use crate::observe::{Observer, Phase};
 use crate::report::{Effort, Report};
-use crate::rows::Extents;
 use crate::scene::Scene;
 use crate::time::Time;
 use glam::Vec3;
@@ -33,8 +32,6 @@ pub(crate) struct Moved<'a> {
     pub(super) scratch: Scratch<'a>,
     pub(super) capacity: usize,
     pub(super) report: &'a mut Report,
-    /// How far the last sub-step took them, where its method says so.
-    pub(super) reached: Option<Extents>,
     pub(super) observer: &'a mut dyn Observer,
 }
 
@@ -99,7 +96,6 @@ impl Moved<'_> {
             lists: Some(self.lists.again()),
             first: 0,
             effort: Effort::NONE,
-            reached: None,
             observer: self.observer,
         };
         let start = if self.before[0].is_empty() { self.start } else { self.before.each_ref().map(|column| &**column) };
@@ -112,8 +108,7 @@ impl Moved<'_> {
             effort: &mut self.report.effort,
         };
         scene.integrator.advance(motion, from, to - from, &mut field);
-        let (effort, reached) = (field.effort, field.reached);
-        self.reached = reached;
+        let effort = field.effort;
         self.report.effort.found(&effort);
     }
 

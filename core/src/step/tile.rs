@@ -5,15 +5,16 @@ use super::substeps::Carried;
 use super::{Status, Workspace};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
-use crate::force::{Springs, State};
+use crate::force::{Springs, State, Steady};
 use crate::index::{Listed, Neighbours};
+use crate::integrate::Drift;
 #[cfg(feature = "rayon")]
 use crate::memory::Layout;
 use crate::memory::Storage;
 use crate::observe::Observer;
 use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
 use crate::report::Report;
-use crate::rows::{Extents, farthest_of_finite};
+use crate::rows::{BLOCKS, Extents, farthest_of_finite};
 use crate::scene::Scene;
 use crate::stall;
 use crate::time::Time;
@@ -21,14 +22,14 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// Rows of a tile: enough to share the cost of the calls, few enough for the innermost cache.
-const TILE: usize = 640;
+const TILE: usize = 1280;
 
 /// The same where a step goes over them hardly more than once: the second cache will do.
-const ONE_PASS: usize = 8 * TILE;
+const ONE_PASS: usize = 4 * TILE;
 
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
-const SHARE: usize = 8 * TILE;
+const SHARE: usize = 4 * TILE;
 
 /// Rows in the middle of a step.
 pub(crate) struct Tile<'a> {
@@ -56,8 +57,21 @@ pub(crate) struct Tile<'a> {
 impl Scene<'_> {
     /// Rows of a tile.
     pub(super) fn tile_rows(&self) -> usize {
-        let is_one_pass = !self.is_swept() && self.integrator.columns() == 1 && self.forces.steady().is_some();
-        if is_one_pass { ONE_PASS } else { TILE }
+        if !self.is_swept() && self.leap().is_some() { ONE_PASS } else { TILE }
+    }
+
+    /// The forces that one pass over the columns can work out, if there are no others.
+    pub(super) fn steady(&self) -> Option<Steady> {
+        let floats = || self.materials.code().is_some_and(|code| (code.floats)(self.materials));
+        let is_alone = BLOCKS && self.springs.list().is_empty() && !floats();
+        if is_alone { self.forces.steady() } else { None }
+    }
+
+    /// The same, if a whole step is that pass.
+    pub(super) fn leap(&self) -> Option<(Steady, Drift)> {
+        let is_whole = BLOCKS && self.pieces() == 1 && self.constraints.is_empty();
+        let drift = if is_whole { self.integrator.drift()? } else { return None };
+        Some((self.steady()?, drift))
     }
 
     /// Tells whether a step takes each row through all its phases without a look at the others, so that rows can go a

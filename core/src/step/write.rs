@@ -32,7 +32,6 @@ impl Workspace<'_> {
             lists: None,
             first: 0,
             effort: Effort::NONE,
-            reached: None,
             observer,
         };
         field.with_state(now + dt, tile.position, tile.velocity, &mut |state| {
