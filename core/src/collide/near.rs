@@ -1,5 +1,6 @@
 //! Whom a flat face may touch: all rows of a tile are held against it, and most are far from it.
 
+use crate::integrate::Drift;
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
 use crate::math::{largest, max};
 use crate::rows::{Extents, farthest, filled, flat, largest_of};
@@ -22,10 +23,19 @@ pub(super) struct Balls<'a> {
     pub(super) time: f32,
 }
 
+/// The control points that may lie beside the ends of the paths: where places go by the velocity of an end, the one beyond that end lies
+/// on the way between the ends.
+#[derive(Clone, Copy)]
+struct Bends {
+    after_start: bool,
+    before_end: bool,
+}
+
 /// Some of them, and how large the numbers of their paths are.
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
     balls: Balls<'a>,
+    bends: Bends,
     /// The largest number of the velocities, of the control points, and of the radii; or more, but what is no number does not count.
     fastest: f32,
     largest: f32,
@@ -35,6 +45,7 @@ pub(super) struct Block<'a> {
 /// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far.
 struct Slab<'a, const AXIS: usize> {
     balls: Balls<'a>,
+    bends: Bends,
     sides: [f32; 2],
 }
 
@@ -45,15 +56,19 @@ impl<'a> Balls<'a> {
         let Self { ends, radius, time } = *self;
         let balls = Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], time };
         let third = balls.third();
-        let (fastest, largest) = match reached {
+        let radius = largest_of(balls.radius);
+        match reached {
             // From where they are, they have come no faster than that; what rounding adds is in the room for it.
-            Some(Extents { place, speed }) => (speed, place + (time + third) * speed),
-            None => {
-                let [x0, v0, x1, v1] = balls.ends.map(farthest);
-                (max(v0, v1), max(x0 + third * v0, x1 + third * v1))
+            Some(Extents { place, speed, drift }) => {
+                let bends = Bends { after_start: drift == Drift::After, before_end: drift == Drift::Before };
+                Block { balls, bends, fastest: speed, largest: place + (time + third) * speed, radius }
             }
-        };
-        Block { balls, fastest, largest, radius: largest_of(balls.radius) }
+            None => {
+                let ([x0, v0, x1, v1], bends) =
+                    (balls.ends.map(farthest), Bends { after_start: true, before_end: true });
+                Block { balls, bends, fastest: max(v0, v1), largest: max(x0 + third * v0, x1 + third * v1), radius }
+            }
+        }
     }
 
     /// A third of the time, by which control points are away from the ends.
@@ -85,7 +100,7 @@ impl Block<'_> {
     /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
     #[inline(never)]
     pub(super) fn near(&self, face: &Face) -> Marks {
-        let Self { balls, .. } = *self;
+        let Self { balls, bends, .. } = *self;
         let ([point, _, unit], third) = (face.vectors(), balls.third());
         // No number of the paths is larger, of those that are finite: others are followed nowhere.
         let largest = self.largest + face.size() + self.radius;
@@ -93,9 +108,9 @@ impl Block<'_> {
         let sides = |axis: usize| [point[axis] - room, point[axis] + room];
         match unit.abs().to_array() {
             _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
-            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, sides: sides(0) }),
-            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, sides: sides(1) }),
-            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, sides: sides(2) }),
+            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, bends, sides: sides(0) }),
+            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, bends, sides: sides(1) }),
+            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, bends, sides: sides(2) }),
             _ => widest(
                 #[inline(always)]
                 || balls.marks(|ends, radius| near(face, ends, radius, third)),
@@ -106,23 +121,23 @@ impl Block<'_> {
     /// A mask of those that may touch a box, as far as the axis tells that it is thinnest along.
     #[inline(never)]
     pub(super) fn near_box(&self, bounds: &Aabb) -> Marks {
-        let Self { balls, radius, .. } = *self;
+        let Self { balls, bends, radius, .. } = *self;
         let largest = self.largest + largest(bounds.min) + largest(bounds.max) + radius;
         let room = radius + largest * (256.0 * f32::EPSILON);
         let extent = bounds.max - bounds.min;
         let sides = |axis: usize| [bounds.min[axis] - room, bounds.max[axis] + room];
         match extent.min_element() {
             _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
-            least if least == extent.x => run(Slab::<0> { balls, sides: sides(0) }),
-            least if least == extent.y => run(Slab::<1> { balls, sides: sides(1) }),
-            _ => run(Slab::<2> { balls, sides: sides(2) }),
+            least if least == extent.x => run(Slab::<0> { balls, bends, sides: sides(0) }),
+            least if least == extent.y => run(Slab::<1> { balls, bends, sides: sides(1) }),
+            _ => run(Slab::<2> { balls, bends, sides: sides(2) }),
         }
     }
 
     /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
     /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
     pub(super) fn reach(&self, size: f32) -> f32 {
-        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, fastest, largest, radius } = *self;
+        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, fastest, largest, radius, .. } = *self;
         // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
         let way = 2.5 * time * (fastest + 4.0 * most_apart(v0, v1));
         way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)
@@ -153,14 +168,21 @@ impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Marks {
+        let Bends { after_start, before_end } = self.bends;
         let (third, [low, high]) = (like.all(self.balls.third()), self.sides.map(|side| like.all(side)));
         self.balls.marks(
             #[inline(always)]
             |[x0, v0, x1, v1], _| {
-                let (x0, v0) = (coordinate::<F, AXIS>(like, x0), coordinate::<F, AXIS>(like, v0));
-                let (x1, v1) = (coordinate::<F, AXIS>(like, x1), coordinate::<F, AXIS>(like, v1));
-                let (a, b) = (x0 + v0 * third, x1 - v1 * third);
-                let (least, most) = (x0.least(x1).least(a.least(b)), x0.most(x1).most(a.most(b)));
+                let (x0, x1) = (coordinate::<F, AXIS>(like, x0), coordinate::<F, AXIS>(like, x1));
+                let (mut least, mut most) = (x0.least(x1), x0.most(x1));
+                if after_start {
+                    let a = x0 + coordinate::<F, AXIS>(like, v0) * third;
+                    (least, most) = (least.least(a), most.most(a));
+                }
+                if before_end {
+                    let b = x1 - coordinate::<F, AXIS>(like, v1) * third;
+                    (least, most) = (least.least(b), most.most(b));
+                }
                 let is_near = least.simd_le(high) & most.simd_ge(low);
                 let rows = const { &rows_of_bits(AXIS) };
                 rows[is_near.to_bitmask() as usize % 256]

@@ -132,7 +132,8 @@ mod tests {
                     let reached = steady.leap(rows, [&mut x, &mut v], [&mut start_x, &mut start_v], 0.3, drift);
                     let kept = &velocity[..keeps * len];
                     assert!(is_same(&start_x, kept) && is_same(&start_v, kept));
-                    if let Some(Extents { place, speed }) = reached {
+                    if let Some(Extents { place, speed, drift: went_by }) = reached {
+                        assert_eq!(went_by, drift);
                         assert!(flat(&x).iter().chain(flat(&v)).all(|number| number.is_finite()));
                         assert_eq!([place, speed], [farthest(&x), max(farthest(&velocity), farthest(&v))]);
                     }

@@ -1,6 +1,7 @@
 //! Rows that fall, each braked by its own drag: their accelerations, or a whole step of an Euler method in one pass.
 
 use super::filled;
+use crate::integrate::Drift;
 use crate::lanes::{Eight, Kernel, not};
 use crate::math::{largest, max};
 use glam::Vec3;
@@ -22,11 +23,12 @@ pub(crate) struct Accelerate<'a, const FALLS: bool, const DRAGS: bool> {
 }
 
 /// How far rows have got in a leap, if all of them are finite: no coordinate of any place is beyond `place` \[m\] at its end, none of a
-/// velocity beyond `speed` \[m/s\] at its beginning or its end. Hits change velocities later.
+/// velocity beyond `speed` \[m/s\] at its beginning or its end, and which of these they went by. Hits change velocities later.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
     pub(crate) place: f32,
     pub(crate) speed: f32,
+    pub(crate) drift: Drift,
 }
 
 /// Moves their places and velocities by a step of `h` \[s\] of an Euler method: the symplectic one goes by the new velocity. Says how
@@ -84,15 +86,15 @@ impl<F: Eight> Seen<F> {
     fn see(&mut self, before: [F; 3], [to, after]: [[F; 3]; 2], is_symplectic: bool) {
         let most = |[a, b, c]: [F; 3]| a.abs().most(b.abs()).most(c.abs());
         let sum = |[a, b, c]: [F; 3]| a + b + c;
-        self.place = self.place.most(most(to));
-        self.speed = self.speed.most(most(before).most(most(after)));
+        self.place = most(to).most(self.place);
+        self.speed = most(before).most(most(after)).most(self.speed);
         self.sum = self.sum + if is_symplectic { sum(to) } else { sum(to) + sum(after) };
     }
 
     #[inline(always)]
-    fn extents(self) -> Option<Extents> {
+    fn extents(self, drift: Drift) -> Option<Extents> {
         let nought = self.sum.to_array().into_iter().fold(0.0, |nought, x| nought + x * 0.0);
-        (nought == 0.0).then(|| Extents { place: self.place.largest_lane(), speed: self.speed.largest_lane() })
+        (nought == 0.0).then(|| Extents { place: self.place.largest_lane(), speed: self.speed.largest_lane(), drift })
     }
 }
 
@@ -117,7 +119,7 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Le
             x_rest.copy_from_slice(&x[..x_rest.len()]);
             v_rest.copy_from_slice(&v[..v_rest.len()]);
         }
-        seen.extents()
+        seen.extents(if SYMPLECTIC { Drift::After } else { Drift::Before })
     }
 }
 
