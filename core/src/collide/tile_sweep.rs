@@ -432,7 +432,9 @@ impl TileSweep<'_, '_> {
         }
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
             (end.position, end.velocity, end.pending_death);
-        tile.reached = tile.reached.and_then(|reached| reached.with(end.position, end.velocity));
+        if SHORT_WAY {
+            tile.reached = tile.reached.and_then(|reached| reached.with(end.position, end.velocity));
+        }
     }
 }
 

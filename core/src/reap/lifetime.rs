@@ -3,6 +3,7 @@
 use super::{CHUNK, Cause, Reaper, Verdicts};
 use crate::force::State;
 use crate::lanes::widest;
+use crate::rows::BLOCKS;
 use crate::time::Time;
 use core::ops::Range;
 
@@ -21,7 +22,7 @@ impl Reaper for Lifetime {
             #[inline(always)]
             || {
                 for (chunk, dies) in dies.chunks(CHUNK).enumerate() {
-                    if !may_end(dies, last) {
+                    if BLOCKS && !may_end(dies, last) {
                         continue;
                     }
                     for (nth, &dies) in dies.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Rows taken by the newborn and given back by the dead.
 
-use super::Workspace;
+use super::{TILED, Workspace};
 use crate::force::SpringList;
 use crate::memory::Storage;
 use crate::particles::{Full, Id, Particle, WHITE};
@@ -56,7 +56,9 @@ impl Workspace<'_> {
         m.born[row] = born;
         let dies = death(born, particle.lifetime);
         m.dies[row] = dies;
-        status.ends_at(dies);
+        if TILED {
+            status.ends_at(dies);
+        }
         m.color[row] = particle.color.unwrap_or(WHITE);
         m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
         m.pending_death[row] = PendingDeath::Lives;

@@ -1,6 +1,6 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
-use super::Workspace;
+use super::{TILED, Workspace};
 use crate::memory::Layout;
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
@@ -28,7 +28,7 @@ impl Workspace<'_> {
             end = row;
         }
         // Where many are born somebody dies all the time; else it is worth knowing when the next one does.
-        if self.status.next_end() <= time && report.died.lifetime == before {
+        if TILED && self.status.next_end() <= time && report.died.lifetime == before {
             self.status.end_at(&self.memory.dies[..self.status.len]);
         }
     }
@@ -52,7 +52,7 @@ impl Workspace<'_> {
 fn last_doomed(pending_deaths: &[PendingDeath]) -> Option<(usize, Cause)> {
     let has_doomed =
         |chunk: &[PendingDeath]| chunk.iter().fold(0, |any, &pending_death| any | pending_death as u8) != 0;
-    let behind = pending_deaths.rchunks(CHUNK).position(has_doomed)?;
+    let behind = if TILED { pending_deaths.rchunks(CHUNK).position(has_doomed)? } else { 0 };
     let row = pending_deaths[..pending_deaths.len() - CHUNK * behind]
         .iter()
         .rposition(|&pending_death| pending_death != PendingDeath::Lives)?;

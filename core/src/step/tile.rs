@@ -2,7 +2,7 @@
 
 use super::field::Attributes;
 use super::substeps::Carried;
-use super::{Status, Workspace};
+use super::{Status, TILED, Workspace};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
 use crate::force::{Springs, State, Steady};
@@ -167,7 +167,7 @@ impl Workspace<'_> {
             attributes: attributes.rows(rows),
             work: m.work,
             capacity,
-            may_end: self.status.next_end() <= now + dt,
+            may_end: !TILED || self.status.next_end() <= now + dt,
             reached: None,
         }
     }
@@ -262,7 +262,7 @@ impl Tile<'_> {
         if self.may_end {
             Lifetime.judge(&state, rows.clone(), &mut verdicts);
         }
-        let (farthest, are_finite) = match self.reached {
+        let (farthest, are_finite) = match self.reached.filter(|_| BLOCKS) {
             Some(Extents { place, .. }) => (place, true),
             None => farthest_of_finite(self.position, self.velocity),
         };
