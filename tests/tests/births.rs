@@ -1,6 +1,7 @@
 //! Births: what they bring with them, how they fly, and how long they live.
 
 use pointmass::emit::Burst;
+use pointmass::rng::Stream;
 use pointmass::shape::{Disc, Line};
 use pointmass::{Emit, Emitter, Gravity, Method, Particle, Scene, Spread, Time, Varied, Vec3};
 use pointmass_tests::emitting::{cuts, play, varied};
@@ -281,6 +282,45 @@ fn dies_in_time(a: u64, b: u64, fps: u64) {
     });
     assert_eq!(died, Some((a * fps).div_ceil(b)), "{a}/{b} s at {fps} frames/s");
     assert!(system.is_empty());
+}
+
+/// Whenever they come and however long they have: nobody outlives a step's end, and nobody goes before.
+#[test]
+fn each_dies_when_its_time_has_come_among_others_of_any_age() {
+    let lives = |u: f32| match u {
+        u if u < 0.2 => 0.0,
+        u if u < 0.6 => 40.0 * u,
+        u => 0.2 / u,
+    };
+    for (seed, step) in [(1, 0.01), (2, 1.0 / 60.0), (3, 0.3), (4, 5.0)] {
+        let scene = Scene { forces: &Gravity::EARTH, ..Scene::EMPTY };
+        let mut system = started(&scene, 60, seed);
+        let (mut died, mut copy) = (0, None);
+        for n in 0..600_u32 {
+            let [u, w] = Stream::new(seed, 0, n).units(0);
+            if w < 0.3 {
+                _ = system.spawn(&Particle { lifetime: lives(u), ..Particle::REST });
+            }
+            if w > 0.98 {
+                let first = system.id(0);
+                first.map(|id| system.remove(&scene, id));
+            }
+            // A system that goes on from a copy knows as much.
+            match n {
+                200 => copy = Some(system.clone()),
+                250 => system = copy.take().expect("it was made"),
+                400 => system.start(&scene, seed).expect("it fits"),
+                _ => {}
+            }
+            let end = system.time() + Time::from_seconds(step);
+            let due = system.particles().dies.iter().filter(|&&dies| dies <= end).count() as u64;
+            let report = system.step(&scene, Time::from_seconds(step));
+            assert_eq!(report.died.lifetime, due, "{step} s, step {n}");
+            assert!(system.particles().dies.iter().all(|&dies| dies > end));
+            died += due;
+        }
+        assert!(died > 50, "{died}");
+    }
 }
 
 #[test]
