@@ -45,10 +45,17 @@ pub(crate) trait Eight:
     /// Eight vectors coordinate by coordinate; the last number of each does not count.
     #[inline(always)]
     fn columns_of(self, vectors: [[f32; 4]; LANES]) -> [Self; 3] {
-        let four = |i: usize| f32x4::new(vectors[i]);
-        let [a, b, c, _] = f32x4::transpose([four(0), four(1), four(2), four(3)]);
-        let [e, f, g, _] = f32x4::transpose([four(4), four(5), four(6), four(7)]);
-        [self.of(bytemuck::cast([a, e])), self.of(bytemuck::cast([b, f])), self.of(bytemuck::cast([c, g]))]
+        let [x, y, z, _] = self.quads_of(vectors);
+        [x, y, z]
+    }
+    /// Eight rows of four numbers as columns.
+    #[inline(always)]
+    fn quads_of(self, rows: [[f32; 4]; LANES]) -> [Self; 4] {
+        let four = |i: usize| f32x4::new(rows[i]);
+        let [a, b, c, d] = f32x4::transpose([four(0), four(1), four(2), four(3)]);
+        let [e, f, g, h] = f32x4::transpose([four(4), four(5), four(6), four(7)]);
+        let both = |low: f32x4, high: f32x4| self.of(bytemuck::cast([low, high]));
+        [both(a, e), both(b, f), both(c, g), both(d, h)]
     }
     /// The same turned round: one vector after the other, each with some number behind it.
     #[inline(always)]
@@ -208,14 +215,15 @@ mod avx2 {
         }
     );
 
-    // Four rows of four in each half of the registers, as three columns.
+    // Four rows of four in each half of the registers, as columns.
     fearless_simd::kernel!(
         #[inline(always)]
-        fn turned(avx2: Avx2, a: __m256, b: __m256, c: __m256, d: __m256) -> [__m256; 3] {
+        fn turned(avx2: Avx2, a: __m256, b: __m256, c: __m256, d: __m256) -> [__m256; 4] {
             let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
             let (last_ab, last_cd) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
             let (x, y) = (_mm256_shuffle_ps::<0b01_00_01_00>(ab, cd), _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd));
-            [x, y, _mm256_shuffle_ps::<0b01_00_01_00>(last_ab, last_cd)]
+            let z = _mm256_shuffle_ps::<0b01_00_01_00>(last_ab, last_cd);
+            [x, y, z, _mm256_shuffle_ps::<0b11_10_11_10>(last_ab, last_cd)]
         }
     );
 
@@ -348,9 +356,9 @@ mod avx2 {
             )
         }
         #[inline(always)]
-        fn columns_of(self, v: [[f32; 4]; LANES]) -> [Self; 3] {
+        fn quads_of(self, rows: [[f32; 4]; LANES]) -> [Self; 4] {
             let avx2 = self.0.token();
-            let [a, b, c, d, e, f, g, h] = v;
+            let [a, b, c, d, e, f, g, h] = rows;
             let [a, b] = [both(avx2, a, e), both(avx2, b, f)];
             let [c, d] = [both(avx2, c, g), both(avx2, d, h)];
             turned(avx2, a, b, c, d).map(
@@ -384,7 +392,7 @@ mod tests {
     struct Everything([[f32; LANES]; 2]);
 
     impl Kernel for Everything {
-        type Output = ([[f32; LANES]; 26], u32);
+        type Output = ([[f32; LANES]; 27], u32);
         #[inline(always)]
         fn run<F: Eight>(self, like: F) -> Self::Output {
             let [a, b] = self.0.map(|lanes| like.of(lanes));
@@ -392,6 +400,7 @@ mod tests {
             let rows = F::vectors_of([a, b, c]);
             let [x, y, z] = like.columns_of(rows.map(|[x, y, z, _]| [z, x, y, 0.0]));
             let row = |axis: usize| like.of(rows.map(|row| row[axis]));
+            let [.., w] = like.quads_of(rows.map(|[x, y, z, _]| [x, y, x, z]));
             let made = [
                 a + b,
                 a - b,
@@ -419,6 +428,7 @@ mod tests {
                 row(0),
                 row(1),
                 row(2),
+                w,
             ];
             (made.map(Eight::to_array), mask.to_bitmask())
         }
@@ -432,7 +442,7 @@ mod tests {
             let (one, other) = (run(Everything(lanes)), Everything(lanes).run(wide::f32x8::ZERO));
             let same = |one: [f32; LANES], other: [f32; LANES]| one.map(f32::to_bits) == other.map(f32::to_bits);
             assert!(same(one.0[21], one.0[23]) && same(one.0[22], one.0[24]) && same(one.0[20], one.0[25]));
-            assert!(same(one.0[23], lanes[0]) && same(one.0[24], lanes[1]));
+            assert!(same(one.0[26], one.0[25]) && same(one.0[23], lanes[0]) && same(one.0[24], lanes[1]));
             assert_eq!(one.1, other.1);
             for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");

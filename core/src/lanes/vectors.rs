@@ -38,6 +38,12 @@ impl<F: Eight> Vectors<F> {
     }
 
     #[inline(always)]
+    pub(crate) fn cross(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([y * c - b * z, z * a - c * x, x * b - a * y])
+    }
+
+    #[inline(always)]
     pub(crate) fn length(self) -> F {
         self.dot(self).sqrt()
     }

@@ -72,6 +72,8 @@ pub(super) struct Body {
     /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
     pub(super) leash: f32,
     pub(super) spare: f32,
+    /// The colours of those that it touches, a bit for each.
+    pub(super) colours: u32,
 }
 
 /// The make of a body: its box, and the places of its particles in it, three words each.

@@ -15,9 +15,10 @@ pub(super) struct Point {
     pub(super) places: [Vec3; 2],
     /// From the centre of each to the middle between them \[m\].
     pub(super) arms: [Vec3; 2],
-    /// The impulse that keeps them apart, and that of friction on the second \[N s\].
+    /// The impulse that keeps them apart, and that of friction on the second, also along the two directions across the normal \[N s\].
     pub(super) pressed: f32,
     pub(super) held: Vec3,
+    pub(super) held_along: [f32; 2],
     /// How far apart they are \[m\].
     pub(super) gap: f32,
     /// How fast they came together when the sub-step began, then how fast they shall part \[m/s\].
@@ -26,17 +27,20 @@ pub(super) struct Point {
     pub(super) calm: f32,
     /// The change that forces make to the speed of either in a sub-step \[m/s\].
     pub(super) driven: f32,
-    /// The impulse that makes them part by 1 m/s \[kg\], and how the second's velocity there, as seen from the first, changes by one along the
-    /// normal \[1/kg\].
+    /// The impulse that makes them part by 1 m/s \[kg\], and how the slip along the surface changes by one along the normal \[1/kg\].
     pub(super) mass: f32,
-    pub(super) answer: Vec3,
+    pub(super) answer: [f32; 2],
     /// How much the slip (u, v) along the surface changes by an impulse along itself \[1/kg\]: the factors of u², uv and v².
     pub(super) rub: [f32; 3],
     /// How fast they shall part in the passes under way \[m/s\].
     pub(super) wanted: f32,
     /// How far the second has crept along the first since friction has held them there \[m\].
     pub(super) crept: Vec3,
+    pub(super) crept_along: [f32; 2],
 }
+
+/// Points that two have at the most.
+pub(super) const POINTS: usize = 4;
 
 /// Two that may touch.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -59,7 +63,9 @@ pub(super) struct Manifold {
     pub(super) along: [Vec3; 2],
     /// The tick of the clock of passes at which it was gone over last.
     pub(super) seen: u32,
-    pub(super) points: [Point; 4],
+    /// Its place in the order.
+    pub(super) colour: u32,
+    pub(super) points: [Point; POINTS],
 }
 
 impl Manifold {

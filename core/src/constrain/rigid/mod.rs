@@ -10,6 +10,7 @@ mod hull;
 mod hull_buf;
 mod lists;
 mod manifold;
+mod order;
 mod pass;
 mod scenery;
 mod sleep;
@@ -31,6 +32,7 @@ pub use hull::{Hull, HullEdge, HullFace, HullList};
 pub use hull_buf::{HullBuf, HullError};
 use lists::{Kept, Sizes};
 use manifold::Manifold;
+use order::Numbers;
 use scenery::DIRECTIONS;
 use solver::Span;
 
@@ -291,22 +293,22 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         }
         let len = kept.lists.pairs as usize;
         self.stir(bodies, &mut kept, span);
-        for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
-            solver::begin(kept.bodies, manifold);
-        }
         self.each(&mut kept, |body, of, places| {
             if !body.sleeps() {
                 body.gather(bodies, Made { of, places });
             }
         });
         each_ball(bodies, &mut kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
-        for manifold in kept.pairs[..len].iter_mut().chain(&mut *kept.scenery) {
-            solver::expect(kept.bodies, manifold, span);
-            solver::hold_on(kept.bodies, manifold);
-        }
-        solver::keep_apart(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
-        kept.bodies.iter_mut().for_each(|body| body.go(span.h));
-        solver::part(kept.bodies, [&mut kept.pairs[..len], kept.scenery], span);
+        let Kept { bodies: all, pairs, scenery, .. } = &mut kept;
+        let numbers = Numbers::of(all, [&mut pairs[..len], scenery], share.scratch);
+        let mut order = numbers.with([&mut pairs[..len], scenery]);
+        solver::begin(all, &mut order, span);
+        solver::hold_on(all, &mut order);
+        solver::keep_apart(all, &mut order, span);
+        solver::mark_pressed(all, &order);
+        all.iter_mut().for_each(|body| body.go(span.h));
+        solver::part(all, &mut order, span);
+        solver::remember(&mut order);
         sleep::feel(kept.bodies);
         if bodies.substep.is_last() {
             sleep::settle(bodies, &mut kept);

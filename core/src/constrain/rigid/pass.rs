@@ -1,163 +1,389 @@
-//! One pass over the points of two bodies that touch: impulses that bring them to part as is wanted, and friction.
+//! Passes over the points of all that touch: impulses that bring them to part as is wanted, and friction.
+//!
+//! Eight times two bodies that have nothing to do with each other go side by side. Which these are makes no difference to any of them.
 
 use super::body::Body;
-use super::manifold::{Manifold, Point};
+use super::manifold::{Manifold, POINTS, Point};
+use super::order::Order;
 use super::solver::SETTLED;
-use crate::math::{dot, max, min, sqrt};
-use glam::{Mat3, Vec3};
+use crate::lanes::{Eight, Kernel, LANES, Vectors, max, min, negated};
+use bytemuck::Zeroable;
+use glam::Vec3;
 
-/// How a body moves, while impulses change that.
-#[derive(Clone, Copy)]
-struct Motion {
-    inverse_mass: f32,
-    velocity: Vec3,
-    spin: Vec3,
-    omega: Vec3,
-    inverse: Mat3,
+/// All that touch, and how they are gone over.
+pub(super) struct Passes<'a, 'b> {
+    pub(super) bodies: &'a mut [Body],
+    pub(super) order: &'a mut Order<'b>,
+    /// How often at the most.
+    pub(super) count: u32,
+    /// So many times a second what has crept is taken back.
+    pub(super) back: f32,
 }
 
-impl Motion {
-    fn of(body: &Body) -> Self {
-        let Body { inverse_mass, velocity, spin, omega, inverse, .. } = *body;
-        Self { inverse_mass, velocity, spin, omega, inverse }
-    }
+/// Some of those that touch, by their numbers in the order.
+struct Batch {
+    numbers: [usize; LANES],
+    count: usize,
+}
 
-    /// Gives it an impulse \[N s\] there.
+impl Kernel for Passes<'_, '_> {
+    type Output = ();
+    /// Goes over all so many times at the most, and over those again whose bodies have been changed since.
     #[inline(always)]
-    fn push(&mut self, arm: Vec3, impulse: Vec3) {
-        let change = impulse * self.inverse_mass;
-        let torque = arm.cross(change);
-        self.velocity += change;
-        self.spin += torque;
-        self.omega += self.inverse * torque;
-    }
-
-    fn at(&self, arm: Vec3) -> Vec3 {
-        self.velocity + self.omega.cross(arm)
-    }
-
-    fn yielding(&self, arm: Vec3, direction: Vec3) -> f32 {
-        let lever = arm.cross(direction);
-        self.inverse_mass * (1.0 + lever.dot(self.inverse * lever))
-    }
-
-    fn tell(&self, body: &mut Body) {
-        (body.velocity, body.spin, body.omega) = (self.velocity, self.spin, self.omega);
-    }
-}
-
-/// Two bodies that touch, while impulses between them are sought.
-struct Touch<'a> {
-    motions: [Motion; 2],
-    normal: Vec3,
-    along: [Vec3; 2],
-    surface: Vec3,
-    friction: [f32; 2],
-    points: &'a mut [Point],
-    /// True if some change was large enough to go over their neighbours again.
-    is_changed: bool,
-}
-
-/// Goes over the points of two bodies once, and notes at which tick of the clock that was and whether it has changed the bodies.
-pub(super) fn over(bodies: &mut [Body], manifold: &mut Manifold, back: f32, clock: u32) {
-    let numbers = manifold.bodies.map(|number| number as usize);
-    let Ok([a, b]) = bodies.get_disjoint_mut(numbers) else { return };
-    let Manifold { axis, along, surface, friction, .. } = *manifold;
-    manifold.seen = clock;
-    let points = &mut manifold.points[..(manifold.count as usize).min(4)];
-    let motions = [Motion::of(a), Motion::of(b)];
-    let mut touch = Touch { motions, normal: axis, along, surface, friction, points, is_changed: false };
-    touch.press_evenly();
-    let has_friction = friction[0] + friction[1] > 0.0;
-    for i in 0..touch.points.len() {
-        touch.press(i, has_friction.then_some(back));
-    }
-    for (body, motion) in [a, b].into_iter().zip(&touch.motions) {
-        if motion.inverse_mass > 0.0 {
-            motion.tell(body);
-            if touch.is_changed {
-                body.changed = clock;
+    fn run<F: Eight>(mut self, like: F) {
+        for body in self.bodies.iter_mut() {
+            body.changed = 0;
+        }
+        for number in 0..self.order.len() {
+            if let Some(manifold) = self.order.get_mut(number) {
+                manifold.seen = 0;
+            }
+        }
+        let mut clock = 0;
+        for _ in 0..self.count {
+            let before = clock;
+            for colour in 0..self.order.colours() {
+                clock = self.over(like, colour, clock);
+            }
+            if clock == before {
+                return;
             }
         }
     }
 }
 
-impl Touch<'_> {
-    /// How the second moves there as seen from the first \[m/s\].
+impl Passes<'_, '_> {
+    /// Goes over those of one colour that have something left to do.
     #[inline(always)]
-    fn slip(&self, arms: [Vec3; 2]) -> Vec3 {
-        let [a, b] = &self.motions;
-        b.at(arms[1]) - a.at(arms[0]) - self.surface
+    fn over<F: Eight>(&mut self, like: F, colour: usize, mut clock: u32) -> u32 {
+        let mut batch = Batch { numbers: [0; LANES], count: 0 };
+        let range = self.order.range(colour);
+        let room = self.order.side_by_side(colour);
+        for number in range {
+            let Some(manifold) = self.order.get(number) else { continue };
+            let [a, b] = manifold.bodies;
+            let changed = self.changed(a).max(self.changed(b));
+            if changed < manifold.seen {
+                continue;
+            }
+            batch.numbers[batch.count % LANES] = number;
+            batch.count += 1;
+            if batch.count == room {
+                clock += 1;
+                self.go(like, &batch, clock);
+                batch.count = 0;
+            }
+        }
+        if batch.count > 0 {
+            clock += 1;
+            self.go(like, &batch, clock);
+        }
+        clock
     }
 
     #[inline(always)]
-    fn push(&mut self, arms: [Vec3; 2], impulse: Vec3) {
+    fn changed(&self, number: u32) -> u32 {
+        self.bodies.get(number as usize).map_or(0, |body| body.changed)
+    }
+
+    /// Goes over the points of a batch once, and notes at which tick of the clock that was and whether it has changed the bodies.
+    #[inline(always)]
+    fn go<F: Eight>(&mut self, like: F, batch: &Batch, clock: u32) {
+        let (nobody, nothing) = (Body::zeroed(), Manifold::zeroed());
+        let mut manifolds = [&nothing; LANES];
+        let mut bodies = [[&nobody; LANES]; 2];
+        for lane in 0..batch.count.min(LANES) {
+            let Some(manifold) = self.order.get(batch.numbers[lane]) else { continue };
+            manifolds[lane] = manifold;
+            for side in 0..2 {
+                bodies[side][lane] = self.bodies.get(manifold.bodies[side] as usize).unwrap_or(&nobody);
+            }
+        }
+        let mut touch = Touch::of(like, &manifolds, &bodies, self.back);
+        touch.press_evenly();
+        for i in 0..POINTS {
+            touch.press(i);
+        }
+        let changed = touch.is_changed.to_bitmask();
+        for side in 0..2 {
+            let motion = &touch.motions[side];
+            let (velocity, spin, omega) = (motion.velocity.rows(), motion.spin.rows(), motion.omega.rows());
+            for lane in 0..batch.count.min(LANES) {
+                let Some(manifold) = self.order.get(batch.numbers[lane]) else { continue };
+                let Some(body) = self.bodies.get_mut(manifold.bodies[side] as usize) else { continue };
+                if body.inverse_mass > 0.0 {
+                    body.velocity = vector(velocity[lane]);
+                    body.spin = vector(spin[lane]);
+                    body.omega = vector(omega[lane]);
+                    if changed >> lane & 1 != 0 {
+                        body.changed = clock;
+                    }
+                }
+            }
+        }
+        for i in 0..POINTS {
+            let spot = &touch.spots[i];
+            let forces = F::vectors_of([spot.pressed, spot.held[0], spot.held[1]]);
+            for lane in 0..batch.count.min(LANES) {
+                let Some(manifold) = self.order.get_mut(batch.numbers[lane]) else { continue };
+                manifold.seen = clock;
+                let point = &mut manifold.points[i];
+                [point.pressed, point.held_along[0], point.held_along[1], _] = forces[lane];
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+/// A vector and a number.
+#[inline(always)]
+fn quad(Vec3 { x, y, z }: Vec3, w: f32) -> [f32; 4] {
+    [x, y, z, w]
+}
+
+/// How bodies move, while impulses change that.
+#[derive(Clone, Copy)]
+struct Motion<F> {
+    inverse_mass: F,
+    velocity: Vectors<F>,
+    spin: Vectors<F>,
+    omega: Vectors<F>,
+    inverse: [Vectors<F>; 3],
+}
+
+impl<F: Eight> Motion<F> {
+    #[inline(always)]
+    fn of(like: F, bodies: &[&Body; LANES]) -> Self {
+        let mut rows = [[[0.0; 4]; LANES]; 6];
+        for (lane, body) in bodies.iter().enumerate() {
+            rows[0][lane] = quad(body.velocity, body.inverse_mass);
+            rows[1][lane] = quad(body.spin, body.inverse_mass);
+            rows[2][lane] = quad(body.omega, body.inverse_mass);
+            rows[3][lane] = quad(body.inverse.x_axis, body.inverse.y_axis.x);
+            rows[4][lane] = quad(body.inverse.y_axis, body.inverse.z_axis.x);
+            rows[5][lane] = quad(body.inverse.z_axis, body.inverse_mass);
+        }
+        let [x, y, z, inverse_mass] = like.quads_of(rows[0]);
+        Self {
+            inverse_mass,
+            velocity: Vectors([x, y, z]),
+            spin: Vectors(like.columns_of(rows[1])),
+            omega: Vectors(like.columns_of(rows[2])),
+            inverse: [
+                Vectors(like.columns_of(rows[3])),
+                Vectors(like.columns_of(rows[4])),
+                Vectors(like.columns_of(rows[5])),
+            ],
+        }
+    }
+
+    /// What an angular impulse over the mass does to how they turn.
+    #[inline(always)]
+    fn turned_by(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
+        let [a, b, c] = self.inverse;
+        a * x + b * y + c * z
+    }
+
+    /// Gives them impulses \[N s\] there.
+    #[inline(always)]
+    fn push(&mut self, arm: Vectors<F>, impulse: Vectors<F>) {
+        let change = impulse * self.inverse_mass;
+        let torque = arm.cross(change);
+        self.velocity = self.velocity + change;
+        self.spin = self.spin + torque;
+        self.omega = self.omega + self.turned_by(torque);
+    }
+
+    #[inline(always)]
+    fn at(&self, arm: Vectors<F>) -> Vectors<F> {
+        self.velocity + self.omega.cross(arm)
+    }
+
+    #[inline(always)]
+    fn yielding(&self, arm: Vectors<F>, direction: Vectors<F>) -> F {
+        let lever = arm.cross(direction);
+        self.inverse_mass * (self.inverse_mass.all(1.0) + lever.dot(self.turned_by(lever)))
+    }
+}
+
+/// One point of each two.
+#[derive(Clone, Copy)]
+struct Spot<F> {
+    /// Where there is such a point.
+    is_there: F,
+    arms: [Vectors<F>; 2],
+    wanted: F,
+    mass: F,
+    answer: [F; 2],
+    crept: [F; 2],
+    rub: [F; 3],
+    /// The change of speed that is too small to go over their neighbours for.
+    little: F,
+    pressed: F,
+    held: [F; 2],
+}
+
+impl<F: Eight> Spot<F> {
+    #[inline(always)]
+    fn of(like: F, manifolds: &[&Manifold; LANES], i: usize, back: F) -> Self {
+        let (mut rows, mut count) = ([[[0.0; 4]; LANES]; 5], [0.0; LANES]);
+        for (lane, manifold) in manifolds.iter().enumerate() {
+            let point: &Point = &manifold.points[i];
+            count[lane] = manifold.count as f32;
+            rows[0][lane] = quad(point.arms[0], point.wanted);
+            rows[1][lane] = quad(point.arms[1], point.mass);
+            rows[2][lane] = [point.answer[0], point.answer[1], point.crept_along[0], point.crept_along[1]];
+            rows[3][lane] = [point.rub[0], point.rub[1], point.rub[2], point.driven];
+            rows[4][lane] = [point.pressed, point.held_along[0], point.held_along[1], 0.0];
+        }
+        let [ax, ay, az, wanted] = like.quads_of(rows[0]);
+        let [bx, by, bz, mass] = like.quads_of(rows[1]);
+        let [p, q, s, t] = like.quads_of(rows[2]);
+        let [uu, uv, vv, driven] = like.quads_of(rows[3]);
+        let [pressed, u, v] = like.columns_of(rows[4]);
+        Self {
+            is_there: like.of(count).simd_gt(like.all(i as f32)),
+            arms: [Vectors([ax, ay, az]), Vectors([bx, by, bz])],
+            wanted,
+            mass,
+            answer: [p, q],
+            crept: [s * back, t * back],
+            rub: [uu, uv, vv],
+            little: max(max(wanted, like.all(0.0)), driven) * like.all(SETTLED),
+            pressed,
+            held: [u, v],
+        }
+    }
+}
+
+/// Eight times two bodies that touch, while impulses between them are sought.
+struct Touch<F> {
+    motions: [Motion<F>; 2],
+    normal: Vectors<F>,
+    along: [Vectors<F>; 2],
+    surface: Vectors<F>,
+    friction: [F; 2],
+    spots: [Spot<F>; POINTS],
+    /// Where some change was large enough to go over their neighbours again.
+    is_changed: F,
+}
+
+impl<F: Eight> Touch<F> {
+    #[inline(always)]
+    fn of(like: F, manifolds: &[&Manifold; LANES], bodies: &[[&Body; LANES]; 2], back: f32) -> Self {
+        let mut rows = [[[0.0; 4]; LANES]; 4];
+        for (lane, manifold) in manifolds.iter().enumerate() {
+            rows[0][lane] = quad(manifold.axis, manifold.friction[0]);
+            rows[1][lane] = quad(manifold.along[0], manifold.friction[1]);
+            rows[2][lane] = quad(manifold.along[1], 0.0);
+            rows[3][lane] = quad(manifold.surface, 0.0);
+        }
+        let [x, y, z, sticks] = like.quads_of(rows[0]);
+        let [ux, uy, uz, slides] = like.quads_of(rows[1]);
+        let back = like.all(back);
+        Self {
+            motions: [Motion::of(like, &bodies[0]), Motion::of(like, &bodies[1])],
+            normal: Vectors([x, y, z]),
+            along: [Vectors([ux, uy, uz]), Vectors(like.columns_of(rows[2]))],
+            surface: Vectors(like.columns_of(rows[3])),
+            friction: [sticks, slides],
+            spots: [
+                Spot::of(like, manifolds, 0, back),
+                Spot::of(like, manifolds, 1, back),
+                Spot::of(like, manifolds, 2, back),
+                Spot::of(like, manifolds, 3, back),
+            ],
+            is_changed: like.all(0.0),
+        }
+    }
+
+    /// How the second moves there as seen from the first \[m/s\].
+    #[inline(always)]
+    fn slip(&self, [one, other]: [Vectors<F>; 2]) -> Vectors<F> {
+        let [a, b] = &self.motions;
+        b.at(other) - a.at(one) - self.surface
+    }
+
+    #[inline(always)]
+    fn push(&mut self, [one, other]: [Vectors<F>; 2], impulse: Vectors<F>) {
         let [a, b] = &mut self.motions;
-        a.push(arms[0], -impulse);
-        b.push(arms[1], impulse);
+        a.push(one, -impulse);
+        b.push(other, impulse);
     }
 
     /// Changes the impulses of all points that press, or should, by the same: what presses evenly, as a box that lies flat, is done with at
     /// once, whatever the order of points.
+    #[inline(always)]
     fn press_evenly(&mut self) {
-        let (mut lack, mut least, mut levers, mut number) = (0.0, f32::INFINITY, [Vec3::ZERO; 2], 0.0);
-        let (mut counts, mut little) = ([false; 4], 0.0);
-        for (point, counts) in self.points.iter().zip(&mut counts) {
-            let missing = point.wanted - dot(self.slip(point.arms), self.normal);
-            *counts = missing > 0.0 || point.pressed > 0.0;
-            if *counts {
-                (lack, least, number) = (lack + missing, min(least, point.pressed), number + 1.0);
-                levers[0] += point.arms[0];
-                levers[1] += point.arms[1];
-                little += max(max(point.wanted, 0.0), point.driven) * SETTLED;
-            }
+        let like = self.friction[0];
+        let (zero, one) = (like.all(0.0), like.all(1.0));
+        let (mut lack, mut least, mut number, mut little) = (zero, like.all(f32::INFINITY), zero, zero);
+        let mut levers = [Vectors([zero; 3]); 2];
+        let mut all = [zero; POINTS];
+        for (spot, counts) in self.spots.iter().zip(&mut all) {
+            let missing = spot.wanted - self.slip(spot.arms).dot(self.normal);
+            *counts = spot.is_there & (missing.simd_gt(zero) | spot.pressed.simd_gt(zero));
+            lack = lack + (missing & *counts);
+            least = counts.select(min(least, spot.pressed), least);
+            number = number + (one & *counts);
+            little = little + (spot.little & *counts);
+            levers[0] = levers[0] + spot.arms[0].masked(*counts);
+            levers[1] = levers[1] + spot.arms[1].masked(*counts);
         }
-        if !(number > 1.0) {
-            return;
-        }
-        let mean = levers.map(|lever| lever * (1.0 / number));
+        let share = one / number;
+        let mean = [levers[0] * share, levers[1] * share];
         let [a, b] = &self.motions;
         let yielding = a.yielding(mean[0], self.normal) + b.yielding(mean[1], self.normal);
-        let each = max(lack / (number * number * yielding), -least);
-        if each.is_finite() && each != 0.0 {
-            for (point, _) in self.points.iter_mut().zip(counts).filter(|&(_, counts)| counts) {
-                point.pressed += each;
-            }
-            self.push(mean, self.normal * (each * number));
-            // The lack without its sign: what is not a number counts.
-            self.is_changed |= !(lack * lack <= little * little);
+        let each = max(lack / (number * number * yielding), negated(least));
+        let counts = number.simd_gt(one) & each.abs().simd_lt(like.all(f32::INFINITY)) & not_zero(each);
+        for (spot, point) in self.spots.iter_mut().zip(all) {
+            spot.pressed = spot.pressed + (each & counts & point);
         }
+        self.push([mean[0].masked(counts), mean[1].masked(counts)], (self.normal * (each * number)).masked(counts));
+        // The lack without its sign: what is not a number counts.
+        let is_small = (lack * lack).simd_le(little * little);
+        self.is_changed = self.is_changed | (counts & crate::lanes::not(is_small));
     }
 
     /// Brings the speed at which they part at a point to what is wanted, as far as pushing alone does it; then takes from their slip, and from
     /// what they have crept at so many times a second, what Coulomb's friction can.
     #[inline(always)]
-    fn press(&mut self, i: usize, back: Option<f32>) {
-        let Some(point) = self.points.get_mut(i).map(|point| *point) else { return };
-        let Point { pressed, held, arms, wanted, answer, crept, .. } = point;
+    fn press(&mut self, i: usize) {
+        let like = self.friction[0];
+        let (zero, one) = (like.all(0.0), like.all(1.0));
+        let Spot { is_there, arms, wanted, mass, answer, crept, rub, little, pressed, held } = self.spots[i];
         let slip = self.slip(arms);
-        let new = max(pressed + (wanted - dot(slip, self.normal)) * point.mass, 0.0);
+        let new = max(pressed + (wanted - slip.dot(self.normal)) * mass, zero);
         let impulse = new - pressed;
-        let (mut holds, mut change) = (held, self.normal * impulse);
-        let mut counts = max(max(wanted, 0.0), point.driven) * SETTLED;
-        counts = if counts < f32::INFINITY { counts * point.mass } else { 0.0 };
-        if let Some(back) = back {
-            let slip = slip + answer * impulse + crept * back;
-            let [u, v] = self.along.map(|along| dot(slip, along));
-            let [uu, uv, vv] = point.rub;
-            let (square, yields) = (u * u + v * v, uu * u * u + uv * u * v + vv * v * v);
-            let mass = if square > 0.0 { square / yields } else { 0.0 };
-            let [x, y] = [dot(held, self.along[0]) - u * mass, dot(held, self.along[1]) - v * mass];
-            let (square, sticks) = (x * x + y * y, self.friction[0] * new);
-            let size = if square <= sticks * sticks { 1.0 } else { sqrt(square) };
-            let share = if square <= sticks * sticks { 1.0 } else { min(self.friction[1] * new, size) / size };
-            holds = (self.along[0] * x + self.along[1] * y) * share;
-            change += holds - held;
-        }
-        if change.is_finite() && change != Vec3::ZERO {
-            (self.points[i].pressed, self.points[i].held) = (new, holds);
-            self.push(arms, change);
-            self.is_changed |= !(dot(change, change) <= counts * counts);
-        }
+        let u = slip.dot(self.along[0]) + answer[0] * impulse + crept[0];
+        let v = slip.dot(self.along[1]) + answer[1] * impulse + crept[1];
+        let (square, yields) = (u * u + v * v, rub[0] * (u * u) + rub[1] * (u * v) + rub[2] * (v * v));
+        let rubs = (square / yields) & square.simd_gt(zero);
+        let [x, y] = [held[0] - u * rubs, held[1] - v * rubs];
+        let (square, sticks) = (x * x + y * y, self.friction[0] * new);
+        let is_held = square.simd_le(sticks * sticks);
+        let size = is_held.select(one, square.sqrt());
+        let share = is_held.select(one, min(self.friction[1] * new, size) / size);
+        let (x, y) = (x * share, y * share);
+        let change = self.normal * impulse + self.along[0] * (x - held[0]) + self.along[1] * (y - held[1]);
+        // What is no number is left out.
+        let far = change.dot(change);
+        let counts = is_there & far.simd_lt(like.all(f32::INFINITY)) & not_zero(far);
+        let spot = &mut self.spots[i];
+        spot.pressed = counts.select(new, pressed);
+        spot.held = [counts.select(x, held[0]), counts.select(y, held[1])];
+        self.push(arms, change.masked(counts));
+        let little = little * mass;
+        self.is_changed = self.is_changed | (counts & far.simd_gt(little * little));
     }
+}
+
+/// Where a number is not zero.
+#[inline(always)]
+fn not_zero<F: Eight>(x: F) -> F {
+    x.abs().simd_gt(x.all(0.0))
 }

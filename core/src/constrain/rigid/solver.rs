@@ -1,9 +1,11 @@
 //! What bodies that touch do to each other in a sub-step: impulses that hold them apart, and friction.
 
 use super::body::Body;
-use super::manifold::{Manifold, Point, middle};
-use super::pass;
+use super::manifold::{Manifold, POINTS, Point, middle};
+use super::order::Order;
+use super::pass::Passes;
 use crate::collide::RESTING;
+use crate::lanes::run;
 use crate::math::{aside, dot, length, max, sqrt};
 use glam::Vec3;
 
@@ -30,18 +32,6 @@ pub(super) struct Span {
     pub(super) step: f32,
 }
 
-/// Looks how two stand to each other: gaps, and how fast they come together.
-pub(super) fn begin(bodies: &mut [Body], manifold: &mut Manifold) {
-    let Some(mut pair) = Pair::of(bodies, manifold) else { return };
-    pair.let_slide();
-    pair.stand();
-    pair.weigh();
-    for i in 0..pair.count {
-        let speed = -pair.parting(i);
-        pair.points[i].bounce = speed;
-    }
-}
-
 /// Tells whether two may touch within a sub-step of `h` \[s\], driven as they were.
 pub(super) fn may_touch(bodies: &mut [Body], manifold: &mut Manifold, h: f32) -> bool {
     let Some(mut pair) = Pair::of(bodies, manifold) else { return false };
@@ -51,51 +41,43 @@ pub(super) fn may_touch(bodies: &mut [Body], manifold: &mut Manifold, h: f32) ->
     (0..pair.count).any(|i| pair.points[i].gap + (pair.parting(i) + driven) * h <= 0.0)
 }
 
-/// Says how fast two that come together shall part, when forces have changed their velocities: the elastic answer to the speed at which they
-/// meet, u² = u₀² + 2 a s over the gap s, so that a bounce neither gains nor loses by when in the sub-step it happens. Where it would be over
-/// within a part of the step, they stay together.
-pub(super) fn expect(bodies: &mut [Body], manifold: &mut Manifold, span: Span) {
-    let elasticity = manifold.elasticity;
-    let Some(pair) = Pair::of(bodies, manifold) else { return };
-    // What forces make of the speed of either in a sub-step.
-    let driven = pair.bodies.iter().map(|body| length(body.velocity - body.before[0])).fold(0.0, max);
-    for i in 0..pair.count {
-        let now = -pair.parting(i);
-        let point = &mut pair.points[i];
-        let before = point.bounce;
-        let meets = sqrt(max(before * before + 2.0 * (now - before) / span.h * point.gap, 0.0));
-        let bounce = if now > 0.0 { elasticity * meets } else { 0.0 };
-        point.bounce = if 2.0 * bounce * span.h < RESTING * span.step * driven { 0.0 } else { bounce };
-        point.calm = driven * span.step / span.h;
-        point.driven = driven;
-        if max(now.abs(), before.abs()) > point.calm {
-            // What held the last sub-step says nothing of a blow.
-            (point.pressed, point.held) = (0.0, Vec3::ZERO);
-        }
+/// Looks how all stand to each other when forces have changed their velocities, and what impulses do to them, and says how fast they shall part.
+pub(super) fn begin(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
+    for number in 0..order.len() {
+        let Some(manifold) = order.get_mut(number) else { continue };
+        let elasticity = manifold.elasticity;
+        let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
+        pair.let_slide();
+        pair.stand();
+        pair.weigh();
+        pair.expect(elasticity, span);
     }
 }
 
-/// Gives two again most of what held them in the last sub-step.
-pub(super) fn hold_on(bodies: &mut [Body], manifold: &mut Manifold) {
-    let Some(mut pair) = Pair::of(bodies, manifold) else { return };
-    for i in 0..pair.count {
-        let Point { pressed, held, arms, .. } = pair.points[i];
-        let (pressed, held) = (pressed * AGAIN, aside(held, pair.normal) * AGAIN);
-        (pair.points[i].pressed, pair.points[i].held) = (pressed, held);
-        pair.push(arms, pair.normal * pressed + held);
+/// Gives all again most of what held them in the last sub-step.
+pub(super) fn hold_on(bodies: &mut [Body], order: &mut Order<'_>) {
+    for number in 0..order.len() {
+        let Some(manifold) = order.get_mut(number) else { continue };
+        let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
+        for i in 0..pair.count {
+            let Point { pressed, held, arms, .. } = pair.points[i];
+            let (pressed, held) = (pressed * AGAIN, aside(held, pair.normal) * AGAIN);
+            (pair.points[i].pressed, pair.points[i].held) = (pressed, held);
+            pair.points[i].held_along = pair.along.map(|along| dot(held, along));
+            pair.push(arms, pair.normal * pressed + held);
+        }
     }
 }
 
 /// Keeps all from passing into each other within the sub-step, by velocities: before they go.
-pub(super) fn keep_apart(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: Span) {
-    let [pairs, scenery] = manifolds;
-    for manifold in pairs.iter_mut().chain(&mut *scenery) {
-        for point in &mut manifold.points[..(manifold.count as usize).min(4)] {
-            point.wanted = -point.gap * if point.gap > 0.0 { 1.0 } else { RECOVERY } / span.h;
-        }
-    }
-    go_over(bodies, [&mut *pairs, &mut *scenery], PASSES, RECOVERY / span.h);
-    for manifold in pairs.iter().chain(&*scenery) {
+pub(super) fn keep_apart(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
+    run(Passes { bodies, order, count: PASSES, back: RECOVERY / span.h });
+}
+
+/// Notes what presses on whom.
+pub(super) fn mark_pressed(bodies: &mut [Body], order: &Order<'_>) {
+    for number in 0..order.len() {
+        let Some(manifold) = order.get(number) else { continue };
         if manifold.points().iter().any(|point| point.pressed > 0.0) {
             manifold.bodies.iter().for_each(|&body| bodies[body as usize].pressed = 1);
         }
@@ -103,10 +85,10 @@ pub(super) fn keep_apart(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], s
 }
 
 /// Lets all part as they shall, when they have gone: what overlaps is no reason to, elasticity is.
-pub(super) fn part(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: Span) {
-    let [pairs, scenery] = manifolds;
+pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
     let mut bounces = false;
-    for manifold in pairs.iter_mut().chain(&mut *scenery) {
+    for number in 0..order.len() {
+        let Some(manifold) = order.get_mut(number) else { continue };
         let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
         pair.stand();
         for i in 0..pair.count {
@@ -121,32 +103,16 @@ pub(super) fn part(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], span: S
             bounces |= point.wanted > 0.0;
         }
     }
-    go_over(bodies, [pairs, scenery], if bounces { BLOWS } else { PASSES }, 0.0);
+    run(Passes { bodies, order, count: if bounces { BLOWS } else { PASSES }, back: 0.0 });
 }
 
-/// Goes over all that touch so many times at the most, and over those again whose bodies have been changed since.
-fn go_over(bodies: &mut [Body], manifolds: [&mut [Manifold]; 2], passes: u32, back: f32) {
-    let [pairs, scenery] = manifolds;
-    bodies.iter_mut().for_each(|body| body.changed = 0);
-    for manifold in pairs.iter_mut().chain(&mut *scenery) {
-        let is_awake = |&number: &u32| bodies.get(number as usize).is_some_and(Body::is_awake);
-        manifold.seen = if manifold.count > 0 && manifold.bodies.iter().any(is_awake) { 0 } else { u32::MAX };
-    }
-    let mut clock = 0;
-    for _ in 0..passes {
-        let before = clock;
-        for manifold in pairs.iter_mut().chain(&mut *scenery) {
-            if manifold.seen == u32::MAX {
-                continue;
-            }
-            let changed = manifold.bodies.map(|number| bodies.get(number as usize).map_or(0, |body| body.changed));
-            if changed[0].max(changed[1]) >= manifold.seen {
-                clock += 1;
-                pass::over(bodies, manifold, back, clock);
-            }
-        }
-        if clock == before {
-            return;
+/// Notes the friction at all points, for the next sub-step.
+pub(super) fn remember(order: &mut Order<'_>) {
+    for number in 0..order.len() {
+        let Some(manifold) = order.get_mut(number) else { continue };
+        let [u, v] = manifold.along;
+        for point in &mut manifold.points[..(manifold.count as usize).min(POINTS)] {
+            point.held = u * point.held_along[0] + v * point.held_along[1];
         }
     }
 }
@@ -211,8 +177,31 @@ impl<'a> Pair<'a> {
             let answer = |direction: Vec3| a.answer(point.arms[0], direction) + b.answer(point.arms[1], direction);
             let [u, v] = along.map(answer);
             point.rub = [dot(u, along[0]), 2.0 * dot(u, along[1]), dot(v, along[1])];
-            point.answer = answer(normal);
-            point.mass = 1.0 / dot(point.answer, normal);
+            let answer = answer(normal);
+            point.answer = along.map(|along| dot(answer, along));
+            point.crept_along = along.map(|along| dot(point.crept, along));
+            point.mass = 1.0 / dot(answer, normal);
+        }
+    }
+
+    /// Says how fast two that come together shall part: the elastic answer to the speed at which they meet, u² = u₀² + 2 a s over the gap s, so that
+    /// a bounce neither gains nor loses by when in the sub-step it happens. Where it would be over within a part of the step, they stay together.
+    fn expect(&mut self, elasticity: f32, span: Span) {
+        // What forces make of the speed of either in a sub-step.
+        let driven = self.bodies.iter().map(|body| length(body.velocity - body.before[0])).fold(0.0, max);
+        for i in 0..self.count {
+            let (before, now) = (-self.parting_before(i), -self.parting(i));
+            let point = &mut self.points[i];
+            let meets = sqrt(max(before * before + 2.0 * (now - before) / span.h * point.gap, 0.0));
+            let bounce = if now > 0.0 { elasticity * meets } else { 0.0 };
+            point.bounce = if 2.0 * bounce * span.h < RESTING * span.step * driven { 0.0 } else { bounce };
+            point.calm = driven * span.step / span.h;
+            point.driven = driven;
+            point.wanted = -point.gap * if point.gap > 0.0 { 1.0 } else { RECOVERY } / span.h;
+            if max(now.abs(), before.abs()) > point.calm {
+                // What held the last sub-step says nothing of a blow.
+                (point.pressed, point.held) = (0.0, Vec3::ZERO);
+            }
         }
     }
 
@@ -236,6 +225,12 @@ impl<'a> Pair<'a> {
 
     fn parting(&self, i: usize) -> f32 {
         dot(self.slip(i), self.normal)
+    }
+
+    /// The same as the sub-step began.
+    fn parting_before(&self, i: usize) -> f32 {
+        let ([a, b], arms) = (&self.bodies, self.points[i].arms);
+        dot(b.velocity_before(arms[1]) - a.velocity_before(arms[0]) - self.surface, self.normal)
     }
 
     fn push(&mut self, arms: [Vec3; 2], impulse: Vec3) {
