@@ -111,6 +111,12 @@ impl Body {
         self.state == MOVING
     }
 
+    /// Tells whether it is pushed by one that touches it, and has lain there (1) since before it fell asleep or not.
+    #[inline(always)]
+    pub(super) fn gives(&self, rested: u32) -> bool {
+        self.inverse_mass > 0.0 && (rested == 0 || self.asleep == 0)
+    }
+
     /// The place of a point of it in the world \[m\].
     pub(super) fn point(&self, place: Vec3) -> Vec3 {
         self.center + self.rotation * (place - self.rest)

@@ -52,6 +52,14 @@ pub(super) struct Manifold {
     pub(super) spare: f32,
     /// How many points there are.
     pub(super) count: u32,
+    /// Its place in the order.
+    pub(super) colour: u32,
+    /// 1 if they have touched since before one of them fell asleep, which is fixed for the other now.
+    pub(super) rested: u32,
+    /// 1 if one presses on the other.
+    pub(super) presses: u32,
+    /// The force of the first on the second, and its torque about the first's centre, when one of them fell asleep \[N, N m\].
+    pub(super) loads: [Vec3; 2],
     /// From the first to the second, in the first's frame.
     pub(super) normal: Vec3,
     /// How the scenery moves \[m/s\].
@@ -63,8 +71,6 @@ pub(super) struct Manifold {
     pub(super) along: [Vec3; 2],
     /// The tick of the clock of passes at which it was gone over last.
     pub(super) seen: u32,
-    /// Its place in the order.
-    pub(super) colour: u32,
     pub(super) points: [Point; POINTS],
 }
 
@@ -79,6 +85,16 @@ impl Manifold {
     /// Its points.
     pub(super) fn points(&self) -> &[Point] {
         &self.points[..(self.count as usize).min(4)]
+    }
+
+    /// The mean force of the first on the second in a sub-step of `h` \[s\], and its torque about the first's centre \[N, N m\].
+    pub(super) fn load(&self, h: f32) -> [Vec3; 2] {
+        let mut sum = [Vec3::ZERO; 2];
+        for point in self.points() {
+            let force = (self.axis * point.pressed + point.held) * (1.0 / h);
+            sum = [sum[0] + force, sum[1] + point.arms[0].cross(force)];
+        }
+        sum
     }
 
     /// Puts a point in, with what a point of before near it has done. `axes` are those of the first's frame.

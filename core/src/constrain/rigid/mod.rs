@@ -202,7 +202,7 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
 
     /// Wakes who sleeps and is about to be touched, or is driven otherwise than when it fell asleep; all others who sleep stay where they are.
     fn stir(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, span: Span) {
-        sleep::look_out(kept, span.h);
+        sleep::look_out(kept, span);
         self.each(kept, |body, of, places| {
             if body.sleeps() && !body.lies(bodies, Made { of, places }) {
                 body.calls |= sleep::STIRRED;
@@ -309,7 +309,7 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         all.iter_mut().for_each(|body| body.go(span.h));
         solver::part(all, &mut order, span);
         solver::remember(&mut order);
-        sleep::feel(kept.bodies);
+        sleep::feel(all, &pairs[..len], span.h);
         if bodies.substep.is_last() {
             sleep::settle(bodies, &mut kept);
         }
@@ -318,11 +318,10 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
                 body.tell(bodies, Made { of, places });
             }
         });
-        let presses = |manifold: &&Manifold| manifold.points().iter().any(|point| point.pressed > 0.0);
+        let presses = |manifold: &Manifold| manifold.presses != 0 && manifold.count > 0;
         let scenery = &*kept.scenery;
-        let pressed = |number: usize| {
-            scenery.chunks(DIRECTIONS).nth(number - 1).is_some_and(|slots| slots.iter().any(|slot| presses(&slot)))
-        };
+        let pressed =
+            |number: usize| scenery.chunks(DIRECTIONS).nth(number - 1).is_some_and(|slots| slots.iter().any(presses));
         let first = kept.bodies.len() - kept.balls.len();
         for (i, (ball, body)) in kept.balls.iter().zip(&kept.bodies[first..]).enumerate() {
             if let Some(row) = ball.row(bodies) {
@@ -330,7 +329,7 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
             }
         }
         tell::all(bodies, &kept, self.forms());
-        bodies.report.contacts += kept.pairs[..len].iter().filter(presses).count() as u64;
-        bodies.report.hits += kept.scenery.iter().filter(presses).count() as u64;
+        bodies.report.contacts += kept.pairs[..len].iter().filter(|pair| presses(pair)).count() as u64;
+        bodies.report.hits += kept.scenery.iter().filter(|slot| presses(slot)).count() as u64;
     }
 }

@@ -41,11 +41,11 @@ impl<'a> Numbers<'a> {
                 starts[colour + 1] += 1;
             }
         }
-        for (number, manifold) in scenery.iter_mut().enumerate() {
-            manifold.colour = u32::MAX;
-            if is_active(bodies, manifold) {
-                let colour = COLOURS + number % DIRECTIONS;
-                manifold.colour = colour as u32;
+        for (body, slots) in bodies[1..].iter().zip(scenery.chunks_exact_mut(DIRECTIONS)) {
+            for (direction, slot) in slots.iter_mut().enumerate().filter(|(_, slot)| slot.count > 0 && body.is_awake())
+            {
+                let colour = COLOURS + direction;
+                slot.colour = colour as u32;
                 starts[colour + 1] += 1;
             }
         }
@@ -53,12 +53,19 @@ impl<'a> Numbers<'a> {
             starts[colour + 1] += starts[colour];
         }
         let mut next = starts;
-        for (number, manifold) in pairs.iter().chain(&*scenery).enumerate() {
-            let Some(next) = next.get_mut(manifold.colour as usize) else { continue };
+        let mut put = |number: usize, manifold: &Manifold| {
+            let Some(next) = next.get_mut(manifold.colour as usize) else { return };
             if let Some(place) = memory.get_mut(*next as usize) {
                 *place = number as u32;
             }
             *next += 1;
+        };
+        pairs.iter().enumerate().for_each(|(number, manifold)| put(number, manifold));
+        let awake = bodies[1..].iter().enumerate().filter(|(_, body)| body.is_awake());
+        for number in awake.flat_map(|(body, _)| DIRECTIONS * body..DIRECTIONS * (body + 1)) {
+            if let Some(slot) = scenery.get(number).filter(|slot| slot.count > 0) {
+                put(pairs.len() + number, slot);
+            }
         }
         Self { numbers: memory, starts }
     }

@@ -96,7 +96,8 @@ impl Passes<'_, '_> {
             let Some(manifold) = self.order.get(batch.numbers[lane]) else { continue };
             manifolds[lane] = manifold;
             for side in 0..2 {
-                bodies[side][lane] = self.bodies.get(manifold.bodies[side] as usize).unwrap_or(&nobody);
+                let body = self.bodies.get(manifold.bodies[side] as usize).filter(|body| body.gives(manifold.rested));
+                bodies[side][lane] = body.unwrap_or(&nobody);
             }
         }
         let mut touch = Touch::of(like, &manifolds, &bodies, self.back);
@@ -111,7 +112,7 @@ impl Passes<'_, '_> {
             for lane in 0..batch.count.min(LANES) {
                 let Some(manifold) = self.order.get(batch.numbers[lane]) else { continue };
                 let Some(body) = self.bodies.get_mut(manifold.bodies[side] as usize) else { continue };
-                if body.inverse_mass > 0.0 {
+                if body.gives(manifold.rested) {
                     body.velocity = vector(velocity[lane]);
                     body.spin = vector(spin[lane]);
                     body.omega = vector(omega[lane]);

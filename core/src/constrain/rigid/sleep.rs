@@ -1,16 +1,19 @@
 //! Bodies that lie still sleep: a heap at rest costs next to nothing until something stirs it.
 //!
-//! Bodies that press on each other sleep together, when none of them has gone farther than a small share of its size for a time in which one that is
-//! not held would have fallen many times that far. They stay where they are, at rest, as long as forces do to their particles what they did then.
-//! They wake together when that changes, when a body that is awake is about to touch one of them or has pushed it, when the scenery near one of them
-//! moves or is another, and when a particle of any body has died. In a scene without forces nothing sleeps, nor does what touches a ball.
+//! A body sleeps when neither it nor any that it touches has gone farther than a small share of its size for a time in which one that is not held
+//! would have fallen many times that far. It stays where it is, at rest, as long as forces do to its particles what they did then; who is awake and
+//! lies on it finds it fixed. Those that sleep and touch each other wake together: when that changes, when a body that is awake and does not lie still
+//! is about to touch one of them, when one presses on them otherwise than it did, when the scenery near one of them moves or is another, and when
+//! a particle of any body has died. In a scene without forces nothing sleeps, nor does what touches a ball.
 
 use super::super::Bodies;
+use super::RigidBox;
 use super::body::{Body, Made};
 use super::lists::Kept;
+use super::manifold::Manifold;
 use super::scenery::{self, DIRECTIONS};
-use super::solver;
-use crate::math::{length, sqrt};
+use super::solver::{self, Span};
+use crate::math::{dot, length, sqrt};
 use glam::Vec3;
 
 /// How long bodies lie still before they sleep: in units of the time √(r/a) in which one falls half its size r.
@@ -19,6 +22,19 @@ const AFTER: f32 = 5.0;
 const SLOW: f32 = 3.0;
 /// The share by which forces may change before they wake a body.
 const ALIKE: f32 = 1e-3;
+
+/// The share by which what presses on a body may change before that wakes it: as much as impulses that are sought in a few passes do.
+const PRESSED_ALIKE: f32 = 0.5;
+
+/// The share of the time after which bodies sleep for which one is awake that has been freed, if it stays where it is.
+const TRIAL: f32 = 0.25;
+/// It is to be freed.
+const FREED: u32 = 4;
+
+/// It does not lie still.
+const RESTLESS: u32 = 1;
+/// Something that it touches does not.
+const UNEASY: u32 = 2;
 
 /// All that sleep with it are to wake.
 const CALLED: u32 = 1;
@@ -64,11 +80,21 @@ impl Body {
         self.before = [Vec3::ZERO; 2];
     }
 
+    /// For how long it has to lie still before it sleeps \[s\]; of what nothing drives no number, or infinitely long.
+    fn wait(&self) -> f32 {
+        AFTER * sqrt(self.radius / length(self.drive[0]))
+    }
+
+    /// Tells whether it is slow enough to sleep, and driven.
+    fn is_slow(&self) -> bool {
+        let far = self.speed() * self.wait();
+        far <= SLOW * 2.0 * self.small()
+    }
+
     /// Watches it through a step \[s\]; tells whether it has been still for long enough to sleep.
     fn is_still(&mut self, step: f32) -> bool {
-        let (driven, small) = (length(self.drive[0]), 2.0 * self.small());
-        let wait = AFTER * sqrt(self.radius / driven);
-        if !(driven > 0.0 && self.speed() * wait <= SLOW * small) {
+        let (wait, small) = (self.wait(), 2.0 * self.small());
+        if !(wait < f32::INFINITY && self.is_slow()) {
             self.watch();
             self.lull = 0;
             return false;
@@ -86,8 +112,39 @@ impl Body {
         self.lull != 0
     }
 
+    /// The same where forces do the same to all of its particles, after the first sub-step of a step: they are put back to where they were.
+    fn lies_evenly(&self, bodies: &mut Bodies<'_>, of: &RigidBox) -> bool {
+        let (numbers, h) = (of.first..of.first.saturating_add(of.count), bodies.substep.seconds());
+        let size = length(self.drive[0]);
+        let (far, mut change) = (2.0 * size * h * h, None);
+        for row in numbers.clone().filter_map(|number| bodies.row_of_start(number)) {
+            let (now, way) = (bodies.velocity[row], bodies.position[row] - bodies.before[0][row]);
+            let drift = way - now * h;
+            let was_still = bodies.before[1][row] == Vec3::ZERO;
+            if !(was_still && *change.get_or_insert(now) == now && dot(drift, drift) <= far * far) {
+                return false;
+            }
+        }
+        let Some(change) = change else { return false };
+        if !(length(change * (1.0 / h) - self.drive[0]) <= ALIKE * size
+            && length(self.drive[1]) <= ALIKE * size * self.radius)
+        {
+            return false;
+        }
+        for number in numbers {
+            let Some(row) = bodies.row_of_start(number) else { continue };
+            bodies.position[row] = bodies.before[0][row];
+            bodies.velocity[row] = Vec3::ZERO;
+            bodies.mark_followed(row);
+        }
+        true
+    }
+
     /// Lets its particles lie where they are while it sleeps; tells whether that is so. What does otherwise to them than when it fell asleep wakes it.
     pub(super) fn lies(&mut self, bodies: &mut Bodies<'_>, made: Made<'_>) -> bool {
+        if bodies.substep.number > 0 && self.lies_evenly(bodies, made.of) {
+            return true;
+        }
         let mut probe = *self;
         probe.gather(bodies, made);
         let [push, torque] = [0, 1].map(|k| length(probe.drive[k] - self.drive[k]));
@@ -147,69 +204,126 @@ pub(super) fn look_around(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     wake_called(kept.bodies);
 }
 
-/// Wakes those whom one that is awake is about to touch in the sub-step.
-pub(super) fn look_out(kept: &mut Kept<'_>, h: f32) {
+/// Wakes those whom one that is awake is about to touch in the sub-step, unless it has lain against them since before they slept and lies still:
+/// with those that sleep with them where it is a blow, else alone.
+pub(super) fn look_out(kept: &mut Kept<'_>, span: Span) {
+    let all = &mut *kept.bodies;
     for pair in &mut kept.pairs[..kept.lists.pairs as usize] {
         let [a, b] = pair.bodies.map(|number| number as usize);
-        let asleep = if kept.bodies[a].sleeps() { a } else { b };
+        let asleep = if all[a].sleeps() { a } else { b };
         let other = if asleep == a { b } else { a };
-        if kept.bodies[asleep].sleeps() && kept.bodies[other].is_awake() && solver::may_touch(kept.bodies, pair, h) {
-            call(kept.bodies, asleep);
+        if !all[asleep].sleeps() {
+            pair.rested = 0;
+        } else if all[other].is_awake() {
+            pair.rested = pair.rested.min(pair.count);
+            if pair.rested != 0 && all[other].is_slow() {
+                continue;
+            }
+            let Some(closing) = solver::meeting(all, pair, span.h) else { continue };
+            if closing <= length(all[other].drive[0]) * span.step {
+                all[asleep].calls |= FREED;
+            } else {
+                call(all, asleep);
+            }
         }
     }
-    wake_called(kept.bodies);
+    free(all);
+    wake_called(all);
 }
 
-/// At the end of a sub-step: wakes with the next one who sleeps with those that have been pushed.
-pub(super) fn feel(all: &mut [Body]) {
+/// At the end of a sub-step: wakes with the next one who sleeps with those that have been pushed, or are pressed on otherwise than when they fell
+/// asleep.
+pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], h: f32) {
     for number in 1..all.len() {
         let body = &all[number];
         if body.sleeps() && (body.velocity != Vec3::ZERO || body.spin != Vec3::ZERO) {
             call(all, number);
         }
     }
+    for pair in pairs.iter().filter(|pair| pair.rested != 0 && pair.count > 0) {
+        let [a, b] = pair.bodies.map(|number| &all[number as usize]);
+        if !(a.is_awake() || b.is_awake()) {
+            continue;
+        }
+        let side = usize::from(b.sleeps());
+        let (body, [force, torque]) = ([a, b][side], pair.load(h));
+        let most = PRESSED_ALIKE * (length(body.drive[0]) + length(pair.loads[0]) * body.inverse_mass);
+        let [force, torque] = [force - pair.loads[0], torque - pair.loads[1]].map(|by| length(by) * body.inverse_mass);
+        if !(force <= most && torque <= most * body.radius) {
+            all[pair.bodies[side] as usize].calls |= FREED;
+        }
+    }
+    free(all);
     wake_called(all);
 }
 
-/// At the end of a step: lets those sleep who have lain still for long enough, and all on whom they press.
+/// Wakes those who are to be freed: alone, and for as long as it takes to see whether they stay where they are.
+fn free(all: &mut [Body]) {
+    for body in all.iter_mut().filter(|body| body.calls & FREED != 0) {
+        body.calls &= !FREED;
+        body.wake();
+        let wait = body.wait();
+        body.still = if wait < f32::INFINITY { wait * (1.0 - TRIAL) } else { 0.0 };
+    }
+}
+
+/// At the end of a step: lets those sleep who have lain still for long enough, if all that they touch have.
 pub(super) fn settle(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     let (step, first) = (bodies.substep.step.seconds(), kept.first_ball());
-    let all = &mut *kept.bodies;
+    let Kept { bodies: all, pairs, lists, .. } = kept;
+    let pairs = &mut pairs[..lists.pairs as usize];
     if !all[1..first].iter().any(Body::is_awake) {
         return;
     }
     for (number, body) in all.iter_mut().enumerate() {
-        (body.island, body.calls) = (number as u32, 0);
+        let is_ready = !body.is_awake()
+            || number < first && body.is_still(step) && {
+                let faces = scenery::faces(bodies, body);
+                body.faces = faces.unwrap_or(0);
+                faces.is_some()
+            };
+        // Here a call keeps awake.
+        body.calls = if is_ready { 0 } else { RESTLESS };
     }
-    for pair in kept.pairs[..kept.lists.pairs as usize].iter().filter(|pair| pair.count > 0) {
+    for pair in pairs.iter().filter(|pair| pair.count > 0) {
         let [a, b] = pair.bodies.map(|number| number as usize);
-        if all[a].moves() && all[b].moves() {
+        for [one, other] in [[a, b], [b, a]] {
+            if all[one].calls == RESTLESS && all[other].calls == 0 {
+                all[other].calls = UNEASY;
+            }
+        }
+    }
+    let mut falls = false;
+    for body in all[1..first].iter_mut() {
+        if body.is_awake() && body.calls == 0 {
+            body.fall_asleep();
+            falls = true;
+        }
+    }
+    all.iter_mut().for_each(|body| body.calls = 0);
+    if falls {
+        join(all, pairs, bodies.substep.seconds());
+    }
+}
+
+/// Finds who sleep together, and notes what presses on those that have just fallen asleep.
+fn join(all: &mut [Body], pairs: &mut [Manifold], h: f32) {
+    for (number, body) in all.iter_mut().enumerate() {
+        body.island = number as u32;
+    }
+    for pair in pairs.iter_mut().filter(|pair| pair.count > 0) {
+        let [a, b] = pair.bodies.map(|number| number as usize);
+        if pair.rested == 0 && (all[a].asleep == DROPS || all[b].asleep == DROPS) {
+            (pair.rested, pair.loads) = (1, pair.load(h));
+        }
+        if all[a].sleeps() && all[b].sleeps() {
             let [a, b] = [a, b].map(|number| root(all, number));
             all[a.max(b)].island = a.min(b) as u32;
         }
     }
     for number in 1..all.len() {
-        if number < first && !all[number].is_awake() {
-            continue;
-        }
-        let is_ready = number < first && all[number].is_still(step) && {
-            let faces = scenery::faces(bodies, &all[number]);
-            all[number].faces = faces.unwrap_or(0);
-            faces.is_some()
-        };
-        let root = root(all, number);
-        all[number].island = root as u32;
-        // Here a call keeps awake.
-        all[root].calls |= u32::from(!is_ready);
+        all[number].island = root(all, number) as u32;
     }
-    for number in 1..first {
-        let root = root(all, number);
-        all[number].island = root as u32;
-        if all[number].is_awake() && all[root].calls == 0 {
-            all[number].fall_asleep();
-        }
-    }
-    all.iter_mut().for_each(|body| body.calls = 0);
 }
 
 /// The least number among those that a body is joined with so far.

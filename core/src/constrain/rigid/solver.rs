@@ -32,13 +32,14 @@ pub(super) struct Span {
     pub(super) step: f32,
 }
 
-/// Tells whether two may touch within a sub-step of `h` \[s\], driven as they were.
-pub(super) fn may_touch(bodies: &mut [Body], manifold: &mut Manifold, h: f32) -> bool {
-    let Some(mut pair) = Pair::of(bodies, manifold) else { return false };
+/// How fast two come together that may touch within a sub-step of `h` \[s\], driven as they were \[m/s\].
+pub(super) fn meeting(bodies: &mut [Body], manifold: &mut Manifold, h: f32) -> Option<f32> {
+    let mut pair = Pair::of(bodies, manifold)?;
     pair.stand();
     let [a, b] = [0, 1].map(|side| if pair.bodies[side].sleeps() { Vec3::ZERO } else { pair.bodies[side].drive[0] });
     let driven = 2.0 * h * dot(b - a, pair.normal);
-    (0..pair.count).any(|i| pair.points[i].gap + (pair.parting(i) + driven) * h <= 0.0)
+    let may_touch = |&i: &usize| pair.points[i].gap + (pair.parting(i) + driven) * h <= 0.0;
+    (0..pair.count).filter(may_touch).map(|i| -pair.parting(i)).reduce(max)
 }
 
 /// Looks how all stand to each other when forces have changed their velocities, and what impulses do to them, and says how fast they shall part.
@@ -114,12 +115,15 @@ pub(super) fn remember(order: &mut Order<'_>) {
         for point in &mut manifold.points[..(manifold.count as usize).min(POINTS)] {
             point.held = u * point.held_along[0] + v * point.held_along[1];
         }
+        manifold.presses = u32::from(manifold.points().iter().any(|point| point.pressed > 0.0));
     }
 }
 
 /// Two bodies, and where they touch.
 struct Pair<'a> {
     bodies: [&'a mut Body; 2],
+    /// Who is pushed: not one that sleeps and has been lain against since before.
+    gives: [bool; 2],
     /// From the first to the second, in the world.
     normal: Vec3,
     surface: Vec3,
@@ -142,10 +146,12 @@ impl<'a> Pair<'a> {
             return None;
         }
         let normal = bodies[0].rotation * manifold.normal;
-        let Manifold { surface, friction, .. } = *manifold;
+        let Manifold { surface, friction, rested, .. } = *manifold;
         manifold.axis = normal;
+        let gives = [0, 1].map(|side| bodies[side].gives(rested));
         Some(Self {
             bodies,
+            gives,
             normal,
             surface,
             friction,
@@ -170,11 +176,16 @@ impl<'a> Pair<'a> {
 
     /// Finds what impulses at each point do to the speeds there.
     fn weigh(&mut self) {
-        let (normal, [a, b]) = (self.normal, &self.bodies);
+        let (normal, [a, b], gives) = (self.normal, &self.bodies, self.gives);
         let along = [across(normal), normal.cross(across(normal))];
         *self.along = along;
         for point in &mut self.points[..self.count] {
-            let answer = |direction: Vec3| a.answer(point.arms[0], direction) + b.answer(point.arms[1], direction);
+            let [one, other] = point.arms;
+            let answer = |direction: Vec3| match gives {
+                [true, true] => a.answer(one, direction) + b.answer(other, direction),
+                [false, _] => b.answer(other, direction),
+                [_, false] => a.answer(one, direction),
+            };
             let [u, v] = along.map(answer);
             point.rub = [dot(u, along[0]), 2.0 * dot(u, along[1]), dot(v, along[1])];
             let answer = answer(normal);
@@ -234,9 +245,13 @@ impl<'a> Pair<'a> {
     }
 
     fn push(&mut self, arms: [Vec3; 2], impulse: Vec3) {
-        let [a, b] = &mut self.bodies;
-        a.push(arms[0], -impulse);
-        b.push(arms[1], impulse);
+        let ([a, b], gives) = (&mut self.bodies, self.gives);
+        if gives[0] {
+            a.push(arms[0], -impulse);
+        }
+        if gives[1] {
+            b.push(arms[1], impulse);
+        }
     }
 }
 
