@@ -4,6 +4,7 @@
 //! Times are means over steps of 1/60 s. WHO is `ours`, `rapier`, `awake` (rapier3d without sleeping) or `all`: with one of them alone instructions
 //! can be counted, as the difference of two runs of other lengths.
 
+use pointmass::index::Structure;
 use pointmass::shape::Plane;
 use pointmass::{Gravity, Scene, Symplectic, Time, Vec3};
 use pointmass_bench::dice::{Pose, Throw, deepest};
@@ -39,6 +40,7 @@ fn ours(throw: &Throw, seconds: usize, substeps: u32) {
         constraints: &bodies,
         substeps,
         integrator: &Symplectic,
+        index: &Structure::Grid,
         ..Scene::EMPTY
     };
     let mut system = started(&scene, start.len());

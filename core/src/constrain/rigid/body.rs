@@ -3,7 +3,7 @@
 use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
-use crate::math::{length, max, min, sqrt};
+use crate::math::{dot, length, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
 /// It is not there: its particles are dead or nowhere.
@@ -22,7 +22,7 @@ pub(super) struct Body {
     state: u32,
     /// The tick of the clock of passes at which it was changed last.
     pub(super) changed: u32,
-    /// One over its mass \[1/kg\]; zero: it stays.
+    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go.
     pub(super) inverse_mass: f32,
     /// Its velocity \[m/s\].
     pub(super) velocity: Vec3,
@@ -52,6 +52,8 @@ pub(super) struct Body {
     pub(super) asleep: u32,
     pub(super) calls: u32,
     pub(super) island: u32,
+    /// One more than how many contacts away from it bodies wake by a blow to it.
+    pub(super) rings: u32,
     /// The number of places of the scenery that were near when it fell asleep.
     pub(super) faces: u32,
     /// For how long it has been near a place, and how it was turned there \[s, m\].
@@ -74,6 +76,8 @@ pub(super) struct Body {
     pub(super) spare: f32,
     /// The colours of those that it touches, a bit for each.
     pub(super) colours: u32,
+    /// 1 if it takes part in a blow that something shall bounce off.
+    pub(super) bounces: u32,
 }
 
 /// The make of a body: its box, and the places of its particles in it, three words each.
@@ -148,9 +152,13 @@ impl Body {
         velocity + omega.cross(arm)
     }
 
-    /// How an impulse there along a direction changes the velocity there \[1/kg\].
-    pub(super) fn answer(&self, arm: Vec3, direction: Vec3) -> Vec3 {
-        (direction + (self.inverse * arm.cross(direction)).cross(arm)) * self.inverse_mass
+    /// How an impulse there along one of three directions u, v, n, which are square to each other, changes the velocity there along another
+    /// \[1/kg\]: uu, vv, nn, uv, un, vn.
+    pub(super) fn yields(&self, arm: Vec3, directions: [Vec3; 3]) -> [f32; 6] {
+        let [u, v, n] = directions.map(|direction| arm.cross(direction));
+        let [iu, iv, i_n] = [u, v, n].map(|lever| self.inverse * lever);
+        let [uu, vv, nn] = [1.0 + dot(u, iu), 1.0 + dot(v, iv), 1.0 + dot(n, i_n)];
+        [uu, vv, nn, dot(v, iu), dot(n, iu), dot(n, iv)].map(|yields| yields * self.inverse_mass)
     }
 
     /// Gives it an impulse \[N s\] there.

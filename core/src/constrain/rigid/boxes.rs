@@ -21,12 +21,6 @@ pub(super) const FACES_FIRST: f32 = 0.02;
 pub(super) const PARALLEL: f32 = 1e-4;
 
 impl Oriented {
-    /// How far it reaches along a direction from its middle \[m\].
-    fn reach(&self, along: Vec3) -> f32 {
-        let Mat3 { x_axis: x, y_axis: y, z_axis: z } = self.axes;
-        self.half.x * dot(x, along).abs() + self.half.y * dot(y, along).abs() + self.half.z * dot(z, along).abs()
-    }
-
     /// Its corner with a number from 0 to 7, from its middle along its own axes \[m\].
     pub(super) fn corner(half: Vec3, number: u32) -> Vec3 {
         let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
@@ -96,41 +90,93 @@ fn facing(axis: Vec3, toward: Vec3) -> Vec3 {
     if dot(axis, toward) < 0.0 { -axis } else { axis }
 }
 
+/// Two boxes as the first sees the second.
+struct Beside {
+    /// Half the sides of each \[m\].
+    half: [[f32; 3]; 2],
+    /// The way from the middle of the first to that of the second, along the sides of each \[m\].
+    way: [[f32; 3]; 2],
+    /// How far each side's direction of the first goes along each of the second, and the same without signs.
+    cos: [[f32; 3]; 3],
+    steep: [[f32; 3]; 3],
+}
+
+impl Beside {
+    #[inline(always)]
+    fn new(a: &Oriented, b: &Oriented) -> Self {
+        let way = b.middle - a.middle;
+        let axes = |of: &Oriented| [of.axes.x_axis, of.axes.y_axis, of.axes.z_axis];
+        let (u, v) = (axes(a), axes(b));
+        let (mut cos, mut steep, mut ways) = ([[0.0; 3]; 3], [[0.0; 3]; 3], [[0.0; 3]; 2]);
+        for i in 0..3 {
+            (ways[0][i], ways[1][i]) = (dot(way, u[i]), dot(way, v[i]));
+            for j in 0..3 {
+                cos[i][j] = dot(u[i], v[j]);
+                steep[i][j] = cos[i][j].abs();
+            }
+        }
+        Self { half: [a.half.to_array(), b.half.to_array()], way: ways, cos, steep }
+    }
+
+    /// How far they are apart across a face of the first, or of the second \[m\].
+    #[inline(always)]
+    fn across_face(&self, side: usize, axis: usize) -> f32 {
+        let ([x, y, z], steep) = (self.half[1 - side], &self.steep);
+        let reach = if side == 0 {
+            x * steep[axis][0] + y * steep[axis][1] + z * steep[axis][2]
+        } else {
+            x * steep[0][axis] + y * steep[1][axis] + z * steep[2][axis]
+        };
+        self.way[side][axis].abs() - self.half[side][axis] - reach
+    }
+
+    /// How far they are apart across an edge of each \[m\]; none if these are parallel, or if that is below zero and not above `least`.
+    #[inline(always)]
+    fn across_edges(&self, i: usize, j: usize, least: f32) -> Option<f32> {
+        let ([half, other], [p, q], [k, l]) = (self.half, [(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
+        let (cos, steep, way) = (&self.cos, &self.steep, self.way[0]);
+        let reach = half[p] * steep[q][j] + half[q] * steep[p][j] + other[k] * steep[i][l] + other[l] * steep[i][k];
+        let gap = (way[q] * cos[p][j] - way[p] * cos[q][j]).abs() - reach;
+        let square = cos[p][j] * cos[p][j] + cos[q][j] * cos[q][j];
+        // The sine is one at the most.
+        (square > PARALLEL && (gap > least || gap > 0.0)).then(|| gap / sqrt(square))
+    }
+}
+
 /// How two boxes are apart; none if that is more than `bound` \[m\] (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996).
 pub(super) fn apart(a: &Oriented, b: &Oriented, bound: f32) -> Option<Apart> {
-    let way = b.middle - a.middle;
-    let mut best = Apart { gap: f32::NEG_INFINITY, normal: Vec3::Y, by: By::Face(0, 0) };
-    for (side, of) in [a, b].into_iter().enumerate() {
+    let (beside, way) = (Beside::new(a, b), b.middle - a.middle);
+    let (mut most, mut by) = (f32::NEG_INFINITY, By::Face(0, 0));
+    for side in 0..2 {
         for axis in 0..3 {
-            let normal = facing(of.axes.col(axis), way);
-            let gap = dot(normal, way) - a.reach(normal) - b.reach(normal);
+            let gap = beside.across_face(side, axis);
             if !(gap <= bound) {
                 return None;
             }
-            if gap > best.gap {
-                best = Apart { gap, normal, by: By::Face(side, axis) };
+            if gap > most {
+                (most, by) = (gap, By::Face(side, axis));
             }
         }
     }
-    let better = FACES_FIRST * min(a.least(), b.least());
-    let mut least = best.gap + better;
+    let mut least = most + FACES_FIRST * min(a.least(), b.least());
     for i in 0..3 {
         for j in 0..3 {
-            let cross = a.axes.col(i).cross(b.axes.col(j));
-            let square = dot(cross, cross);
-            if !(square > PARALLEL) {
-                continue;
-            }
-            let normal = facing(cross * (1.0 / sqrt(square)), way);
-            let gap = dot(normal, way) - a.reach(normal) - b.reach(normal);
+            let Some(gap) = beside.across_edges(i, j, least) else { continue };
             if !(gap <= bound) {
                 return None;
             }
             if gap > least {
-                least = gap;
-                best = Apart { gap, normal, by: By::Edges(i, j) };
+                (least, most, by) = (gap, gap, By::Edges(i, j));
             }
         }
     }
-    Some(best)
+    let axis = match by {
+        By::Face(0, axis) => a.axes.col(axis),
+        By::Face(_, axis) => b.axes.col(axis),
+        By::Edges(i, j) => {
+            let cross = a.axes.col(i).cross(b.axes.col(j));
+            cross * (1.0 / length(cross))
+        }
+    };
+    Some(Apart { gap: most, normal: facing(axis, way), by })
 }

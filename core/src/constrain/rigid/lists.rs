@@ -128,6 +128,9 @@ pub(super) fn gather(
         list(bodies, kept, forms, scratch);
     }
     let Kept { lists, bodies: all, pairs, .. } = kept;
+    if !all[1..].iter().any(Body::is_awake) {
+        return;
+    }
     for pair in &mut pairs[..lists.pairs as usize] {
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
         if !(a.is_awake() || b.is_awake()) {

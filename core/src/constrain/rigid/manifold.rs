@@ -13,30 +13,31 @@ use glam::{Mat3, Vec3};
 pub(super) struct Point {
     /// The place on each, in its box's frame \[m\].
     pub(super) places: [Vec3; 2],
-    /// From the centre of each to the middle between them \[m\].
+    /// From the centre of each to the middle between them \[m\]. Passes read this and what follows up to the friction in one go.
     pub(super) arms: [Vec3; 2],
-    /// The impulse that keeps them apart, and that of friction on the second, also along the two directions across the normal \[N s\].
-    pub(super) pressed: f32,
-    pub(super) held: Vec3,
-    pub(super) held_along: [f32; 2],
-    /// How far apart they are \[m\].
-    pub(super) gap: f32,
-    /// How fast they came together when the sub-step began, then how fast they shall part \[m/s\].
-    pub(super) bounce: f32,
-    /// The speed below which they come together by their weight, not by a blow \[m/s\].
-    pub(super) calm: f32,
-    /// The change that forces make to the speed of either in a sub-step \[m/s\].
-    pub(super) driven: f32,
+    /// How fast they shall part in the passes under way \[m/s\].
+    pub(super) wanted: f32,
     /// The impulse that makes them part by 1 m/s \[kg\], and how the slip along the surface changes by one along the normal \[1/kg\].
     pub(super) mass: f32,
     pub(super) answer: [f32; 2],
+    /// How far the second has crept along the first since friction has held them there, along the two directions across the normal \[m\].
+    pub(super) crept_along: [f32; 2],
     /// How much the slip (u, v) along the surface changes by an impulse along itself \[1/kg\]: the factors of u², uv and v².
     pub(super) rub: [f32; 3],
-    /// How fast they shall part in the passes under way \[m/s\].
-    pub(super) wanted: f32,
-    /// How far the second has crept along the first since friction has held them there \[m\].
+    /// The change that forces make to the speed of either in a sub-step \[m/s\].
+    pub(super) driven: f32,
+    /// The impulse that keeps them apart, and that of friction on the second along these directions \[N s\].
+    pub(super) pressed: f32,
+    pub(super) held_along: [f32; 2],
+    /// How far apart they are \[m\].
+    pub(super) gap: f32,
+    /// The impulse of friction, and the way crept, in the world \[N s, m\].
+    pub(super) held: Vec3,
     pub(super) crept: Vec3,
-    pub(super) crept_along: [f32; 2],
+    /// How fast they shall part \[m/s\].
+    pub(super) bounce: f32,
+    /// The speed below which they come together by their weight, not by a blow \[m/s\].
+    pub(super) calm: f32,
 }
 
 /// Points that two have at the most.
@@ -54,6 +55,8 @@ pub(super) struct Manifold {
     pub(super) count: u32,
     /// Its place in the order.
     pub(super) colour: u32,
+    /// The tick of the clock of passes at which it was gone over last.
+    pub(super) seen: u32,
     /// 1 if they have touched since before one of them fell asleep, which is fixed for the other now.
     pub(super) rested: u32,
     /// 1 if one presses on the other.
@@ -62,15 +65,15 @@ pub(super) struct Manifold {
     pub(super) loads: [Vec3; 2],
     /// From the first to the second, in the first's frame.
     pub(super) normal: Vec3,
-    /// How the scenery moves \[m/s\].
-    pub(super) surface: Vec3,
-    pub(super) elasticity: f32,
-    pub(super) friction: [f32; 2],
-    /// The normal, and two directions across it, in the world.
+    /// The normal, and two directions across it, in the world. Passes read this and what follows up to the friction in one go.
     pub(super) axis: Vec3,
     pub(super) along: [Vec3; 2],
-    /// The tick of the clock of passes at which it was gone over last.
-    pub(super) seen: u32,
+    /// How the scenery moves \[m/s\].
+    pub(super) surface: Vec3,
+    pub(super) friction: [f32; 2],
+    pub(super) elasticity: f32,
+    /// 1 if they are gone over until blows are shared.
+    pub(super) lasts: u32,
     pub(super) points: [Point; POINTS],
 }
 

@@ -202,13 +202,45 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
 
     /// Wakes who sleeps and is about to be touched, or is driven otherwise than when it fell asleep; all others who sleep stay where they are.
     fn stir(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, span: Span) {
-        sleep::look_out(kept, span);
+        if kept.bodies[1..].iter().any(Body::is_awake) {
+            sleep::look_out(kept, span);
+        }
         self.each(kept, |body, of, places| {
             if body.sleeps() && !body.lies(bodies, Made { of, places }) {
                 body.calls |= sleep::STIRRED;
             }
         });
         sleep::rouse(kept.bodies);
+    }
+
+    /// Moves those that are awake through a sub-step, and lets them do to each other what they do.
+    fn solve(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, memory: &mut [u32], span: Span) {
+        self.each(kept, |body, of, places| {
+            if !body.sleeps() {
+                body.gather(bodies, Made { of, places });
+            }
+        });
+        each_ball(bodies, kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
+        let len = kept.lists.pairs as usize;
+        let Kept { bodies: all, pairs, scenery, .. } = kept;
+        let numbers = Numbers::of(all, [&mut pairs[..len], scenery], memory);
+        let mut order = numbers.with([&mut pairs[..len], scenery]);
+        solver::begin(all, &mut order, span);
+        solver::hold_on(all, &mut order);
+        solver::keep_apart(all, &mut order, span);
+        solver::mark_pressed(all, &order);
+        all.iter_mut().for_each(|body| body.go(span.h));
+        solver::part(all, &mut order, span);
+        solver::remember(&mut order);
+        sleep::feel(all, &pairs[..len], span);
+        if bodies.substep.is_last() {
+            sleep::settle(bodies, kept);
+        }
+        self.each(kept, |body, of, places| {
+            if body.has_news() {
+                body.tell(bodies, Made { of, places });
+            }
+        });
     }
 
     /// Does something with each body, and the places of its particles.
@@ -293,43 +325,31 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         }
         let len = kept.lists.pairs as usize;
         self.stir(bodies, &mut kept, span);
-        self.each(&mut kept, |body, of, places| {
-            if !body.sleeps() {
-                body.gather(bodies, Made { of, places });
-            }
-        });
-        each_ball(bodies, &mut kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
-        let Kept { bodies: all, pairs, scenery, .. } = &mut kept;
-        let numbers = Numbers::of(all, [&mut pairs[..len], scenery], share.scratch);
-        let mut order = numbers.with([&mut pairs[..len], scenery]);
-        solver::begin(all, &mut order, span);
-        solver::hold_on(all, &mut order);
-        solver::keep_apart(all, &mut order, span);
-        solver::mark_pressed(all, &order);
-        all.iter_mut().for_each(|body| body.go(span.h));
-        solver::part(all, &mut order, span);
-        solver::remember(&mut order);
-        sleep::feel(all, &pairs[..len], span.h);
-        if bodies.substep.is_last() {
-            sleep::settle(bodies, &mut kept);
+        if kept.bodies[1..].iter().any(Body::is_awake) {
+            self.solve(bodies, &mut kept, share.scratch, span);
+            tell_balls(bodies, &kept);
+            tell::all(bodies, &kept, self.forms());
         }
-        self.each(&mut kept, |body, of, places| {
-            if body.has_news() {
-                body.tell(bodies, Made { of, places });
-            }
-        });
-        let presses = |manifold: &Manifold| manifold.presses != 0 && manifold.count > 0;
-        let scenery = &*kept.scenery;
-        let pressed =
-            |number: usize| scenery.chunks(DIRECTIONS).nth(number - 1).is_some_and(|slots| slots.iter().any(presses));
-        let first = kept.bodies.len() - kept.balls.len();
-        for (i, (ball, body)) in kept.balls.iter().zip(&kept.bodies[first..]).enumerate() {
-            if let Some(row) = ball.row(bodies) {
-                body.tell_ball(bodies, row, pressed(first + i));
-            }
-        }
-        tell::all(bodies, &kept, self.forms());
         bodies.report.contacts += kept.pairs[..len].iter().filter(|pair| presses(pair)).count() as u64;
         bodies.report.hits += kept.scenery.iter().filter(|slot| presses(slot)).count() as u64;
+    }
+}
+
+/// Tells whether one of two presses on the other.
+fn presses(manifold: &Manifold) -> bool {
+    manifold.presses != 0 && manifold.count > 0
+}
+
+/// Puts balls near bodies where they are now.
+fn tell_balls(bodies: &mut Bodies<'_>, kept: &Kept<'_>) {
+    let first = kept.first_ball();
+    let pressed = |number: usize| {
+        let slots = kept.scenery.chunks(DIRECTIONS).nth(number - 1);
+        slots.is_some_and(|slots| slots.iter().any(presses))
+    };
+    for (i, (ball, body)) in kept.balls.iter().zip(&kept.bodies[first..]).enumerate() {
+        if let Some(row) = ball.row(bodies) {
+            body.tell_ball(bodies, row, pressed(first + i));
+        }
     }
 }

@@ -5,9 +5,10 @@
 use super::body::Body;
 use super::manifold::{Manifold, POINTS, Point};
 use super::order::Order;
-use super::solver::SETTLED;
+use super::solver::{PASSES, SETTLED};
 use crate::lanes::{Eight, Kernel, LANES, Vectors, max, min, negated};
 use bytemuck::Zeroable;
+use core::mem::offset_of;
 use glam::Vec3;
 
 /// All that touch, and how they are gone over.
@@ -40,8 +41,11 @@ impl Kernel for Passes<'_, '_> {
             }
         }
         let mut clock = 0;
-        for _ in 0..self.count {
+        for pass in 0..self.count {
             let before = clock;
+            if pass == PASSES {
+                self.leave_out();
+            }
             for colour in 0..self.order.colours() {
                 clock = self.over(like, colour, clock);
             }
@@ -79,6 +83,15 @@ impl Passes<'_, '_> {
             self.go(like, &batch, clock);
         }
         clock
+    }
+
+    /// Leaves out of the passes to come who does not share in a blow.
+    fn leave_out(&mut self) {
+        for number in 0..self.order.len() {
+            if let Some(manifold) = self.order.get_mut(number).filter(|manifold| manifold.lasts == 0) {
+                manifold.seen = u32::MAX;
+            }
+        }
     }
 
     #[inline(always)]
@@ -140,10 +153,11 @@ fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// A vector and a number.
+/// Four words of a thing, as numbers.
 #[inline(always)]
-fn quad(Vec3 { x, y, z }: Vec3, w: f32) -> [f32; 4] {
-    [x, y, z, w]
+fn four<T: bytemuck::Pod>(of: &T, first: usize) -> [f32; 4] {
+    let words: &[f32] = bytemuck::cast_slice(core::slice::from_ref(of));
+    words.get(first..).and_then(|words| words.first_chunk()).copied().unwrap_or([0.0; 4])
 }
 
 /// How bodies move, while impulses change that.
@@ -159,26 +173,24 @@ struct Motion<F> {
 impl<F: Eight> Motion<F> {
     #[inline(always)]
     fn of(like: F, bodies: &[&Body; LANES]) -> Self {
-        let mut rows = [[[0.0; 4]; LANES]; 6];
-        for (lane, body) in bodies.iter().enumerate() {
-            rows[0][lane] = quad(body.velocity, body.inverse_mass);
-            rows[1][lane] = quad(body.spin, body.inverse_mass);
-            rows[2][lane] = quad(body.omega, body.inverse_mass);
-            rows[3][lane] = quad(body.inverse.x_axis, body.inverse.y_axis.x);
-            rows[4][lane] = quad(body.inverse.y_axis, body.inverse.z_axis.x);
-            rows[5][lane] = quad(body.inverse.z_axis, body.inverse_mass);
+        let mut rows = [[[0.0; 4]; LANES]; 5];
+        for (lane, &body) in bodies.iter().enumerate() {
+            for (k, row) in rows.iter_mut().enumerate() {
+                row[lane] = four(body, offset_of!(Body, inverse_mass) / 4 + 4 * k);
+            }
         }
-        let [x, y, z, inverse_mass] = like.quads_of(rows[0]);
+        let [a, b, c, d, e] = rows;
+        let [inverse_mass, x, y, z] = like.quads_of(a);
+        let [l, m, n, p] = like.quads_of(b);
+        let [q, r, xx, xy] = like.quads_of(c);
+        let [xz, yx, yy, yz] = like.quads_of(d);
+        let [zx, zy, zz, _] = like.quads_of(e);
         Self {
             inverse_mass,
             velocity: Vectors([x, y, z]),
-            spin: Vectors(like.columns_of(rows[1])),
-            omega: Vectors(like.columns_of(rows[2])),
-            inverse: [
-                Vectors(like.columns_of(rows[3])),
-                Vectors(like.columns_of(rows[4])),
-                Vectors(like.columns_of(rows[5])),
-            ],
+            spin: Vectors([l, m, n]),
+            omega: Vectors([p, q, r]),
+            inverse: [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])],
         }
     }
 
@@ -233,19 +245,17 @@ impl<F: Eight> Spot<F> {
     fn of(like: F, manifolds: &[&Manifold; LANES], i: usize, back: F) -> Self {
         let (mut rows, mut count) = ([[[0.0; 4]; LANES]; 5], [0.0; LANES]);
         for (lane, manifold) in manifolds.iter().enumerate() {
-            let point: &Point = &manifold.points[i];
             count[lane] = manifold.count as f32;
-            rows[0][lane] = quad(point.arms[0], point.wanted);
-            rows[1][lane] = quad(point.arms[1], point.mass);
-            rows[2][lane] = [point.answer[0], point.answer[1], point.crept_along[0], point.crept_along[1]];
-            rows[3][lane] = [point.rub[0], point.rub[1], point.rub[2], point.driven];
-            rows[4][lane] = [point.pressed, point.held_along[0], point.held_along[1], 0.0];
+            for (k, row) in rows.iter_mut().enumerate() {
+                row[lane] = four(&manifold.points[i], offset_of!(Point, arms) / 4 + 4 * k);
+            }
         }
-        let [ax, ay, az, wanted] = like.quads_of(rows[0]);
-        let [bx, by, bz, mass] = like.quads_of(rows[1]);
-        let [p, q, s, t] = like.quads_of(rows[2]);
-        let [uu, uv, vv, driven] = like.quads_of(rows[3]);
-        let [pressed, u, v] = like.columns_of(rows[4]);
+        let [a, b, c, d, e] = rows;
+        let [ax, ay, az, bx] = like.quads_of(a);
+        let [by, bz, wanted, mass] = like.quads_of(b);
+        let [p, q, s, t] = like.quads_of(c);
+        let [uu, uv, vv, driven] = like.quads_of(d);
+        let [pressed, u, v] = like.columns_of(e);
         Self {
             is_there: like.of(count).simd_gt(like.all(i as f32)),
             arms: [Vectors([ax, ay, az]), Vectors([bx, by, bz])],
@@ -277,20 +287,22 @@ impl<F: Eight> Touch<F> {
     #[inline(always)]
     fn of(like: F, manifolds: &[&Manifold; LANES], bodies: &[[&Body; LANES]; 2], back: f32) -> Self {
         let mut rows = [[[0.0; 4]; LANES]; 4];
-        for (lane, manifold) in manifolds.iter().enumerate() {
-            rows[0][lane] = quad(manifold.axis, manifold.friction[0]);
-            rows[1][lane] = quad(manifold.along[0], manifold.friction[1]);
-            rows[2][lane] = quad(manifold.along[1], 0.0);
-            rows[3][lane] = quad(manifold.surface, 0.0);
+        for (lane, &manifold) in manifolds.iter().enumerate() {
+            for (k, row) in rows.iter_mut().enumerate() {
+                row[lane] = four(manifold, offset_of!(Manifold, axis) / 4 + 4 * k);
+            }
         }
-        let [x, y, z, sticks] = like.quads_of(rows[0]);
-        let [ux, uy, uz, slides] = like.quads_of(rows[1]);
+        let [a, b, c, d] = rows;
+        let [x, y, z, ux] = like.quads_of(a);
+        let [uy, uz, vx, vy] = like.quads_of(b);
+        let [vz, sx, sy, sz] = like.quads_of(c);
+        let [sticks, slides, ..] = like.quads_of(d);
         let back = like.all(back);
         Self {
             motions: [Motion::of(like, &bodies[0]), Motion::of(like, &bodies[1])],
             normal: Vectors([x, y, z]),
-            along: [Vectors([ux, uy, uz]), Vectors(like.columns_of(rows[2]))],
-            surface: Vectors(like.columns_of(rows[3])),
+            along: [Vectors([ux, uy, uz]), Vectors([vx, vy, vz])],
+            surface: Vectors([sx, sy, sz]),
             friction: [sticks, slides],
             spots: [
                 Spot::of(like, manifolds, 0, back),

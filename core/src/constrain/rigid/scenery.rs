@@ -38,22 +38,24 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
         body.spare -= way;
         return;
     }
-    let Ok(&before) = <&[Manifold; DIRECTIONS]>::try_from(&*slots) else { return };
-    slots.iter_mut().for_each(|slot| slot.count = 0);
     let around = |reach: f32| {
         let (middle, reach) = (body.middle(), reach + length(body.half));
         Aabb { min: middle - reach, max: middle + reach }
     };
     let free = 0.5 * body.radius;
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around(free)) {
+        slots.iter_mut().for_each(|slot| slot.count = 0);
         body.spare = free - way;
         return;
     }
     let reach = 2.0 * (small + way);
     if !bodies.colliders.may_touch(&around(reach)) {
+        slots.iter_mut().for_each(|slot| slot.count = 0);
         body.spare = small;
         return;
     }
+    let Ok(&before) = <&[Manifold; DIRECTIONS]>::try_from(&*slots) else { return };
+    slots.iter_mut().for_each(|slot| slot.count = 0);
     let mut visit = Visit { body, form, number, slots, before, reach };
     (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
     visit.scenery(bodies);
@@ -192,5 +194,5 @@ impl Visit<'_> {
 
 /// A bound on how far a body goes in a time \[m\].
 pub(super) fn leash(body: &Body, seconds: f32) -> f32 {
-    0.25 * max(min(body.radius, f32::MAX), 0.0) + 0.25 * body.speed() * seconds
+    0.25 * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
 }

@@ -13,7 +13,7 @@ use super::lists::Kept;
 use super::manifold::Manifold;
 use super::scenery::{self, DIRECTIONS};
 use super::solver::{self, Span};
-use crate::math::{dot, length, sqrt};
+use crate::math::{dot, length, max, sqrt};
 use glam::Vec3;
 
 /// How long bodies lie still before they sleep: in units of the time √(r/a) in which one falls half its size r.
@@ -26,6 +26,8 @@ const ALIKE: f32 = 1e-3;
 /// The share by which what presses on a body may change before that wakes it: as much as impulses that are sought in a few passes do.
 const PRESSED_ALIKE: f32 = 0.5;
 
+/// A blow that would wake bodies more contacts away than this wakes all that sleep together.
+const RINGS: f32 = 64.0;
 /// The share of the time after which bodies sleep for which one is awake that has been freed, if it stays where it is.
 const TRIAL: f32 = 0.25;
 /// It is to be freed.
@@ -204,8 +206,8 @@ pub(super) fn look_around(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     wake_called(kept.bodies);
 }
 
-/// Wakes those whom one that is awake is about to touch in the sub-step, unless it has lain against them since before they slept and lies still:
-/// with those that sleep with them where it is a blow, else alone.
+/// Wakes those whom one that is awake is about to touch in the sub-step, unless it has lain against them since before they slept and lies still.
+/// Where it is a blow, those around wake as well: so many contacts away as it is times faster than what forces do in a step, and it times heavier.
 pub(super) fn look_out(kept: &mut Kept<'_>, span: Span) {
     let all = &mut *kept.bodies;
     for pair in &mut kept.pairs[..kept.lists.pairs as usize] {
@@ -220,24 +222,63 @@ pub(super) fn look_out(kept: &mut Kept<'_>, span: Span) {
                 continue;
             }
             let Some(closing) = solver::meeting(all, pair, span.h) else { continue };
-            if closing <= length(all[other].drive[0]) * span.step {
+            let (calm, times) =
+                (length(all[other].drive[0]) * span.step, all[asleep].inverse_mass / all[other].inverse_mass);
+            if closing <= calm {
                 all[asleep].calls |= FREED;
             } else {
-                call(all, asleep);
+                strike(all, asleep, 1.0 + closing / calm * max(times, 1.0));
             }
         }
     }
     free(all);
+    wake_around(all, &kept.pairs[..kept.lists.pairs as usize]);
     wake_called(all);
+}
+
+/// Says that those wake who are so many contacts or fewer from one that is struck.
+fn strike(all: &mut [Body], number: usize, rings: f32) {
+    if rings <= RINGS {
+        all[number].rings = all[number].rings.max(rings as u32);
+    } else {
+        call(all, number);
+    }
+}
+
+/// Wakes those who are so many contacts or fewer from one that is struck.
+fn wake_around(all: &mut [Body], pairs: &[Manifold]) {
+    if all.iter().all(|body| body.rings == 0) {
+        return;
+    }
+    for _ in 0..RINGS as u32 {
+        let mut is_changed = false;
+        for pair in pairs.iter().filter(|pair| pair.count > 0) {
+            let [a, b] = pair.bodies.map(|number| number as usize);
+            let next = all[a].rings.max(all[b].rings).saturating_sub(1);
+            for number in [a, b] {
+                if all[number].sleeps() && all[number].rings < next {
+                    all[number].rings = next;
+                    is_changed = true;
+                }
+            }
+        }
+        if !is_changed {
+            break;
+        }
+    }
+    for body in all.iter_mut().filter(|body| body.rings != 0) {
+        body.rings = 0;
+        body.wake();
+    }
 }
 
 /// At the end of a sub-step: wakes with the next one who sleeps with those that have been pushed, or are pressed on otherwise than when they fell
 /// asleep.
-pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], h: f32) {
+pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], span: Span) {
     for number in 1..all.len() {
         let body = &all[number];
         if body.sleeps() && (body.velocity != Vec3::ZERO || body.spin != Vec3::ZERO) {
-            call(all, number);
+            strike(all, number, 1.0 + body.speed() / (length(body.drive[0]) * span.step));
         }
     }
     for pair in pairs.iter().filter(|pair| pair.rested != 0 && pair.count > 0) {
@@ -246,7 +287,7 @@ pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], h: f32) {
             continue;
         }
         let side = usize::from(b.sleeps());
-        let (body, [force, torque]) = ([a, b][side], pair.load(h));
+        let (body, [force, torque]) = ([a, b][side], pair.load(span.h));
         let most = PRESSED_ALIKE * (length(body.drive[0]) + length(pair.loads[0]) * body.inverse_mass);
         let [force, torque] = [force - pair.loads[0], torque - pair.loads[1]].map(|by| length(by) * body.inverse_mass);
         if !(force <= most && torque <= most * body.radius) {
@@ -254,6 +295,7 @@ pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], h: f32) {
         }
     }
     free(all);
+    wake_around(all, pairs);
     wake_called(all);
 }
 

@@ -12,7 +12,7 @@ use glam::Vec3;
 /// Passes at the most where anything bounces, for the points of bodies that touch share one blow.
 const BLOWS: u32 = 12;
 /// Passes at the most where nothing does.
-const PASSES: u32 = 4;
+pub(super) const PASSES: u32 = 4;
 /// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
 /// by in a sub-step, or of the speed that they shall part with.
 pub(super) const SETTLED: f32 = 1e-2;
@@ -88,6 +88,7 @@ pub(super) fn mark_pressed(bodies: &mut [Body], order: &Order<'_>) {
 /// Lets all part as they shall, when they have gone: what overlaps is no reason to, elasticity is.
 pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
     let mut bounces = false;
+    bodies.iter_mut().for_each(|body| body.bounces = 0);
     for number in 0..order.len() {
         let Some(manifold) = order.get_mut(number) else { continue };
         let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
@@ -101,7 +102,15 @@ pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
                 let is_calm = closing <= point.calm;
                 point.wanted = if is_calm { -point.gap / span.h } else { f32::NEG_INFINITY };
             }
-            bounces |= point.wanted > 0.0;
+            if point.wanted > 0.0 {
+                bounces = true;
+                pair.bodies.iter_mut().for_each(|body| body.bounces = u32::from(body.moves()));
+            }
+        }
+    }
+    for number in 0..order.len() {
+        if let Some(manifold) = order.get_mut(number) {
+            manifold.lasts = manifold.bodies.iter().map(|&number| bodies[number as usize].bounces).fold(0, u32::max);
         }
     }
     run(Passes { bodies, order, count: if bounces { BLOWS } else { PASSES }, back: 0.0 });
@@ -179,19 +188,18 @@ impl<'a> Pair<'a> {
         let (normal, [a, b], gives) = (self.normal, &self.bodies, self.gives);
         let along = [across(normal), normal.cross(across(normal))];
         *self.along = along;
+        let directions = [along[0], along[1], normal];
         for point in &mut self.points[..self.count] {
-            let [one, other] = point.arms;
-            let answer = |direction: Vec3| match gives {
-                [true, true] => a.answer(one, direction) + b.answer(other, direction),
-                [false, _] => b.answer(other, direction),
-                [_, false] => a.answer(one, direction),
-            };
-            let [u, v] = along.map(answer);
-            point.rub = [dot(u, along[0]), 2.0 * dot(u, along[1]), dot(v, along[1])];
-            let answer = answer(normal);
-            point.answer = along.map(|along| dot(answer, along));
+            let mut sum = [0.0; 6];
+            for side in [0, 1].into_iter().filter(|&side| gives[side]) {
+                let yields = [a, b][side].yields(point.arms[side], directions);
+                sum.iter_mut().zip(yields).for_each(|(sum, yields)| *sum += yields);
+            }
+            let [uu, vv, nn, uv, un, vn] = sum;
+            point.rub = [uu, 2.0 * uv, vv];
+            point.answer = [un, vn];
             point.crept_along = along.map(|along| dot(point.crept, along));
-            point.mass = 1.0 / dot(answer, normal);
+            point.mass = 1.0 / nn;
         }
     }
 
