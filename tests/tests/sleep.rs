@@ -76,6 +76,60 @@ fn who_is_hit_asleep_is_pushed_as_if_it_were_awake() {
     assert!((a - c).length() < 0.03 * a.length() && (b - d).length() < 0.03 * b.length(), "{ways:?}");
 }
 
+/// A blow to the first of a row that has fallen asleep goes through to the last, as through one that has just been put there.
+#[test]
+fn a_row_that_is_struck_asleep_moves_as_if_it_were_awake() {
+    let ways = [0, 180].map(|frames| {
+        let at = |x: f32, i: u32| RigidBox::new(Vec3::splat(0.1), Vec3::new(x, 0.1, 0.0), 8 * i);
+        let boxes = [at(-0.5, 0), at(0.0, 1), at(0.2, 2), at(0.4, 3), at(0.6, 4), at(0.8, 5)];
+        let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(PART)).collect();
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.1));
+        let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+        let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        go(&mut system, &scene, frames);
+        go(&mut system, &Scene { forces: &(DOWN, Kick), ..scene }, 6);
+        go(&mut system, &scene, 114);
+        bodies.boxes.map(|of| mean(&system, &of).0 - of.center)
+    });
+    for (a, b) in ways[0].iter().zip(&ways[1]) {
+        assert!(a.x > 0.05 && (*a - *b).length() < 0.03 * ways[0][0].length(), "{ways:?}");
+    }
+}
+
+/// A box that sleeps over an edge tips when another comes to lie on it, however gently, by which both have their weight beyond the edge.
+#[test]
+fn what_is_loaded_asleep_tips() {
+    let slab = Cuboid { min: Vec3::new(-1.0, -0.2, -1.0), max: Vec3::new(0.03, 0.0, 1.0) };
+    for frames in [0, 120] {
+        let boxes = [(0.0, 0.1), (0.09, 0.301)].map(|(x, y)| RigidBox::new(Vec3::splat(0.1), Vec3::new(x, y, 0.0), 0));
+        let boxes = [boxes[0], RigidBox { first: 8, ..boxes[1] }];
+        let start: Vec<_> = boxes.iter().flat_map(|of| of.solid(PART)).collect();
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.8));
+        let parts = Scene { start: &start, colliders: &slab, materials: &materials, ..Scene::EMPTY };
+        let scene = Scene { forces: &DOWN, constraints: &bodies, substeps: 10, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        go(&mut system, &Scene { forces: &(DOWN, Lift), ..scene }, frames);
+        assert!(mean(&system, &boxes[1]).0.y > 0.3, "{frames}");
+        go(&mut system, &scene, 120);
+        assert!(mean(&system, &boxes[0]).0.y < 0.0, "{frames}: {}", mean(&system, &boxes[0]).0);
+    }
+}
+
+/// It carries what is above 0.2 m.
+#[derive(Debug)]
+struct Lift;
+
+impl pointmass::Force for Lift {
+    fn add_to(&self, state: &pointmass::force::State<'_>, rows: core::ops::Range<usize>, forces: &mut [Vec3]) {
+        for (row, force) in rows.zip(forces) {
+            if state.position[row].y > 0.2 {
+                *force += Vec3::Y * 9.81 * state.mass[row];
+            }
+        }
+    }
+}
+
 /// It pushes what is left of −0.15 m along x by 30 m/s².
 #[derive(Debug)]
 struct Kick;

@@ -48,7 +48,7 @@ pub(super) struct Body {
     pub(super) drift: Vec3,
     /// The rates at which forces changed its velocity and spin when it was awake last \[m/s², m²/s²\].
     pub(super) drive: [Vec3; 2],
-    /// 1 if it sleeps; 1 if those who sleep with it are to wake; the least number among them.
+    /// 1 if it sleeps; what is called out to it; the least number among those that sleep with it.
     pub(super) asleep: u32,
     pub(super) calls: u32,
     pub(super) island: u32,

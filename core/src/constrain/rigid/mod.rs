@@ -53,10 +53,12 @@ use solver::Span;
 /// Friction is Coulomb's. All impulses act on both at one place, so that linear and angular momentum are kept to rounding. Points are gone over until
 /// what is left to change is a hundredth of what forces change in a sub-step, a few times at the most.
 ///
-/// Bodies that lie still sleep: they stay where they are, at rest, and cost little. Those near each other fall asleep together, when for 5 √(r/a), r being
-/// half the size of one and a what forces accelerate it by, none has gone farther than 4 % of its least half side. They wake together when a body or
-/// ball that moves is about to touch one of them, when forces on one change by a thousandth, when the scenery that one touches or has near it moves,
-/// comes or goes, and when any body loses a particle. What creeps more slowly than that stops. Without forces nothing sleeps.
+/// Bodies that lie still sleep: they stay where they are, at rest, and cost little. One falls asleep when for 5 √(r/a), r being half its size and a
+/// what forces accelerate it by, neither it nor any that it touches has gone farther than 4 % of its least half side; who is awake and lies still on
+/// one that sleeps finds it fixed. It wakes alone when what presses on it changes by half of that and of its weight, or one that moves comes to lie
+/// against it. A blow wakes those around as well: as many contacts away as it is times faster than what forces do in a step, and that times more if it is
+/// heavier. All that sleep and touch wake together when forces on one change by a thousandth, and when the scenery that one touches or has near
+/// it moves, comes or goes; all bodies wake when any loses a particle. What creeps more slowly than that stops. Without forces nothing sleeps.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
 /// touching pairs a body, two for each ball and three directions of the scenery; what finds none is counted (`caps.contacts`).

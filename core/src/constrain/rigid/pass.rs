@@ -105,12 +105,12 @@ impl Passes<'_, '_> {
         let (nobody, nothing) = (Body::zeroed(), Manifold::zeroed());
         let mut manifolds = [&nothing; LANES];
         let mut bodies = [[&nobody; LANES]; 2];
-        for lane in 0..batch.count.min(LANES) {
-            let Some(manifold) = self.order.get(batch.numbers[lane]) else { continue };
+        for (lane, &number) in batch.numbers.iter().enumerate().take(batch.count) {
+            let Some(manifold) = self.order.get(number) else { continue };
             manifolds[lane] = manifold;
-            for side in 0..2 {
-                let body = self.bodies.get(manifold.bodies[side] as usize).filter(|body| body.gives(manifold.rested));
-                bodies[side][lane] = body.unwrap_or(&nobody);
+            for (bodies, &number) in bodies.iter_mut().zip(&manifold.bodies) {
+                let body = self.bodies.get(number as usize).filter(|body| body.gives(manifold.rested));
+                bodies[lane] = body.unwrap_or(&nobody);
             }
         }
         let mut touch = Touch::of(like, &manifolds, &bodies, self.back);
@@ -118,31 +118,34 @@ impl Passes<'_, '_> {
         for i in 0..POINTS {
             touch.press(i);
         }
+        self.tell(batch, &touch, clock);
+    }
+
+    /// Writes down how the bodies of a batch move now, and what presses on them.
+    #[inline(always)]
+    fn tell<F: Eight>(&mut self, batch: &Batch, touch: &Touch<F>, clock: u32) {
         let changed = touch.is_changed.to_bitmask();
-        for side in 0..2 {
-            let motion = &touch.motions[side];
+        for (side, motion) in touch.motions.iter().enumerate() {
             let (velocity, spin, omega) = (motion.velocity.rows(), motion.spin.rows(), motion.omega.rows());
-            for lane in 0..batch.count.min(LANES) {
-                let Some(manifold) = self.order.get(batch.numbers[lane]) else { continue };
-                let Some(body) = self.bodies.get_mut(manifold.bodies[side] as usize) else { continue };
-                if body.gives(manifold.rested) {
-                    body.velocity = vector(velocity[lane]);
-                    body.spin = vector(spin[lane]);
-                    body.omega = vector(omega[lane]);
-                    if changed >> lane & 1 != 0 {
-                        body.changed = clock;
-                    }
+            for (lane, &number) in batch.numbers.iter().enumerate().take(batch.count) {
+                let Some(manifold) = self.order.get(number) else { continue };
+                let body = self.bodies.get_mut(manifold.bodies[side] as usize);
+                let Some(body) = body.filter(|body| body.gives(manifold.rested)) else { continue };
+                body.velocity = vector(velocity[lane]);
+                body.spin = vector(spin[lane]);
+                body.omega = vector(omega[lane]);
+                if changed >> lane & 1 != 0 {
+                    body.changed = clock;
                 }
             }
         }
-        for i in 0..POINTS {
-            let spot = &touch.spots[i];
+        for (i, spot) in touch.spots.iter().enumerate() {
             let forces = F::vectors_of([spot.pressed, spot.held[0], spot.held[1]]);
-            for lane in 0..batch.count.min(LANES) {
-                let Some(manifold) = self.order.get_mut(batch.numbers[lane]) else { continue };
+            for (forces, &number) in forces.iter().zip(&batch.numbers).take(batch.count) {
+                let Some(manifold) = self.order.get_mut(number) else { continue };
                 manifold.seen = clock;
                 let point = &mut manifold.points[i];
-                [point.pressed, point.held_along[0], point.held_along[1], _] = forces[lane];
+                [point.pressed, point.held_along[0], point.held_along[1], _] = *forces;
             }
         }
     }
