@@ -4,10 +4,14 @@
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
 mod eight;
+#[cfg(any(test, target_os = "none"))]
+mod one;
 mod vectors;
 
-pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
+pub(crate) use eight::{ABREAST, Eight, Kernel, max, min, negated, not, run, run_abreast, widest};
 use glam::Vec3;
+#[cfg(any(test, target_os = "none"))]
+pub(crate) use one::One;
 pub(crate) use vectors::Vectors;
 use wide::{f32x4, f32x8};
 

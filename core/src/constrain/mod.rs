@@ -18,6 +18,7 @@ mod sheet_contacts;
 mod shell;
 mod strand;
 mod turn;
+mod union;
 
 pub use attach::Attach;
 pub use bodies::{Around, Bodies, Near, Share, Substep};

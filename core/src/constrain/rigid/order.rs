@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::manifold::Manifold;
 use super::scenery::DIRECTIONS;
-use crate::lanes::LANES;
+use crate::lanes::ABREAST;
 use core::ops::Range;
 
 /// Colours of pairs: those of one share no moving body. Those that find none of the others have the last, one after the other.
@@ -114,7 +114,7 @@ impl Order<'_> {
 
     /// How many of them may go side by side.
     pub(super) fn side_by_side(&self, colour: usize) -> usize {
-        if colour + 1 == COLOURS { 1 } else { LANES }
+        if colour + 1 == COLOURS { 1 } else { ABREAST }
     }
 
     #[inline(always)]

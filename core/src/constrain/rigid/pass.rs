@@ -32,6 +32,8 @@ impl Kernel for Passes<'_, '_> {
     /// Goes over all so many times at the most, and over those again whose bodies have been changed since.
     #[inline(always)]
     fn run<F: Eight>(mut self, like: F) {
+        // A lane that stands for nobody.
+        let (nobody, nothing) = (Body::zeroed(), Manifold::zeroed());
         for body in self.bodies.iter_mut() {
             body.changed = 0;
         }
@@ -47,7 +49,7 @@ impl Kernel for Passes<'_, '_> {
                 self.leave_out();
             }
             for colour in 0..self.order.colours() {
-                clock = self.over(like, colour, clock);
+                clock = self.over(like, (&nobody, &nothing), colour, clock);
             }
             if clock == before {
                 return;
@@ -59,7 +61,7 @@ impl Kernel for Passes<'_, '_> {
 impl Passes<'_, '_> {
     /// Goes over those of one colour that have something left to do.
     #[inline(always)]
-    fn over<F: Eight>(&mut self, like: F, colour: usize, mut clock: u32) -> u32 {
+    fn over<F: Eight>(&mut self, like: F, idle: (&Body, &Manifold), colour: usize, mut clock: u32) -> u32 {
         let mut batch = Batch { numbers: [0; LANES], count: 0 };
         let range = self.order.range(colour);
         let room = self.order.side_by_side(colour);
@@ -74,13 +76,13 @@ impl Passes<'_, '_> {
             batch.count += 1;
             if batch.count == room {
                 clock += 1;
-                self.go(like, &batch, clock);
+                self.go(like, idle, &batch, clock);
                 batch.count = 0;
             }
         }
         if batch.count > 0 {
             clock += 1;
-            self.go(like, &batch, clock);
+            self.go(like, idle, &batch, clock);
         }
         clock
     }
@@ -101,16 +103,15 @@ impl Passes<'_, '_> {
 
     /// Goes over the points of a batch once, and notes at which tick of the clock that was and whether it has changed the bodies.
     #[inline(always)]
-    fn go<F: Eight>(&mut self, like: F, batch: &Batch, clock: u32) {
-        let (nobody, nothing) = (Body::zeroed(), Manifold::zeroed());
-        let mut manifolds = [&nothing; LANES];
-        let mut bodies = [[&nobody; LANES]; 2];
+    fn go<F: Eight>(&mut self, like: F, (nobody, nothing): (&Body, &Manifold), batch: &Batch, clock: u32) {
+        let mut manifolds = [nothing; LANES];
+        let mut bodies = [[nobody; LANES]; 2];
         for (lane, &number) in batch.numbers.iter().enumerate().take(batch.count) {
             let Some(manifold) = self.order.get(number) else { continue };
             manifolds[lane] = manifold;
             for (bodies, &number) in bodies.iter_mut().zip(&manifold.bodies) {
                 let body = self.bodies.get(number as usize).filter(|body| body.gives(manifold.rested));
-                bodies[lane] = body.unwrap_or(&nobody);
+                bodies[lane] = body.unwrap_or(nobody);
             }
         }
         let mut touch = Touch::of(like, &manifolds, &bodies, self.back);

@@ -7,6 +7,7 @@
 //! when a particle of any body has died. In a scene without forces nothing sleeps, nor does what touches a ball.
 
 use super::super::Bodies;
+use super::super::union::{Bound, root, unite};
 use super::RigidBox;
 use super::body::{Body, Made};
 use super::lists::Kept;
@@ -46,6 +47,12 @@ pub(super) const STIRRED: u32 = 2;
 const ASLEEP: u32 = 1;
 /// It has just fallen asleep: its particles have to be told.
 const DROPS: u32 = 2;
+
+impl Bound for Body {
+    fn bound(&mut self) -> &mut u32 {
+        &mut self.island
+    }
+}
 
 impl Body {
     /// Tells whether it moves and does not sleep.
@@ -359,21 +366,10 @@ fn join(all: &mut [Body], pairs: &mut [Manifold], h: f32) {
             (pair.rested, pair.loads) = (1, pair.load(h));
         }
         if all[a].sleeps() && all[b].sleeps() {
-            let [a, b] = [a, b].map(|number| root(all, number));
-            all[a.max(b)].island = a.min(b) as u32;
+            unite(all, a as u32, b as u32);
         }
     }
     for number in 1..all.len() {
-        all[number].island = root(all, number) as u32;
+        all[number].island = root(all, number as u32);
     }
-}
-
-/// The least number among those that a body is joined with so far.
-fn root(all: &mut [Body], mut number: usize) -> usize {
-    while all[number].island as usize != number {
-        let next = all[all[number].island as usize].island;
-        all[number].island = next;
-        number = next as usize;
-    }
-    number
 }

@@ -5,7 +5,7 @@ use super::manifold::{Manifold, POINTS, Point, middle};
 use super::order::Order;
 use super::pass::Passes;
 use crate::collide::RESTING;
-use crate::lanes::run;
+use crate::lanes::run_abreast;
 use crate::math::{aside, dot, length, max, sqrt};
 use glam::Vec3;
 
@@ -72,7 +72,7 @@ pub(super) fn hold_on(bodies: &mut [Body], order: &mut Order<'_>) {
 
 /// Keeps all from passing into each other within the sub-step, by velocities: before they go.
 pub(super) fn keep_apart(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
-    run(Passes { bodies, order, count: PASSES, back: RECOVERY / span.h });
+    run_abreast(Passes { bodies, order, count: PASSES, back: RECOVERY / span.h });
 }
 
 /// Notes what presses on whom.
@@ -113,7 +113,7 @@ pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
             manifold.lasts = manifold.bodies.iter().map(|&number| bodies[number as usize].bounces).fold(0, u32::max);
         }
     }
-    run(Passes { bodies, order, count: if bounces { BLOWS } else { PASSES }, back: 0.0 });
+    run_abreast(Passes { bodies, order, count: if bounces { BLOWS } else { PASSES }, back: 0.0 });
 }
 
 /// Notes the friction at all points, for the next sub-step.

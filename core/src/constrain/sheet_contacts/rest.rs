@@ -2,6 +2,7 @@
 //! follow each other.
 
 use super::super::Bodies;
+pub(super) use super::super::union::{root, unite};
 use super::SheetContacts;
 use crate::math::{length, max, min};
 use crate::memory::take;
@@ -207,19 +208,4 @@ fn halve(faces: &mut [Face], middle: usize, center: impl Fn(&Face) -> Vec3) {
     };
     let along = |face: &Face| center(face).to_array()[axis];
     faces.select_nth_unstable_by(middle, |a, b| along(a).total_cmp(&along(b)).then(a.corners.cmp(&b.corners)));
-}
-
-/// The lowest particle of those that are bound to each other, each being bound to a lower one.
-pub(super) fn root(bound: &mut [u32], mut of: u32) -> u32 {
-    while bound[of as usize] != of {
-        bound[of as usize] = bound[bound[of as usize] as usize];
-        of = bound[of as usize];
-    }
-    of
-}
-
-/// Binds two, and so all that are bound to them.
-pub(super) fn unite(bound: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(bound, a), root(bound, b));
-    bound[a.max(b) as usize] = a.min(b);
 }
