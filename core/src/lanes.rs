@@ -8,7 +8,7 @@ mod eight;
 mod one;
 mod vectors;
 
-pub(crate) use eight::{ABREAST, Eight, Kernel, max, min, negated, not, run, run_abreast, widest};
+pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
 use glam::Vec3;
 #[cfg(any(test, target_os = "none"))]
 pub(crate) use one::One;
@@ -21,6 +21,18 @@ pub(crate) const LANES: usize = 8;
 /// Where a lane that stands for nothing is put, without weight: so far that whatever is divided by its distance is zero,
 /// and so near that its square is a number.
 pub(crate) const NOWHERE: f32 = 1e19;
+
+/// How many go side by side where eight may: on chips, where lanes would be taken one after the other, one.
+pub(crate) const ABREAST: usize = if cfg!(target_os = "none") { 1 } else { LANES };
+
+/// Runs a kernel that goes over so many at a time in the first lanes.
+#[inline(always)]
+pub(crate) fn run_abreast<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_os = "none")]
+    return kernel.run(One(0.0));
+    #[cfg(not(target_os = "none"))]
+    run(kernel)
+}
 
 /// Square roots, correctly rounded on every target.
 #[inline(always)]

@@ -102,18 +102,6 @@ pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(wide::f32x8::ZERO)
 }
 
-/// How many go side by side where eight may: on chips, where lanes would be taken one after the other, one.
-pub(crate) const ABREAST: usize = if cfg!(target_os = "none") { 1 } else { LANES };
-
-/// Runs a kernel that goes over so many at a time in the first lanes.
-#[inline(always)]
-pub(crate) fn run_abreast<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(target_os = "none")]
-    return kernel.run(super::One(0.0));
-    #[cfg(not(target_os = "none"))]
-    run(kernel)
-}
-
 /// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
 #[inline(always)]
 pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
@@ -456,7 +444,7 @@ mod tests {
             let same = |one: [f32; LANES], other: [f32; LANES]| one.map(f32::to_bits) == other.map(f32::to_bits);
             assert!(same(one.0[21], one.0[23]) && same(one.0[22], one.0[24]) && same(one.0[20], one.0[25]));
             let alone = Everything(lanes).run(One(0.0));
-            // What one lane does; not what moves numbers from one to the other, and minima of what is no number.
+            // What one lane does.
             for nth in (0..15).chain([18]) {
                 let (a, b) = (one.0[nth][0], alone.0[nth][0]);
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");
