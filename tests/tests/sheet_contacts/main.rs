@@ -3,6 +3,7 @@
 mod cloths;
 mod curved;
 mod friction;
+mod lists;
 
 use cloths::{Cloths, G, cotton, crosses, square};
 use pointmass::constrain::SheetContacts;

@@ -95,10 +95,12 @@ fn along(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// How far apart two things are along a direction, from the second to the first \[m\].
-fn apart(kind: Kind, all: &[Vec3; 4], direction: Vec3) -> f32 {
-    let (first, second) = all.split_at(kind.split());
-    let low = first.iter().fold(f32::INFINITY, |low, &x| min(dot(x, direction), low));
-    low - second.iter().fold(f32::NEG_INFINITY, |high, &x| max(dot(x, direction), high))
+pub(super) fn apart(kind: Kind, [a, b, c, d]: &[Vec3; 4], direction: Vec3) -> f32 {
+    let [a, b, c, d] = [dot(*a, direction), dot(*b, direction), dot(*c, direction), dot(*d, direction)];
+    match kind {
+        Kind::PointTriangle => a - max(max(b, c), d),
+        Kind::EdgeEdge => min(a, b) - max(c, d),
+    }
 }
 
 /// Two things that come near each other.
@@ -112,8 +114,8 @@ pub(super) struct Meeting {
     pub(super) meets: bool,
 }
 
-/// Steps along the way at the most.
-const STEPS: u32 = 24;
+/// Steps along the way at the most: as many as it takes past each other at a distance of which the way is 50 times as long.
+const STEPS: u32 = 64;
 
 impl Meeting {
     /// The encounter of two things whose corners go straight from the first places to the second ones, in which their first

@@ -3,6 +3,7 @@
 use super::super::contacts::{Grip, Touch};
 use super::super::{Bodies, Demand, Words};
 use super::closest::Kind;
+use super::near::{self, Near};
 use super::rest::{KEPT, LEARNING};
 use super::tree::{self, Tree};
 use crate::memory::{take, take_vectors};
@@ -105,6 +106,8 @@ pub(super) struct Kept<'m> {
     pub(super) followed: &'m mut [u32],
     pub(super) contacts: &'m mut [Contact],
     pub(super) surfaces: &'m mut [Surface],
+    /// Who may come near whom; none where too little memory is lent for that.
+    pub(super) near: Option<Near<'m>>,
 }
 
 /// What a sub-step is worked out in.
@@ -123,6 +126,8 @@ pub(super) struct Work<'m> {
     pub(super) held: &'m mut [u32],
     /// The contacts of before.
     pub(super) old: &'m mut [Contact],
+    /// How far each has left the way that lists expect \[m\].
+    pub(super) strays: &'m mut [f32],
     pub(super) tree: Tree<'m>,
 }
 
@@ -143,9 +148,10 @@ pub(super) fn demand([particles, triangles]: [usize; 2]) -> Demand {
     let contacts = each(contacts, words::<Contact>());
     let surfaces = each(surfaces, words::<Surface>());
     let kept = sum([KEPT[0], each(particles, KEPT[1]), each(triangles, KEPT[2])]);
-    let step = sum([words::<Counts>().saturating_add(each(particles, 7)), contacts, surfaces]);
+    let lasting = words::<Counts>().saturating_add(each(particles, 7));
+    let step = sum([lasting.saturating_add(near::words(particles)), contacts, surfaces]);
     let learning = sum([0, each(particles, LEARNING[0]), each(triangles, LEARNING[1])]);
-    let working = sum([each(particles, 18), contacts, tree::words(triangles)]);
+    let working = sum([each(particles, 19), contacts, tree::words([particles, triangles])]);
     Demand { kept, step, scratch: learning.or(working), finds_near: false }
 }
 
@@ -162,7 +168,8 @@ impl<'m> Kept<'m> {
         let [contacts, surfaces] = room(particles);
         let contacts = bytemuck::try_cast_slice_mut(take(&mut rest, contacts * words::<Contact>())).ok()?;
         let surfaces = bytemuck::try_cast_slice_mut(take(&mut rest, surfaces * words::<Surface>())).ok()?;
-        Some(Self { counts, rows, weight, pushed, clear, followed, contacts, surfaces })
+        let near = Near::of(rest, particles);
+        Some(Self { counts, rows, weight, pushed, clear, followed, contacts, surfaces, near })
     }
 
     /// The contacts of now with each other, and those with scenery.
@@ -177,11 +184,11 @@ impl<'m> Work<'m> {
     pub(super) fn of(scratch: &'m mut [u32], [particles, triangles]: [usize; 2]) -> Option<Self> {
         let mut rest = scratch;
         let [now, from, arm, moved, searched] = core::array::from_fn(|_| take_vectors(&mut rest, particles));
-        let room_of = bytemuck::cast_slice_mut(take(&mut rest, particles));
+        let [room_of, strays] = core::array::from_fn(|_| bytemuck::cast_slice_mut(take(&mut rest, particles)));
         let [zone, held] = core::array::from_fn(|_| take(&mut rest, particles));
         let old = take(&mut rest, room(particles)[0] * words::<Contact>());
         let old = bytemuck::try_cast_slice_mut(old).ok()?;
-        if rest.len() < tree::words(triangles) {
+        if rest.len() < tree::words([particles, triangles]) {
             return None;
         }
         Some(Self {
@@ -194,7 +201,8 @@ impl<'m> Work<'m> {
             zone,
             held,
             old,
-            tree: Tree::of(&mut rest, triangles),
+            strays,
+            tree: Tree::of(&mut rest, [particles, triangles]),
         })
     }
 

@@ -2,6 +2,8 @@
 
 mod closest;
 mod lists;
+mod near;
+mod pair;
 mod rest;
 mod scenery;
 mod search;

@@ -78,6 +78,12 @@ impl<'m> Rest<'m> {
         self.facts.known != 0
     }
 
+    /// Half the thickness of a triangle where it is thickest.
+    pub(super) fn widest(&self, face: &Face) -> f32 {
+        let half = |corner: u32| self.half.get(corner as usize).copied().unwrap_or(0.0);
+        face.corners.iter().fold(0.0, |most, &corner| max(half(corner), most))
+    }
+
     /// Takes all that from where the particles are.
     pub(super) fn learn<P, T, W>(&mut self, of: &SheetContacts<P, T, W>, bodies: &Bodies<'_>, scratch: &mut [u32])
     where

@@ -18,6 +18,9 @@ const SWEEPS: u32 = 4;
 /// less than half its distance to all that it is not part of (Chen et al., "Offset Geometric Contact", SIGGRAPH 2025, section 3.3).
 pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) {
     kept.counts.contacts = 0;
+    if let Some(near) = kept.near.as_mut().filter(|_| bodies.substep.number == 0) {
+        near.forget();
+    }
     scenery::gather(rest, kept, work, bodies);
     let h = bodies.substep.seconds();
     let (mut torque, mut safe) = (Vec3::ZERO, false);

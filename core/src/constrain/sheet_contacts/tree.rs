@@ -16,6 +16,10 @@ pub(super) struct Bounds {
 impl Bounds {
     pub(super) const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
 
+    fn is_empty(&self) -> bool {
+        !(self.low.x <= self.high.x)
+    }
+
     pub(super) fn with(self, place: Vec3) -> Self {
         Self { low: low(place, self.low), high: high(place, self.high) }
     }
@@ -45,8 +49,12 @@ pub(super) struct Ways<'m> {
 
 /// A perfect binary tree of boxes over blocks of triangles: the children of node i are 2 i and 2 i + 1, the root is 1.
 pub(super) struct Tree<'m> {
+    /// Boxes around the ways of particles, but for that of all together, and around those of triangles, which are wider.
+    corners: &'m mut [Bounds],
     faces: &'m mut [Bounds],
     nodes: &'m mut [Bounds],
+    /// 1 for each triangle, and for each node, that is to be visited with all others.
+    marks: [&'m mut [u32]; 2],
     blocks: usize,
 }
 
@@ -55,30 +63,60 @@ fn blocks(triangles: usize) -> usize {
     triangles.div_ceil(BLOCK).next_power_of_two()
 }
 
-/// The words that it takes for so many triangles.
-pub(super) fn words(triangles: usize) -> usize {
-    triangles.saturating_add(blocks(triangles).saturating_mul(2)).saturating_mul(size_of::<Bounds>() / 4)
+/// The words that it takes for so many particles and triangles.
+pub(super) fn words([particles, triangles]: [usize; 2]) -> usize {
+    let marked = triangles.saturating_add(blocks(triangles).saturating_mul(2));
+    marked.saturating_mul(WORDS + 1).saturating_add(particles.saturating_mul(WORDS))
 }
+
+/// Words of a box.
+const WORDS: usize = size_of::<Bounds>() / 4;
 
 impl<'m> Tree<'m> {
     /// An undefined one.
-    pub(super) fn of(rest: &mut &'m mut [u32], triangles: usize) -> Self {
+    pub(super) fn of(rest: &mut &'m mut [u32], [particles, triangles]: [usize; 2]) -> Self {
         let blocks = blocks(triangles);
-        let size = size_of::<Bounds>() / 4;
-        let faces = bytemuck::cast_slice_mut(take(rest, triangles * size));
-        Self { faces, nodes: bytemuck::cast_slice_mut(take(rest, 2 * blocks * size)), blocks }
+        let mut boxes = |count: usize| bytemuck::cast_slice_mut(take(rest, count * WORDS));
+        let [corners, faces, nodes] = [boxes(particles), boxes(triangles), boxes(2 * blocks)];
+        Self { corners, faces, nodes, marks: [take(rest, triangles), take(rest, 2 * blocks)], blocks }
+    }
+
+    /// The boxes around the ways of particles.
+    pub(super) fn corners(&self) -> &[Bounds] {
+        self.corners
+    }
+
+    /// Marks some triangles, to be visited with all others; returns how many.
+    pub(super) fn mark(&mut self, faces: &[Face], is_marked: impl Fn(&Face) -> bool) -> usize {
+        let [triangles, nodes] = &mut self.marks;
+        let mut count = 0;
+        nodes.fill(0);
+        for (number, (mark, face)) in triangles.iter_mut().zip(faces).enumerate() {
+            *mark = u32::from(is_marked(face));
+            count += *mark as usize;
+            nodes[self.blocks + number / BLOCK] |= *mark;
+        }
+        if count > 0 {
+            for node in (1..self.blocks).rev() {
+                nodes[node] = nodes[2 * node] | nodes[2 * node + 1];
+            }
+        }
+        count
     }
 
     /// Puts boxes around the ways of all triangles, wider by what `reach` says of each. A triangle without a sound corner is in none.
     pub(super) fn fit(&mut self, faces: &[Face], ways: Ways<'_>, reach: impl Fn(&Face) -> f32) {
-        let place = |of: &[Vec3], corner: u32| of.get(corner as usize).copied().unwrap_or(Vec3::NAN);
+        for (bounds, (&from, &to)) in self.corners.iter_mut().zip(ways.from.iter().zip(ways.to)) {
+            let sound = from.is_finite() && to.is_finite();
+            *bounds = if sound { Bounds::EMPTY.with(from).with(to - ways.drift) } else { Bounds::EMPTY };
+        }
         for (bounds, face) in self.faces.iter_mut().zip(faces) {
-            *bounds = Bounds::EMPTY;
-            let from = face.corners.map(|corner| place(ways.from, corner));
-            let to = face.corners.map(|corner| place(ways.to, corner) - ways.drift);
-            if from.iter().chain(&to).all(|place| place.is_finite()) {
-                *bounds = from.into_iter().chain(to).fold(Bounds::EMPTY, Bounds::with).wider(reach(face));
-            }
+            let [a, b, c] = face.corners;
+            let corner = |corner: u32| self.corners.get(corner as usize).filter(|bounds| !bounds.is_empty());
+            *bounds = match (corner(a), corner(b), corner(c)) {
+                (Some(a), Some(b), Some(c)) => a.and(*b).and(*c).wider(reach(face)),
+                _ => Bounds::EMPTY,
+            };
         }
         let (inner, leaves) = self.nodes.split_at_mut(self.blocks);
         leaves.fill(Bounds::EMPTY);
@@ -90,14 +128,16 @@ impl<'m> Tree<'m> {
         }
     }
 
-    /// Visits every two triangles whose boxes overlap, once.
-    pub(super) fn pairs(&self, mut visit: impl FnMut(usize, usize)) {
+    /// Visits every two triangles whose boxes overlap, once: all, or those of which one is marked.
+    pub(super) fn pairs(&self, all: bool, mut visit: impl FnMut(usize, usize)) {
+        let [triangles, nodes] = &self.marks;
         // Both of two are of one level; each level leaves three of four behind at the most.
         let mut open = [[0usize; 2]; 4 * usize::BITS as usize];
         let mut count = 1;
         open[0] = [1, 1];
         let push = |open: &mut [[usize; 2]], count: &mut usize, pair: [usize; 2]| {
-            if pair[0] == pair[1] || self.nodes[pair[0]].overlaps(&self.nodes[pair[1]]) {
+            let counts = all || nodes[pair[0]] | nodes[pair[1]] != 0;
+            if counts && (pair[0] == pair[1] || self.nodes[pair[0]].overlaps(&self.nodes[pair[1]])) {
                 open[*count] = pair;
                 *count += 1;
             }
@@ -106,7 +146,11 @@ impl<'m> Tree<'m> {
             count -= 1;
             let [a, b] = open[count];
             if a >= self.blocks {
-                self.within([a - self.blocks, b - self.blocks], &mut visit);
+                self.within([a - self.blocks, b - self.blocks], |i, j| {
+                    if all || triangles[i] | triangles[j] != 0 {
+                        visit(i, j);
+                    }
+                });
                 continue;
             }
             if a != b {
@@ -119,7 +163,7 @@ impl<'m> Tree<'m> {
     }
 
     /// Visits the triangles of two blocks whose boxes overlap.
-    fn within(&self, [a, b]: [usize; 2], visit: &mut impl FnMut(usize, usize)) {
+    fn within(&self, [a, b]: [usize; 2], mut visit: impl FnMut(usize, usize)) {
         let all = |block: usize| (block * BLOCK).min(self.faces.len())..((block + 1) * BLOCK).min(self.faces.len());
         for i in all(a) {
             for j in all(b) {

@@ -1,0 +1,244 @@
+//! Lists of who may come near whom in the sub-steps to come, for as long as all go on about as they do.
+//!
+//! Everyone is expected to go on as in the sub-step in which they are made. Two are listed unless some direction keeps them apart by more
+//! than what they are looked for and a skin, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than half the skin
+//! is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
+//! out as long as what its corners have left their ways by cannot have brought it near.
+//!
+//! What is found is thereby what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::pair::Look) finds nothing of.
+
+use super::super::{Bodies, Substep};
+use super::closest::{Closest, Kind, apart};
+use super::lists::{Kept, Work};
+use super::pair::{Pair, are_apart, seen};
+use super::rest::{Face, Rest};
+use super::tree::Ways;
+use crate::math::{dot, length, max, min, sqrt};
+use glam::Vec3;
+
+/// How far anyone may leave the expected way, as a multiple of how far one may be pushed between searches.
+const SKIN: f32 = 2.0;
+/// How far a particle goes on average, as seen from all, until lists end, as a multiple of the same.
+const STRETCH: f32 = 16.0;
+/// One triangle of so many may be astray before lists are made anew.
+const ASTRAY: usize = 4;
+/// How far one that is not astray goes in a sub-step, as seen from all, as a multiple of the same: so far no pair can be followed in vain that
+/// is as far apart as it is looked for (see `closest::STEPS`).
+const FARTHEST: f32 = 50.0;
+/// Rounding of places, as a share of the largest coordinate, and of distances as a share of them.
+const ROUNDING: [f32; 2] = [2e-6, 1e-3];
+
+/// The facts known of the lists.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Facts {
+    /// The number of the sub-step in which they were made, and for how many they are good; none: there are none.
+    first: u32,
+    horizon: u32,
+    /// The number of pairs.
+    pairs: u32,
+    /// 1 if pairs found no room in this step.
+    full: u32,
+    /// How far anyone may leave the expected way, and what rounding may come to \[m\].
+    skin: f32,
+    slack: f32,
+}
+
+/// Two that may come near each other.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Listed {
+    pub(super) pair: Pair,
+    /// How far apart they stay at the least as long as all are on the expected ways \[m\].
+    apart: f32,
+    /// How far apart they are kept \[m\].
+    pub(super) wanted: f32,
+}
+
+/// The lists, and the ways on which they are good.
+pub(super) struct Near<'m> {
+    pub(super) facts: &'m mut Facts,
+    /// Where everyone was at the beginning of the sub-step in which they were made, and how far each is expected to go in each one \[m\].
+    base: &'m mut [Vec3],
+    going: &'m mut [Vec3],
+    pairs: &'m mut [Listed],
+}
+
+/// Pairs that there is room for, for each particle, and besides.
+const ROOM: [usize; 2] = [24, 64];
+/// The words of facts, of a particle, and of a pair.
+const WORDS: [usize; 3] = [size_of::<Facts>() / 4, 6, size_of::<Listed>() / 4];
+
+/// The words that lists of so many particles ask for.
+pub(super) fn words(particles: usize) -> usize {
+    let pairs = particles.saturating_mul(ROOM[0]).saturating_add(ROOM[1]);
+    let own = particles.saturating_mul(WORDS[1]).saturating_add(WORDS[0]);
+    pairs.saturating_mul(WORDS[2]).saturating_add(own)
+}
+
+impl<'m> Near<'m> {
+    /// Lists in as much of that memory as is lent. None: it is too small for any.
+    pub(super) fn of(lent: &'m mut [u32], particles: usize) -> Option<Self> {
+        let (facts, rest) = lent.split_at_mut_checked(WORDS[0])?;
+        let (base, rest) = rest.split_at_mut_checked(3 * particles)?;
+        let (going, rest) = rest.split_at_mut_checked(3 * particles)?;
+        let room = rest.len() / WORDS[2] * WORDS[2];
+        Some(Self {
+            facts: bytemuck::cast_slice_mut(facts).first_mut()?,
+            base: bytemuck::cast_slice_mut(base),
+            going: bytemuck::cast_slice_mut(going),
+            pairs: bytemuck::cast_slice_mut(&mut rest[..room]),
+        })
+    }
+
+    /// Forgets all, as a step begins.
+    pub(super) fn forget(&mut self) {
+        *self.facts = bytemuck::Zeroable::zeroed();
+    }
+
+    /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each particle has left its way.
+    pub(super) fn pairs<'a>(&'a self, rest: &'a Rest<'_>, strays: &'a [f32]) -> impl Iterator<Item = &'a Listed> {
+        let Facts { pairs, skin, slack, .. } = *self.facts;
+        let all = &self.pairs[..pairs as usize];
+        all.iter().filter(move |listed| {
+            let [one, other] = listed.pair.faces().map(|face| &rest.faces[face]);
+            let far = |face: &Face| face.corners.iter().fold(0.0, |most, &i| max(strays[i as usize], most));
+            let far = [far(one), far(other)];
+            let least = rest.reach(listed.wanted) * (1.0 + ROUNDING[1]) + slack;
+            far[0] <= skin && far[1] <= skin && !(listed.apart - far[0] - far[1] > least)
+        })
+    }
+
+    /// Notes how far each has left the expected way, and whose triangles are astray; returns how many these are. None: the lists are no longer
+    /// good for the sub-step.
+    fn follow(&self, rest: &Rest<'_>, work: &mut Work<'_>, substep: Substep, drift: Vec3) -> Option<usize> {
+        let Facts { first, horizon, skin, .. } = *self.facts;
+        let since = substep.number.checked_sub(first).filter(|&since| since < horizon)? as f32;
+        let farthest = FARTHEST * rest.facts.budget;
+        for (i, stray) in work.strays.iter_mut().enumerate() {
+            let (from, now) = (work.from[i], work.now[i]);
+            let (base, going) = (self.base[i], self.going[i]);
+            let (begun, way) = (from - (base + going * since), now - from - drift);
+            let ended = now - (base + going * (since + 1.0));
+            let square = max(dot(begun, begun), dot(ended, ended));
+            let sound = dot(way, way) <= farthest * farthest && square < f32::INFINITY;
+            *stray = if sound { sqrt(square) } else { f32::INFINITY };
+            // Who was not there, and is not, has nobody near.
+            if !base.is_finite() && !(from.is_finite() && now.is_finite()) {
+                *stray = 0.0;
+            }
+        }
+        Some(work.tree.mark(rest.faces, |face| {
+            face.corners.iter().any(|&i| work.strays.get(i as usize).is_some_and(|&stray| !(stray <= skin)))
+        }))
+    }
+
+    /// Makes lists for the sub-steps to come. Tells whether there is room.
+    fn make(&mut self, rest: &Rest<'_>, work: &mut Work<'_>, substep: Substep, drift: Vec3) -> bool {
+        let (mut size, mut way, mut count) = (0.0, 0.0, 0.0);
+        for (i, (base, going)) in self.base.iter_mut().zip(&mut *self.going).enumerate() {
+            *base = work.from[i];
+            *going = work.now[i] - work.from[i];
+            if base.is_finite() && going.is_finite() {
+                size = max(max(base.abs().max_element(), work.now[i].abs().max_element()), size);
+                way += length(*going - drift);
+                count += 1.0;
+            }
+        }
+        let (budget, left) = (rest.facts.budget, substep.count - substep.number);
+        let horizon = (STRETCH * budget * count / way).clamp(1.0, left as f32) as u32;
+        let skin = SKIN * budget;
+        let ahead = horizon as f32;
+        for (end, (base, going)) in work.searched.iter_mut().zip(self.base.iter().zip(&*self.going)) {
+            *end = *base + *going * ahead;
+        }
+        let slack = ROUNDING[0] * (size + ahead * (way / max(count, 1.0) + length(drift)));
+        *self.facts = Facts { first: substep.number, horizon, pairs: 0, full: 0, skin, slack };
+        let ways = Ways { from: self.base, to: work.searched, drift: drift * ahead };
+        work.tree.fit(rest.faces, ways, |face| rest.widest(face) + budget + skin + slack);
+        let (mut count, mut full) = (0, false);
+        work.tree.pairs(true, |i, j| {
+            let reach = rest.reach(rest.widest(&rest.faces[i]) + rest.widest(&rest.faces[j])) + 2.0 * (skin + slack);
+            Pair::all(rest.faces, [i, j], work.tree.corners(), reach, |pair, corners| {
+                if let Some(listed) = expected(rest, &ways, pair, corners, 2.0 * (skin + slack)) {
+                    match self.pairs.get_mut(count) {
+                        Some(place) => *place = listed,
+                        None => full = true,
+                    }
+                    count += 1;
+                }
+            });
+        });
+        self.facts.pairs = if full { 0 } else { count as u32 };
+        self.facts.horizon = if full { 0 } else { horizon };
+        self.facts.full = u32::from(full);
+        !full
+    }
+}
+
+/// Two as they are listed, unless they are farther from each other than they are looked for, and so much more, on the expected ways.
+fn expected(rest: &Rest<'_>, ways: &Ways<'_>, pair: Pair, corners: [u32; 4], more: f32) -> Option<Listed> {
+    let kind = pair.kind();
+    let ends = [seen(ways.from, corners), seen(ways.to, corners)];
+    let reach = rest.reach(rest.thickness(kind, corners)) + more;
+    if are_apart(kind, &ends, reach) {
+        return None;
+    }
+    // Most are neighbours in a sheet, which the direction between their middles keeps apart.
+    if parts(kind, &ends, middle(kind, &ends[0]), reach) {
+        return None;
+    }
+    let mut apart = least(kind, &ends, 0);
+    if apart < reach {
+        apart = max(least(kind, &ends, 1), apart);
+    }
+    if apart >= reach {
+        return None;
+    }
+    let wanted = rest.wanted(kind, corners);
+    (!(apart >= rest.reach(wanted) + more)).then_some(Listed { pair, apart, wanted })
+}
+
+/// The way from the middle of the second thing to that of the first, some times over.
+fn middle(kind: Kind, [a, b, c, d]: &[Vec3; 4]) -> Vec3 {
+    match kind {
+        Kind::PointTriangle => *a * 3.0 - (*b + *c + *d),
+        Kind::EdgeEdge => (*a + *b) - (*c + *d),
+    }
+}
+
+/// Tells whether two things are farther than `reach` apart along a way of any length, at both ends.
+fn parts(kind: Kind, ends: &[[Vec3; 4]; 2], way: Vec3, reach: f32) -> bool {
+    let far = min(apart(kind, &ends[0], way), apart(kind, &ends[1], way));
+    far > 0.0 && far * far > reach * reach * dot(way, way)
+}
+
+/// How far apart two things stay at the least, as the direction tells that is between them at one of both ends \[m\].
+fn least(kind: Kind, ends: &[[Vec3; 4]; 2], at: usize) -> f32 {
+    let gap = Closest::of(kind, ends[at]).gap;
+    let direction = gap / length(gap);
+    let all = min(apart(kind, &ends[0], direction), apart(kind, &ends[1], direction));
+    if all > 0.0 { all } else { 0.0 }
+}
+
+/// Has lists that are good for where all are now, and the triangles marked that are astray; returns how many these are. None: there is no room
+/// for lists.
+pub(super) fn ready(
+    rest: &Rest<'_>,
+    kept: &mut Kept<'_>,
+    work: &mut Work<'_>,
+    bodies: &mut Bodies<'_>,
+    drift: Vec3,
+) -> Option<usize> {
+    let substep = bodies.substep;
+    let near = kept.near.as_mut().filter(|near| near.facts.full == 0)?;
+    match near.follow(rest, work, substep, drift) {
+        Some(astray) if astray * ASTRAY <= rest.faces.len() => return Some(astray),
+        _ => {}
+    }
+    if !near.make(rest, work, substep, drift) {
+        return None;
+    }
+    bodies.report.effort.lists += 1;
+    near.follow(rest, work, substep, drift)
+}
