@@ -71,13 +71,16 @@ impl Bend {
     }
 
     /// Adds the curvature that a change of the angle makes to that of both triangles.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn curve(&self, side: usize, change: f32, curvature: &mut [f32; 3]) {
-        for (sum, part) in curvature.iter_mut().zip(self.curvature[side]) {
-            *sum += part * change;
-        }
+        let [a, b, c] = self.curvature[side];
+        curvature[0] += a * change;
+        curvature[1] += b * change;
+        curvature[2] += c * change;
     }
 
     /// The part that a triangle's curvature has in this fold's moment.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn moment(&self, side: usize, curvature: [f32; 3]) -> f32 {
         let [a, b, c] = self.curvature[side];
         a * curvature[0] + b * curvature[1] + c * curvature[2]
@@ -112,29 +115,35 @@ impl Fold {
     }
 
     /// How far the far corner of each side goes from the point of the edge beside it, where all four go so far.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn ways(&self, [a, b, c, d]: [Vec3; 4]) -> [Vec3; 2] {
-        [(c, self.foot[0]), (d, self.foot[1])].map(|(far, foot)| far - a * (1.0 - foot) - b * foot)
+        let [x, y] = self.foot;
+        [c - a * (1.0 - x) - b * x, d - a * (1.0 - y) - b * y]
     }
 
     /// How the angle changes where its corners go so far.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn change(&self, corners: [Vec3; 4]) -> f32 {
         let [f, g] = self.ways(corners);
         dot(self.slope[0], f) + dot(self.slope[1], g)
     }
 
     /// The forces of a moment on its four corners, in the sense that opens it.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn forces(&self, moment: f32) -> [Vec3; 4] {
-        self.spread(self.slope.map(|slope| slope * moment))
+        self.spread([self.slope[0] * moment, self.slope[1] * moment])
     }
 
     /// The resistance × h² that moments turning with the triangles put up, as the tension of triangles does: an upper bound of
     /// a quarter of it.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn resist(&self, corners: [Vec3; 4]) -> [Vec3; 4] {
-        let ways = self.ways(corners);
-        self.spread(core::array::from_fn(|i| ways[i] * (0.25 * self.moment * dot(self.slope[i], self.slope[i]))))
+        let ([f, g], [m, n]) = (self.ways(corners), self.slope);
+        self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
     }
 
     /// Forces on both far corners, and against them on the edge.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn spread(&self, [c, d]: [Vec3; 2]) -> [Vec3; 4] {
         let [x, y] = self.foot;
         [-(c * (1.0 - x) + d * (1.0 - y)), -(c * x + d * y), c, d]

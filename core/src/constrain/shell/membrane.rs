@@ -56,18 +56,21 @@ impl Cell {
     }
 
     /// What warp and weft become where the edges are these.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn deform(&self, [e, f]: [Vec3; 2]) -> [Vec3; 2] {
         let [a, b, c, d] = self.inverse;
         [e * a + f * b, e * c + f * d]
     }
 
     /// The forces on the second and the third corner of the stresses along warp and weft; that on the first is against both.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn forces(&self, [p, q]: [Vec3; 2]) -> [Vec3; 2] {
         let [a, b, c, d] = self.inverse;
         [p * a + q * c, p * b + q * d]
     }
 
     /// Stresses × area × h² of strains along warp, weft, and of the angle between them.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn stress(&self, params: &ShellParams, h: f32, strain: [f32; 3]) -> [f32; 3] {
         let scale = self.area * (h * h);
         let [warp, weft] = params.stretch;
@@ -99,26 +102,29 @@ impl Strain {
     }
 
     /// How strains change as warp and weft do, along the directions of the beginning.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn rate(&self, [du, dv]: [Vec3; 2]) -> [f32; 3] {
         let [u, v] = self.along;
         [dot(u, du), dot(v, dv), dot(u, dv) + dot(v, du)]
     }
 
     /// The forces of stresses on the second and the third corner, inward where it is stretched.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn push(&self, cell: &Cell, [warp, weft, shear]: [f32; 3]) -> [Vec3; 2] {
         let [u, v] = self.along;
         cell.forces([u * warp + v * shear, v * weft + u * shear])
     }
 
     /// The resistance × h² to a change of the edges, against it on the second and the third corner.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn resist(&self, cell: &Cell, params: &ShellParams, step: &Step, edges: [Vec3; 2]) -> [Vec3; 2] {
         let change = cell.deform(edges);
-        let stress = cell.stress(params, step.h, self.rate(change)).map(|stress| stress * step.rate);
-        let [a, b] = self.push(cell, stress);
+        let [warp, weft, shear] = cell.stress(params, step.h, self.rate(change));
+        let [a, b] = self.push(cell, [warp * step.rate, weft * step.rate, shear * step.rate]);
         // What is tense swings to and fro across: a quarter of that keeps any step stable, and takes nothing from the motion
         // (Newmark's β = 1/4 for these forces).
         let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
-        let [c, d] = cell.forces(change.map(|change| change * taut));
+        let [c, d] = cell.forces([change[0] * taut, change[1] * taut]);
         [a + c, b + d]
     }
 }

@@ -150,18 +150,20 @@ impl Solver<'_> {
         }
         for ((&corners, cell), strain) in self.triangles.iter().zip(self.cells).zip(&mut *self.strains) {
             strain.curvature = [0.0; 3];
-            let [a, b, c] = corners.map(|corner| at(p, corner));
+            let [i, j, k] = [corners[0] as usize, corners[1] as usize, corners[2] as usize];
+            let (Some(&a), Some(&b), Some(&c)) = (p.get(i), p.get(j), p.get(k)) else { continue };
             add_pair(q, corners, strain.resist(cell, self.params, &self.step, [b - a, c - a]));
         }
         for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&*self.folds) {
-            let change = fold.change(hinge.corners().map(|corner| at(p, corner)));
+            let Some(corners) = all_at(p, hinge.corners()) else { continue };
+            let change = fold.change(corners);
             curve(self.strains, hinge, bend, change);
         }
         for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&*self.folds) {
             let moment = moment(self.strains, self.cells, hinge, bend, bending);
-            let turning = fold.resist(hinge.corners().map(|corner| at(p, corner)));
-            let bending = fold.forces(moment);
-            add_all(q, hinge.corners(), core::array::from_fn(|i| bending[i] + turning[i]));
+            let Some(corners) = all_at(p, hinge.corners()) else { continue };
+            let ([a, b, c, d], [e, f, g, h]) = (fold.forces(moment), fold.resist(corners));
+            add_all(q, hinge.corners(), [a + e, b + f, c + g, d + h]);
         }
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
@@ -244,15 +246,19 @@ impl Solver<'_> {
 }
 
 /// Adds the curvature that a change of a fold's angle makes.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: f32) {
-    for (side, face) in hinge.faces.into_iter().enumerate() {
-        if let Some(strain) = strains.get_mut(face as usize) {
-            bend.curve(side, change, &mut strain.curvature);
-        }
+    let [first, second] = hinge.faces;
+    if let Some(strain) = strains.get_mut(first as usize) {
+        bend.curve(0, change, &mut strain.curvature);
+    }
+    if let Some(strain) = strains.get_mut(second as usize) {
+        bend.curve(1, change, &mut strain.curvature);
     }
 }
 
 /// The moment about an edge that the curvatures of its triangles make.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bending: f32) -> f32 {
     let mut sum = 0.0;
     for (side, face) in hinge.faces.into_iter().enumerate() {
@@ -263,17 +269,22 @@ fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bendin
     sum * bending
 }
 
-/// The vector of a corner; those of a corner that is not there are zero.
-fn at(vectors: &[Vec3], corner: u32) -> Vec3 {
-    vectors.get(corner as usize).copied().unwrap_or(Vec3::ZERO)
+/// The vectors of four corners, if there are all. Where one is missing nothing acts: see `linearise`.
+#[cfg_attr(not(target_os = "none"), inline(always))]
+fn all_at(vectors: &[Vec3], [a, b, c, d]: [u32; 4]) -> Option<[Vec3; 4]> {
+    let at = |corner: u32| vectors.get(corner as usize);
+    let (Some(&a), Some(&b), Some(&c), Some(&d)) = (at(a), at(b), at(c), at(d)) else { return None };
+    Some([a, b, c, d])
 }
 
 /// Adds forces on the second and third corner of a triangle, and against them on the first.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn add_pair(total: &mut [Vec3], corners: [u32; 3], [p, q]: [Vec3; 2]) {
     add_all(total, corners, [-(p + q), p, q]);
 }
 
 /// Adds forces on corners.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn add_all<const N: usize>(total: &mut [Vec3], corners: [u32; N], forces: [Vec3; N]) {
     for (corner, force) in corners.into_iter().zip(forces) {
         if let Some(total) = total.get_mut(corner as usize) {
