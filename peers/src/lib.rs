@@ -11,6 +11,8 @@ mod parry;
 mod particular;
 #[cfg(feature = "rapier")]
 pub mod rapier;
+#[cfg(feature = "rapier")]
+pub mod rapier_cloth;
 mod rays;
 mod rstar;
 mod zelll;

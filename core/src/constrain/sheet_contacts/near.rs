@@ -12,8 +12,8 @@ use super::closest::{Closest, Kind, apart};
 use super::lists::{Kept, Work};
 use super::pair::{Pair, are_apart, seen};
 use super::rest::{Face, Rest};
-use super::tree::Ways;
-use crate::math::{dot, length, max, min, sqrt};
+use super::tree::{ROUNDING, Ways};
+use crate::math::{dot, largest, length, max, min, sqrt};
 use glam::Vec3;
 
 /// How far anyone may leave the expected way, as a multiple of how far one may be pushed between searches.
@@ -25,8 +25,8 @@ const ASTRAY: usize = 4;
 /// How far one that is not astray goes in a sub-step, as seen from all, as a multiple of the same: so far no pair can be followed in vain that
 /// is as far apart as it is looked for (see `closest::STEPS`).
 const FARTHEST: f32 = 50.0;
-/// Rounding of places, as a share of the largest coordinate, and of distances as a share of them.
-const ROUNDING: [f32; 2] = [2e-6, 1e-3];
+/// A share of a distance that is more than its rounding.
+const MARGIN: f32 = 1e-3;
 
 /// The facts known of the lists.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -39,9 +39,8 @@ pub(super) struct Facts {
     pairs: u32,
     /// 1 if pairs found no room in this step.
     full: u32,
-    /// How far anyone may leave the expected way, and what rounding may come to \[m\].
+    /// How far anyone may leave the expected way \[m\].
     skin: f32,
-    slack: f32,
 }
 
 /// Two that may come near each other.
@@ -98,13 +97,13 @@ impl<'m> Near<'m> {
 
     /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each particle has left its way.
     pub(super) fn pairs<'a>(&'a self, rest: &'a Rest<'_>, strays: &'a [f32]) -> impl Iterator<Item = &'a Listed> {
-        let Facts { pairs, skin, slack, .. } = *self.facts;
+        let Facts { pairs, skin, .. } = *self.facts;
         let all = &self.pairs[..pairs as usize];
         all.iter().filter(move |listed| {
             let [one, other] = listed.pair.faces().map(|face| &rest.faces[face]);
             let far = |face: &Face| face.corners.iter().fold(0.0, |most, &i| max(strays[i as usize], most));
             let far = [far(one), far(other)];
-            let least = rest.reach(listed.wanted) * (1.0 + ROUNDING[1]) + slack;
+            let least = rest.reach(listed.wanted) * (1.0 + MARGIN);
             far[0] <= skin && far[1] <= skin && !(listed.apart - far[0] - far[1] > least)
         })
     }
@@ -122,9 +121,10 @@ impl<'m> Near<'m> {
             let ended = now - (base + going * (since + 1.0));
             let square = max(dot(begun, begun), dot(ended, ended));
             let sound = dot(way, way) <= farthest * farthest && square < f32::INFINITY;
-            *stray = if sound { sqrt(square) } else { f32::INFINITY };
+            let slack = ROUNDING * max(largest(from), largest(now));
+            *stray = if sound { sqrt(square) + slack } else { f32::INFINITY };
             // Who was not there, and is not, has nobody near.
-            if !base.is_finite() && !(from.is_finite() && now.is_finite()) {
+            if !(base.is_finite() || from.is_finite() && now.is_finite()) {
                 *stray = 0.0;
             }
         }
@@ -133,46 +133,58 @@ impl<'m> Near<'m> {
         }))
     }
 
-    /// Makes lists for the sub-steps to come. Tells whether there is room.
+    /// Makes lists for the sub-steps to come: for fewer of them, if there is no room for more. Tells whether there is.
     fn make(&mut self, rest: &Rest<'_>, work: &mut Work<'_>, substep: Substep, drift: Vec3) -> bool {
-        let (mut size, mut way, mut count) = (0.0, 0.0, 0.0);
+        let (mut way, mut count) = (0.0, 0.0);
         for (i, (base, going)) in self.base.iter_mut().zip(&mut *self.going).enumerate() {
             *base = work.from[i];
             *going = work.now[i] - work.from[i];
-            if base.is_finite() && going.is_finite() {
-                size = max(max(base.abs().max_element(), work.now[i].abs().max_element()), size);
+            if going.is_finite() {
                 way += length(*going - drift);
                 count += 1.0;
             }
         }
-        let (budget, left) = (rest.facts.budget, substep.count - substep.number);
-        let horizon = (STRETCH * budget * count / way).clamp(1.0, left as f32) as u32;
-        let skin = SKIN * budget;
-        let ahead = horizon as f32;
+        let left = substep.count - substep.number;
+        let most = (STRETCH * rest.facts.budget * count / way).clamp(1.0, left as f32) as u32;
+        let skin = SKIN * rest.facts.budget;
+        for horizon in [most, 1] {
+            *self.facts = Facts { first: substep.number, horizon, pairs: 0, full: 0, skin };
+            match self.fill(rest, work, drift) {
+                Some(pairs) => {
+                    self.facts.pairs = pairs as u32;
+                    return true;
+                }
+                None if horizon == 1 => break,
+                None => {}
+            }
+        }
+        *self.facts = Facts { horizon: 0, full: 1, ..*self.facts };
+        false
+    }
+
+    /// Lists whoever may come near each other; returns how many pairs there are. None: there is no room.
+    fn fill(&mut self, rest: &Rest<'_>, work: &mut Work<'_>, drift: Vec3) -> Option<usize> {
+        let Facts { horizon, skin, .. } = *self.facts;
+        let (ahead, skins) = (horizon as f32, 2.0 * skin);
         for (end, (base, going)) in work.searched.iter_mut().zip(self.base.iter().zip(&*self.going)) {
             *end = *base + *going * ahead;
         }
-        let slack = ROUNDING[0] * (size + ahead * (way / max(count, 1.0) + length(drift)));
-        *self.facts = Facts { first: substep.number, horizon, pairs: 0, full: 0, skin, slack };
         let ways = Ways { from: self.base, to: work.searched, drift: drift * ahead };
-        work.tree.fit(rest.faces, ways, |face| rest.widest(face) + budget + skin + slack);
-        let (mut count, mut full) = (0, false);
+        let half = |face: &Face| (rest.widest(face) + rest.facts.budget) * (1.0 + MARGIN) + skin;
+        work.tree.fit(rest.faces, ways, half);
+        let mut count = 0;
         work.tree.pairs(true, |i, j| {
-            let reach = rest.reach(rest.widest(&rest.faces[i]) + rest.widest(&rest.faces[j])) + 2.0 * (skin + slack);
+            let reach = half(&rest.faces[i]) + half(&rest.faces[j]);
             Pair::all(rest.faces, [i, j], work.tree.corners(), reach, |pair, corners| {
-                if let Some(listed) = expected(rest, &ways, pair, corners, 2.0 * (skin + slack)) {
-                    match self.pairs.get_mut(count) {
-                        Some(place) => *place = listed,
-                        None => full = true,
+                if let Some(listed) = expected(rest, &ways, pair, corners, skins) {
+                    if let Some(place) = self.pairs.get_mut(count) {
+                        *place = listed;
                     }
                     count += 1;
                 }
             });
         });
-        self.facts.pairs = if full { 0 } else { count as u32 };
-        self.facts.horizon = if full { 0 } else { horizon };
-        self.facts.full = u32::from(full);
-        !full
+        (count <= self.pairs.len()).then_some(count)
     }
 }
 
@@ -180,7 +192,8 @@ impl<'m> Near<'m> {
 fn expected(rest: &Rest<'_>, ways: &Ways<'_>, pair: Pair, corners: [u32; 4], more: f32) -> Option<Listed> {
     let kind = pair.kind();
     let ends = [seen(ways.from, corners), seen(ways.to, corners)];
-    let reach = rest.reach(rest.thickness(kind, corners)) + more;
+    let far = |wanted: f32| rest.reach(wanted) * (1.0 + MARGIN) + more;
+    let reach = far(rest.thickness(kind, corners));
     if are_apart(kind, &ends, reach) {
         return None;
     }
@@ -196,7 +209,7 @@ fn expected(rest: &Rest<'_>, ways: &Ways<'_>, pair: Pair, corners: [u32; 4], mor
         return None;
     }
     let wanted = rest.wanted(kind, corners);
-    (!(apart >= rest.reach(wanted) + more)).then_some(Listed { pair, apart, wanted })
+    (!(apart >= far(wanted))).then_some(Listed { pair, apart, wanted })
 }
 
 /// The way from the middle of the second thing to that of the first, some times over.

@@ -57,20 +57,13 @@ fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, (drift, astra
         near.pairs(rest, work.strays).for_each(|listed| look.with(listed.pair, listed.wanted));
     }
     if astray != Some(0) {
-        let (ways, slack) = (Ways { from, to: now, drift }, slack(from, now, drift));
-        work.tree.fit(rest.faces, ways, |face| rest.widest(face) + budget + slack);
+        work.tree.fit(rest.faces, Ways { from, to: now, drift }, |face| rest.widest(face) + budget);
         work.tree.pairs(astray.is_none(), |i, j| {
-            let reach = rest.reach(rest.widest(&rest.faces[i]) + rest.widest(&rest.faces[j])) + 2.0 * slack;
+            let reach = rest.reach(rest.widest(&rest.faces[i]) + rest.widest(&rest.faces[j]));
             Pair::all(rest.faces, [i, j], work.tree.corners(), reach, |pair, corners| look.at(pair, corners));
         });
     }
     Found { count: look.count, lost: look.lost, meetings: look.meetings }
-}
-
-/// What rounding can bring boxes apart by \[m\].
-fn slack(from: &[Vec3], now: &[Vec3], drift: Vec3) -> f32 {
-    let all = from.iter().chain(now).filter(|place| place.is_finite());
-    1e-6 * all.fold(drift.abs().max_element(), |most, place| max(place.abs().max_element(), most))
 }
 
 /// Leaves out points at the rim of a triangle that are nearer to another one there: in a plane they are over that one, and pushes askew

@@ -1,9 +1,12 @@
 //! Boxes around the ways of triangles, in a tree that their order at rest makes: what is near in the material is near in space.
 
 use super::rest::{BLOCK, Face};
-use crate::math::{high, low};
+use crate::math::{high, largest, low, max};
 use crate::memory::take;
 use glam::Vec3;
+
+/// What rounding may come to in places and ways, as a share of the largest coordinate.
+pub(super) const ROUNDING: f32 = 5e-7;
 
 /// A box, empty or along a way.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -108,7 +111,11 @@ impl<'m> Tree<'m> {
     pub(super) fn fit(&mut self, faces: &[Face], ways: Ways<'_>, reach: impl Fn(&Face) -> f32) {
         for (bounds, (&from, &to)) in self.corners.iter_mut().zip(ways.from.iter().zip(ways.to)) {
             let sound = from.is_finite() && to.is_finite();
-            *bounds = if sound { Bounds::EMPTY.with(from).with(to - ways.drift) } else { Bounds::EMPTY };
+            *bounds = Bounds::EMPTY;
+            if sound {
+                let size = max(max(largest(from), largest(to)), largest(ways.drift));
+                *bounds = bounds.with(from).with(to - ways.drift).wider(ROUNDING * size);
+            }
         }
         for (bounds, face) in self.faces.iter_mut().zip(faces) {
             let [a, b, c] = face.corners;
