@@ -21,8 +21,10 @@ use rest::Rest;
 ///
 /// Points are kept from triangles and edges from edges by equal and opposite pushes at their nearest places, which keep momentum to
 /// rounding. The angular momentum that these lose is given back by turning all sheets together, but not where one is fixed or touches the
-/// scenery, nor where that would turn them by more than 0.02 rad in a sub-step, as very fast hits would. In each sub-step whatever comes near is found by a tree of boxes that the
-/// order of the material makes: a triangle is wider than a touch reaches, and what is near in a sheet stays near.
+/// scenery, nor where that would turn them by more than 0.02 rad in a sub-step, as very fast hits would. Whatever comes near is found by a tree of boxes that the
+/// order of the material makes: a triangle is wider than a touch reaches, and what is near in a sheet stays near. Pairs are listed that come near each other where all
+/// go on as they do, within a skin, and last through the step's sub-steps; the triangles of whoever leaves its way by more are sought anew. Lists change no bit of what
+/// happens. They are counted in [`Effort::lists`](crate::Effort::lists), and searches for which they found no room in [`Effort::streamed`](crate::Effort::streamed).
 ///
 /// **Nothing passes.** Paths are straight from the sub-step's beginning to its end. Two that are apart in some direction at both ends are so all
 /// the way; others are followed by conservative advancement. Between searches nobody goes farther than a share below half of the distance to
