@@ -22,11 +22,11 @@ pub(super) struct Bend {
 #[repr(C)]
 pub(super) struct Fold {
     /// The change for each metre that the far corner of each triangle goes from the point of the edge beside it \[rad/m\].
-    slope: [Vec3; 2],
+    pub(super) slope: [Vec3; 2],
     /// How far along the edge these points are, as a share of it.
-    foot: [f32; 2],
+    pub(super) foot: [f32; 2],
     /// The moment in it × h², whatever its sign \[N m s²\].
-    moment: f32,
+    pub(super) moment: f32,
 }
 
 /// The normals of both triangles × twice the area, the edge from the first corner to the second and the ways from there to both far

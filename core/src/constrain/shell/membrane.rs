@@ -10,7 +10,7 @@ use glam::Vec3;
 #[repr(C)]
 pub(super) struct Cell {
     /// The inverse of its edges from the first corner in coordinates along warp and weft, by columns \[1/m\].
-    inverse: [f32; 4],
+    pub(super) inverse: [f32; 4],
     /// Its area \[m²\].
     pub(super) area: f32,
 }
@@ -20,9 +20,9 @@ pub(super) struct Cell {
 #[repr(C)]
 pub(super) struct Strain {
     /// What warp and weft have become at the sub-step's beginning, for each metre of them.
-    along: [Vec3; 2],
+    pub(super) along: [Vec3; 2],
     /// The largest pull in it, or zero where it is only pressed \[N/m\].
-    tension: f32,
+    pub(super) tension: f32,
     /// Its curvature, or the change of that: along warp, weft, and √2 times that between them \[1/m\].
     pub(super) curvature: [f32; 3],
 }

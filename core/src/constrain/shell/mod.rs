@@ -2,6 +2,7 @@
 
 mod fold;
 mod membrane;
+mod resist;
 mod solver;
 
 use super::{Bodies, Constraint, Demand, Share, Words};

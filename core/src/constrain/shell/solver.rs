@@ -2,6 +2,7 @@
 
 use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
+use super::resist::Resist;
 use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
 use crate::constrain::turn::turn_of;
@@ -148,23 +149,9 @@ impl Solver<'_> {
         for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
             *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
         }
-        for ((&corners, cell), strain) in self.triangles.iter().zip(self.cells).zip(&mut *self.strains) {
-            strain.curvature = [0.0; 3];
-            let [i, j, k] = [corners[0] as usize, corners[1] as usize, corners[2] as usize];
-            let (Some(&a), Some(&b), Some(&c)) = (p.get(i), p.get(j), p.get(k)) else { continue };
-            add_pair(q, corners, strain.resist(cell, self.params, &self.step, [b - a, c - a]));
-        }
-        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&*self.folds) {
-            let Some(corners) = all_at(p, hinge.corners()) else { continue };
-            let change = fold.change(corners);
-            curve(self.strains, hinge, bend, change);
-        }
-        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&*self.folds) {
-            let moment = moment(self.strains, self.cells, hinge, bend, bending);
-            let Some(corners) = all_at(p, hinge.corners()) else { continue };
-            let ([a, b, c, d], [e, f, g, h]) = (fold.forces(moment), fold.resist(corners));
-            add_all(q, hinge.corners(), [a + e, b + f, c + g, d + h]);
-        }
+        let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
+        let Vectors { p, q, weight, .. } = &mut self.vectors;
+        lanes::run(Resist { params, step, bending, triangles, cells, strains, hinges, bends, folds, p, q });
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
         }
@@ -247,7 +234,7 @@ impl Solver<'_> {
 
 /// Adds the curvature that a change of a fold's angle makes.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: f32) {
+pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: f32) {
     let [first, second] = hinge.faces;
     if let Some(strain) = strains.get_mut(first as usize) {
         bend.curve(0, change, &mut strain.curvature);
@@ -259,7 +246,7 @@ fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: f32) {
 
 /// The moment about an edge that the curvatures of its triangles make.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bending: f32) -> f32 {
+pub(super) fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bending: f32) -> f32 {
     let mut sum = 0.0;
     for (side, face) in hinge.faces.into_iter().enumerate() {
         if let (Some(strain), Some(cell)) = (strains.get(face as usize), cells.get(face as usize)) {
@@ -271,7 +258,7 @@ fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bendin
 
 /// The vectors of four corners, if there are all. Where one is missing nothing acts: see `linearise`.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn all_at(vectors: &[Vec3], [a, b, c, d]: [u32; 4]) -> Option<[Vec3; 4]> {
+pub(super) fn all_at(vectors: &[Vec3], [a, b, c, d]: [u32; 4]) -> Option<[Vec3; 4]> {
     let at = |corner: u32| vectors.get(corner as usize);
     let (Some(&a), Some(&b), Some(&c), Some(&d)) = (at(a), at(b), at(c), at(d)) else { return None };
     Some([a, b, c, d])
@@ -279,13 +266,13 @@ fn all_at(vectors: &[Vec3], [a, b, c, d]: [u32; 4]) -> Option<[Vec3; 4]> {
 
 /// Adds forces on the second and third corner of a triangle, and against them on the first.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn add_pair(total: &mut [Vec3], corners: [u32; 3], [p, q]: [Vec3; 2]) {
+pub(super) fn add_pair(total: &mut [Vec3], corners: [u32; 3], [p, q]: [Vec3; 2]) {
     add_all(total, corners, [-(p + q), p, q]);
 }
 
 /// Adds forces on corners.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn add_all<const N: usize>(total: &mut [Vec3], corners: [u32; N], forces: [Vec3; N]) {
+pub(super) fn add_all<const N: usize>(total: &mut [Vec3], corners: [u32; N], forces: [Vec3; N]) {
     for (corner, force) in corners.into_iter().zip(forces) {
         if let Some(total) = total.get_mut(corner as usize) {
             *total += force;

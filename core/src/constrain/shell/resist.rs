@@ -1,0 +1,269 @@
+//! How shells resist small shifts, eight triangles or folds side by side: by the operations of one, in their order, so that the bits are the same.
+
+use super::ShellParams;
+use super::fold::{Bend, Fold};
+use super::membrane::{Cell, Strain};
+use super::solver::{Step, add_all, add_pair, all_at, curve, moment};
+use crate::cloth::Hinge;
+use crate::lanes::{Eight, Kernel, LANES, Vectors};
+use glam::Vec3;
+
+/// Adds h² K p to q.
+pub(super) struct Resist<'s> {
+    pub(super) params: &'s ShellParams,
+    pub(super) step: &'s Step,
+    /// Bending stiffness × h², for changes within the sub-step.
+    pub(super) bending: f32,
+    pub(super) triangles: &'s [[u32; 3]],
+    pub(super) cells: &'s [Cell],
+    pub(super) strains: &'s mut [Strain],
+    pub(super) hinges: &'s [Hinge],
+    pub(super) bends: &'s [Bend],
+    pub(super) folds: &'s [Fold],
+    pub(super) p: &'s [Vec3],
+    pub(super) q: &'s mut [Vec3],
+}
+
+impl Kernel for Resist<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Eight>(mut self, like: F) {
+        let (triangles, hinges) = (self.triangles.len(), self.hinges.len());
+        for first in (0..triangles).step_by(LANES) {
+            if !self.stretch_eight(like, first) {
+                (first..triangles.min(first + LANES)).for_each(|i| self.stretch(i));
+            }
+        }
+        for first in (0..hinges).step_by(LANES) {
+            if !self.curve_eight(like, first) {
+                (first..hinges.min(first + LANES)).for_each(|i| self.curve(i));
+            }
+        }
+        for first in (0..hinges).step_by(LANES) {
+            if !self.bend_eight(like, first) {
+                (first..hinges.min(first + LANES)).for_each(|i| self.bend(i));
+            }
+        }
+    }
+}
+
+/// One number of each of eight structs, side by side.
+macro_rules! column {
+    ($like:ident, $all:ident, |$one:ident| $number:expr) => {{
+        let [a, b, c, d, e, f, g, h] = $all;
+        $like.of([
+            column!(@of a, $one, $number),
+            column!(@of b, $one, $number),
+            column!(@of c, $one, $number),
+            column!(@of d, $one, $number),
+            column!(@of e, $one, $number),
+            column!(@of f, $one, $number),
+            column!(@of g, $one, $number),
+            column!(@of h, $one, $number),
+        ])
+    }};
+    (@of $this:ident, $one:ident, $number:expr) => {{
+        let $one = $this;
+        $number
+    }};
+}
+
+/// One vector of each of eight structs, side by side.
+macro_rules! vectors {
+    ($like:ident, $all:ident, |$one:ident| $vector:expr) => {
+        Vectors([
+            column!($like, $all, |$one| $vector.x),
+            column!($like, $all, |$one| $vector.y),
+            column!($like, $all, |$one| $vector.z),
+        ])
+    };
+}
+
+impl Resist<'_> {
+    fn stretch(&mut self, i: usize) {
+        let (Some(&corners), Some(cell), Some(strain)) =
+            (self.triangles.get(i), self.cells.get(i), self.strains.get_mut(i))
+        else {
+            return;
+        };
+        strain.curvature = [0.0; 3];
+        let at = |corner: u32| self.p.get(corner as usize);
+        let (Some(&a), Some(&b), Some(&c)) = (at(corners[0]), at(corners[1]), at(corners[2])) else { return };
+        add_pair(self.q, corners, strain.resist(cell, self.params, self.step, [b - a, c - a]));
+    }
+
+    fn curve(&mut self, i: usize) {
+        let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
+            return;
+        };
+        let Some(corners) = all_at(self.p, hinge.corners()) else { return };
+        curve(self.strains, hinge, bend, fold.change(corners));
+    }
+
+    fn bend(&mut self, i: usize) {
+        let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
+            return;
+        };
+        let Some(corners) = all_at(self.p, hinge.corners()) else { return };
+        let moment = moment(self.strains, self.cells, hinge, bend, self.bending);
+        let ([a, b, c, d], [e, f, g, h]) = (fold.forces(moment), fold.resist(corners));
+        add_all(self.q, hinge.corners(), [a + e, b + f, c + g, d + h]);
+    }
+
+    /// Tells whether it has done so: there have to be eight, all corners, and none the last particle.
+    #[inline(always)]
+    fn stretch_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let (Some(corners), Some(cells), Some(strains)) =
+            (eight(self.triangles, first), eight(self.cells, first), eight_mut(self.strains, first))
+        else {
+            return false;
+        };
+        let Some([a, b, c]) = gathered(like, self.p, corners) else { return false };
+        let (e, f) = (b - a, c - a);
+        let inverse = [
+            column!(like, cells, |cell| cell.inverse[0]),
+            column!(like, cells, |cell| cell.inverse[1]),
+            column!(like, cells, |cell| cell.inverse[2]),
+            column!(like, cells, |cell| cell.inverse[3]),
+        ];
+        let area = column!(like, cells, |cell| cell.area);
+        let (du, dv) = (e * inverse[0] + f * inverse[1], e * inverse[2] + f * inverse[3]);
+        let all = &*strains;
+        let u = vectors!(like, all, |strain| strain.along[0]);
+        let v = vectors!(like, all, |strain| strain.along[1]);
+        let tension = column!(like, all, |strain| strain.tension);
+        let (square, rate) = (like.all(self.step.h * self.step.h), like.all(self.step.rate));
+        let scale = area * square;
+        let stiff = |stiffness: f32, strain: F| scale * like.all(stiffness) * strain * rate;
+        let [warp, weft] = self.params.stretch;
+        let (warp, weft) = (stiff(warp, u.dot(du)), stiff(weft, v.dot(dv)));
+        let shear = stiff(self.params.shear, u.dot(dv) + v.dot(du));
+        let forces = |p: Vectors<F>, q: Vectors<F>| [p * inverse[0] + q * inverse[2], p * inverse[1] + q * inverse[3]];
+        let taut = like.all(0.25) * tension * area * square;
+        let [a, b] = forces(u * warp + v * shear, v * weft + u * shear);
+        let [c, d] = forces(du * taut, dv * taut);
+        let (f, g) = ((a + c).rows(), (b + d).rows());
+        for (i, strain) in strains.iter_mut().enumerate() {
+            strain.curvature = [0.0; 3];
+            add_pair(self.q, corners[i], [vector(f[i]), vector(g[i])]);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn curve_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let (Some(hinges), Some(bends), Some(folds)) =
+            (eight(self.hinges, first), eight(self.bends, first), eight(self.folds, first))
+        else {
+            return false;
+        };
+        let Some(corners) = gathered(like, self.p, &all_corners(hinges)) else { return false };
+        let [f, g] = ways(corners, feet(like, folds), like.all(1.0));
+        let slope = slopes(like, folds);
+        let change = (slope[0].dot(f) + slope[1].dot(g)).to_array();
+        for i in 0..LANES {
+            curve(self.strains, &hinges[i], &bends[i], change[i]);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn bend_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let (Some(hinges), Some(bends), Some(folds)) =
+            (eight(self.hinges, first), eight(self.bends, first), eight(self.folds, first))
+        else {
+            return false;
+        };
+        let rows = all_corners(hinges);
+        let Some(corners) = gathered(like, self.p, &rows) else { return false };
+        let (foot, slope, one) = (feet(like, folds), slopes(like, folds), like.all(1.0));
+        let [f, g] = ways(corners, foot, one);
+        let held = like.all(0.25) * column!(like, folds, |fold| fold.moment);
+        let mut moments = [0.0; LANES];
+        for (i, sum) in moments.iter_mut().enumerate() {
+            *sum = moment(self.strains, self.cells, &hinges[i], &bends[i], self.bending);
+        }
+        let moments = like.of(moments);
+        let [a, b, c, d] = spread([slope[0] * moments, slope[1] * moments], foot, one);
+        let turning = [f * (held * slope[0].dot(slope[0])), g * (held * slope[1].dot(slope[1]))];
+        let [e, f, g, h] = spread(turning, foot, one);
+        let [a, b, c, d] = [(a + e).rows(), (b + f).rows(), (c + g).rows(), (d + h).rows()];
+        for (i, &corners) in rows.iter().enumerate() {
+            add_all(self.q, corners, [vector(a[i]), vector(b[i]), vector(c[i]), vector(d[i])]);
+        }
+        true
+    }
+}
+
+/// Eight of them, if there are as many from there on.
+#[inline(always)]
+fn eight<T>(all: &[T], first: usize) -> Option<&[T; LANES]> {
+    all.get(first..first + LANES)?.try_into().ok()
+}
+
+#[inline(always)]
+fn eight_mut<T>(all: &mut [T], first: usize) -> Option<&mut [T; LANES]> {
+    all.get_mut(first..first + LANES)?.try_into().ok()
+}
+
+#[inline(always)]
+fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+#[inline(always)]
+fn all_corners(hinges: &[Hinge; LANES]) -> [[u32; 4]; LANES] {
+    let [a, b, c, d, e, f, g, h] = hinges;
+    [a.corners(), b.corners(), c.corners(), d.corners(), e.corners(), f.corners(), g.corners(), h.corners()]
+}
+
+/// The vectors of corners; none, if one is missing or the last.
+#[inline(always)]
+fn gathered<F: Eight, const N: usize>(
+    like: F,
+    column: &[Vec3],
+    corners: &[[u32; N]; LANES],
+) -> Option<[Vectors<F>; N]> {
+    let last = column.len().checked_sub(1)?;
+    let mut most = 0;
+    for of in corners {
+        for &corner in of {
+            most = most.max(corner);
+        }
+    }
+    if most as usize >= last {
+        return None;
+    }
+    let mut all = [Vectors([like.all(0.0); 3]); N];
+    for (i, vectors) in all.iter_mut().enumerate() {
+        let mut rows = [0; LANES];
+        for (row, of) in rows.iter_mut().zip(corners) {
+            *row = of[i] as usize;
+        }
+        *vectors = Vectors::gather(like, column, last, &rows);
+    }
+    Some(all)
+}
+
+#[inline(always)]
+fn feet<F: Eight>(like: F, folds: &[Fold; LANES]) -> [F; 2] {
+    [column!(like, folds, |fold| fold.foot[0]), column!(like, folds, |fold| fold.foot[1])]
+}
+
+#[inline(always)]
+fn slopes<F: Eight>(like: F, folds: &[Fold; LANES]) -> [Vectors<F>; 2] {
+    [vectors!(like, folds, |fold| fold.slope[0]), vectors!(like, folds, |fold| fold.slope[1])]
+}
+
+/// As [`Fold::ways`].
+#[inline(always)]
+fn ways<F: Eight>([a, b, c, d]: [Vectors<F>; 4], [x, y]: [F; 2], one: F) -> [Vectors<F>; 2] {
+    [c - a * (one - x) - b * x, d - a * (one - y) - b * y]
+}
+
+/// As [`Fold::spread`].
+#[inline(always)]
+fn spread<F: Eight>([c, d]: [Vectors<F>; 2], [x, y]: [F; 2], one: F) -> [Vectors<F>; 4] {
+    [-(c * (one - x) + d * (one - y)), -(c * x + d * y), c, d]
+}
