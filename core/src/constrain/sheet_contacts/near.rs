@@ -1,7 +1,7 @@
 //! Lists of who may come near whom in the sub-steps to come, for as long as all go on about as they do.
 //!
 //! Everyone is expected to go on as in the sub-step in which they are made. Two are listed unless some direction keeps them apart by more
-//! than what they are looked for and a skin, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than half the skin
+//! than they are looked for and two skins, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than a skin
 //! is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
 //!

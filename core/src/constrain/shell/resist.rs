@@ -8,6 +8,9 @@ use crate::cloth::Hinge;
 use crate::lanes::{Eight, Kernel, LANES, Vectors};
 use glam::Vec3;
 
+/// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
+const WIDE: bool = cfg!(not(target_os = "none"));
+
 /// Adds h² K p to q.
 pub(super) struct Resist<'s> {
     pub(super) params: &'s ShellParams,
@@ -31,17 +34,17 @@ impl Kernel for Resist<'_> {
     fn run<F: Eight>(mut self, like: F) {
         let (triangles, hinges) = (self.triangles.len(), self.hinges.len());
         for first in (0..triangles).step_by(LANES) {
-            if !self.stretch_eight(like, first) {
+            if !(WIDE && self.stretch_eight(like, first)) {
                 (first..triangles.min(first + LANES)).for_each(|i| self.stretch(i));
             }
         }
         for first in (0..hinges).step_by(LANES) {
-            if !self.curve_eight(like, first) {
+            if !(WIDE && self.curve_eight(like, first)) {
                 (first..hinges.min(first + LANES)).for_each(|i| self.curve(i));
             }
         }
         for first in (0..hinges).step_by(LANES) {
-            if !self.bend_eight(like, first) {
+            if !(WIDE && self.bend_eight(like, first)) {
                 (first..hinges.min(first + LANES)).for_each(|i| self.bend(i));
             }
         }
