@@ -6,6 +6,8 @@
 mod eight;
 #[cfg(any(test, target_os = "none"))]
 mod one;
+#[cfg(any(test, target_feature = "simd128"))]
+mod thrice;
 mod vectors;
 
 pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
@@ -22,7 +24,7 @@ pub(crate) const LANES: usize = 8;
 /// and so near that its square is a number.
 pub(crate) const NOWHERE: f32 = 1e19;
 
-/// How many go side by side where eight may: on chips, where lanes would be taken one after the other, one.
+/// The number that goes side by side where eight may: on chips, where lanes would be taken one after the other, one.
 pub(crate) const ABREAST: usize = if cfg!(target_os = "none") { 1 } else { LANES };
 
 /// Runs a kernel that goes over so many at a time in the first lanes.

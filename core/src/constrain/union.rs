@@ -1,4 +1,4 @@
-//! Who hangs together: things that are bound to each other by twos, each to one of a lower number.
+//! Groups that hang together: things that are bound to each other by twos, each to one of a lower number.
 
 /// A thing that is bound to one of the same slice: a lower one, or itself if it is the lowest.
 pub(super) trait Bound {

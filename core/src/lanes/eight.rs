@@ -190,6 +190,11 @@ impl Eight for wide::f32x8 {
     fn most(self, other: Self) -> Self {
         self.fast_max(other)
     }
+    #[cfg(target_feature = "simd128")]
+    #[inline(always)]
+    fn thrice(self) -> [Self; 3] {
+        super::thrice::thrice(self)
+    }
     #[inline(always)]
     fn to_bitmask(self) -> u32 {
         Self::to_bitmask(self)

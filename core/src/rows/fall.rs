@@ -6,7 +6,7 @@ use crate::lanes::{Eight, Kernel, not};
 use crate::math::{largest, max};
 use glam::Vec3;
 
-/// What makes rows fall, each braked by its own drag.
+/// The steady pull that makes rows fall, each braked by its own drag.
 #[derive(Clone, Copy)]
 pub(crate) struct Fall<'a, const FALLS: bool, const DRAGS: bool> {
     pub(crate) g: Vec3,

@@ -97,7 +97,7 @@ fn free(bodies: &mut [Body], numbers: [u32; 2]) -> usize {
 }
 
 impl Order<'_> {
-    /// How many there are.
+    /// The number of those in it.
     pub(super) fn len(&self) -> usize {
         self.numbers.len()
     }
@@ -112,7 +112,7 @@ impl Order<'_> {
         at(colour)..at(colour + 1)
     }
 
-    /// How many of them may go side by side.
+    /// The number of those of a colour that may go side by side.
     pub(super) fn side_by_side(&self, colour: usize) -> usize {
         if colour + 1 == COLOURS { 1 } else { ABREAST }
     }

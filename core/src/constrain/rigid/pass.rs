@@ -195,7 +195,7 @@ impl<F: Eight> Motion<F> {
         }
     }
 
-    /// What an angular impulse over the mass does to how they turn.
+    /// The change of their spins by an angular impulse over the mass.
     #[inline(always)]
     fn turned_by(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
         let [a, b, c] = self.inverse;

@@ -131,7 +131,7 @@ pub(super) fn remember(order: &mut Order<'_>) {
 /// Two bodies, and where they touch.
 struct Pair<'a> {
     bodies: [&'a mut Body; 2],
-    /// Who is pushed: not one that sleeps and has been lain against since before.
+    /// Tells who is pushed: not one that sleeps and has been lain against since before.
     gives: [bool; 2],
     /// From the first to the second, in the world.
     normal: Vec3,

@@ -106,7 +106,7 @@ pub(super) struct Kept<'m> {
     pub(super) followed: &'m mut [u32],
     pub(super) contacts: &'m mut [Contact],
     pub(super) surfaces: &'m mut [Surface],
-    /// Who may come near whom; none where too little memory is lent for that.
+    /// The lists of who may come near whom; none where too little memory is lent for that.
     pub(super) near: Option<Near<'m>>,
 }
 

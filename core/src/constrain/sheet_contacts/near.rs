@@ -5,7 +5,7 @@
 //! is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
 //!
-//! What is found is thereby what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::pair::Look) finds nothing of.
+//! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::pair::Look) finds nothing of.
 
 use super::super::{Bodies, Substep};
 use super::closest::{Closest, Kind, apart};

@@ -149,10 +149,10 @@ pub(super) struct Look<'m, 'r> {
     /// How far each may be pushed from where it is.
     pub(super) room: &'m mut [f32],
     pub(super) contacts: &'m mut [Contact],
-    /// How many contacts there are, and how many found no room.
+    /// The number of contacts, and of those that found no room.
     pub(super) count: usize,
     pub(super) lost: u64,
-    /// How many would pass each other.
+    /// The number of pairs that would pass each other.
     pub(super) meetings: u32,
 }
 

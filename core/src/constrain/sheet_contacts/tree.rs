@@ -5,7 +5,7 @@ use crate::math::{high, largest, low, max};
 use crate::memory::take;
 use glam::Vec3;
 
-/// What rounding may come to in places and ways, as a share of the largest coordinate.
+/// The rounding of places and ways at the most, as a share of the largest coordinate.
 pub(super) const ROUNDING: f32 = 5e-7;
 
 /// A box, empty or along a way.
