@@ -89,7 +89,7 @@ fn ours(case: &Case) {
 #[cfg(feature = "rapier")]
 fn rapier(case: &Case, who: &str) {
     use pointmass_peers::rapier_cloth;
-    let mut numbers = who.split(',').map(|text| text.parse::<f32>());
+    let mut numbers = who.split(',').map(str::parse::<f32>);
     let mut next = |usual: f32| numbers.next().and_then(Result::ok).unwrap_or(usual);
     let (iterations, frequency) = (next(4.0) as usize, next(30.0));
     let cell = 1.0 / case.cells as f32;
