@@ -4,6 +4,8 @@
 mod bonds;
 #[path = "../firmware/src/contacts.rs"]
 mod contacts;
+#[path = "../firmware/src/drawing.rs"]
+mod drawing;
 #[path = "../firmware/src/expected.rs"]
 mod expected;
 #[path = "../firmware/src/indices.rs"]

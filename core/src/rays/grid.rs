@@ -5,6 +5,7 @@ use super::near::Gathered;
 use super::nearest::{Closest, square_to};
 use super::probe::{Best, Probe};
 use super::tree::MOST;
+use super::visit::{Visit, Visitor};
 use super::{Pieces, Structure, TooSmall};
 use crate::math::{largest, max, min};
 use crate::shape::Aabb;
@@ -259,6 +260,44 @@ pub(super) fn near<P: Pieces + ?Sized>(words: &[u32], pieces: &P, bounds: &Aabb,
         found.cost.visits += 1;
         grid.pieces(cell).iter().for_each(|&piece| found.ask(pieces, bounds, piece as usize));
     });
+}
+
+/// Goes through the slices, rows and cells that a visitor enters.
+pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut Visit<'_, P, V>) {
+    let Some(grid) = Grid::of(words) else {
+        return;
+    };
+    let frame = grid.frame;
+    if frame.count() == 1 {
+        return grid.pieces(0).iter().for_each(|&piece| visit.ask(piece as usize));
+    }
+    let last = frame.cells.map(|cells| cells as usize - 1);
+    let between = |first: [usize; 3], last: [usize; 3]| {
+        let corner = |cells: [usize; 3], high: bool| {
+            Vec3::from([0, 1, 2].map(|axis| {
+                let (low_plane, high_plane) = frame.planes(axis, cells[axis]);
+                if high { high_plane } else { low_plane }
+            }))
+        };
+        Aabb { min: corner(first, false), max: corner(last, true) }
+    };
+    for z in 0..=last[2] {
+        if !visit.visitor.enters(&between([0, 0, z], [last[0], last[1], z])) {
+            continue;
+        }
+        for y in 0..=last[1] {
+            if !visit.visitor.enters(&between([0, y, z], [last[0], y, z])) {
+                continue;
+            }
+            for x in 0..=last[0] {
+                let pieces = grid.pieces(frame.number([x, y, z]));
+                if !pieces.is_empty() && visit.visitor.enters(&between([x, y, z], [x, y, z])) {
+                    visit.cost.visits += 1;
+                    pieces.iter().for_each(|&piece| visit.ask(piece as usize));
+                }
+            }
+        }
+    }
 }
 
 /// Goes outward from the point's own cell along each axis, and leaves out slices, rows and cells that are too far away.

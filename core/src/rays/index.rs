@@ -4,6 +4,7 @@ use super::header::{Boxes, Header};
 use super::near::{in_order, meets};
 use super::nearest::Closest;
 use super::probe::{Best, Probe};
+use super::visit::{Visit, Visitor};
 use super::{Cost, Pieces, Stats, Structure, grid, tree};
 use crate::shape::{Aabb, Hit, Segment};
 use glam::Vec3;
@@ -115,6 +116,17 @@ impl<'w> Index<'w> {
             Structure::Grid => in_order(|found| grid::near(self.words, pieces, bounds, found), visit),
             _ => in_order(|found| tree::near(self.words, pieces, bounds, found), visit),
         }
+    }
+
+    /// Shows a visitor every piece whose own box it enters, in an order of the structure's own; cells may show a piece several times.
+    pub fn visit<P: Pieces + ?Sized, V: Visitor>(&self, pieces: &P, visitor: &mut V) -> Cost {
+        let mut visit = Visit { pieces, visitor, cost: Cost::default() };
+        match self.structure_for(pieces) {
+            Structure::Brute => (0..pieces.count()).for_each(|piece| visit.ask(piece)),
+            Structure::Grid => grid::visit(self.words, &mut visit),
+            _ => tree::visit(self.words, &mut visit),
+        }
+        visit.cost
     }
 
     /// The place nearest to `point`, of those that `place` says each piece has nearest to it, held in the pieces' boxes;

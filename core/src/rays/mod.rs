@@ -37,6 +37,8 @@ mod entries;
 mod grid;
 mod header;
 mod index;
+#[cfg(feature = "alloc")]
+mod index_buf;
 mod kd;
 mod near;
 mod nearest;
@@ -48,12 +50,16 @@ mod structure;
 #[cfg(all(test, feature = "alloc"))]
 mod tests;
 mod tree;
+mod visit;
 
 pub use index::{Index, Unsound};
+#[cfg(feature = "alloc")]
+pub use index_buf::IndexBuf;
 pub(crate) use nearest::{Closest, square_to};
 pub use pieces::{Pieces, Solids};
 pub(crate) use probe::{Best, Probe};
 pub use structure::{Structure, UnknownStructure};
+pub use visit::Visitor;
 
 /// The work that a query took: the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Words that pass for an index and are none: whatever they say, asking them ends and does not panic.
 
 use super::header::Header;
-use super::{Index, Structure};
+use super::{Index, Structure, Visitor};
 use crate::Vec3;
 use crate::rng::Stream;
 use crate::shape::{Aabb, MeshBuf, Segment};
@@ -42,10 +42,22 @@ fn poisoned_words_are_refused_or_harmless() {
             passed += 1;
             let path = Segment::new(Vec3::from(draw(i, 1)) * 3.0, Vec3::from(draw(i, 2)) * -3.0);
             let _ = index.first_hit_counted(&view, &path);
-            index.near(&view, &Aabb { min: Vec3::splat(-0.2), max: Vec3::ONE }, &mut |_| {});
+            let bounds = Aabb { min: Vec3::splat(-0.2), max: Vec3::ONE };
+            index.near(&view, &bounds, &mut |_| {});
+            index.visit(&view, &mut Into(bounds));
         }
     }
     assert!(refused > 100 && passed > 100, "{refused} {passed}");
+}
+
+/// Goes into boxes that share a point with its own.
+struct Into(Aabb);
+
+impl Visitor for Into {
+    fn enters(&mut self, bounds: &Aabb) -> bool {
+        bounds.min.cmple(self.0.max).all() && bounds.max.cmpge(self.0.min).all()
+    }
+    fn visit(&mut self, _: usize) {}
 }
 
 fn draw(i: u32, k: u32) -> [f32; 3] {

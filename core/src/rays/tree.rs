@@ -8,6 +8,7 @@ use super::header::{HEADER, Header, UNIT};
 use super::near::Gathered;
 use super::nearest::Closest;
 use super::probe::{Best, Probe};
+use super::visit::{Visit, Visitor};
 use crate::shape::Aabb;
 use glam::Vec3;
 use wide::f32x8;
@@ -69,6 +70,13 @@ impl Node {
             self.planes[axis + 3][lane] = bounds.max[axis];
         }
         self.children[lane] = child;
+    }
+
+    /// The box of one of its children.
+    #[inline(always)]
+    fn bounds(&self, lane: usize) -> Aabb {
+        let corner = |first: usize| Vec3::from([0, 1, 2].map(|axis| self.planes[first + axis][lane]));
+        Aabb { min: corner(0), max: corner(3) }
     }
 
     /// Which of its children's boxes share a point with another.
@@ -224,6 +232,32 @@ pub(super) fn near<P: Pieces + ?Sized>(words: &[u32], pieces: &P, bounds: &Aabb,
             match child & NOTHING {
                 NOTHING => {}
                 PIECE => found.ask(pieces, bounds, (child & NUMBER) as usize),
+                _ => drop(waiting.push(child)),
+            }
+        }
+    }
+}
+
+/// Goes wherever a visitor enters.
+pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut Visit<'_, P, V>) {
+    let body = body(words);
+    let mut waiting = heapless::Vec::<u32, WAITING>::new();
+    let _ = waiting.push(0);
+    while let Some(child) = waiting.pop() {
+        if child & NOTHING == RUN {
+            run(body, child & NUMBER).for_each(|piece| visit.ask(piece));
+            continue;
+        }
+        let Some(node) = Node::at(body, child) else {
+            continue;
+        };
+        visit.cost.visits += 1;
+        for (lane, &child) in node.children.iter().enumerate() {
+            if child & NOTHING == NOTHING || !visit.visitor.enters(&node.bounds(lane)) {
+                continue;
+            }
+            match child & NOTHING {
+                PIECE => visit.meet((child & NUMBER) as usize),
                 _ => drop(waiting.push(child)),
             }
         }

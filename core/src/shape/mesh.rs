@@ -4,7 +4,7 @@ use super::{Aabb, Affine, Collider, Contact, Hit, Hulls, Mapped, Marks, Segment,
 use crate::math::{high, largest, length, max, power_to_one};
 use crate::rays::{Index, Pieces, Unsound};
 #[cfg(feature = "alloc")]
-use crate::rays::{Structure, TooSmall};
+use crate::rays::{IndexBuf, Structure};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -28,7 +28,7 @@ pub struct MeshBuf {
     vertices: alloc::vec::Vec<Vec3>,
     triangles: alloc::vec::Vec<[u32; 3]>,
     areas: alloc::vec::Vec<u64>,
-    index: alloc::vec::Vec<u32>,
+    index: IndexBuf,
 }
 
 /// Why vertices and triangles do not make a mesh.
@@ -129,7 +129,7 @@ impl MeshBuf {
         let bounds = Aabb::around(vertices.iter().copied());
         let mut areas = alloc::vec![0; triangles.len()];
         sum_areas(&vertices, &triangles, &mut areas);
-        Ok(Self { bounds, vertices, triangles, areas, index: alloc::vec::Vec::new() })
+        Ok(Self { bounds, vertices, triangles, areas, index: IndexBuf::default() })
     }
 
     /// The same with an index of its triangles, if they are more than a few.
@@ -143,22 +143,14 @@ impl MeshBuf {
     /// The same with an index of its triangles, so that paths no longer look at all of them.
     #[must_use]
     pub fn indexed(mut self, structure: Structure) -> Self {
-        let build = |mesh: &Self, mut memory: alloc::vec::Vec<u32>| -> Result<_, TooSmall> {
-            let words = structure.build(&mesh.view(), &mut memory)?.words().len();
-            memory.truncate(words);
-            memory.shrink_to_fit();
-            Ok(memory)
-        };
-        let memory = alloc::vec![0; structure.words(self.triangles.len())];
-        // There is room for all that can be in memory.
-        self.index = build(&self, memory).unwrap_or_default();
+        self.index = IndexBuf::new(structure, &self.view());
         self
     }
 
     /// The index of its triangles; [`Index::BRUTE`] as long as it has none.
     #[must_use]
     pub fn index(&self) -> Index<'_> {
-        Index::trusted(&self.index)
+        self.index.view()
     }
 
     /// The vertices \[m\].

@@ -3,9 +3,8 @@
 use super::cells::{Cells, Found, insert};
 use super::{Aabb, Collider, Contact, Face, Facing, Hit, Hulls, Many, Marks, Ride, Segment, earlier};
 use crate::math::{largest, max};
-use crate::rays::{Index, Pieces, Structure};
+use crate::rays::{IndexBuf, Pieces, Structure};
 use crate::time::Time;
-use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Deref;
 use glam::Vec3;
@@ -31,7 +30,7 @@ pub struct Scenery<C> {
     /// The other boxes by the cells of a grid, for whoever is asked about a small place.
     cells: Cells,
     /// An index of them for all others; none, if there are few.
-    words: Vec<u32>,
+    index: IndexBuf,
 }
 
 /// Those things of many that are near a place.
@@ -66,14 +65,10 @@ impl<C: Collider> Scenery<C> {
         let is_endless = |bounds: &Aabb| !(bounds.min.is_finite() && bounds.max.is_finite());
         let endless = (0..things.len()).filter(|&number| is_endless(&boxes.0[number])).collect();
         let all = boxes.0.iter().filter(|bounds| !is_endless(bounds)).fold(Aabb::EMPTY, |all, one| all.join(*one));
-        let mut memory = vec![0; if things.len() < WORTH_AN_INDEX { 0 } else { Structure::Bvh.words(things.len()) }];
-        let words = match Structure::Bvh.build(&boxes, &mut memory) {
-            Ok(index) => index.words().to_vec(),
-            // Too few to be worth it, or more than can be numbered.
-            Err(_) => Vec::new(),
-        };
+        let is_few = things.len() < WORTH_AN_INDEX;
+        let index = if is_few { IndexBuf::default() } else { IndexBuf::new(Structure::Bvh, &boxes) };
         let cells = Cells::new(&boxes.0, &all, &|number| !is_endless(&boxes.0[number]));
-        Self { things, boxes, all, endless, cells, words }
+        Self { things, boxes, all, endless, cells, index }
     }
 
     /// Finds those that a box may share a point with; false, if they may be too many.
@@ -110,11 +105,11 @@ impl<C: Collider> Scenery<C> {
                 visit(thing);
             }
         };
-        if self.words.is_empty() {
+        if self.index.view().words().is_empty() {
             return self.things.iter().for_each(ask);
         }
         let mut endless = self.endless.iter().copied().peekable();
-        Index::trusted(&self.words).near(&self.boxes, bounds, &mut |number| {
+        self.index.view().near(&self.boxes, bounds, &mut |number| {
             while let Some(before) = endless.next_if(|&before| before < number) {
                 ask(&self.things[before]);
             }
@@ -239,7 +234,7 @@ impl<C: Collider> Collider for Scenery<C> {
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
-        if self.words.is_empty() {
+        if self.index.view().words().is_empty() {
             return self.things.mark_near(hulls, marks);
         }
         self.endless.iter().for_each(|&number| self.things[number].mark_near(hulls, marks));
@@ -251,7 +246,7 @@ impl<C: Collider> Collider for Scenery<C> {
             if marks[i] != 0 {
                 continue;
             }
-            Index::trusted(&self.words).near(&self.boxes, &hulls.get(i), &mut |number| {
+            self.index.view().near(&self.boxes, &hulls.get(i), &mut |number| {
                 if !asked.contains(&number) {
                     self.things[number].mark_near(hulls, marks);
                     // Whoever finds no room here is asked again, to no other answer.

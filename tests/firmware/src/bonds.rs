@@ -3,14 +3,16 @@
 //! A rope that hangs from a nail, a ring of soft links, a die, a jelly, a sheet, two boxes and a bent wire are thrown onto the floor, one
 //! after the other, and all but the wire at once.
 
+use crate::drawing::{hash_bodies, hash_strands, hash_surface};
 use pointmass::constrain::{
     Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams, StrandParams,
     Strands,
 };
+use pointmass::draw::{Lock, Patch};
 use pointmass::index::Structure;
 use pointmass::motion::Motion;
 use pointmass::shape::Plane;
-use pointmass::{Constraint, Drag, Gravity, Inline, Particle, Scene, Sheet, System, Time, Vec3, Verlet};
+use pointmass::{Constraint, Drag, Fnv, Gravity, Inline, Particle, Scene, Sheet, System, Time, Vec3, Verlet};
 
 /// The hashes in the form of `all` in `expected.rs`.
 pub(crate) const EXPECTED: &str = include_str!("../../bonds.txt");
@@ -50,7 +52,8 @@ impl Memory {
     }
 }
 
-/// Calls `out` with the name of each and the hash after a second and a half.
+/// Calls `out` with the name of each and the hash after a second and a half; and with those of boxes, a surface and a strand as they are drawn
+/// then.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, system } = memory;
     throw(start);
@@ -97,6 +100,24 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
             system.step(&scene, Time::frame(frame, 60) - system.time());
         }
         out(name, system.hash());
+        let (state, mut hash) = (system.state(&scene), Fnv::new());
+        let drawn = match name {
+            "chests" => {
+                hash_bodies(&state, &chests.boxes, start, &mut hash);
+                "boxes"
+            }
+            "sheet" => {
+                let patch = Patch { first: LOOSE as u32, count: WOVEN as u32, triangles: &sheet.triangles };
+                hash_surface::<WOVEN, FACES>(&state, &patch, &mut hash);
+                "surface"
+            }
+            "wire" => {
+                hash_strands(&state, &Lock { first: RING[0], points: 8, count: 1, width: 2e-3 }, &mut hash);
+                "strand"
+            }
+            _ => continue,
+        };
+        out(drawn, hash.finish());
     }
 }
 

@@ -16,6 +16,8 @@ use cortex_m as _;
 mod bonds;
 #[cfg(roomy)]
 mod contacts;
+#[cfg(roomy)]
+mod drawing;
 mod expected;
 #[cfg(roomy)]
 mod indices;

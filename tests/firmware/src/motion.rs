@@ -3,12 +3,10 @@
 //! A charged sheet on springs, one that swings and some that break, and a balloon, moved through every force by every
 //! method; then the same once more of a material that changes over their lives, and how they look.
 
-use pointmass::draw::{
-    self, Instance, Knot, Line, Patch, Ring, Sprite, Trails, Vertex, View, appearance, back_to_front, solids, sprites,
-    surface,
-};
+use crate::drawing::{hash_lines, hash_solids, hash_sprites, hash_surface};
+use pointmass::draw::{self, Knot, Patch, Ring, Trails, appearance};
 use pointmass::force::{
-    Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, State, Viscosity, Vortex, Wind,
+    Coulomb, Curl, Drive, Gusts, LennardJones, Pressure, QuadraticDrag, Radial, Viscosity, Vortex, Wind,
 };
 use pointmass::index::InGrid;
 use pointmass::material::{Blend, Curve, Facing, Heading, Life, Over, SpriteMaterial, TrailMaterial, Varying};
@@ -141,66 +139,19 @@ fn grow_old(
             [look.diameter, look.scale, look.glow, look.rotation].into_iter().for_each(|x| hash.float(x));
             hash.bytes(&look.color);
         }
-        hash_sprites(&state, &mut hash);
+        hash_sprites::<PARTICLES>(&state, &mut hash);
         hash.long(trails.look(&state) as u64);
         hash_lines(|into| trails.lines(&state, into), &mut hash);
         hash_lines(|into| draw::springs(&state, 0.2, into), &mut hash);
         hash_lines(|into| draw::velocities(&state, 0.1, into), &mut hash);
         hash_lines(|into| draw::links(&state, EDGES.into_iter(), [255; 4], into), &mut hash);
-        hash_solids(&state, &mut hash);
-        hash_surface(&state, &mut hash);
+        hash_solids::<PARTICLES>(&state, &mut hash);
+        let own = FACES.map(|face| face.map(|corner| corner - WOVEN.0 as u32));
+        let balloon = Patch { first: WOVEN.0 as u32, count: CORNERS.len() as u32, triangles: &own };
+        hash_surface::<{ CORNERS.len() }, { FACES.len() }>(&state, &balloon, &mut hash);
     }
     hash.long(system.hash());
     hash.finish()
-}
-
-/// The list of sprites, the farthest first.
-#[inline(never)]
-fn hash_sprites(state: &State<'_>, hash: &mut Fnv) {
-    let view = View { eye: Vec3::new(1.0, 2.0, 3.0), up: Vec3::Y };
-    let (mut drawn, mut order, mut scratch) = ([Sprite::NONE; PARTICLES], [0; PARTICLES], [0; PARTICLES]);
-    let (count, left_out) = sprites(state, &view, &mut drawn);
-    hash.long(left_out as u64);
-    for &index in back_to_front(&drawn[..count], &view, &mut order, &mut scratch) {
-        let Sprite { center, right, up, color, frame, .. } = drawn[index as usize];
-        [center, right, up].into_iter().flat_map(|v| v.to_array()).for_each(|x| hash.float(x));
-        hash.bytes(&color);
-        hash.long(frame.into());
-    }
-}
-
-/// Lines, as many as a chip can spare the memory for.
-#[inline(never)]
-fn hash_lines(list: impl FnOnce(&mut [Line]) -> (usize, usize), hash: &mut Fnv) {
-    let mut drawn = [Line::NONE; 32];
-    let (count, left_out) = list(&mut drawn);
-    hash.long(left_out as u64);
-    for Line { ends, widths, colors } in &drawn[..count] {
-        ends.iter().flat_map(Vec3::to_array).chain(*widths).for_each(|x| hash.float(x));
-        hash.bytes(colors.as_flattened());
-    }
-}
-
-/// The shapes that particles are drawn as.
-#[inline(never)]
-fn hash_solids(state: &State<'_>, hash: &mut Fnv) {
-    let mut drawn = [Instance::NONE; PARTICLES];
-    let (count, _) = solids(state, &mut drawn);
-    for Instance { center, axes, color, .. } in &drawn[..count] {
-        center.to_array().into_iter().chain(axes.to_cols_array()).for_each(|x| hash.float(x));
-        hash.bytes(color);
-    }
-}
-
-/// The balloon, and the normals on it.
-#[inline(never)]
-fn hash_surface(state: &State<'_>, hash: &mut Fnv) {
-    let own = FACES.map(|face| face.map(|corner| corner - WOVEN.0 as u32));
-    let patch = Patch { first: WOVEN.0 as u32, count: CORNERS.len() as u32, triangles: &own };
-    let (mut vertices, mut triangles) = ([Vertex::NONE; CORNERS.len()], [[0; 3]; FACES.len()]);
-    let (_, count) = surface(state, &patch, &mut vertices, &mut triangles);
-    hash.long(count as u64);
-    vertices.iter().flat_map(|vertex| vertex.normal.to_array()).for_each(|x| hash.float(x));
 }
 
 fn forces() -> impl Force {

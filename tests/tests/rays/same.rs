@@ -3,7 +3,7 @@
 use super::meshes;
 use pointmass::Time;
 use pointmass::Vec3;
-use pointmass::rays::{Index, Structure};
+use pointmass::rays::{Index, Structure, Visitor};
 use pointmass::shape::{Aabb, Collider, Contact, Hit, Mesh, MeshBuf, Segment, Surface};
 use pointmass_tests::{Random, often};
 
@@ -132,6 +132,44 @@ fn every_structure_finds_what_is_near_in_the_same_order() {
                     found
                 };
                 assert_eq!(leant_on(&indexed), leant_on(&view), "{structure} of {name}");
+            }
+        }
+    }
+}
+
+/// What lies beyond a plane, and has been found there.
+struct Beyond(Vec3, f32, Vec<usize>);
+
+impl Visitor for Beyond {
+    fn enters(&mut self, Aabb { min, max }: &Aabb) -> bool {
+        let most = |axis: usize| (self.0[axis] * min[axis]).max(self.0[axis] * max[axis]);
+        most(0) + most(1) + most(2) >= self.1
+    }
+
+    fn visit(&mut self, piece: usize) {
+        self.2.push(piece);
+    }
+}
+
+#[test]
+fn every_structure_shows_all_that_is_beyond_a_plane() {
+    for (name, mesh) in meshes::all() {
+        let view = mesh.view();
+        let mut random = Random::new(9);
+        for structure in Structure::ALL {
+            let words = built(*structure, &view, structure.words(mesh.triangles().len()));
+            let index = Index::new(&words).expect("they are as they were built");
+            for _ in 0..often(60) {
+                let (normal, at) = (random.direction(), mesh.sample([random.unit(), random.unit(), random.unit()]));
+                let beyond = |index: &Index<'_>| {
+                    let mut beyond = Beyond(normal, normal.dot(at.point), vec![]);
+                    let cost = index.visit(&view, &mut beyond);
+                    assert_eq!(cost.tests, beyond.2.len() as u64);
+                    beyond.2.sort_unstable();
+                    beyond.2.dedup();
+                    beyond.2
+                };
+                assert_eq!(beyond(&index), beyond(&Index::BRUTE), "{structure} of {name}");
             }
         }
     }
