@@ -3,7 +3,7 @@
 use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
 use crate::show::{Show, lines};
 use crate::shutter::Shutter;
-use crate::stage::{look, tessellate};
+use crate::stage::{look, moves, tessellate};
 use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
@@ -14,7 +14,7 @@ use pointmass::draw::{
 };
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
-use pointmass::{Color, ConstraintKind, Heap, RigidBodies, RigidBox, System};
+use pointmass::{Color, ConstraintKind, Heap, RigidBodies, RigidBox, System, Time};
 use std::collections::HashMap;
 
 /// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.
@@ -32,6 +32,11 @@ const LINK: Color = [170, 170, 180, 255];
 /// The strain at which springs are all red, or blue, where they are drawn by it.
 const FULL_STRAIN: f32 = 0.1;
 
+/// Pixels between places where a thing is seen while the shutter is open, how often that is at most, and at least where scenery moves.
+const PACE: f32 = 2.0;
+const MOST_EXPOSURES: u32 = 32;
+const LEAST_EXPOSURES: u32 = 8;
+
 /// How deep in a surface the pictures that a style draws still show whole, in their radii.
 const SUNK: f32 = 2.5;
 
@@ -46,6 +51,8 @@ pub(crate) struct Cast<'m> {
     view: View,
     style: Option<Style>,
     show: Vec<Show>,
+    /// The width of what the picture shows, in distances from the eye.
+    width: f32,
     /// The length of arrows \[m\].
     arrow: f32,
     shutter: Option<Shutter>,
@@ -63,9 +70,10 @@ pub(crate) struct Memory {
     knots: Vec<Knot>,
 }
 
-/// All that moves in a frame.
+/// All that moves, at an instant.
 #[derive(Default)]
 pub(crate) struct Seen {
+    pub(crate) instant: Time,
     pub(crate) dots: Vec<Dot>,
     pub(crate) billboards: Vec<Billboard>,
     pub(crate) segments: Vec<Line>,
@@ -112,12 +120,12 @@ impl<'m> Cast<'m> {
         let Memory { rings, knots } = memory;
         let trails = (!rings.is_empty()).then(|| Trails::new(rings, knots, None));
         let Viewpoint { camera, middle } = from;
-        let width = 2.0 * (middle - camera.eye).length() * camera.xfov.clamp(0.0, 1.5).tan();
-        let (size, arrow) = (DOT * width, ARROW * width);
+        let (width, distance) = (2.0 * camera.xfov.clamp(0.0, 1.5).tan(), (middle - camera.eye).length());
+        let (size, arrow) = (DOT * width * distance, ARROW * width * distance);
         let view = View { eye: camera.eye, up: camera.up };
         let shutter = shutter.map(Shutter::new);
         let show = show.to_vec();
-        Self { before: HashMap::new(), size, view, style, show, arrow, shutter, trails, covered, forms }
+        Self { before: HashMap::new(), size, view, style, show, width, arrow, shutter, trails, covered, forms }
     }
 
     /// Tells whether particles are drawn along their ways.
@@ -156,18 +164,70 @@ impl<'m> Cast<'m> {
         });
     }
 
-    /// All as it is now.
-    pub(crate) fn see(&mut self, system: &System<Heap>, file: &SceneFile, model: &Model) -> Seen {
-        let (mut seen, scene) = (Seen::default(), model.scene());
-        styled(&system.state(&scene), self.style, self.size, |state| {
-            self.particles(state, system.particles().serial, file, &mut seen);
+    /// All as it is now; with an open shutter, as it has been at instants of that time, the last of them now, as many as it takes for what
+    /// moves to come a few pixels farther each time. What is drawn along its way anyhow takes one.
+    pub(crate) fn see(&mut self, system: &System<Heap>, file: &SceneFile, model: &Model, pixels: u32) -> Vec<Seen> {
+        let scene = model.scene();
+        let (state, serial) = (system.state(&scene), system.particles().serial);
+        let begun: Vec<Vec3> = (0..serial.len()).map(|row| self.begun(&state, row, serial[row])).collect();
+        let exposures = styled(&state, self.style, self.size, |state| self.exposures(state, &begun, model, pixels));
+        let trails = self.trails(&state);
+        let seen = (1..=exposures).map(|number| {
+            let after = |number: u32| -> Vec<Vec3> {
+                let share = number as f32 / exposures as f32;
+                let ways = begun.iter().zip(state.position);
+                let place = |(&from, &to): (&Vec3, &Vec3)| if number == exposures { to } else { from.lerp(to, share) };
+                ways.map(place).collect()
+            };
+            let open = Time::from_seconds_f64(self.shutter.as_ref().map_or(0.0, Shutter::seconds));
+            let left = open.ticks() / u64::from(exposures) * u64::from(exposures - number);
+            let time = state.time - Time::from_ticks(left);
+            let (begun, position) = (after(number - 1), &after(number));
+            let begun: Vec<_> = serial.iter().copied().zip(begun).collect();
+            self.seen_at(&State { time, position, ..state }, &begun, file, model)
+        });
+        let mut seen: Vec<_> = seen.collect();
+        seen.iter_mut().for_each(|seen| seen.ribbons.extend_from_slice(&trails));
+        self.close(&state, serial);
+        seen
+    }
+
+    /// Where the way of the particle in a row begins in a picture.
+    fn begun(&self, state: &State<'_>, row: usize, serial: u32) -> Vec3 {
+        let position = state.position[row];
+        let previous = match (&self.shutter, self.style) {
+            (Some(shutter), _) => shutter.opening(state, row, serial),
+            (None, None) => self.before.get(&serial).copied().unwrap_or(position),
+            (None, Some(_)) => position,
+        };
+        // Whoever has come in at the other side of a room has come straight.
+        state.near.room().map_or(previous, |room| position + room.between(position, previous))
+    }
+
+    /// The number of instants at which things are seen for a picture so many pixels wide.
+    fn exposures(&self, state: &State<'_>, begun: &[Vec3], model: &Model, pixels: u32) -> u32 {
+        let is_still = |row: usize| sprite(state, row, &self.view).is_none() && solid(state, row).is_none();
+        let are_joined = self.has_pieces(model) || !model.locks.is_empty() || !state.springs.springs.is_empty();
+        let moved = |row: usize| {
+            let (place, way) = (state.position[row], (state.position[row] - begun[row]).length());
+            way * pixels as f32 / (self.width * (place - self.view.eye).length())
+        };
+        if self.shutter.is_none() {
+            return 1;
+        }
+        let seen = (0..begun.len()).filter(|&row| are_joined || !is_still(row)).map(moved);
+        let scenery = if moves(model) { LEAST_EXPOSURES } else { 1 };
+        // The cast sends what is no number to zero.
+        ((seen.fold(0.0, f32::max) / PACE) as u32).clamp(scenery, MOST_EXPOSURES)
+    }
+
+    /// All in a state whose particles, by their serials, have come from other places.
+    fn seen_at(&self, state: &State<'_>, begun: &[(u32, Vec3)], file: &SceneFile, model: &Model) -> Seen {
+        let mut seen = Seen { instant: state.time, ..Seen::default() };
+        styled(state, self.style, self.size, |state| {
+            self.particles(state, begun, file, &mut seen);
             seen.segments = self.springs(state, model);
             seen.segments.extend(lines(&self.show, state, model, file.run.index, self.arrow));
-            if let Some(trails) = &self.trails {
-                seen.ribbons = vec![Line::NONE; state.position.len() * (KNOTS + 1)];
-                let (count, _) = trails.lines(state, &mut seen.ribbons);
-                seen.ribbons.truncate(count);
-            }
             if self.style.is_none() {
                 let light = file.light_on_strands(self.view.eye);
                 seen.ribbons.extend(model.locks.iter().flat_map(|lock| hair(state, lock, &light)));
@@ -183,12 +243,19 @@ impl<'m> Cast<'m> {
         seen
     }
 
-    fn particles(&mut self, state: &State<'_>, serial: &[u32], file: &SceneFile, seen: &mut Seen) {
-        let mut now = HashMap::with_capacity(serial.len());
-        for (row, (&position, &serial)) in state.position.iter().zip(serial).enumerate() {
-            if self.shutter.is_none() {
-                now.insert(serial, position);
-            }
+    /// The trails as they are now.
+    fn trails(&self, state: &State<'_>) -> Vec<Line> {
+        let Some(trails) = &self.trails else { return Vec::new() };
+        let mut ribbons = vec![Line::NONE; state.position.len() * (KNOTS + 1)];
+        styled(state, self.style, self.size, |state| {
+            let (count, _) = trails.lines(state, &mut ribbons);
+            ribbons.truncate(count);
+        });
+        ribbons
+    }
+
+    fn particles(&self, state: &State<'_>, begun: &[(u32, Vec3)], file: &SceneFile, seen: &mut Seen) {
+        for (row, &(serial, begun)) in begun.iter().enumerate() {
             if self.covered.get(serial as usize).is_some_and(|&covered| covered) {
                 continue;
             }
@@ -196,13 +263,17 @@ impl<'m> Cast<'m> {
                 seen.billboards.push(self.billboard(&sprite, file));
             } else if let Some(piece) = self.shape(state, row, file) {
                 seen.pieces.push(piece);
-            } else if let Some(dot) = self.dot(state, row, serial) {
+            } else if let Some(dot) = self.dot(state, row, begun) {
                 seen.dots.push(dot);
             }
         }
-        self.before = now;
-        if let Some(shutter) = &mut self.shutter {
-            shutter.close(state, serial);
+    }
+
+    /// A picture has been seen; the next one remembers where things were.
+    fn close(&mut self, state: &State<'_>, serial: &[u32]) {
+        match &mut self.shutter {
+            Some(shutter) => shutter.close(state, serial),
+            None => self.before = serial.iter().copied().zip(state.position.iter().copied()).collect(),
         }
     }
 
@@ -222,7 +293,7 @@ impl<'m> Cast<'m> {
         Some(Piece { surface: form.transformed(axes, center), material, endless: false, lift: 0.0 })
     }
 
-    fn dot(&self, state: &State<'_>, row: usize, serial: u32) -> Option<Dot> {
+    fn dot(&self, state: &State<'_>, row: usize, previous: Vec3) -> Option<Dot> {
         let Appearance { diameter, scale, solid, color, glow, .. } = appearance(state, row)?;
         let position = state.position[row];
         let is_point = state.radius[row] == 0.0 && !(diameter > 0.0) && scale > 0.0;
@@ -232,13 +303,6 @@ impl<'m> Cast<'m> {
             _ if diameter > 0.0 => diameter,
             _ => return None,
         };
-        let previous = match (&self.shutter, self.style) {
-            (Some(shutter), _) => shutter.opening(state, row, serial),
-            (None, None) => self.before.get(&serial).copied().unwrap_or(position),
-            (None, Some(_)) => position,
-        };
-        // Whoever has come in at the other side of a room has come straight.
-        let previous = state.near.room().map_or(previous, |room| position + room.between(position, previous));
         let glow = if matches!(self.style, None | Some(Style::Sprites)) { glow } else { 0.0 };
         (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })
     }
@@ -267,13 +331,13 @@ impl<'m> Cast<'m> {
 }
 
 /// A state whose materials are drawn in a style; the pictures of points, which have no size, have this radius \[m\].
-fn styled(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnce(&State<'_>)) {
+fn styled<T>(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnce(&State<'_>) -> T) -> T {
     let Some(style) = style else { return see(state) };
     let materials = Styled { materials: state.materials, style };
     let material = materials.column(state.material);
     let least = if style == Style::Sprites { size } else { 0.0 };
     let radius: Vec<_> = state.radius.iter().map(|radius| radius.max(least)).collect();
-    see(&State { material: &material, materials: &materials, radius: &radius, ..*state });
+    see(&State { material: &material, materials: &materials, radius: &radius, ..*state })
 }
 
 /// Strands as lit lines.

@@ -1,7 +1,7 @@
 //! `pointmass render`: steps a scene and draws it.
 
 use crate::cast::{Cast, Memory, Seen};
-use crate::draw::{Camera, Flipbook, Moving, Piece, Renderer, Sink, Stage};
+use crate::draw::{Camera, Exposure, Flipbook, Moving, Piece, Renderer, Sink, Stage, develop};
 use crate::formats::{PictureFormat, pictures as format};
 use crate::outcome::{Failure, Outcome, print, tell, warn};
 use crate::parse::number;
@@ -43,8 +43,8 @@ pub(crate) struct Render {
     /// Draw particles in one of the lecture's styles, not as the scene says
     #[arg(long, value_name = "NAME")]
     pub(crate) style: Option<Style>,
-    /// Draw particles along their ways of the last SECONDS before each picture, as a camera does whose shutter is open so long, at most from
-    /// picture to picture; without it as the scene's camera says
+    /// Draw what moves along its way of the last SECONDS before each picture, as a camera does whose shutter is open so long, at most from
+    /// picture to picture; without it as the scene's camera says. Points take no longer for it; all else is drawn up to 32 times
     #[arg(long, value_name = "SECONDS", value_parser = shutter)]
     pub(crate) shutter: Option<f64>,
     /// Draw on top how it works
@@ -175,11 +175,11 @@ fn film(
         let camera = from.turned(args.looking.orbit.unwrap_or(0.0) * timing.part(frame));
         cast.look(&camera);
         // Every picture remembers where things were in the one before, drawn or not.
-        let seen = cast.see(&world.system, &world.file, &world.model);
+        let seen = cast.see(&world.system, &world.file, &world.model, args.size.0);
         if frame < timing.frames && sink.keeps_only_last() {
             continue;
         }
-        shots.push(Shot { instant: world.system.time(), camera, seen });
+        shots.push(Shot { camera, seen });
         if shots.len() == studio.batch || frame == timing.frames {
             let draw = || shots.par_iter().map(|shot| studio.draw(shot)).collect();
             let (next, written) = rayon::join(draw, || write(&drawn, sink));
@@ -199,11 +199,10 @@ fn write(pictures: &[RgbImage], sink: &mut Sink) -> Outcome {
     pictures.iter().try_for_each(|picture| sink.push(picture))
 }
 
-/// The moving things at an instant, and from where they are seen.
+/// The moving things at the instants that a picture is the mean of, and from where they are seen.
 struct Shot {
-    instant: Time,
     camera: Camera,
-    seen: Seen,
+    seen: Vec<Seen>,
 }
 
 /// Everything that pictures have in common.
@@ -252,11 +251,16 @@ impl Studio {
     }
 
     fn draw(&self, shot: &Shot) -> RgbImage {
-        let Seen { dots, billboards, segments, ribbons, pieces } = &shot.seen;
+        let exposures: Vec<_> = shot.seen.par_iter().map(|seen| self.expose(seen, shot.camera)).collect();
+        develop(&exposures)
+    }
+
+    fn expose(&self, seen: &Seen, camera: Camera) -> Exposure {
+        let Seen { instant, dots, billboards, segments, ribbons, pieces } = seen;
         let moving = Moving { exposed: self.exposed, dots, billboards, segments, ribbons };
         match &self.still {
-            Some(renderer) => renderer.frame(&moving),
-            None => self.renderer(shot.instant, shot.camera, pieces).frame(&moving),
+            Some(renderer) => renderer.expose(&moving),
+            None => self.renderer(*instant, camera, pieces).expose(&moving),
         }
     }
 }

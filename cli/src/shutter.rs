@@ -29,6 +29,11 @@ impl Shutter {
         Self { seconds, opens: Time::ZERO, closed: Places::default(), opened: None }
     }
 
+    /// How long it is open \[s\].
+    pub(crate) fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
     /// Waits for the picture at an instant \[s\].
     pub(crate) fn wait_for(&mut self, instant: f64) {
         self.opens = Time::from_seconds_f64((instant - self.seconds).max(0.0));

@@ -5,6 +5,7 @@ use super::air::Haze;
 use super::brush::middles;
 use super::camera::Lens;
 use super::canvas::Canvas;
+use super::color::CODEC;
 use super::eye::Eye;
 use super::picture::{Flipbook, Frame};
 use glam::{Mat2, Vec2, Vec3, Vec4};
@@ -41,7 +42,7 @@ pub(super) struct Placed<'a> {
 impl<'a> Placed<'a> {
     /// Brings a billboard before the lens; `None` if it cannot be seen.
     pub(super) fn new(board: &Billboard, pictures: &'a [Flipbook], eye: &Eye) -> Option<Self> {
-        let Eye { lens, codec, .. } = eye;
+        let Eye { lens, .. } = eye;
         let frame = pictures.get(board.picture)?.frame(board.frame)?;
         let place = lens.view(board.center);
         let depth = Lens::depth(place);
@@ -60,7 +61,7 @@ impl<'a> Placed<'a> {
         let lie = Mat2::from_cols(right, up);
         let thin = lie.determinant().abs() < 0.02 * half * half * grown * grown;
         let lie = if thin { Mat2::from_cols(right + 0.02 * up.perp(), up + 0.02 * right.perp()) } else { lie };
-        let (color, opacity) = codec.decode(board.color);
+        let (color, opacity) = CODEC.decode(board.color);
         let placed = Self {
             place,
             reach,

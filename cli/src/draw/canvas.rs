@@ -2,9 +2,8 @@
 
 use super::backdrop::{Backdrop, DEPTHS};
 use super::bloom::Bloom;
-use super::color::{Codec, grain, luminance};
+use super::color::luminance;
 use glam::Vec3;
-use image::RgbImage;
 
 /// A copy of the backdrop's colours to paint on, and its depths to hide behind.
 #[derive(Debug)]
@@ -13,6 +12,14 @@ pub(super) struct Canvas<'a> {
     pub(super) height: usize,
     depths: &'a [[f32; DEPTHS]],
     pixels: Vec<Pixel>,
+}
+
+/// A picture in linear light, of one instant.
+#[derive(Clone, Debug)]
+pub struct Exposure {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) colors: Vec<Vec3>,
 }
 
 /// Paint, which covers what is under it, and light, which adds up and is only bent into the range
@@ -110,18 +117,17 @@ impl<'a> Canvas<'a> {
         self.pixels[pixel].color *= factor;
     }
 
-    /// The finished picture.
-    pub(super) fn develop(&self, bloom: &Bloom, codec: &Codec) -> RgbImage {
-        let mut bytes = Vec::with_capacity(3 * self.pixels.len());
+    /// The finished picture, in linear light.
+    pub(super) fn expose(&self, bloom: &Bloom) -> Exposure {
+        let mut colors = Vec::with_capacity(self.pixels.len());
         for y in 0..self.height {
             let shine = bloom.row(y);
             for (x, pixel) in self.pixels[y * self.width..][..self.width].iter().enumerate() {
                 let light = pixel.light.get() + shine.as_ref().map_or(Vec3::ZERO, |shine| shine(x));
-                bytes.extend(codec.encode(expose(pixel.color, light), grain(x, y)));
+                colors.push(expose(pixel.color, light));
             }
         }
-        // The bytes are exactly as many as the picture has; an empty one is as good as any other.
-        RgbImage::from_raw(self.width as u32, self.height as u32, bytes).unwrap_or_default()
+        Exposure { width: self.width, height: self.height, colors }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Between the colours people write and the light that adds up.
 
 use glam::Vec3;
+use std::sync::LazyLock;
 
 /// From an sRGB value, 0 to 1, to linear light. Values above 1 go on along the same curve, as
 /// bright lamps need; what is not a number is black.
@@ -51,11 +52,14 @@ pub(super) struct Codec {
     encoded: Vec<f32>,
 }
 
+/// The one there is.
+pub(super) static CODEC: LazyLock<Codec> = LazyLock::new(Codec::new);
+
 impl Codec {
     /// Enough for steps well below one part in 255 even in the shadows.
     const STEPS: usize = 1 << 14;
 
-    pub(super) fn new() -> Self {
+    fn new() -> Self {
         let encoded = |step| 255.0 * encode_channel(step as f32 / Self::STEPS as f32);
         Self {
             linear: (0..=255).map(|byte| decode_channel(byte as f32 / 255.0)).collect(),
@@ -86,20 +90,18 @@ mod tests {
 
     #[test]
     fn every_byte_survives_the_round_trip() {
-        let codec = Codec::new();
         for byte in 0..=255 {
-            let (light, opacity) = codec.decode([byte; 4]);
+            let (light, opacity) = CODEC.decode([byte; 4]);
             assert_eq!(opacity, f32::from(byte) / 255.0);
             for grain in [0.0, 0.5, 0.999] {
-                assert_eq!(codec.encode(light, grain), [byte; 3]);
+                assert_eq!(CODEC.encode(light, grain), [byte; 3]);
             }
         }
     }
 
     #[test]
     fn nothing_is_too_bright_or_too_strange() {
-        let codec = Codec::new();
-        assert_eq!(codec.encode(Vec3::new(f32::NAN, -1.0, f32::INFINITY), 0.9), [0, 0, 255]);
+        assert_eq!(CODEC.encode(Vec3::new(f32::NAN, -1.0, f32::INFINITY), 0.9), [0, 0, 255]);
         assert_eq!(decode(Vec3::new(f32::NAN, -1.0, f32::INFINITY)), Vec3::ZERO);
         assert!(soften(Vec3::splat(50.0)).max_element() < 1.0);
         assert_eq!(soften(Vec3::splat(0.5)), Vec3::splat(0.5));

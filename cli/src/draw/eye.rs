@@ -4,17 +4,15 @@ use super::Stage;
 use super::air::{Air, Haze};
 use super::camera::Lens;
 use super::clip::Frustum;
-use super::color::Codec;
 use super::sky::Sky;
 use glam::Vec3;
 
-/// The lens, what it cuts off, the air before it, and how colours are read.
+/// The lens, what it cuts off, and the air before it.
 #[derive(Debug)]
 pub(super) struct Eye {
     pub(super) lens: Lens,
     pub(super) frustum: Frustum,
     pub(super) air: Air,
-    pub(super) codec: Codec,
 }
 
 impl Eye {
@@ -22,7 +20,7 @@ impl Eye {
     pub(super) fn new(stage: &Stage, width: u32, height: u32) -> Self {
         let lens = Lens::new(&stage.camera, width as usize, height as usize);
         let air = Air::new(stage.fog, Sky::new(stage.background, &lens));
-        Self { lens, frustum: Frustum::new(&lens), air, codec: Codec::new() }
+        Self { lens, frustum: Frustum::new(&lens), air }
     }
 
     /// The haze before a place in view coordinates.

@@ -44,8 +44,9 @@ mod tests;
 
 pub use air::Fog;
 pub use camera::Camera;
+pub use canvas::Exposure;
 pub use picture::Flipbook;
-pub use render::Renderer;
+pub use render::{Renderer, develop};
 pub use sink::Sink;
 pub use sky::Background;
 pub use stage::{Billboard, Dot, Light, Line, Material, Moving, Piece, Stage};

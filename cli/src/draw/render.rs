@@ -3,7 +3,8 @@
 use super::backdrop::Backdrop;
 use super::billboard::Placed;
 use super::bloom::Bloom;
-use super::canvas::Canvas;
+use super::canvas::{Canvas, Exposure};
+use super::color::{CODEC, grain};
 use super::contact::{self, Caster};
 use super::eye::Eye;
 use super::lamp::Lamp;
@@ -30,6 +31,20 @@ pub struct Renderer {
     pictures: Arc<[Flipbook]>,
 }
 
+/// The picture that is the mean of some of one size, in linear light.
+pub fn develop(exposures: &[Exposure]) -> RgbImage {
+    let Some((first, others)) = exposures.split_first() else { return RgbImage::default() };
+    let mut sum = first.colors.clone();
+    for other in others {
+        sum.iter_mut().zip(&other.colors).for_each(|(sum, color)| *sum += color);
+    }
+    let share = 1.0 / exposures.len() as f32;
+    let pixel = |(at, color): (usize, &Vec3)| CODEC.encode(color * share, grain(at % first.width, at / first.width));
+    let bytes = sum.iter().enumerate().flat_map(pixel).collect();
+    // The bytes are exactly as many as the picture has; an empty one is as good as any other.
+    RgbImage::from_raw(first.width as u32, first.height as u32, bytes).unwrap_or_default()
+}
+
 /// Something to paint, at its depth.
 enum Mover<'a> {
     Sprite(Sprite),
@@ -52,6 +67,11 @@ impl Renderer {
 
     /// Draws a frame.
     pub fn frame(&self, moving: &Moving<'_>) -> RgbImage {
+        develop(&[self.expose(moving)])
+    }
+
+    /// Draws a frame, to be developed alone or with others.
+    pub fn expose(&self, moving: &Moving<'_>) -> Exposure {
         let lens = &self.eye.lens;
         let mut canvas = Canvas::new(&self.backdrop, lens.width, lens.height);
         let mut bloom = Bloom::new(lens.width, lens.height);
@@ -69,7 +89,7 @@ impl Renderer {
             }
         }
         bloom.spread();
-        canvas.develop(&bloom, &self.eye.codec)
+        canvas.expose(&bloom)
     }
 
     /// The moving things that can be seen.

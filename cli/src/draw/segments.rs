@@ -3,6 +3,7 @@
 use super::brush::Stroke;
 use super::camera::Lens;
 use super::canvas::Canvas;
+use super::color::CODEC;
 use super::eye::Eye;
 use glam::{Vec2, Vec3};
 use pointmass::draw::Line;
@@ -77,8 +78,8 @@ impl Thread {
 impl End {
     /// The end of the visible part of a line, a share of the way along it.
     fn new(line: &Line, place: Vec3, share: f32, eye: &Eye) -> Self {
-        let Eye { lens, codec, .. } = eye;
-        let [(from, opaque), (to, faint)] = line.colors.map(|color| codec.decode(color));
+        let Eye { lens, .. } = eye;
+        let [(from, opaque), (to, faint)] = line.colors.map(|color| CODEC.decode(color));
         let depth = Lens::depth(place);
         let [start, end] = line.widths.map(|width| 0.5 * width * lens.pixels_per_metre(depth));
         let radius = start + share * (end - start);

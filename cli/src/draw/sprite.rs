@@ -6,6 +6,7 @@ use super::bloom::Bloom;
 use super::brush::{Stroke, Touch};
 use super::camera::Lens;
 use super::canvas::Canvas;
+use super::color::CODEC;
 use super::color::luminance;
 use super::eye::Eye;
 use super::lamp::Lamp;
@@ -94,7 +95,7 @@ pub(super) struct Sprite {
 impl Sprite {
     /// Brings a dot before the lens; `None` if it cannot be seen.
     pub(super) fn new(dot: &Dot, exposed: bool, eye: &Eye) -> Option<Self> {
-        let Eye { lens, frustum, codec, .. } = eye;
+        let Eye { lens, frustum, .. } = eye;
         let place = lens.view(dot.position);
         let depth = Lens::depth(place);
         if !(place.is_finite() && (lens.near..=lens.far).contains(&depth)) {
@@ -106,7 +107,7 @@ impl Sprite {
         let tail = tail.map_or(place, |(start, _)| start);
         let way = place.distance(lens.view(dot.previous));
 
-        let (color, opacity) = codec.decode(dot.color);
+        let (color, opacity) = CODEC.decode(dot.color);
         let scale = lens.pixels_per_metre(depth);
         let (radius, faintness) = if dot.size > 0.0 {
             let radius = 0.5 * dot.size.min(1e6) * scale;

@@ -47,6 +47,21 @@ fn an_open_shutter_draws_ways_of_its_time_at_any_step() {
         assert!((way - 3.0 * shutter * 30.5).abs() < 1.6, "{shutter}, {dt}: {way}");
         assert_eq!(width(&image, true), still);
     }
+    // Shapes are the mean of what is seen every two pixels, as is what is solid.
+    for shutter in [0.1, 0.3] {
+        let image = drawn(&folder, &format!("--shutter {shutter} --fps 2 --style shapes"));
+        let way = f64::from(width(&image, false));
+        assert!((way - 3.0 * shutter * 30.5).abs() < 2.6, "{shutter}: {way}");
+        assert_eq!(width(&image, true), still);
+    }
+    // Puffs shed as much light as they do when they are seen at an instant.
+    let light = |image: &RgbImage| {
+        let linear = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
+        image.pixels().map(|pixel| linear(pixel.0[0])).sum::<f64>()
+    };
+    let [at_once, in_time] = ["0", "0.3"].map(|s| drawn(&folder, &format!("--shutter {s} --fps 2 --style sprites")));
+    assert!((light(&in_time) / light(&at_once) - 1.0).abs() < 0.03, "{} {}", light(&in_time), light(&at_once));
+    assert!(width(&in_time, false) > width(&at_once, false) + 8);
     let asked = drawn(&folder, "--shutter 0.2 --fps 2");
     folder.write("a.json", scene(r#", "shutter": 0.2"#, ""));
     assert_eq!(drawn(&folder, "--fps 2"), asked);

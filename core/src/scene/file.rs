@@ -228,8 +228,8 @@ pub struct Camera {
     pub near: f32,
     /// Nothing farther is seen \[m\].
     pub far: f32,
-    /// How long its shutter is open before the instant of a picture \[s\], at most as long as pictures lie apart; particles are drawn
-    /// along their ways of that time. Without one, films draw them as they are then, with faint traces behind them.
+    /// How long its shutter is open before the instant of a picture \[s\], at most as long as pictures lie apart; what moves is drawn
+    /// along its way of that time. Without one, films draw particles as they are then, with faint traces behind them.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub shutter: Option<f32>,
 }
