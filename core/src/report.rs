@@ -109,7 +109,8 @@ pub struct Died {
 pub struct Caps {
     /// A particle hit as often in one step as it may, and waited at the surface for the step's end.
     pub bounces: u64,
-    /// A path was so curved that its collisions were sought along fewer chords than its accuracy asks.
+    /// A path was so curved that its collisions were sought along fewer chords than its accuracy asks. Only paths that are followed count:
+    /// at coordinates from about 1e17 m on rounding decides which are, and not in the same way for one thing and for a list of it.
     pub chords: u64,
     /// A spring lost an end.
     pub springs: u64,

@@ -5,6 +5,7 @@ mod balls;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;
 mod births;
+mod carried;
 mod clusters;
 mod collisions;
 mod constraints;
@@ -45,3 +46,4 @@ mod strands;
 mod tunnelling;
 #[path = "walls/main.rs"]
 mod walls;
+mod ways;

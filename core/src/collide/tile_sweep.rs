@@ -280,7 +280,7 @@ impl TileSweep<'_, '_> {
         }
     }
 
-    /// Lets those bounce off the face who do so once.
+    /// Lets those bounce off the face who do so a few times.
     #[inline(never)]
     fn bounce(&mut self, packet: &Packet, face: &Face) {
         let outcome = run(Bounce { of: self, packet, face });

@@ -35,8 +35,7 @@ impl Steady {
     }
 
     /// Moves rows by a step of `h` \[s\] of the symplectic or the explicit Euler method, to the bits of doing it with their accelerations.
-    /// Says how far they get.
-    /// Keeps where they were in as many rows as there are of `start`.
+    /// Says how far they get, and keeps where they were in as many rows as there are of `start`.
     pub(crate) fn leap(
         self,
         rows: Inertia<'_>,

@@ -29,6 +29,8 @@ impl Workspace<'_> {
     /// The whole of a step: create, update, collide, delete.
     #[inline(never)]
     pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
+        // No step leads beyond the end of all time, whichever way it goes.
+        let dt = dt.min(Time::NEVER - self.status.time);
         let span = [self.status.time, dt];
         self.tell(Phase::Begin, scene, observer);
         let old = self.create(scene, span[0] + dt, report, observer);

@@ -6,6 +6,7 @@ use super::body::Body;
 use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
 use super::scenery::{DIRECTIONS, leash};
+use super::sleep;
 use crate::material::of_two;
 use crate::math::{length, max};
 use crate::memory::{take, take_vectors};
@@ -162,6 +163,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     let Some(before) = before.get_mut(..old) else { return };
     before.copy_from_slice(&kept.pairs[..old]);
     let len = admit(bodies, kept, forms, candidates, before);
+    sleep::miss(kept.bodies, before, &kept.pairs[..len]);
     *kept.lists = Lists { pairs: len as u32, known: 1 };
 }
 

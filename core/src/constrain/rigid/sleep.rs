@@ -39,6 +39,9 @@ const RESTLESS: u32 = 1;
 /// Something that it touches does not.
 const UNEASY: u32 = 2;
 
+/// It is carried by scenery that moves, or by one that is.
+const BORNE: u32 = 3;
+
 /// All that sleep with it are to wake.
 const CALLED: u32 = 1;
 /// It is to wake at once.
@@ -202,6 +205,22 @@ pub(super) fn wake_all(all: &mut [Body]) {
     all.iter_mut().filter(|body| body.sleeps()).for_each(Body::wake);
 }
 
+/// Wakes those who have touched one that is no longer listed beside them, and all who sleep with them.
+pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
+    let mut is_any = false;
+    for gone in before.iter().filter(|pair| pair.count > 0) {
+        let place = pairs.binary_search_by_key(&gone.bodies, |pair| pair.bodies);
+        if place.is_ok_and(|place| pairs[place].count > 0) {
+            continue;
+        }
+        gone.bodies.iter().for_each(|&number| call(all, number as usize));
+        is_any = true;
+    }
+    if is_any {
+        wake_called(all);
+    }
+}
+
 /// Wakes those around whom the scenery is not as it was.
 pub(super) fn look_around(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     for number in 1..kept.first_ball() {
@@ -224,7 +243,12 @@ pub(super) fn look_out(kept: &mut Kept<'_>, span: Span) {
         if !all[asleep].sleeps() {
             pair.rested = 0;
         } else if all[other].is_awake() {
-            pair.rested = pair.rested.min(pair.count);
+            if pair.rested != 0 && pair.count == 0 {
+                // What it lay against, or what lay on it, has gone.
+                pair.rested = 0;
+                all[asleep].calls |= FREED;
+                continue;
+            }
             if pair.rested != 0 && all[other].is_slow() {
                 continue;
             }
@@ -325,15 +349,18 @@ pub(super) fn settle(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
         return;
     }
     for (number, body) in all.iter_mut().enumerate() {
-        let is_ready = !body.is_awake()
-            || number < first && body.is_still(step) && {
+        // Here a call keeps awake.
+        body.calls = 0;
+        if body.is_awake() {
+            body.calls = RESTLESS;
+            if number < first && body.is_still(step) {
                 let faces = scenery::faces(bodies, body);
                 body.faces = faces.unwrap_or(0);
-                faces.is_some()
-            };
-        // Here a call keeps awake.
-        body.calls = if is_ready { 0 } else { RESTLESS };
+                body.calls = if faces.is_some() { 0 } else { BORNE };
+            }
+        }
     }
+    bear(all, pairs);
     for pair in pairs.iter().filter(|pair| pair.count > 0) {
         let [a, b] = pair.bodies.map(|number| number as usize);
         for [one, other] in [[a, b], [b, a]] {
@@ -352,6 +379,25 @@ pub(super) fn settle(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     all.iter_mut().for_each(|body| body.calls = 0);
     if falls {
         join(all, pairs, bodies.substep.seconds());
+    }
+}
+
+/// Keeps awake who is carried by what scenery carries that moves, so many contacts away at the most.
+fn bear(all: &mut [Body], pairs: &[Manifold]) {
+    for _ in 0..RINGS as u32 {
+        let mut is_changed = false;
+        for pair in pairs.iter().filter(|pair| pair.count > 0) {
+            let [a, b] = pair.bodies.map(|number| number as usize);
+            for [one, other] in [[a, b], [b, a]] {
+                if all[one].calls == BORNE && all[other].is_awake() && all[other].calls != BORNE {
+                    all[other].calls = BORNE;
+                    is_changed = true;
+                }
+            }
+        }
+        if !is_changed {
+            break;
+        }
     }
 }
 

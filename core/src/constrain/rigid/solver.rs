@@ -93,6 +93,7 @@ pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
         let Some(manifold) = order.get_mut(number) else { continue };
         let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
         pair.stand();
+        pair.ride(span.h);
         for i in 0..pair.count {
             let closing = -pair.parting(i);
             let point = &mut pair.points[i];
@@ -181,6 +182,12 @@ impl<'a> Pair<'a> {
             point.crept = aside(spot[1] - spot[0], normal);
             point.arms = [middle - a.center, middle - b.center];
         }
+    }
+
+    /// Leaves out of what has crept in a sub-step of `h` \[s\] the way that the scenery has gone meanwhile.
+    fn ride(&mut self, h: f32) {
+        let way = aside(self.surface, self.normal) * h;
+        self.points[..self.count].iter_mut().for_each(|point| point.crept -= way);
     }
 
     /// Finds what impulses at each point do to the speeds there.
