@@ -57,8 +57,9 @@ use solver::Span;
 /// what forces accelerate it by, neither it nor any that it touches has gone farther than 4 % of its least half side; who is awake and lies still on
 /// one that sleeps finds it fixed. It wakes alone when what presses on it changes by half of that and of its weight, or one that moves comes to lie
 /// against it. A blow wakes those around as well: as many contacts away as it is times faster than what forces do in a step, and that times more if it is
-/// heavier. All that sleep and touch wake together when forces on one change by a thousandth, and when the scenery that one touches or has near
-/// it, a body, or a ball that it has lain on moves, comes or goes; all bodies wake when any loses a particle. What creeps more slowly than that stops. Without forces nothing sleeps.
+/// heavier. All that sleep and touch wake together when forces on one change by a thousandth, when the scenery that one touches or has near
+/// it moves, comes or goes, and when what one has lain on goes; all bodies wake when any loses a particle. What creeps more slowly than that
+/// stops. Without forces nothing sleeps.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
 /// touching pairs a body, two for each ball and three directions of the scenery; what finds none is counted (`caps.contacts`).
