@@ -10,7 +10,7 @@ use glam::Vec3;
 use pointmass::constrain::{Hull, HullList};
 use pointmass::draw::{
     Appearance, Instance, Knot, Line, Lock, Ring, Sprite, StrandLight, Trails, Vertex, View, appearance, body, links,
-    solid, springs, sprite, strands, surface,
+    solid, springs, sprite, strained, strains, strands, surface,
 };
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
@@ -231,7 +231,7 @@ impl<'m> Cast<'m> {
             if self.style.is_none() {
                 let light = file.light_on_strands(self.view.eye);
                 seen.ribbons.extend(model.locks.iter().flat_map(|lock| hair(state, lock, &light)));
-                seen.pieces.extend(model.patches.iter().filter_map(|patch| cloth(state, patch, file)));
+                seen.pieces.extend(model.patches.iter().filter_map(|patch| self.cloth(state, patch, file, model)));
                 let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
                 let standing = boxes.iter().filter_map(|of| Some((of, body(state, of, &model.particles)?)));
                 seen.pieces.extend(standing.map(|(of, instance)| {
@@ -307,6 +307,33 @@ impl<'m> Cast<'m> {
         (color[3] > 0).then_some(Dot { position, previous, color, size, glow, solid })
     }
 
+    /// The surface of a cloth, lit.
+    fn cloth(&self, state: &State<'_>, patch: &PatchBuf, file: &SceneFile, model: &Model) -> Option<Piece> {
+        let mut vertices = vec![Vertex::NONE; patch.count as usize];
+        let mut triangles = vec![[0; 3]; patch.triangles.len()];
+        let (_, count) = surface(state, &patch.lend(), &mut vertices, &mut triangles);
+        triangles.truncate(count);
+        if self.show.contains(&Show::Strain) {
+            let mut found = vec![0.0; vertices.len()];
+            strains(&patch.lend(), &model.particles, &vertices, &triangles, &mut found);
+            let colored = vertices.iter_mut().zip(found);
+            colored.for_each(|(vertex, strain)| vertex.color = strained(strain / FULL_STRAIN));
+        }
+        let color = vertices.get(triangles.first()?[0] as usize)?.color;
+        let places: Vec<_> = vertices.iter().map(|vertex| vertex.place).collect();
+        let normals = vertices.iter().map(|vertex| vertex.normal).collect();
+        let is_plain = vertices.iter().all(|vertex| vertex.color[..3] == color[..3]);
+        let (color, tints) = match color {
+            _ if is_plain => (color, Vec::new()),
+            [.., opacity] => ([255, 255, 255, opacity], vertices.iter().map(|vertex| tint(vertex.color)).collect()),
+        };
+        let material = patch.material.and_then(|number| file.materials.get(usize::from(number)));
+        let surface = Surface { normals, tints, ..shapes::mesh(&places, &triangles) };
+        // Its corners lie on what it covers, its triangles behind that.
+        let lift = LIFT * (surface.area() / count as f32).sqrt();
+        Some(Piece { surface, material: painted(material, color), endless: false, lift })
+    }
+
     /// The springs as they are now, but for those of surfaces, and the links of constraints.
     fn springs(&self, state: &State<'_>, model: &Model) -> Vec<Line> {
         let is_shown = self.show.contains(&Show::Springs);
@@ -348,22 +375,6 @@ fn hair(state: &State<'_>, lock: &Lock, light: &StrandLight) -> Vec<Line> {
     all
 }
 
-/// The surface of a cloth, lit.
-fn cloth(state: &State<'_>, patch: &PatchBuf, file: &SceneFile) -> Option<Piece> {
-    let mut vertices = vec![Vertex::NONE; patch.count as usize];
-    let mut triangles = vec![[0; 3]; patch.triangles.len()];
-    let (_, count) = surface(state, &patch.lend(), &mut vertices, &mut triangles);
-    triangles.truncate(count);
-    let color = vertices.get(triangles.first()?[0] as usize)?.color;
-    let places: Vec<_> = vertices.iter().map(|vertex| vertex.place).collect();
-    let normals = vertices.iter().map(|vertex| vertex.normal).collect();
-    let material = patch.material.and_then(|number| file.materials.get(usize::from(number)));
-    let surface = Surface { normals, ..shapes::mesh(&places, &triangles) };
-    // Its corners lie on what it covers, its triangles behind that.
-    let lift = LIFT * (surface.area() / count as f32).sqrt();
-    Some(Piece { surface, material: painted(material, color), endless: false, lift })
-}
-
 /// A rigid body: the box that it is, or its hull in a box of so much about its centroid.
 fn rigid(instance: &Instance, hull: Option<(&Hull<'_>, Vec3)>, file: &SceneFile) -> Piece {
     let Instance { center, axes, color, material } = *instance;
@@ -380,10 +391,14 @@ fn rigid(instance: &Instance, hull: Option<(&Hull<'_>, Vec3)>, file: &SceneFile)
     Piece { surface: surface.transformed(axes, center), material, endless: false, lift: 0.0 }
 }
 
+/// Red, green and blue from 0 to 1.
+fn tint([red, green, blue, _]: Color) -> Vec3 {
+    Vec3::from([red, green, blue].map(|channel| f32::from(channel) / 255.0))
+}
+
 /// A material in the colour of a particle.
-fn painted(material: Option<&Material>, [red, green, blue, alpha]: Color) -> draw::Material {
-    let [red, green, blue, opacity] = [red, green, blue, alpha].map(|channel| f32::from(channel) / 255.0);
-    let tint = Vec3::new(red, green, blue);
+fn painted(material: Option<&Material>, color: Color) -> draw::Material {
+    let (tint, opacity) = (tint(color), f32::from(color[3]) / 255.0);
     let own = material.map_or_else(draw::Material::default, look);
     draw::Material { ambient: tint, diffuse: tint, opacity: opacity * own.opacity, ..own }
 }

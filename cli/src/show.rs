@@ -15,6 +15,8 @@ pub(crate) enum Show {
     Velocities,
     /// Springs by their strain, red where longer than at rest, blue where shorter
     Springs,
+    /// Surfaces between particles by their strain, in the same colours
+    Strain,
     /// Surfaces that particles come from, with arrows their way
     Sources,
     /// Surfaces that particles vanish at, with arrows toward them
@@ -53,7 +55,7 @@ pub(crate) fn lines(show: &[Show], state: &State<'_>, model: &Model, index: Stru
                     all.extend(written(ARROWS as usize * STROKES, draw));
                 }
             }
-            Show::Springs => {}
+            Show::Springs | Show::Strain => {}
         }
     }
     all

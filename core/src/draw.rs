@@ -16,11 +16,11 @@ mod trail;
 
 pub use bodies::{bodies, body};
 pub use debug::{arrow, arrows, cells};
-pub use line::{Line, edges, links, springs, velocities};
+pub use line::{Line, edges, links, springs, strained, velocities};
 pub use solid::{Instance, solid, solids};
 pub use sprite::{Sprite, View, back_to_front, sprite, sprites};
 pub use strand::{Lock, StrandLight, strands};
-pub use surface::{Patch, Vertex, surface};
+pub use surface::{Patch, Vertex, strains, surface};
 pub use trail::{Knot, Ring, Trails};
 
 use crate::force::State;

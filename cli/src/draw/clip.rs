@@ -8,11 +8,18 @@ use glam::Vec3;
 pub(super) struct Vertex {
     pub(super) place: Vec3,
     pub(super) normal: Vec3,
+    /// What light it returns of that which its material does.
+    pub(super) tint: Vec3,
 }
 
 impl Vertex {
     pub(super) fn lerp(self, other: Self, t: f32) -> Self {
-        Self { place: self.place.lerp(other.place, t), normal: self.normal.lerp(other.normal, t) }
+        let lerp = |a: Vec3, b: Vec3| a.lerp(b, t);
+        Self {
+            place: lerp(self.place, other.place),
+            normal: lerp(self.normal, other.normal),
+            tint: lerp(self.tint, other.tint),
+        }
     }
 }
 
@@ -78,7 +85,7 @@ mod tests {
     use crate::draw::Camera;
 
     fn polygon(places: [Vec3; 3]) -> Vec<Vertex> {
-        places.map(|place| Vertex { place, normal: Vec3::Y }).to_vec()
+        places.map(|place| Vertex { place, normal: Vec3::Y, tint: Vec3::ONE }).to_vec()
     }
 
     #[test]

@@ -67,15 +67,16 @@ impl Model {
             let seen = piece.surface.transformed(lens.turn, lens.shift());
             let lifted = |place: Vec3| place * (1.0 - piece.lift / Lens::depth(place).max(2.0 * piece.lift));
             let lifted = |corners: [Vec3; 3]| if piece.lift > 0.0 { corners.map(lifted) } else { corners };
-            model.facets.extend(seen.corners().map(|(corners, normals)| Facet::new(lifted(corners), normals, skin)));
+            let facet = |(corners, normals, tints)| Facet::new(lifted(corners), normals, tints, skin);
+            model.facets.extend(seen.corners().map(facet));
         }
         let frustum = Frustum::new(lens);
         for line in &stage.lines {
             let skin = model.skin(&line.material, stage.ambient, Role::Line);
             if let Some([a, b, c, d]) = ribbon(line, lens, &frustum) {
-                let normals = [Vec3::Z; 3];
-                model.facets.push(Facet::new([a, b, c], normals, skin));
-                model.facets.push(Facet::new([a, c, d], normals, skin));
+                let (normals, tints) = ([Vec3::Z; 3], [Vec3::ONE; 3]);
+                model.facets.push(Facet::new([a, b, c], normals, tints, skin));
+                model.facets.push(Facet::new([a, c, d], normals, tints, skin));
             }
         }
         model
@@ -97,11 +98,11 @@ impl Model {
 }
 
 impl Facet {
-    fn new(corners: [Vec3; 3], normals: [Vec3; 3], skin: usize) -> Self {
+    fn new(corners: [Vec3; 3], normals: [Vec3; 3], tints: [Vec3; 3], skin: usize) -> Self {
         let [a, b, c] = corners;
         let flat = (b - a).cross(c - a).normalize_or_zero();
         let outside = flat.dot(normals.iter().sum()) >= 0.0;
-        let corner = |at: usize| Vertex { place: corners[at], normal: normals[at] };
+        let corner = |at: usize| Vertex { place: corners[at], normal: normals[at], tint: tints[at] };
         Self { corners: [corner(0), corner(1), corner(2)], flat: if outside { flat } else { -flat }, skin }
     }
 

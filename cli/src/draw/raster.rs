@@ -92,14 +92,15 @@ impl Triangle {
         1.0 / (0..3).map(|corner| weights[corner] * self.nearness[corner]).sum::<f32>()
     }
 
-    /// The place and normal at some weights, as perspective has it.
+    /// The place, normal and tint at some weights, as perspective has it.
     fn vertex(&self, weights: [f32; 3]) -> Vertex {
         let depth = self.depth(weights);
-        let mut vertex = Vertex { place: Vec3::ZERO, normal: Vec3::ZERO };
+        let mut vertex = Vertex { place: Vec3::ZERO, normal: Vec3::ZERO, tint: Vec3::ZERO };
         for ((corner, weight), nearness) in self.corners.iter().zip(weights).zip(self.nearness) {
             let share = weight * nearness * depth;
             vertex.place += share * corner.place;
             vertex.normal += share * corner.normal;
+            vertex.tint += share * corner.tint;
         }
         vertex
     }
@@ -185,7 +186,7 @@ mod tests {
     /// Two triangles that fill the picture at a depth.
     fn wall(depth: f32) -> [Triangle; 2] {
         let lens = Lens::new(&Camera::default(), SIZE, SIZE);
-        let corner = |x, y| Vertex { place: depth * Vec3::new(x, y, -1.0), normal: Vec3::Z };
+        let corner = |x, y| Vertex { place: depth * Vec3::new(x, y, -1.0), normal: Vec3::Z, tint: Vec3::ONE };
         let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         [[a, b, c], [a, c, d]].map(|corners| Triangle::new(corners, &lens).unwrap())
     }
@@ -222,7 +223,7 @@ mod tests {
     fn places_are_right_in_perspective() {
         let lens = Lens::new(&Camera::default(), SIZE, SIZE);
         let corners = [[-9.0, -1.0, -2.0], [9.0, -1.0, -2.0], [0.0, 1.0, -30.0]];
-        let corners = corners.map(|at| Vertex { place: Vec3::from_array(at), normal: Vec3::Y });
+        let corners = corners.map(|at| Vertex { place: Vec3::from_array(at), normal: Vec3::Y, tint: Vec3::ONE });
         let triangle = Triangle::new(corners, &lens).unwrap();
         band().paint(&triangle, 1.0, |fragment| {
             let error = lens.project(fragment.at.place) - Vec2::new(fragment.x as f32, fragment.y as f32);

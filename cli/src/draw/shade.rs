@@ -32,7 +32,7 @@ pub(super) struct Shader<'a> {
 impl Shader<'_> {
     /// The colour of a facet in a pixel.
     pub(super) fn color(&self, facet: &Facet, skin: &Skin, fragment: Fragment) -> Vec3 {
-        let Vertex { place, normal } = fragment.at;
+        let Vertex { place, normal, tint } = fragment.at;
         let eye = (-place).normalize_or(Vec3::Z);
         // Which side is seen is up to the flat triangle: near the outline of a round thing, smooth
         // normals already point away.
@@ -41,13 +41,13 @@ impl Shader<'_> {
             Role::Line => (eye, eye),
             _ => (side * normal.normalize_or(facet.flat), side * facet.flat),
         };
-        let mut color = skin.emission + skin.ambient * self.openness(normal, eye);
+        let mut color = skin.emission + tint * skin.ambient * self.openness(normal, eye);
         for beam in self.lamps.iter().filter_map(|lamp| lamp.beam(place)) {
             let cosine = normal.dot(beam.from);
             if cosine > 0.0 {
                 let half = (beam.from + eye).normalize_or(normal);
                 let highlight = normal.dot(half).max(0.0).powf(skin.shininess);
-                let returned = cosine * skin.diffuse + highlight * skin.specular;
+                let returned = cosine * tint * skin.diffuse + highlight * skin.specular;
                 let passing = match skin.role {
                     Role::Line => 1.0,
                     _ => self.passing(place, flat, &beam, fragment),

@@ -83,7 +83,7 @@ pub fn disc(center: Vec3, normal: Vec3, radius: f32) -> Surface {
         let corners = (0..SIDES).step_by(2 * half as usize);
         triangles.extend(corners.map(|at| [at, at + half, (at + 2 * half) % SIDES]));
     }
-    Surface { vertices, normals: vec![normal; SIDES as usize], triangles }
+    Surface { vertices, normals: vec![normal; SIDES as usize], tints: Vec::new(), triangles }
 }
 
 /// A square of a plane through `point`, reaching `reach` to each side. See
@@ -99,7 +99,7 @@ pub fn plane(point: Vec3, normal: Vec3, reach: f32) -> Surface {
 
 /// A mesh with flat triangles.
 pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Surface {
-    Surface { vertices: vertices.to_vec(), normals: Vec::new(), triangles: triangles.to_vec() }
+    Surface { vertices: vertices.to_vec(), triangles: triangles.to_vec(), ..Surface::default() }
 }
 
 /// A place on the outline of a turned shape, and its normal.
@@ -186,7 +186,7 @@ mod tests {
             cone(CENTER, 1.0, 3.0),
         ] {
             assert_eq!(surface.normals.len(), surface.vertices.len());
-            for ([a, b, c], normals) in surface.corners() {
+            for ([a, b, c], normals, _) in surface.corners() {
                 let flat = (b - a).cross(c - a);
                 assert!(flat.dot(a + b + c - 3.0 * CENTER) > 0.0);
                 assert!(normals.iter().all(|normal| normal.dot(flat) > 0.0));
@@ -198,7 +198,7 @@ mod tests {
     fn plates_face_their_normal() {
         for normal in [Vec3::Y, Vec3::NEG_Y, Vec3::NEG_Z, Vec3::new(1.0, 2.0, -3.0)] {
             for surface in [disc(CENTER, normal, 1.0), plane(CENTER, normal, 1.0)] {
-                for ([a, b, c], _) in surface.corners() {
+                for ([a, b, c], ..) in surface.corners() {
                     assert!((b - a).cross(c - a).dot(normal) > 0.0);
                 }
             }

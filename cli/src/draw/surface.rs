@@ -1,5 +1,6 @@
 //! Triangles with normals.
 
+use super::color::decode;
 use glam::{Mat3, Vec3};
 
 /// A shape made of triangles.
@@ -9,6 +10,8 @@ pub struct Surface {
     pub vertices: Vec<Vec3>,
     /// One unit normal for each corner, or none at all for flat triangles.
     pub normals: Vec<Vec3>,
+    /// One colour (sRGB, 0 to 1) for each corner, by which that of the material is multiplied, or none at all.
+    pub tints: Vec<Vec3>,
     /// Three indices into `vertices` each, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -23,13 +26,14 @@ impl Surface {
         Self {
             vertices: self.vertices.iter().map(|&at| linear * at + translation).collect(),
             normals: self.normals.iter().map(|&normal| (for_normals * normal).normalize_or(normal)).collect(),
+            tints: self.tints.clone(),
             triangles: self.triangles.iter().map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }).collect(),
         }
     }
 
-    /// The corners of each triangle and their normals, without the triangles that cannot be drawn:
+    /// The corners of each triangle, their normals and their tints in linear light, without the triangles that cannot be drawn:
     /// a missing corner, a coordinate that is not finite, no area.
-    pub(super) fn corners(&self) -> impl Iterator<Item = ([Vec3; 3], [Vec3; 3])> {
+    pub(super) fn corners(&self) -> impl Iterator<Item = ([Vec3; 3], [Vec3; 3], [Vec3; 3])> {
         self.triangles.iter().filter_map(|indices| {
             let [a, b, c] = indices.map(|index| self.vertices.get(index as usize).copied());
             let corners = [a?, b?, c?];
@@ -38,13 +42,14 @@ impl Surface {
                 let given = self.normals.get(index as usize).copied();
                 given.and_then(Vec3::try_normalize).unwrap_or(flat)
             });
-            corners.iter().all(|corner| corner.is_finite()).then_some((corners, normals))
+            let tints = indices.map(|index| self.tints.get(index as usize).map_or(Vec3::ONE, |tint| decode(*tint)));
+            corners.iter().all(|corner| corner.is_finite()).then_some((corners, normals, tints))
         })
     }
 
     /// The area of all triangles together.
     pub fn area(&self) -> f32 {
-        self.corners().map(|([a, b, c], _)| 0.5 * (b - a).cross(c - a).length()).sum()
+        self.corners().map(|([a, b, c], ..)| 0.5 * (b - a).cross(c - a).length()).sum()
     }
 }
 
@@ -65,7 +70,7 @@ mod tests {
         let mirror = Mat3::from_diagonal(Vec3::new(-1.0, 1.0, 1.0));
         for linear in [lean, mirror * lean] {
             let leant = shapes::sphere(Vec3::ZERO, 1.0).transformed(linear, Vec3::X);
-            for ([a, b, c], normals) in leant.corners() {
+            for ([a, b, c], normals, _) in leant.corners() {
                 let flat = (b - a).cross(c - a).normalize();
                 for normal in normals {
                     assert!((normal.length() - 1.0).abs() < 1e-5);
@@ -80,6 +85,7 @@ mod tests {
         let surface = Surface {
             vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::splat(f32::NAN)],
             normals: vec![],
+            tints: vec![],
             triangles: vec![[0, 1, 2], [0, 1, 3], [0, 1, 9], [0, 1, 1]],
         };
         assert_eq!(surface.corners().count(), 1);

@@ -380,3 +380,25 @@ fn what_is_lifted_shows_on_what_it_lies_behind_by_less() {
         assert_eq!(middle(&image)[0] > 200, shows, "{lift}");
     }
 }
+
+/// A wall in ambient light alone, red at its left, blue at its right: of both half as much in the middle, in linear light, in perspective too.
+#[test]
+fn a_surface_has_the_colors_of_its_corners_and_those_between() {
+    for lean in [0.0, 1.0] {
+        let corner = |x: f32, y: f32| Vec3::new(x, y, -3.0 - lean * x);
+        let vertices = vec![corner(-2.0, -2.0), corner(2.0, -2.0), corner(2.0, 2.0), corner(-2.0, 2.0)];
+        let tints = vec![Vec3::X, Vec3::Z, Vec3::Z, Vec3::X];
+        let surface = Surface { vertices, tints, normals: vec![], triangles: vec![[0, 1, 2], [0, 2, 3]] };
+        let material = Material { ambient: Vec3::ONE, ..Material::default() };
+        let piece = Piece { surface, material, endless: false, lift: 0.0 };
+        let light = |tints: bool| {
+            let surface =
+                Surface { tints: if tints { piece.surface.tints.clone() } else { vec![] }, ..piece.surface.clone() };
+            let stage = Stage { ambient: Vec3::splat(0.5), ..stage(vec![Piece { surface, ..piece.clone() }]) };
+            middle(&frame(&stage, &[], &[])).map(linear)
+        };
+        let ([red, green, blue], [white, ..]) = (light(true), light(false));
+        assert!(green < 1e-3 && white > 0.05, "{green} of {white}");
+        assert!((red / white - 0.5).abs() < 0.04 && (blue / white - 0.5).abs() < 0.04, "{red} {blue} of {white}");
+    }
+}

@@ -86,5 +86,22 @@ fn what_works_unseen_is_shown_where_it_is_asked_for() {
     assert!(changed(&all, &bare) > 500);
     let turned = drawn(&folder, "--style points --threads 3 --show sinks,sources,springs,velocities,index");
     assert!(turned == all, "another order of asking is another picture");
-    folder.misuse("render a.json --out a.png", &[("--show all", "index, velocities, springs, sources, sinks")]);
+    folder.misuse("render a.json --out a.png", &[("--show all", "index, velocities, springs, strain, sources, sinks")]);
+}
+
+/// A cloth that hangs from its upper edge by soft springs is red where it is stretched, and grey in the picture of its beginning.
+#[test]
+fn a_cloth_is_shown_by_its_strain() {
+    let cloth = r#"{
+        "run": {"duration": 0.5, "dt": 0.005}, "background": [0, 0, 0], "ambient": [1, 1, 1],
+        "camera": {"eye": [0, 0, 5], "towards": [0, 0, -1], "up": [0, 1, 0], "xfov": 0.4},
+        "forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}, {"drag": {}}],
+        "cloths": [{"form": {"sheet": {"corner": [-0.5, 0.6, 0], "sides": [[1, 0, 0], [0, -1, 0]], "cells": [4, 4]}},
+            "mass": 1, "drag": 1, "fixed": [0, 1, 2, 3, 4], "springs": {"structural": {"ks": 60, "kd": 1}}}]
+    }"#;
+    let folder = Folder::with("a.json", cloth);
+    let [plain, shown] = ["", "--show strain"].map(|args| drawn(&folder, args));
+    assert_eq!(count(&plain, 0), 0);
+    assert!(count(&shown, 0) > 300, "{}", count(&shown, 0));
+    assert_eq!(count(&drawn(&folder, "--show strain --duration 0"), 0), 0);
 }

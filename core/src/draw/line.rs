@@ -82,8 +82,9 @@ pub fn links(
     fill(pairs.filter_map(|[a, b]| Some(line([row(a)?, row(b)?]))), into)
 }
 
-/// The colour of a share of the full strain, −1 to 1.
-fn strained(share: f32) -> Color {
+/// The colour of a share of the full strain, −1 to 1: red where longer than at rest, blue where shorter, grey between.
+#[must_use]
+pub fn strained(share: f32) -> Color {
     let share = clamp(share, -1.0, 1.0);
     let (end, share) = if share < 0.0 { (SHORT, -share) } else { (LONG, share) };
     core::array::from_fn(|i| (f32::from(SLACK[i]) + (f32::from(end[i]) - f32::from(SLACK[i])) * share + 0.5) as u8)

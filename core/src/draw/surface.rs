@@ -2,8 +2,8 @@
 
 use super::appearance;
 use crate::force::State;
-use crate::math::unit;
-use crate::particles::Color;
+use crate::math::{length, unit};
+use crate::particles::{Color, Particle};
 use glam::Vec3;
 
 /// A corner of a surface.
@@ -87,4 +87,46 @@ pub fn surface(
     }
     vertices.iter_mut().for_each(|vertex| vertex.normal = unit(vertex.normal));
     (count, kept)
+}
+
+/// Writes the strains of a surface's corners: of the edges of its `triangles` there by which it is stretched (> 0) or pressed together (< 0) the
+/// most, as a share of their lengths among what the scene starts with; zero where there are none. [`strained`](super::strained) has colours for them.
+///
+/// ```
+/// use pointmass::draw::{Patch, Vertex, strains, surface};
+/// use pointmass::{Heap, Particle, Scene, Sheet, System, Vec3};
+///
+/// let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [1, 1] };
+/// let begun: Vec<_> = sheet.particles(Particle::REST).collect();
+/// let wide: Vec<_> = begun.iter().map(|p| Particle { position: p.position * Vec3::new(1.5, 1.0, 1.0), ..*p }).collect();
+/// let scene = Scene { start: &wide, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// let all: Vec<_> = sheet.triangles().collect();
+/// let patch = Patch { first: 0, count: 4, triangles: &all };
+/// let (mut vertices, mut triangles, mut found) = ([Vertex::NONE; 4], [[0; 3]; 2], [0.0; 4]);
+/// surface(&system.state(&scene), &patch, &mut vertices, &mut triangles);
+/// strains(&patch, &begun, &vertices, &triangles, &mut found);
+/// assert_eq!(found, [0.5; 4]);
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+pub fn strains(patch: &Patch<'_>, start: &[Particle], vertices: &[Vertex], triangles: &[[u32; 3]], into: &mut [f32]) {
+    into.fill(0.0);
+    let begun = |corner: u32| Some(start.get(patch.first.checked_add(corner)? as usize)?.position);
+    let now = |corner: u32| Some(vertices.get(corner as usize)?.place);
+    let strain = |a: u32, b: u32| {
+        let rest = length(begun(b)? - begun(a)?);
+        let strain = length(now(b)? - now(a)?) / rest - 1.0;
+        strain.is_finite().then_some(strain)
+    };
+    for &[a, b, c] in triangles {
+        for [a, b] in [[a, b], [b, c], [c, a]] {
+            let Some(strain) = strain(a, b) else { continue };
+            for corner in [a, b] {
+                if let Some(most) = into.get_mut(corner as usize).filter(|most| most.abs() < strain.abs()) {
+                    *most = strain;
+                }
+            }
+        }
+    }
 }
