@@ -142,6 +142,13 @@ impl Fold {
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
     }
 
+    /// What of that each corner does to itself.
+    pub(super) fn held(&self) -> [f32; 4] {
+        let ([x, y], [m, n]) = (self.foot, self.slope);
+        let [m, n] = [m, n].map(|slope| 0.25 * self.moment * dot(slope, slope));
+        [(1.0 - x) * (1.0 - x) * m + (1.0 - y) * (1.0 - y) * n, x * x * m + y * y * n, m, n]
+    }
+
     /// Forces on both far corners, and against them on the edge.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn spread(&self, [c, d]: [Vec3; 2]) -> [Vec3; 4] {

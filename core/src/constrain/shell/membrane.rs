@@ -3,7 +3,7 @@
 use super::ShellParams;
 use super::solver::Step;
 use crate::math::{dot, length, max, sqrt};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// A triangle at rest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -126,6 +126,27 @@ impl Strain {
         let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
         let [c, d] = cell.forces([change[0] * taut, change[1] * taut]);
         [a + c, b + d]
+    }
+
+    /// How its corners resist each other × h²: the blocks of the first and the second, the second and the third, the third and the first.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn blocks(&self, cell: &Cell, params: &ShellParams, step: &Step) -> [Mat3; 3] {
+        let [a, b, c, d] = cell.inverse;
+        // What warp and weft gain as each corner goes.
+        let gain = [[-(a + b), -(c + d)], [a, c], [b, d]];
+        let [warp, weft, shear] = cell.stress(params, step.h, [step.rate; 3]);
+        let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
+        let [u, v] = self.along;
+        [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
+            let ([p, q], [r, s]) = (gain[i], gain[j]);
+            let (uu, vv) = (warp * p * r + shear * q * s, weft * q * s + shear * p * r);
+            // The block's rows are those of the first corner.
+            let (uv, vu) = (shear * q * r, shear * p * s);
+            let (first, second) = (u * uu + v * vu, u * uv + v * vv);
+            let column = |x: f32, y: f32| first * x + second * y;
+            let own = Mat3::from_diagonal(Vec3::splat(taut * (p * r + q * s)));
+            Mat3::from_cols(column(u.x, v.x), column(u.y, v.y), column(u.z, v.z)) + own
+        })
     }
 }
 

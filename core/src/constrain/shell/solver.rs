@@ -1,5 +1,6 @@
 //! The positions of a shell at a sub-step's end, by conjugate gradients.
 
+use super::cycle::Levels;
 use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
 use super::resist::Resist;
@@ -41,7 +42,7 @@ impl Step {
 pub(super) struct Vectors<'m> {
     rows: &'m mut [u32],
     /// Inverse masses; zero for what does not move \[1/kg\].
-    weight: &'m mut [f32],
+    pub(super) weight: &'m mut [f32],
     /// How far they are moved \[m\].
     shift: &'m mut [Vec3],
     /// Residuals, directions, and what the system makes of these.
@@ -77,8 +78,19 @@ impl<'m> Vectors<'m> {
         rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
     }
 
-    /// z = W r, and r · z.
-    fn precondition(&mut self) -> f32 {
+    /// The first direction, and r · z.
+    fn begin(&mut self, levels: &mut Levels<'_>, by_masses: bool) -> f32 {
+        let left = self.precondition(levels, by_masses);
+        self.p.copy_from_slice(self.q);
+        left
+    }
+
+    /// z ≈ A⁻¹ r, or W r, and r · z.
+    fn precondition(&mut self, levels: &mut Levels<'_>, by_masses: bool) -> f32 {
+        if !by_masses {
+            levels.cycle(self.r, self.q);
+            return lanes::dot(self.r, self.q);
+        }
         for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
             *z = r * weight;
         }
@@ -89,8 +101,7 @@ impl<'m> Vectors<'m> {
 /// A shell in a sub-step: (M + h² K) Δx = h² f, f being the forces where the method has moved all, along the directions that the sub-step
 /// began with.
 ///
-/// Preconditioned by masses alone, every direction of the search is a sum of forces within the shell: however early it
-/// ends, no momentum comes of it.
+/// However early the search for it ends, no momentum comes of it: what it would be is taken back from all alike.
 pub(super) struct Solver<'m> {
     pub(super) params: &'m ShellParams,
     pub(super) step: Step,
@@ -138,7 +149,7 @@ impl Solver<'_> {
     }
 
     /// Bending stiffness × h².
-    fn bending(&self) -> f32 {
+    pub(super) fn bending(&self) -> f32 {
         self.params.bending * (self.step.h * self.step.h)
     }
 
@@ -157,25 +168,31 @@ impl Solver<'_> {
         }
     }
 
-    /// Conjugate gradients from zero, the masses being the preconditioner.
-    pub(super) fn solve(&mut self, report: &mut Report) {
-        let first = self.vectors.precondition();
-        self.vectors.p.copy_from_slice(self.vectors.q);
-        let enough = first * (RESIDUAL * RESIDUAL);
-        let solved = |left: f32| left >= 0.0 && left <= enough;
+    /// Conjugate gradients from zero, by a cycle through coarser graphs where there are any, else by masses.
+    pub(super) fn solve(&mut self, levels: &mut Levels<'_>, report: &mut Report) {
+        let mut by_masses = levels.is_empty();
+        let mut first = self.vectors.begin(levels, by_masses);
+        let solved = |left: f32, first: f32| left >= 0.0 && left <= first * (RESIDUAL * RESIDUAL);
         let (mut left, mut iterations) = (first, 0);
-        while !solved(left) && iterations < ITERATIONS {
+        while !solved(left, first) && iterations < ITERATIONS {
             self.apply();
             let Vectors { shift, r, p, q, .. } = &mut self.vectors;
             let curvature = lanes::dot(p, q);
             let far = left / curvature;
             if !(curvature > 0.0 && far > 0.0 && far < f32::INFINITY) {
-                break;
+                if by_masses {
+                    break;
+                }
+                // Rounding has made more of the coarser graphs than there is.
+                by_masses = true;
+                first = self.vectors.begin(levels, by_masses);
+                left = first;
+                continue;
             }
             add_scaled(shift, far, p);
             add_scaled(r, -far, q);
             let before = left;
-            left = self.vectors.precondition();
+            left = self.vectors.precondition(levels, by_masses);
             let Vectors { p, q, .. } = &mut self.vectors;
             let beta = left / before;
             for (p, &z) in p.iter_mut().zip(&**q) {
@@ -184,11 +201,11 @@ impl Solver<'_> {
             iterations += 1;
         }
         let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
-        report.effort.solved(iterations, residual, !solved(left));
+        report.effort.solved(iterations, residual, !solved(left, first));
     }
 
-    /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.
-    pub(super) fn keep_spin(&mut self, bodies: &Bodies<'_>) {
+    /// Moves and turns a free shell as a whole by what its shifts would change of its momenta: Σ m Δx and Σ m (x − v h) × Δx are none then.
+    pub(super) fn keep_momenta(&mut self, bodies: &Bodies<'_>) {
         let Vectors { rows, weight, shift, .. } = &mut self.vectors;
         let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
         let all = || rows.iter().zip(&**weight).map(living);
@@ -200,24 +217,26 @@ impl Solver<'_> {
         let place = |row: usize| {
             bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
         };
-        let (mut mass, mut middle) = (0.0, Vec3::ZERO);
-        for (row, weight) in all().flatten() {
+        let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        for (of, &shift) in all().zip(&**shift) {
+            let Some((row, weight)) = of else { continue };
             mass += 1.0 / weight;
             middle += place(row) / weight;
+            drift += shift / weight;
         }
-        let middle = middle / mass;
+        let (middle, drift) = (middle / mass, drift / mass);
         let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
         for (of, &shift) in all().zip(&**shift) {
             let Some((row, weight)) = of else { continue };
             let arm = place(row) - middle;
-            torque += arm.cross(shift) / weight;
+            torque += arm.cross(shift - drift) / weight;
             let [x, y, z] = arm.to_array().map(|along| arm * (along / weight));
             spread += Mat3::from_cols(x, y, z);
         }
         let turn = turn_of(spread, torque);
         for (of, shift) in all().zip(&mut **shift) {
             let Some((row, _)) = of else { continue };
-            *shift -= turn.cross(place(row) - middle);
+            *shift -= drift + turn.cross(place(row) - middle);
         }
     }
 
