@@ -54,10 +54,18 @@ impl Solver<'_> {
             stiffness += self.cells.get(face as usize).map_or(0.0, |cell| cell.area) * bend.moment(side, curvature);
         }
         stiffness *= self.bending() * self.step.rate;
-        let forces = fold.forces(1.0);
-        for (corner, (force, held)) in hinge.corners().into_iter().zip(forces.into_iter().zip(fold.held())) {
+        for (corner, force) in hinge.corners().into_iter().zip(fold.forces(1.0)) {
             let [x, y, z] = force.to_array().map(|part| force * (stiffness * part));
-            add(finest.diagonal, corner as usize, &(Mat3::from_cols(x, y, z) + Mat3::from_diagonal(Vec3::splat(held))));
+            add(finest.diagonal, corner as usize, &Mat3::from_cols(x, y, z));
+        }
+        // What is held goes along edges of the triangles.
+        let [a, b, c, d] = hinge.corners();
+        for ((from, to), held) in [(a, b), (a, c), (b, c), (a, d), (b, d)].into_iter().zip(fold.held()) {
+            for (from, to) in [(from, to), (to, from)] {
+                if let Some(link) = finest.graph.link(from as usize, to) {
+                    add(finest.blocks, link, &Mat3::from_diagonal(Vec3::splat(held)));
+                }
+            }
         }
     }
 
@@ -66,7 +74,7 @@ impl Solver<'_> {
         let weight = &*self.vectors.weight;
         for (row, &own) in weight.iter().enumerate() {
             let range = finest.graph.range(row);
-            let mut sum = [0.0; BLOCK];
+            let mut sum = [0.0f32; BLOCK];
             for (link, &other) in range.clone().zip(finest.graph.row(row)) {
                 let Some(block) = finest.blocks.get_mut(BLOCK * link..BLOCK * (link + 1)) else { continue };
                 sum.iter_mut().zip(&*block).for_each(|(sum, number)| *sum -= number);
@@ -75,13 +83,17 @@ impl Solver<'_> {
                     block.fill(0.0);
                 }
             }
-            let Some(block) = finest.diagonal.get_mut(BLOCK * row..BLOCK * (row + 1)) else { continue };
+            let at = BLOCK * row..BLOCK * (row + 1);
+            let (Some(all), Some(without)) = (finest.diagonal.get_mut(at.clone()), finest.own.get_mut(at)) else {
+                continue;
+            };
             if own > 0.0 {
-                let mass = 1.0 / own;
-                block.iter_mut().zip(sum).for_each(|(number, sum)| *number += sum);
-                [0, 4, 8].into_iter().for_each(|i| block[i] += mass);
+                [0, 4, 8].into_iter().for_each(|i| sum[i] += 1.0 / own);
+                without.copy_from_slice(&sum);
+                all.iter_mut().zip(sum).for_each(|(number, sum)| *number += sum);
             } else {
-                block.fill(0.0);
+                without.fill(0.0);
+                all.fill(0.0);
             }
         }
     }

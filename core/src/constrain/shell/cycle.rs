@@ -17,6 +17,8 @@ pub(super) struct Level<'m> {
     pub(super) blocks: &'m mut [f32],
     /// Those of its rows with themselves; when all is known their inverses, zero for what does not move.
     pub(super) diagonal: &'m mut [f32],
+    /// Of the finest: these without what bending adds.
+    pub(super) own: &'m mut [f32],
     /// Of all but the finest: what is to be solved for, and the solution.
     r: &'m mut [Vec3],
     x: &'m mut [Vec3],
@@ -31,7 +33,7 @@ pub(super) struct Levels<'m> {
 /// Words for all of them.
 pub(super) fn words(room: &Room) -> usize {
     let [rows, links] = [room.rows, room.links].map(|[fine, coarse]| fine + coarse);
-    if rows == 0 { 0 } else { BLOCK * (links + rows) + 2 * LEVELS + 6 * room.rows[1] }
+    if rows == 0 { 0 } else { BLOCK * (links + rows + room.rows[0]) + 3 * LEVELS + 6 * room.rows[1] }
 }
 
 impl<'m> Levels<'m> {
@@ -47,9 +49,10 @@ impl<'m> Levels<'m> {
             let mut numbers = |len| bytemuck::cast_slice_mut(take(&mut rest, len));
             let blocks = numbers(BLOCK * graph.links.len() + 1);
             let diagonal = numbers(BLOCK * rows + 1);
+            let own = numbers(if level > 0 { 0 } else { BLOCK * rows + 1 });
             let [r, x] = [0, 1].map(|_| super::whole(take(&mut rest, if level > 0 { 3 * rows } else { 0 })));
             count = level + 1;
-            Level { graph, blocks, diagonal, r, x }
+            Level { graph, blocks, diagonal, own, r, x }
         });
         Self { all, count }
     }
@@ -73,6 +76,15 @@ impl<'m> Levels<'m> {
         for level in &mut self.all[..self.count] {
             level.diagonal.chunks_exact_mut(BLOCK).for_each(invert);
         }
+    }
+
+    /// q = A p without what bending adds.
+    pub(super) fn apply(&self, p: &[Vec3], q: &mut [Vec3]) {
+        let [finest, ..] = &self.all;
+        lanes::widest(
+            #[inline(always)]
+            || finest.apply(p, q),
+        );
     }
 
     /// z ≈ A⁻¹ r: a sweep of Gauss and Seidel's method forth on the way to the coarsest graph, and one back on the way from there. So it is symmetric.
@@ -130,18 +142,22 @@ impl Level<'_> {
         }
     }
 
+    /// q = A p without what bending adds.
+    #[inline(always)]
+    pub(super) fn apply(&self, p: &[Vec3], q: &mut [Vec3]) {
+        for (row, (&own, q)) in p.iter().zip(q).enumerate() {
+            let (links, blocks) = self.row(row);
+            let others = less(f32x4::ZERO, links, blocks, p, |_| false);
+            *q = vector(times(block(self.own, row), own) - others);
+        }
+    }
+
     /// x = (D + L)⁻¹ r.
     #[inline(always)]
     fn forth(&self, r: &[Vec3], x: &mut [Vec3]) {
         for (row, &r) in r.iter().enumerate() {
-            let (range, links) = (self.graph.range(row), self.graph.row(row));
-            let mut sum = quad(r);
-            for (link, &other) in range.zip(links) {
-                if other as usize > row {
-                    break;
-                }
-                sum -= times(block(self.blocks, link), x[other as usize]);
-            }
+            let (links, blocks) = self.row(row);
+            let sum = less(quad(r), links, blocks, x, |other| other > row);
             x[row] = self.solved(row, sum);
         }
     }
@@ -151,16 +167,12 @@ impl Level<'_> {
     fn leave(&self, x: &[Vec3], into: &mut [Vec3]) {
         into.fill(Vec3::ZERO);
         for row in 0..x.len() {
-            let (range, links) = (self.graph.range(row), self.graph.row(row));
-            let mut sum = f32x4::ZERO;
-            for (link, &other) in range.zip(links).rev() {
-                if (other as usize) < row {
-                    break;
-                }
-                sum += times(block(self.blocks, link), x[other as usize]);
-            }
+            let (links, blocks) = self.row(row);
+            let before = links.iter().take_while(|&&other| (other as usize) < row).count();
+            let (links, blocks) = (&links[before..], blocks.get(BLOCK * before..).unwrap_or(&[]));
+            let sum = less(f32x4::ZERO, links, blocks, x, |_| false);
             if let Some(into) = into.get_mut(self.graph.into[row] as usize) {
-                *into -= vector(sum);
+                *into += vector(sum);
             }
         }
     }
@@ -174,18 +186,39 @@ impl Level<'_> {
             }
         }
         for (row, &r) in r.iter().enumerate().rev() {
-            let mut sum = quad(r);
-            for (link, &other) in self.graph.range(row).zip(self.graph.row(row)) {
-                sum -= times(block(self.blocks, link), x[other as usize]);
-            }
+            let (links, blocks) = self.row(row);
+            let sum = less(quad(r), links, blocks, x, |_| false);
             x[row] = self.solved(row, sum);
         }
+    }
+
+    /// The links of a row, and their blocks with the number behind.
+    #[inline(always)]
+    fn row(&self, row: usize) -> (&[u32], &[f32]) {
+        let range = self.graph.range(row);
+        let blocks = self.blocks.get(BLOCK * range.start..BLOCK * range.end + 1);
+        (self.graph.links.get(range).unwrap_or(&[]), blocks.unwrap_or(&[]))
     }
 
     #[inline(always)]
     fn solved(&self, row: usize, sum: f32x4) -> Vec3 {
         vector(times(block(self.diagonal, row), vector(sum)))
     }
+}
+
+/// A sum less the blocks of links times what they lead to, up to where it ends.
+#[inline(always)]
+fn less(mut sum: f32x4, links: &[u32], blocks: &[f32], x: &[Vec3], ends: impl Fn(usize) -> bool) -> f32x4 {
+    let mut rest = blocks;
+    for &other in links {
+        let (Some(block), Some(&x)) = (rest.first_chunk(), x.get(other as usize)) else { break };
+        if ends(other as usize) {
+            break;
+        }
+        sum -= times(block, x);
+        rest = &rest[BLOCK..];
+    }
+    sum
 }
 
 /// A block, and the number behind it.
@@ -217,8 +250,8 @@ fn vector(quad: f32x4) -> Vec3 {
 /// A block times a vector; the last number is any.
 #[inline(always)]
 fn times(block: &[f32; BLOCK + 1], v: Vec3) -> f32x4 {
-    let &[a, b, c, d, e, f, g, h, i, j] = block;
-    let columns = [[a, b, c, d], [d, e, f, g], [g, h, i, j]].map(f32x4::new);
+    // Four numbers from where each column begins on: the last one is not its own.
+    let columns = [0, 3, 6].map(|i| f32x4::new(*block[i..].first_chunk().unwrap_or(&[0.0; 4])));
     columns[0] * f32x4::splat(v.x) + columns[1] * f32x4::splat(v.y) + columns[2] * f32x4::splat(v.z)
 }
 

@@ -142,11 +142,11 @@ impl Fold {
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
     }
 
-    /// What of that each corner does to itself.
-    pub(super) fn held(&self) -> [f32; 4] {
-        let ([x, y], [m, n]) = (self.foot, self.slope);
-        let [m, n] = [m, n].map(|slope| 0.25 * self.moment * dot(slope, slope));
-        [(1.0 - x) * (1.0 - x) * m + (1.0 - y) * (1.0 - y) * n, x * x * m + y * y * n, m, n]
+    /// What of that two corners do to each other: those of the edge, each of them and the first far one, and the second far one.
+    pub(super) fn held(&self) -> [f32; 5] {
+        let [x, y] = self.foot;
+        let [m, n] = self.slope.map(|slope| 0.25 * self.moment * dot(slope, slope));
+        [x * (1.0 - x) * m + y * (1.0 - y) * n, -(1.0 - x) * m, -x * m, -(1.0 - y) * n, -y * n]
     }
 
     /// Forces on both far corners, and against them on the edge.

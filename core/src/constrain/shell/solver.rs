@@ -154,15 +154,23 @@ impl Solver<'_> {
     }
 
     /// q = (M + h² K) p, zero where nothing moves.
-    fn apply(&mut self) {
+    fn apply(&mut self, levels: &Levels<'_>) {
         let bending = self.bending() * self.step.rate;
         let Vectors { p, q, weight, .. } = &mut self.vectors;
-        for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
-            *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
+        let bends_only = !levels.is_empty();
+        if bends_only {
+            levels.apply(p, q);
+        } else {
+            for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
+                *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
+            }
         }
         let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
         let Vectors { p, q, weight, .. } = &mut self.vectors;
-        lanes::run(Resist { params, step, bending, triangles, cells, strains, hinges, bends, folds, p, q });
+        if !bends_only || bending > 0.0 {
+            let all = Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q };
+            lanes::run(all);
+        }
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
         }
@@ -175,7 +183,7 @@ impl Solver<'_> {
         let solved = |left: f32, first: f32| left >= 0.0 && left <= first * (RESIDUAL * RESIDUAL);
         let (mut left, mut iterations) = (first, 0);
         while !solved(left, first) && iterations < ITERATIONS {
-            self.apply();
+            self.apply(levels);
             let Vectors { shift, r, p, q, .. } = &mut self.vectors;
             let curvature = lanes::dot(p, q);
             let far = left / curvature;
