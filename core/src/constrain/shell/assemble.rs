@@ -2,29 +2,29 @@
 
 use super::cycle::{BLOCK, Level, Levels};
 use super::solver::Solver;
-use glam::{Mat3, Vec3};
+use glam::Mat3;
 
 impl Solver<'_> {
     /// Puts M + h² K into the blocks of the finest graph, and of all others what comes of it. Of bending that has only what each particle
     /// does to itself: what two do to each other by it would take as many blocks again, and is little in what is thin.
-    pub(super) fn assemble(&self, levels: &mut Levels<'_>) {
+    pub(super) fn assemble(&mut self, levels: &mut Levels<'_>) {
         if levels.is_empty() {
             return;
         }
         let [finest, ..] = &mut levels.all;
         finest.blocks.fill(0.0);
         finest.diagonal.fill(0.0);
-        for i in 0..self.triangles.len() {
-            self.add_membrane(finest, i);
-        }
         for i in 0..self.hinges.len() {
             self.add_fold(finest, i);
+        }
+        for i in 0..self.triangles.len() {
+            self.add_membrane(finest, i);
         }
         self.settle_rows(finest);
         levels.fold();
     }
 
-    /// Adds the blocks of a triangle's edges.
+    /// Adds the blocks of a triangle's edges: of the link from the lesser number to the greater.
     fn add_membrane(&self, finest: &mut Level<'_>, i: usize) {
         let (Some(corners), Some(cell), Some(strain)) =
             (self.triangles.get(i), self.cells.get(i), self.strains.get(i))
@@ -34,16 +34,15 @@ impl Solver<'_> {
         let blocks = strain.blocks(cell, self.params, &self.step);
         for (k, block) in blocks.into_iter().enumerate() {
             let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            for (from, to, block) in [(from, to, block), (to, from, block.transpose())] {
-                if let Some(link) = finest.graph.link(from as usize, to) {
-                    add(finest.blocks, link, &block);
-                }
+            let (from, to, block) = if from < to { (from, to, block) } else { (to, from, block.transpose()) };
+            if let Some(link) = finest.graph.link(from as usize, to) {
+                add(finest.blocks, link, &block);
             }
         }
     }
 
-    /// Adds what a fold's corners do to themselves.
-    fn add_fold(&self, finest: &mut Level<'_>, i: usize) {
+    /// Adds what a fold's corners do to themselves, and to its triangles how their corners hold each other.
+    fn add_fold(&mut self, finest: &mut Level<'_>, i: usize) {
         let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
             return;
         };
@@ -58,13 +57,15 @@ impl Solver<'_> {
             let [x, y, z] = force.to_array().map(|part| force * (stiffness * part));
             add(finest.diagonal, corner as usize, &Mat3::from_cols(x, y, z));
         }
-        // What is held goes along edges of the triangles.
-        let [a, b, c, d] = hinge.corners();
-        for ((from, to), held) in [(a, b), (a, c), (b, c), (a, d), (b, d)].into_iter().zip(fold.held()) {
-            for (from, to) in [(from, to), (to, from)] {
-                if let Some(link) = finest.graph.link(from as usize, to) {
-                    add(finest.blocks, link, &Mat3::from_diagonal(Vec3::splat(held)));
-                }
+        for (side, face) in hinge.faces.into_iter().enumerate() {
+            let corners = self.triangles.get(face as usize).copied().unwrap_or_default();
+            let far = corners.iter().position(|&corner| corner == hinge.far[side]);
+            let (Some(far), Some(strain)) = (far, self.strains.get_mut(face as usize)) else { continue };
+            let [across, first, second] = fold.held(side);
+            let (next, last) = ((far + 1) % 3, (far + 2) % 3);
+            let [first, second] = if corners[next] == hinge.edge[0] { [first, second] } else { [second, first] };
+            for (edge, held) in [(next, across), (far, first), (last, second)] {
+                strain.held[edge] += held;
             }
         }
     }
@@ -74,6 +75,12 @@ impl Solver<'_> {
         let weight = &*self.vectors.weight;
         for (row, &own) in weight.iter().enumerate() {
             let range = finest.graph.range(row);
+            for (link, &other) in range.clone().zip(finest.graph.row(row)).rev() {
+                if (other as usize) < row {
+                    break;
+                }
+                mirror(finest, link, finest.graph.link(other as usize, row as u32));
+            }
             let mut sum = [0.0f32; BLOCK];
             for (link, &other) in range.clone().zip(finest.graph.row(row)) {
                 let Some(block) = finest.blocks.get_mut(BLOCK * link..BLOCK * (link + 1)) else { continue };
@@ -96,6 +103,16 @@ impl Solver<'_> {
                 all.fill(0.0);
             }
         }
+    }
+}
+
+/// Puts a block on the link back.
+#[cfg_attr(not(target_os = "none"), inline(always))]
+fn mirror(finest: &mut Level<'_>, link: usize, back: Option<usize>) {
+    let from = finest.blocks.get(BLOCK * link..).and_then(|numbers| numbers.first_chunk::<BLOCK>());
+    let (Some(&[a, b, c, d, e, f, g, h, i]), Some(back)) = (from, back) else { return };
+    if let Some(to) = finest.blocks.get_mut(BLOCK * back..).and_then(|numbers| numbers.first_chunk_mut::<BLOCK>()) {
+        *to = [a, d, g, b, e, h, c, f, i];
     }
 }
 

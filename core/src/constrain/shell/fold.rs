@@ -142,11 +142,11 @@ impl Fold {
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
     }
 
-    /// What of that two corners do to each other: those of the edge, each of them and the first far one, and the second far one.
-    pub(super) fn held(&self) -> [f32; 5] {
-        let [x, y] = self.foot;
-        let [m, n] = self.slope.map(|slope| 0.25 * self.moment * dot(slope, slope));
-        [x * (1.0 - x) * m + y * (1.0 - y) * n, -(1.0 - x) * m, -x * m, -(1.0 - y) * n, -y * n]
+    /// What of that the corners on a side do to each other: those of the edge, the first of them and the far one, the second and that.
+    pub(super) fn held(&self, side: usize) -> [f32; 3] {
+        let (x, slope) = (self.foot[side], self.slope[side]);
+        let held = 0.25 * self.moment * dot(slope, slope);
+        [x * (1.0 - x) * held, -(1.0 - x) * held, -x * held]
     }
 
     /// Forces on both far corners, and against them on the edge.

@@ -25,6 +25,8 @@ pub(super) struct Strain {
     pub(super) tension: f32,
     /// Its curvature, or the change of that: along warp, weft, and √2 times that between them \[1/m\].
     pub(super) curvature: [f32; 3],
+    /// What its folds hold along its edges × h²: from the first corner to the second, to the third, and back \[kg\].
+    pub(super) held: [f32; 3],
 }
 
 /// The unit vectors along warp and weft in the plane of a triangle with these edges; none if it is degenerate.
@@ -79,7 +81,7 @@ impl Cell {
 }
 
 impl Strain {
-    pub(super) const NONE: Self = Self { along: [Vec3::ZERO; 2], tension: 0.0, curvature: [0.0; 3] };
+    pub(super) const NONE: Self = Self { along: [Vec3::ZERO; 2], tension: 0.0, curvature: [0.0; 3], held: [0.0; 3] };
 
     /// The triangle with these edges now, along others, and as it was as the sub-step began; with the push × h² on its second and
     /// third corner.
@@ -137,14 +139,14 @@ impl Strain {
         let [warp, weft, shear] = cell.stress(params, step.h, [step.rate; 3]);
         let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
         let [u, v] = self.along;
-        [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
+        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
             let ([p, q], [r, s]) = (gain[i], gain[j]);
             let (uu, vv) = (warp * p * r + shear * q * s, weft * q * s + shear * p * r);
             // The block's rows are those of the first corner.
             let (uv, vu) = (shear * q * r, shear * p * s);
             let (first, second) = (u * uu + v * vu, u * uv + v * vv);
             let column = |x: f32, y: f32| first * x + second * y;
-            let own = Mat3::from_diagonal(Vec3::splat(taut * (p * r + q * s)));
+            let own = Mat3::from_diagonal(Vec3::splat(taut * (p * r + q * s) + self.held[i]));
             Mat3::from_cols(column(u.x, v.x), column(u.y, v.y), column(u.z, v.z)) + own
         })
     }

@@ -17,7 +17,7 @@ use glam::{Mat3, Vec3};
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
 /// The residual at which a solution is good enough, as a share of what it begins with.
-const RESIDUAL: f32 = 1e-4;
+const RESIDUAL: f32 = 1e-3;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 
