@@ -26,8 +26,7 @@ impl Solver<'_> {
 
     /// Adds the blocks of a triangle's edges: of the link from the lesser number to the greater.
     fn add_membrane(&self, finest: &mut Level<'_>, i: usize) {
-        let (Some(corners), Some(cell), Some(strain)) =
-            (self.triangles.get(i), self.cells.get(i), self.strains.get(i))
+        let (Some(corners), Some(cell), Some(strain)) = (self.triangles.get(i), self.cells.get(i), self.strains.get(i))
         else {
             return;
         };

@@ -119,13 +119,74 @@ impl<'m> Levels<'m> {
             },
         );
     }
+
+    /// Takes from shifts what each piece that hangs together, and by nothing that is fixed, would go as a whole: Σ m Δx. Of those who are there, masses
+    /// are given: infinite ones of what is fixed.
+    pub(super) fn rid_of_drift(&mut self, masses: impl Iterator<Item = Option<f32>>, shift: &mut [Vec3]) {
+        let [finest, others @ ..] = &mut self.all;
+        let others = &mut others[..self.count.saturating_sub(1)];
+        let Some(first) = others.first_mut() else { return };
+        first.forget();
+        for ((mass, &shift), &into) in masses.zip(&*shift).zip(finest.graph.into) {
+            let Some(mass) = mass else { continue };
+            first.gather(into, if mass < f32::INFINITY { shift * mass } else { Vec3::ZERO }, mass);
+        }
+        for i in 1..others.len() {
+            let (this, next) = others.split_at_mut(i);
+            let (Some(this), Some(next)) = (this.last(), next.first_mut()) else { return };
+            next.forget();
+            for ((&sum, mass), &into) in this.r.iter().zip(&*this.x).zip(this.graph.into) {
+                next.gather(into, sum, mass.x);
+            }
+        }
+        if let Some(last) = others.last_mut() {
+            last.share_out();
+        }
+        for i in (1..others.len()).rev() {
+            let (this, next) = others.split_at_mut(i);
+            let (Some(this), Some(next)) = (this.last_mut(), next.first()) else { return };
+            for (drift, &into) in this.r.iter_mut().zip(this.graph.into) {
+                *drift = next.r.get(into as usize).copied().unwrap_or(Vec3::ZERO);
+            }
+        }
+        let Some(first) = others.first() else { return };
+        for (shift, &into) in shift.iter_mut().zip(finest.graph.into) {
+            *shift -= first.r.get(into as usize).copied().unwrap_or(Vec3::ZERO);
+        }
+    }
 }
 
 impl Level<'_> {
+    /// No momentum and no mass yet.
+    fn forget(&mut self) {
+        self.r.fill(Vec3::ZERO);
+        self.x.fill(Vec3::ZERO);
+    }
+
+    /// Adds to the momentum and the mass of a row.
+    fn gather(&mut self, row: u32, sum: Vec3, mass: f32) {
+        if let (Some(to), Some(of)) = (self.r.get_mut(row as usize), self.x.get_mut(row as usize)) {
+            *to += sum;
+            of.x += mass;
+        }
+    }
+
+    /// Makes of sums and masses how far each piece has gone: of each row, or of all, if some are linked still.
+    fn share_out(&mut self) {
+        if !self.graph.links.is_empty() {
+            let (sum, mass) = (self.r.iter().copied().sum(), self.x.iter().map(|mass| mass.x).sum());
+            self.r.fill(sum);
+            self.x.fill(Vec3::splat(mass));
+        }
+        for (sum, mass) in self.r.iter_mut().zip(&*self.x) {
+            let drift = *sum / mass.x;
+            *sum = if drift.is_finite() { drift } else { Vec3::ZERO };
+        }
+    }
+
     #[inline(always)]
     fn sum_into(&self, coarse: &mut Level<'_>) {
-        for row in 0..self.graph.rows() {
-            let into = self.graph.into[row];
+        for (row, &into) in self.graph.into.iter().enumerate() {
             add(coarse.diagonal, into as usize, block(self.diagonal, row));
             for link in self.graph.range(row) {
                 let Some(&other) = self.graph.links.get(link).and_then(|&other| self.graph.into.get(other as usize))
@@ -155,7 +216,7 @@ impl Level<'_> {
     /// x = (D + L)⁻¹ r.
     #[inline(always)]
     fn forth(&self, r: &[Vec3], x: &mut [Vec3]) {
-        for (row, &r) in r.iter().enumerate() {
+        for (row, &r) in r.iter().enumerate().take(x.len()) {
             let (links, blocks) = self.row(row);
             let sum = less(quad(r), links, blocks, x, |other| other > row);
             x[row] = self.solved(row, sum);
@@ -166,12 +227,12 @@ impl Level<'_> {
     #[inline(always)]
     fn leave(&self, x: &[Vec3], into: &mut [Vec3]) {
         into.fill(Vec3::ZERO);
-        for row in 0..x.len() {
+        for (row, &group) in self.graph.into.iter().enumerate() {
             let (links, blocks) = self.row(row);
             let before = links.iter().take_while(|&&other| (other as usize) < row).count();
             let (links, blocks) = (&links[before..], blocks.get(BLOCK * before..).unwrap_or(&[]));
             let sum = less(f32x4::ZERO, links, blocks, x, |_| false);
-            if let Some(into) = into.get_mut(self.graph.into[row] as usize) {
+            if let Some(into) = into.get_mut(group as usize) {
                 *into += vector(sum);
             }
         }
@@ -188,7 +249,9 @@ impl Level<'_> {
         for (row, &r) in r.iter().enumerate().rev() {
             let (links, blocks) = self.row(row);
             let sum = less(quad(r), links, blocks, x, |_| false);
-            x[row] = self.solved(row, sum);
+            if let Some(x) = x.get_mut(row) {
+                *x = self.solved(row, sum);
+            }
         }
     }
 

@@ -98,9 +98,9 @@ impl Fold {
         let slope = normals(along).map(|normal| normal * (edge / dot(normal, normal)));
         let foot = [dot(f, e), dot(g, e)].map(|along| along / (edge * edge));
         let this = Self { slope, foot, moment: 0.0 };
-        let open = turn(fold_angle(now) - bend.angle);
-        let open =
-            if step.lag > 0.0 { step.felt(open, open - turn(fold_angle(now) - fold_angle(before))) } else { open };
+        let angle = fold_angle(now);
+        let open = turn(angle - bend.angle);
+        let open = if step.lag > 0.0 { step.felt(open, open - turn(angle - fold_angle(before))) } else { open };
         let acts = bend.curvature[0] != [0.0; 3];
         if acts && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
     }

@@ -116,6 +116,9 @@ pub(super) fn make(room: &Room, triangles: &[[u32; 3]], words: &mut [u32], work:
     let mut coarser = room.rows[1];
     let mut last: Option<Graph<'_>> = None;
     for level in 0..LEVELS {
+        if rest.len() <= rows {
+            return;
+        }
         let (starts, others) = core::mem::take(&mut rest).split_at_mut(rows + 1);
         let links = &mut left[usize::from(level > 0)];
         let (columns, _) = others.split_at_mut((*links).min(others.len()));
@@ -186,11 +189,11 @@ fn nearest(graph: &Graph<'_>, into: &[u32], members: &[usize]) -> Option<usize> 
 }
 
 /// The numbers of what belongs to each of so many rows: of the first, of the second ... and where those of each begin.
-fn sorted<'w>(
+fn sorted(
     rows: usize,
     pairs: impl Iterator<Item = (usize, u32)> + Clone,
-    work: &'w mut [u32],
-) -> Option<(&'w [u32], &'w [u32])> {
+    work: &mut [u32],
+) -> Option<(&[u32], &[u32])> {
     let mut rest = work;
     let starts = take(&mut rest, rows + 2);
     if starts.len() < rows + 2 {
@@ -212,12 +215,7 @@ fn sorted<'w>(
 }
 
 /// Links the corners of triangles, and tells with how many links, if there is room.
-fn link_corners(
-    triangles: &[[u32; 3]],
-    starts: &mut [u32],
-    links: &mut [u32],
-    work: &mut [u32],
-) -> Option<usize> {
+fn link_corners(triangles: &[[u32; 3]], starts: &mut [u32], links: &mut [u32], work: &mut [u32]) -> Option<usize> {
     let rows = starts.len() - 1;
     let corners = triangles.iter().enumerate().flat_map(|(face, corners)| corners.map(|c| (c as usize, face as u32)));
     let corners = corners.filter(|&(corner, _)| corner < rows);

@@ -256,7 +256,7 @@ where
         solver.linearise(bodies);
         solver.assemble(&mut levels);
         solver.solve(&mut levels, bodies.report);
-        solver.keep_momenta(bodies);
+        solver.keep_spin(bodies);
         solver.act(bodies);
     }
 }

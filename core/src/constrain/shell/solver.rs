@@ -17,7 +17,7 @@ use glam::{Mat3, Vec3};
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
 /// The residual at which a solution is good enough, as a share of what it begins with.
-const RESIDUAL: f32 = 1e-3;
+const RESIDUAL: f32 = 3e-3;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 
@@ -101,7 +101,8 @@ impl<'m> Vectors<'m> {
 /// A shell in a sub-step: (M + h² K) Δx = h² f, f being the forces where the method has moved all, along the directions that the sub-step
 /// began with.
 ///
-/// However early the search for it ends, no momentum comes of it: what it would be is taken back from all alike.
+/// However early the search for it ends, no momentum comes of it: preconditioned by masses, its directions are sums of forces within the shell, and
+/// of what a cycle through coarser graphs leaves each piece is rid.
 pub(super) struct Solver<'m> {
     pub(super) params: &'m ShellParams,
     pub(super) step: Step,
@@ -168,7 +169,8 @@ impl Solver<'_> {
         let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
         let Vectors { p, q, weight, .. } = &mut self.vectors;
         if !bends_only || bending > 0.0 {
-            let all = Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q };
+            let all =
+                Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q };
             lanes::run(all);
         }
         for (q, &weight) in q.iter_mut().zip(&**weight) {
@@ -208,12 +210,17 @@ impl Solver<'_> {
             }
             iterations += 1;
         }
+        let Vectors { rows, weight, shift, .. } = &mut self.vectors;
+        levels.rid_of_drift(
+            rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),
+            shift,
+        );
         let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
         report.effort.solved(iterations, residual, !solved(left, first));
     }
 
-    /// Moves and turns a free shell as a whole by what its shifts would change of its momenta: Σ m Δx and Σ m (x − v h) × Δx are none then.
-    pub(super) fn keep_momenta(&mut self, bodies: &Bodies<'_>) {
+    /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.
+    pub(super) fn keep_spin(&mut self, bodies: &Bodies<'_>) {
         let Vectors { rows, weight, shift, .. } = &mut self.vectors;
         let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
         let all = || rows.iter().zip(&**weight).map(living);
@@ -225,26 +232,24 @@ impl Solver<'_> {
         let place = |row: usize| {
             bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
         };
-        let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
-        for (of, &shift) in all().zip(&**shift) {
-            let Some((row, weight)) = of else { continue };
+        let (mut mass, mut middle) = (0.0, Vec3::ZERO);
+        for (row, weight) in all().flatten() {
             mass += 1.0 / weight;
             middle += place(row) / weight;
-            drift += shift / weight;
         }
-        let (middle, drift) = (middle / mass, drift / mass);
+        let middle = middle / mass;
         let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
         for (of, &shift) in all().zip(&**shift) {
             let Some((row, weight)) = of else { continue };
             let arm = place(row) - middle;
-            torque += arm.cross(shift - drift) / weight;
+            torque += arm.cross(shift) / weight;
             let [x, y, z] = arm.to_array().map(|along| arm * (along / weight));
             spread += Mat3::from_cols(x, y, z);
         }
         let turn = turn_of(spread, torque);
         for (of, shift) in all().zip(&mut **shift) {
             let Some((row, _)) = of else { continue };
-            *shift -= drift + turn.cross(place(row) - middle);
+            *shift -= turn.cross(place(row) - middle);
         }
     }
 
