@@ -2,6 +2,7 @@
 
 use super::cycle::{BLOCK, Level, Levels};
 use super::solver::Solver;
+use crate::lanes;
 use glam::Mat3;
 
 impl Solver<'_> {
@@ -14,17 +15,23 @@ impl Solver<'_> {
         let [finest, ..] = &mut levels.all;
         finest.blocks.fill(0.0);
         finest.diagonal.fill(0.0);
-        for i in 0..self.hinges.len() {
-            self.add_fold(finest, i);
-        }
-        for i in 0..self.triangles.len() {
-            self.add_membrane(finest, i);
-        }
-        self.settle_rows(finest);
+        lanes::widest(
+            #[inline(always)]
+            || {
+                for i in 0..self.hinges.len() {
+                    self.add_fold(finest, i);
+                }
+                for i in 0..self.triangles.len() {
+                    self.add_membrane(finest, i);
+                }
+                self.settle_rows(finest);
+            },
+        );
         levels.fold();
     }
 
     /// Adds the blocks of a triangle's edges: of the link from the lesser number to the greater.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn add_membrane(&self, finest: &mut Level<'_>, i: usize) {
         let (Some(corners), Some(cell), Some(strain)) = (self.triangles.get(i), self.cells.get(i), self.strains.get(i))
         else {
@@ -41,6 +48,7 @@ impl Solver<'_> {
     }
 
     /// Adds what a fold's corners do to themselves, and to its triangles how their corners hold each other.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn add_fold(&mut self, finest: &mut Level<'_>, i: usize) {
         let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
             return;
@@ -70,6 +78,7 @@ impl Solver<'_> {
     }
 
     /// Each row's block with itself: its mass, and against what others feel of it. What does not move has none at all.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn settle_rows(&self, finest: &mut Level<'_>) {
         let weight = &*self.vectors.weight;
         for (row, &own) in weight.iter().enumerate() {

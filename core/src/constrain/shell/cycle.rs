@@ -206,8 +206,8 @@ impl Level<'_> {
     /// q = A p without what bending adds.
     #[inline(always)]
     pub(super) fn apply(&self, p: &[Vec3], q: &mut [Vec3]) {
-        for (row, (&own, q)) in p.iter().zip(q).enumerate() {
-            let (links, blocks) = self.row(row);
+        for ((row, (&own, q)), range) in p.iter().zip(q).enumerate().zip(self.graph.ranges()) {
+            let (links, blocks) = self.row(range);
             let others = less(f32x4::ZERO, links, blocks, p, |_| false);
             *q = vector(times(block(self.own, row), own) - others);
         }
@@ -216,8 +216,8 @@ impl Level<'_> {
     /// x = (D + L)⁻¹ r.
     #[inline(always)]
     fn forth(&self, r: &[Vec3], x: &mut [Vec3]) {
-        for (row, &r) in r.iter().enumerate().take(x.len()) {
-            let (links, blocks) = self.row(row);
+        for ((row, &r), range) in r.iter().enumerate().take(x.len()).zip(self.graph.ranges()) {
+            let (links, blocks) = self.row(range);
             let sum = less(quad(r), links, blocks, x, |other| other > row);
             x[row] = self.solved(row, sum);
         }
@@ -227,8 +227,8 @@ impl Level<'_> {
     #[inline(always)]
     fn leave(&self, x: &[Vec3], into: &mut [Vec3]) {
         into.fill(Vec3::ZERO);
-        for (row, &group) in self.graph.into.iter().enumerate() {
-            let (links, blocks) = self.row(row);
+        for ((row, &group), range) in self.graph.into.iter().enumerate().zip(self.graph.ranges()) {
+            let (links, blocks) = self.row(range);
             let before = links.iter().take_while(|&&other| (other as usize) < row).count();
             let (links, blocks) = (&links[before..], blocks.get(BLOCK * before..).unwrap_or(&[]));
             let sum = less(f32x4::ZERO, links, blocks, x, |_| false);
@@ -246,8 +246,8 @@ impl Level<'_> {
                 *x += next.get(into as usize).copied().unwrap_or(Vec3::ZERO);
             }
         }
-        for (row, &r) in r.iter().enumerate().rev() {
-            let (links, blocks) = self.row(row);
+        for ((row, &r), range) in r.iter().enumerate().zip(self.graph.ranges()).rev() {
+            let (links, blocks) = self.row(range);
             let sum = less(quad(r), links, blocks, x, |_| false);
             if let Some(x) = x.get_mut(row) {
                 *x = self.solved(row, sum);
@@ -257,8 +257,7 @@ impl Level<'_> {
 
     /// The links of a row, and their blocks with the number behind.
     #[inline(always)]
-    fn row(&self, row: usize) -> (&[u32], &[f32]) {
-        let range = self.graph.range(row);
+    fn row(&self, range: core::ops::Range<usize>) -> (&[u32], &[f32]) {
         let blocks = self.blocks.get(BLOCK * range.start..BLOCK * range.end + 1);
         (self.graph.links.get(range).unwrap_or(&[]), blocks.unwrap_or(&[]))
     }

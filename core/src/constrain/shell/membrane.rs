@@ -85,6 +85,7 @@ impl Strain {
 
     /// The triangle with these edges now, along others, and as it was as the sub-step began; with the push × h² on its second and
     /// third corner.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn of(
         cell: &Cell,
         params: &ShellParams,
@@ -153,6 +154,7 @@ impl Strain {
 }
 
 /// Green's strain along warp and weft, and twice that between them.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn green([u, v]: [Vec3; 2]) -> [f32; 3] {
     [0.5 * (dot(u, u) - 1.0), 0.5 * (dot(v, v) - 1.0), dot(u, v)]
 }

@@ -74,6 +74,12 @@ impl<'m> Graph<'m> {
         self.into.len()
     }
 
+    /// Where the links of each row lie.
+    #[inline(always)]
+    pub(super) fn ranges(&self) -> impl DoubleEndedIterator<Item = core::ops::Range<usize>> + ExactSizeIterator + 'm {
+        self.starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
+    }
+
     /// Where the links of a row lie.
     #[inline(always)]
     pub(super) fn range(&self, row: usize) -> core::ops::Range<usize> {

@@ -118,6 +118,14 @@ pub(super) struct Solver<'m> {
 impl Solver<'_> {
     /// The forces where all are, and the directions in which they act.
     pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
+        lanes::widest(
+            #[inline(always)]
+            || self.linearise_here(bodies),
+        );
+    }
+
+    #[inline(always)]
+    fn linearise_here(&mut self, bodies: &Bodies<'_>) {
         let (x, v, x0) = (&*bodies.position, &*bodies.velocity, bodies.before[0]);
         let h = self.step.h;
         // From one particle to another: now, along what forces act, and as it was.
