@@ -30,7 +30,8 @@ impl Room {
         }
         // A hinge is an edge that two triangles share.
         let edges = 3 * triangles - hinges.min(triangles + triangles / 2);
-        Self { rows: [particles, particles / 2], links: [2 * edges, edges] }
+        // Groups are a fifth of their members, and have about as many links each.
+        Self { rows: [particles, particles / 3 + 4], links: [2 * edges, edges / 2 + 16] }
     }
 
     /// Words for the graphs.

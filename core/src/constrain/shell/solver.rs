@@ -16,8 +16,8 @@ use glam::{Mat3, Vec3};
 
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
-/// The residual at which a solution is good enough, as a share of what it begins with.
-const RESIDUAL: f32 = 3e-3;
+/// What may be left of a solution, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses.
+const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 
@@ -190,9 +190,12 @@ impl Solver<'_> {
     pub(super) fn solve(&mut self, levels: &mut Levels<'_>, report: &mut Report) {
         let mut by_masses = levels.is_empty();
         let mut first = self.vectors.begin(levels, by_masses);
-        let solved = |left: f32, first: f32| left >= 0.0 && left <= first * (RESIDUAL * RESIDUAL);
+        let solved = |left: f32, first: f32, by_masses: bool| {
+            let share = RESIDUAL[usize::from(by_masses)];
+            left >= 0.0 && left <= first * (share * share)
+        };
         let (mut left, mut iterations) = (first, 0);
-        while !solved(left, first) && iterations < ITERATIONS {
+        while !solved(left, first, by_masses) && iterations < ITERATIONS {
             self.apply(levels);
             let Vectors { shift, r, p, q, .. } = &mut self.vectors;
             let curvature = lanes::dot(p, q);
@@ -224,7 +227,7 @@ impl Solver<'_> {
             shift,
         );
         let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
-        report.effort.solved(iterations, residual, !solved(left, first));
+        report.effort.solved(iterations, residual, !solved(left, first, by_masses));
     }
 
     /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.
