@@ -5,7 +5,7 @@ use crate::memory::take;
 /// Particles from which on there are graphs: fewer are soon solved without.
 const LEAST: usize = 16;
 /// Graphs at the most.
-pub(super) const LEVELS: usize = 10;
+pub(super) const LEVELS: usize = 8;
 /// Members of a group.
 const GROUP: usize = 6;
 /// Whoever is in no group.
