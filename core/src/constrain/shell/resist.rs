@@ -7,7 +7,6 @@ use super::solver::{Step, add_all, add_pair, all_at, curve, moment};
 use crate::cloth::Hinge;
 use crate::lanes::{Eight, Kernel, LANES, Vectors};
 use glam::Vec3;
-use wide::f32x4;
 
 /// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
 const WIDE: bool = cfg!(not(target_os = "none"));
@@ -206,7 +205,7 @@ impl Resist<'_> {
         let [a, b, c, d] = forces;
         let [a, b, c, d] = [a.rows(), b.rows(), c.rows(), d.rows()];
         for (i, &corners) in rows.iter().enumerate() {
-            add_quads(self.q, corners, [a[i], b[i], c[i], d[i]]);
+            add_all(self.q, corners, [vector(a[i]), vector(b[i]), vector(c[i]), vector(d[i])]);
         }
         true
     }
@@ -221,21 +220,6 @@ fn eight<T>(all: &[T], first: usize) -> Option<&[T; LANES]> {
 #[inline(always)]
 fn eight_mut<T>(all: &mut [T], first: usize) -> Option<&mut [T; LANES]> {
     all.get_mut(first..first + LANES)?.try_into().ok()
-}
-
-/// Adds the first three numbers of each to a corner's: four at a time, of which the last adds nothing to what follows, whatever its sign.
-#[inline(always)]
-fn add_quads<const N: usize>(total: &mut [Vec3], corners: [u32; N], quads: [[f32; 4]; N]) {
-    for (corner, quad) in corners.into_iter().zip(quads) {
-        let numbers: &mut [f32] = bytemuck::cast_slice_mut(total);
-        let four = numbers.get_mut(3 * corner as usize..).and_then(|numbers| numbers.first_chunk_mut());
-        if let Some(four) = four {
-            let [x, y, z, _] = quad;
-            *four = (f32x4::new(*four) + f32x4::new([x, y, z, -0.0])).to_array();
-        } else {
-            add_all(total, [corner], [vector(quad)]);
-        }
-    }
 }
 
 #[inline(always)]
