@@ -39,6 +39,7 @@ mod scripted;
 #[path = "sheet_contacts/main.rs"]
 mod sheet_contacts;
 mod sheets;
+mod shell_meshes;
 mod sleep;
 mod springs;
 mod storage;
