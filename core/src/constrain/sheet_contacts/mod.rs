@@ -121,9 +121,16 @@ where
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()).filter(|rest| !rest.is_known()) else { return };
-        if !self.is_empty() && self.fault().is_none() {
+        let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()) else { return };
+        if !rest.is_known() && !self.is_empty() && self.fault().is_none() {
             rest.learn(self, bodies, share.scratch);
+        }
+        if rest.is_known() && bodies.substep.number == 0 {
+            for (&particle, &half) in self.particles.as_ref().iter().zip(&*rest.half) {
+                if let Some(row) = bodies.row_of_start(particle) {
+                    bodies.keep_off(row, half);
+                }
+            }
         }
     }
 

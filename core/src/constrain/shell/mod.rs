@@ -5,7 +5,7 @@ mod membrane;
 mod resist;
 mod solver;
 
-use super::{Bodies, Constraint, Demand, Share, Words};
+use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
 use crate::memory::take;
 use fold::{Bend, Fold};
@@ -202,7 +202,8 @@ where
         let work =
             sum([triangles.saturating_mul(WORK[0]), hinges.saturating_mul(WORK[1]), particles.saturating_mul(WORK[2])]);
         let words = |fixed| Words { per_row: 0, fixed };
-        Demand { kept: words(kept), scratch: words(work), ..Demand::NONE }
+        let step = particles.saturating_mul(walls::WORDS);
+        Demand { kept: words(kept), step: words(step), scratch: words(work), ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
@@ -218,7 +219,7 @@ where
         if !(h > 0.0) {
             return;
         }
-        let [_, triangles, hinges] = self.counts();
+        let [particles, triangles, hinges] = self.counts();
         let (_, cells, bends) = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = whole(take(&mut rest, triangles.saturating_mul(WORK[0])));
@@ -233,10 +234,23 @@ where
             bends,
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), rest),
+            walls: &mut [],
         };
         solver.linearise(bodies);
-        solver.solve(bodies.report);
+        let walls = walls::of(share.step, particles);
+        walls::gather(walls, self.particles.as_ref(), bodies);
+        solver.walls = walls;
+        solver.solve(bodies);
         solver.keep_spin(bodies);
         solver.act(bodies);
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let [particles, ..] = self.counts();
+        if bodies.substep.seconds() > 0.0 {
+            let walls = walls::of(share.step, particles);
+            walls::settle(walls, bodies);
+            walls::follow(walls, bodies);
+        }
     }
 }

@@ -4,10 +4,11 @@ use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
 use super::resist::Resist;
 use super::{Bodies, ShellParams};
+use crate::constrain::walls::{self, Wall};
 use crate::cloth::Hinge;
 use crate::constrain::turn::turn_of;
 use crate::lanes;
-use crate::math::sqrt;
+use crate::math::{max, sqrt};
 use crate::memory::take;
 use crate::report::Report;
 use crate::rows::add_scaled;
@@ -15,6 +16,8 @@ use glam::{Mat3, Vec3};
 
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
+/// Solutions in turn with the question which walls press, at the most.
+const PASSES: u32 = 5;
 /// The residual at which a solution is good enough, as a share of what it begins with.
 const RESIDUAL: f32 = 1e-4;
 /// The row of a particle that is not there.
@@ -78,10 +81,11 @@ impl<'m> Vectors<'m> {
     }
 
     /// z = W r, and r · z.
-    fn precondition(&mut self) -> f32 {
+    fn precondition(&mut self, walls: &[Wall]) -> f32 {
         for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
             *z = r * weight;
         }
+        walls::filter(walls, self.q);
         lanes::dot(self.r, self.q)
     }
 }
@@ -101,6 +105,8 @@ pub(super) struct Solver<'m> {
     pub(super) bends: &'m [Bend],
     pub(super) folds: &'m mut [Fold],
     pub(super) vectors: Vectors<'m>,
+    /// The scenery that particles are pressed by.
+    pub(super) walls: &'m mut [Wall],
 }
 
 impl Solver<'_> {
@@ -157,12 +163,34 @@ impl Solver<'_> {
         }
     }
 
-    /// Conjugate gradients from zero, the masses being the preconditioner.
-    pub(super) fn solve(&mut self, report: &mut Report) {
-        let first = self.vectors.precondition();
+    /// Solves it, and that anew for as long as other walls press than before.
+    pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>) {
+        let mut enough = 0.0;
+        for pass in 0..PASSES {
+            let Vectors { shift, p, .. } = &mut self.vectors;
+            if walls::impose(self.walls, bodies, shift, p) {
+                self.apply();
+                let Vectors { shift, r, p, q, .. } = &mut self.vectors;
+                add_scaled(shift, 1.0, p);
+                add_scaled(r, -1.0, q);
+            }
+            self.descend(&mut enough, bodies.report);
+            let Vectors { shift, r, .. } = &mut self.vectors;
+            if pass + 1 == PASSES || !walls::judge(self.walls, bodies, shift, r) {
+                break;
+            }
+        }
+        let Vectors { weight, shift, r, .. } = &mut self.vectors;
+        walls::finish(self.walls, bodies, weight, shift, r);
+    }
+
+    /// Conjugate gradients on from what has been found, the masses being the preconditioner, to the residual that is good enough of what they
+    /// begin with, or have begun with before.
+    fn descend(&mut self, enough: &mut f32, report: &mut Report) {
+        let first = self.vectors.precondition(self.walls);
         self.vectors.p.copy_from_slice(self.vectors.q);
-        let enough = first * (RESIDUAL * RESIDUAL);
-        let solved = |left: f32| left >= 0.0 && left <= enough;
+        *enough = max(first * (RESIDUAL * RESIDUAL), *enough);
+        let solved = |left: f32| left >= 0.0 && left <= *enough;
         let (mut left, mut iterations) = (first, 0);
         while !solved(left) && iterations < ITERATIONS {
             self.apply();
@@ -175,7 +203,7 @@ impl Solver<'_> {
             add_scaled(shift, far, p);
             add_scaled(r, -far, q);
             let before = left;
-            left = self.vectors.precondition();
+            left = self.vectors.precondition(self.walls);
             let Vectors { p, q, .. } = &mut self.vectors;
             let beta = left / before;
             for (p, &z) in p.iter_mut().zip(&**q) {
@@ -193,7 +221,7 @@ impl Solver<'_> {
         let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
         let all = || rows.iter().zip(&**weight).map(living);
         let Some((origin, _)) = all().flatten().next() else { return };
-        if all().flatten().any(|(_, weight)| weight == 0.0) {
+        if all().flatten().any(|(_, weight)| weight == 0.0) || self.walls.iter().any(Wall::is_met) {
             return;
         }
         let h = bodies.substep.seconds();

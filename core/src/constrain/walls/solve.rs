@@ -1,0 +1,132 @@
+//! Walls while the material is solved: which press, and how particles slide along them.
+
+use super::{NEAR, SLIDES, STICKS, Wall};
+use crate::constrain::Bodies;
+use crate::constrain::contacts::Grip;
+use crate::math::{aside, length, max};
+use glam::Vec3;
+
+/// The change of what brakes a particle that is small enough, as a share.
+const SETTLED: f32 = 0.05;
+
+/// Leaves of directions what walls let pass.
+pub(in crate::constrain) fn filter(walls: &[Wall], directions: &mut [Vec3]) {
+    for (wall, p) in walls.iter().zip(directions) {
+        *p = match wall.state {
+            SLIDES => aside(*p, wall.normal),
+            STICKS => Vec3::ZERO,
+            _ => *p,
+        };
+    }
+}
+
+/// How far particles have to be moved besides to be where walls want them; tells whether anybody has to.
+pub(in crate::constrain) fn impose(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], by: &mut [Vec3]) -> bool {
+    let h = bodies.substep.seconds();
+    by.fill(Vec3::ZERO);
+    let mut some = false;
+    for ((wall, &shift), by) in walls.iter_mut().zip(shift).zip(by) {
+        if wall.state <= NEAR || wall.fresh == 0 {
+            continue;
+        }
+        wall.fresh = 0;
+        some = true;
+        let row = wall.row as usize;
+        let now = bodies.position[row] + shift;
+        let to = if wall.state == STICKS { bodies.before[0][row] + wall.velocity * h } else { now };
+        *by = to + wall.normal * (wall.offset - to.dot(wall.normal)) - now;
+    }
+    some
+}
+
+/// Looks which walls press what has been moved so far, whose forces that are not met are `left` \[kg m\]; tells whether that is other than before.
+pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], left: &mut [Vec3]) -> bool {
+    let h = bodies.substep.seconds();
+    let mut changed = false;
+    for ((wall, &shift), left) in walls.iter_mut().zip(shift).zip(left) {
+        let row = wall.row as usize;
+        let load = -left.dot(wall.normal);
+        changed |= match wall.state {
+            NEAR => {
+                let missing = wall.offset - (bodies.position[row] + shift).dot(wall.normal);
+                let presses = missing > 0.5 * wall.slack;
+                if presses {
+                    wall.press();
+                }
+                presses
+            }
+            SLIDES | STICKS if load < 0.0 => {
+                *left -= wall.rub;
+                (wall.state, wall.rub) = (NEAR, Vec3::ZERO);
+                true
+            }
+            STICKS => wall.let_slip(load, left),
+            SLIDES if wall.touch.sticks() => {
+                let way = bodies.position[row] + shift - bodies.before[0][row] - wall.velocity * h;
+                wall.brake(load, aside(way, wall.normal), left)
+            }
+            _ => false,
+        };
+    }
+    changed
+}
+
+impl Wall {
+    /// Lets a particle slide that friction cannot hold.
+    fn let_slip(&mut self, load: f32, left: &mut Vec3) -> bool {
+        let pull = aside(*left, self.normal);
+        let [resting, sliding] = self.touch.friction();
+        let (far, most) = (length(pull), resting * load);
+        if far <= most {
+            return false;
+        }
+        self.state = SLIDES;
+        self.rub = pull * (-sliding * load / far);
+        *left += self.rub;
+        true
+    }
+
+    /// Brakes a particle that slides by what presses it; what would be driven sticks.
+    fn brake(&mut self, load: f32, way: Vec3, left: &mut Vec3) -> bool {
+        let [_, sliding] = self.touch.friction();
+        let far = length(way);
+        if way.dot(self.rub) > 0.0 || !(far > 0.0) {
+            *left -= self.rub;
+            (self.rub, self.state, self.fresh) = (Vec3::ZERO, STICKS, 1);
+            return true;
+        }
+        let rub = way * (-sliding * load / far);
+        let change = rub - self.rub;
+        self.rub = rub;
+        *left += change;
+        length(change) > SETTLED * length(rub)
+    }
+}
+
+/// Takes from what is left of forces how hard walls have pressed, and moves out whoever is still behind one.
+pub(in crate::constrain) fn finish(
+    walls: &mut [Wall],
+    bodies: &Bodies<'_>,
+    weight: &[f32],
+    shift: &mut [Vec3],
+    left: &[Vec3],
+) {
+    let h = bodies.substep.seconds();
+    for (((wall, &weight), shift), &left) in walls.iter_mut().zip(weight).zip(shift).zip(left) {
+        if wall.state < NEAR || !shift.is_finite() {
+            continue;
+        }
+        let mut pressed = 0.0;
+        if wall.state > NEAR {
+            pressed = max(-left.dot(wall.normal), 0.0) * weight / h;
+            let held = if wall.state == STICKS { -aside(left, wall.normal) } else { wall.rub };
+            wall.grip = Grip::of(held * (weight / h));
+        }
+        let missing = wall.offset - (bodies.position[wall.row as usize] + *shift).dot(wall.normal);
+        if missing > 0.0 {
+            *shift += wall.normal * missing;
+            pressed += missing / h;
+        }
+        wall.touch.begin(pressed);
+    }
+}
