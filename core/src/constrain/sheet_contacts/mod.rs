@@ -9,6 +9,7 @@ mod scenery;
 mod search;
 mod settle;
 mod solver;
+mod taut;
 mod tree;
 mod zones;
 

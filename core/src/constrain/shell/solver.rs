@@ -80,12 +80,12 @@ impl<'m> Vectors<'m> {
         rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
     }
 
-    /// z = W r, and r · z.
-    fn precondition(&mut self, walls: &[Wall]) -> f32 {
+    /// z = W r, r being what is left beside what walls bear, and r · z.
+    fn precondition(&mut self, walls: &mut [Wall]) -> f32 {
+        walls::hold(walls, self.r);
         for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
             *z = r * weight;
         }
-        walls::filter(walls, self.q);
         lanes::dot(self.r, self.q)
     }
 }
@@ -180,8 +180,8 @@ impl Solver<'_> {
                 break;
             }
         }
-        let Vectors { weight, shift, r, .. } = &mut self.vectors;
-        walls::finish(self.walls, bodies, weight, shift, r);
+        let Vectors { weight, shift, .. } = &mut self.vectors;
+        walls::finish(self.walls, bodies, weight, shift);
     }
 
     /// Conjugate gradients on from what has been found, the masses being the preconditioner, to the residual that is good enough of what they

@@ -9,14 +9,12 @@ use glam::Vec3;
 /// The change of what brakes a particle that is small enough, as a share.
 const SETTLED: f32 = 0.05;
 
-/// Leaves of directions what walls let pass.
-pub(in crate::constrain) fn filter(walls: &[Wall], directions: &mut [Vec3]) {
-    for (wall, p) in walls.iter().zip(directions) {
-        *p = match wall.state {
-            SLIDES => aside(*p, wall.normal),
-            STICKS => Vec3::ZERO,
-            _ => *p,
-        };
+/// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
+pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
+    for (wall, left) in walls.iter_mut().zip(left).filter(|(wall, _)| wall.state > NEAR) {
+        let borne = if wall.state == STICKS { *left } else { wall.normal * left.dot(wall.normal) };
+        wall.held += borne;
+        *left -= borne;
     }
 }
 
@@ -39,13 +37,14 @@ pub(in crate::constrain) fn impose(walls: &mut [Wall], bodies: &Bodies<'_>, shif
     some
 }
 
-/// Looks which walls press what has been moved so far, whose forces that are not met are `left` \[kg m\]; tells whether that is other than before.
+/// Looks which walls press what has been moved so far, and adds to the forces that are `left` \[kg m\] what others give back; tells whether
+/// that is other than before.
 pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], left: &mut [Vec3]) -> bool {
     let h = bodies.substep.seconds();
     let mut changed = false;
-    for ((wall, &shift), left) in walls.iter_mut().zip(shift).zip(left) {
+    for ((wall, &shift), left) in walls.iter_mut().zip(shift).zip(left).filter(|((wall, _), _)| wall.state >= NEAR) {
         let row = wall.row as usize;
-        let load = -left.dot(wall.normal);
+        let load = -wall.held.dot(wall.normal);
         changed |= match wall.state {
             NEAR => {
                 let missing = wall.offset - (bodies.position[row] + shift).dot(wall.normal);
@@ -55,13 +54,13 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
                 }
                 presses
             }
-            SLIDES | STICKS if load < 0.0 => {
-                *left -= wall.rub;
-                (wall.state, wall.rub) = (NEAR, Vec3::ZERO);
+            _ if load < 0.0 => {
+                *left += wall.held - wall.rub;
+                (wall.state, wall.held, wall.rub) = (NEAR, Vec3::ZERO, Vec3::ZERO);
                 true
             }
             STICKS => wall.let_slip(load, left),
-            SLIDES if wall.touch.sticks() => {
+            _ if wall.touch.sticks() => {
                 let way = bodies.position[row] + shift - bodies.before[0][row] - wall.velocity * h;
                 wall.brake(load, aside(way, wall.normal), left)
             }
@@ -74,15 +73,16 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
 impl Wall {
     /// Lets a particle slide that friction cannot hold.
     fn let_slip(&mut self, load: f32, left: &mut Vec3) -> bool {
-        let pull = aside(*left, self.normal);
+        let pull = aside(self.held, self.normal);
         let [resting, sliding] = self.touch.friction();
-        let (far, most) = (length(pull), resting * load);
-        if far <= most {
+        let far = length(pull);
+        if far <= resting * load {
             return false;
         }
         self.state = SLIDES;
         self.rub = pull * (-sliding * load / far);
-        *left += self.rub;
+        self.held -= pull;
+        *left += pull + self.rub;
         true
     }
 
@@ -103,23 +103,17 @@ impl Wall {
     }
 }
 
-/// Takes from what is left of forces how hard walls have pressed, and moves out whoever is still behind one.
-pub(in crate::constrain) fn finish(
-    walls: &mut [Wall],
-    bodies: &Bodies<'_>,
-    weight: &[f32],
-    shift: &mut [Vec3],
-    left: &[Vec3],
-) {
+/// Takes from what walls bear how hard they have pressed, and moves out whoever is still behind one.
+pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weight: &[f32], shift: &mut [Vec3]) {
     let h = bodies.substep.seconds();
-    for (((wall, &weight), shift), &left) in walls.iter_mut().zip(weight).zip(shift).zip(left) {
+    for ((wall, &weight), shift) in walls.iter_mut().zip(weight).zip(shift) {
         if wall.state < NEAR || !shift.is_finite() {
             continue;
         }
         let mut pressed = 0.0;
         if wall.state > NEAR {
-            pressed = max(-left.dot(wall.normal), 0.0) * weight / h;
-            let held = if wall.state == STICKS { -aside(left, wall.normal) } else { wall.rub };
+            pressed = max(-wall.held.dot(wall.normal), 0.0) * weight / h;
+            let held = if wall.state == STICKS { -aside(wall.held, wall.normal) } else { wall.rub };
             wall.grip = Grip::of(held * (weight / h));
         }
         let missing = wall.offset - (bodies.position[wall.row as usize] + *shift).dot(wall.normal);
