@@ -4,6 +4,7 @@ mod fold;
 mod membrane;
 mod resist;
 mod solver;
+mod taut;
 
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
@@ -241,6 +242,7 @@ where
         walls::gather(walls, self.particles.as_ref(), bodies);
         solver.walls = walls;
         solver.solve(bodies);
+        solver.tighten(bodies);
         solver.keep_spin(bodies);
         solver.act(bodies);
     }

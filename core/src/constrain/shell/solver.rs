@@ -21,7 +21,7 @@ const PASSES: u32 = 5;
 /// The residual at which a solution is good enough, as a share of what it begins with.
 const RESIDUAL: f32 = 1e-4;
 /// The row of a particle that is not there.
-const NOBODY: u32 = u32::MAX;
+pub(super) const NOBODY: u32 = u32::MAX;
 
 /// A sub-step.
 pub(super) struct Step {
@@ -42,14 +42,14 @@ impl Step {
 
 /// The particles of a shell in a sub-step, by their place in its list.
 pub(super) struct Vectors<'m> {
-    rows: &'m mut [u32],
+    pub(super) rows: &'m mut [u32],
     /// Inverse masses; zero for what does not move \[1/kg\].
-    weight: &'m mut [f32],
+    pub(super) weight: &'m mut [f32],
     /// How far they are moved \[m\].
-    shift: &'m mut [Vec3],
+    pub(super) shift: &'m mut [Vec3],
     /// Residuals, directions, and what the system makes of these.
     r: &'m mut [Vec3],
-    p: &'m mut [Vec3],
+    pub(super) p: &'m mut [Vec3],
     q: &'m mut [Vec3],
 }
 

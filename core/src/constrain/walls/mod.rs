@@ -7,7 +7,7 @@ mod solve;
 
 pub(super) use follow::follow;
 pub(super) use settle::settle;
-pub(super) use solve::{finish, hold, impose, judge};
+pub(super) use solve::{finish, hold, impose, judge, keep};
 
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};

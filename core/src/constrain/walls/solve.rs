@@ -104,9 +104,9 @@ impl Wall {
 }
 
 /// Takes from what walls bear how hard they have pressed, and moves out whoever is still behind one.
-pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weight: &[f32], shift: &mut [Vec3]) {
+pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weight: &[f32], shifts: &mut [Vec3]) {
     let h = bodies.substep.seconds();
-    for ((wall, &weight), shift) in walls.iter_mut().zip(weight).zip(shift) {
+    for ((wall, &weight), shift) in walls.iter_mut().zip(weight).zip(&*shifts) {
         if wall.state < NEAR || !shift.is_finite() {
             continue;
         }
@@ -116,11 +116,19 @@ pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weig
             let held = if wall.state == STICKS { -aside(wall.held, wall.normal) } else { wall.rub };
             wall.grip = Grip::of(held * (weight / h));
         }
+        wall.touch.begin(pressed);
+    }
+    keep(walls, bodies, shifts);
+}
+
+/// Moves out whoever is still behind a wall, or again.
+pub(in crate::constrain) fn keep(walls: &mut [Wall], bodies: &Bodies<'_>, shifts: &mut [Vec3]) {
+    let h = bodies.substep.seconds();
+    for (wall, shift) in walls.iter_mut().zip(shifts).filter(|(wall, _)| wall.state >= NEAR) {
         let missing = wall.offset - (bodies.position[wall.row as usize] + *shift).dot(wall.normal);
         if missing > 0.0 {
             *shift += wall.normal * missing;
-            pressed += missing / h;
+            wall.touch.begin(wall.touch.pressed() + missing / h);
         }
-        wall.touch.begin(pressed);
     }
 }
