@@ -5,8 +5,6 @@ use super::solver::Step;
 use crate::math::{dot, length, max, sqrt};
 use glam::Vec3;
 
-const C: f32 = 1.0;
-
 /// A triangle at rest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -98,8 +96,7 @@ impl Strain {
         let push = this.push(cell, cell.stress(params, h, total)).map(|push| -push);
         // The larger eigenvalue of the stresses.
         let (half, mean) = (0.5 * (stress[0] - stress[1]), 0.5 * (stress[0] + stress[1]));
-        let spread = sqrt(half * half + stress[2] * stress[2]);
-        this.tension = (max(mean + spread, 0.0) + C * max(spread - mean, 0.0)) / cell.area;
+        this.tension = max(mean + sqrt(half * half + stress[2] * stress[2]), 0.0) / cell.area;
         let sound = cell.area > 0.0 && this.tension < f32::INFINITY && push.iter().all(|push| push.is_finite());
         if sound { (this, push) } else { (Self::NONE, [Vec3::ZERO; 2]) }
     }
