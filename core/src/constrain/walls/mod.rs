@@ -50,9 +50,8 @@ pub(super) struct Wall {
     approach: f32,
     /// How far off all scenery is, at the least \[m\].
     clear: f32,
-    /// What it takes of the forces that are left, and what brakes who slides \[kg m\].
+    /// What it takes of the forces that are left \[kg m\].
     held: Vec3,
-    rub: Vec3,
     touch: Touch,
     grip: Grip,
 }
@@ -154,9 +153,8 @@ impl Wall {
             most = missing;
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
             let approach = (bodies.velocity[row] - velocity).dot(normal);
-            let [held, rub] = [Vec3::ZERO; 2];
-            let (state, grip) = (NEAR, Grip::of(Vec3::ZERO));
-            *self = Self { state, normal, offset, velocity, distance, slack, approach, held, rub, touch, grip, ..*self };
+            let (state, held, grip) = (NEAR, Vec3::ZERO, Grip::of(Vec3::ZERO));
+            *self = Self { state, normal, offset, velocity, distance, slack, approach, held, touch, grip, ..*self };
         });
         if self.state == NEAR {
             self.touch.begin(0.0);

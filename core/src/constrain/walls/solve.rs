@@ -2,12 +2,8 @@
 
 use super::{NEAR, SLIDES, STICKS, Wall};
 use crate::constrain::Bodies;
-use crate::constrain::contacts::Grip;
 use crate::math::{aside, length, max};
 use glam::Vec3;
-
-/// The change of what brakes a particle that is small enough, as a share.
-const SETTLED: f32 = 0.05;
 
 /// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
 pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
@@ -40,14 +36,12 @@ pub(in crate::constrain) fn impose(walls: &mut [Wall], bodies: &Bodies<'_>, shif
 /// Looks which walls press what has been moved so far, and adds to the forces that are `left` \[kg m\] what others give back; tells whether
 /// that is other than before.
 pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], left: &mut [Vec3]) -> bool {
-    let h = bodies.substep.seconds();
     let mut changed = false;
     for ((wall, &shift), left) in walls.iter_mut().zip(shift).zip(left).filter(|((wall, _), _)| wall.state >= NEAR) {
-        let row = wall.row as usize;
         let load = -wall.held.dot(wall.normal);
         changed |= match wall.state {
             NEAR => {
-                let missing = wall.offset - (bodies.position[row] + shift).dot(wall.normal);
+                let missing = wall.offset - (bodies.position[wall.row as usize] + shift).dot(wall.normal);
                 let presses = missing > 0.5 * wall.slack;
                 if presses {
                     wall.press();
@@ -55,15 +49,11 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
                 presses
             }
             _ if load < 0.0 => {
-                *left += wall.held - wall.rub;
-                (wall.state, wall.held, wall.rub) = (NEAR, Vec3::ZERO, Vec3::ZERO);
+                *left += wall.held;
+                (wall.state, wall.held) = (NEAR, Vec3::ZERO);
                 true
             }
             STICKS => wall.let_slip(load, left),
-            _ if wall.touch.sticks() => {
-                let way = bodies.position[row] + shift - bodies.before[0][row] - wall.velocity * h;
-                wall.brake(load, aside(way, wall.normal), left)
-            }
             _ => false,
         };
     }
@@ -71,52 +61,34 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
 }
 
 impl Wall {
-    /// Lets a particle slide that friction cannot hold.
+    /// Lets a particle slide that friction cannot hold. What brakes it then acts on it alone, so that it never drives it.
     fn let_slip(&mut self, load: f32, left: &mut Vec3) -> bool {
         let pull = aside(self.held, self.normal);
-        let [resting, sliding] = self.touch.friction();
-        let far = length(pull);
-        if far <= resting * load {
+        let [resting, _] = self.touch.friction();
+        if length(pull) <= resting * load {
             return false;
         }
         self.state = SLIDES;
-        self.rub = pull * (-sliding * load / far);
         self.held -= pull;
-        *left += pull + self.rub;
+        *left += pull;
         true
-    }
-
-    /// Brakes a particle that slides by what presses it; what would be driven sticks.
-    fn brake(&mut self, load: f32, way: Vec3, left: &mut Vec3) -> bool {
-        let [_, sliding] = self.touch.friction();
-        let far = length(way);
-        if way.dot(self.rub) > 0.0 || !(far > 0.0) {
-            *left -= self.rub;
-            (self.rub, self.state, self.fresh) = (Vec3::ZERO, STICKS, 1);
-            return true;
-        }
-        let rub = way * (-sliding * load / far);
-        let change = rub - self.rub;
-        self.rub = rub;
-        *left += change;
-        length(change) > SETTLED * length(rub)
     }
 }
 
-/// Takes from what walls bear how hard they have pressed, and moves out whoever is still behind one.
+/// Takes from what walls bear how hard they have pressed, brakes by that who slides, and moves out whoever is still behind one.
 pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weight: &[f32], shifts: &mut [Vec3]) {
     let h = bodies.substep.seconds();
-    for ((wall, &weight), shift) in walls.iter_mut().zip(weight).zip(&*shifts) {
-        if wall.state < NEAR || !shift.is_finite() {
+    for ((wall, &weight), shift) in walls.iter_mut().zip(weight).zip(&mut *shifts) {
+        if wall.state <= NEAR || !shift.is_finite() {
             continue;
         }
-        let mut pressed = 0.0;
-        if wall.state > NEAR {
-            pressed = max(-wall.held.dot(wall.normal), 0.0) * weight / h;
-            let held = if wall.state == STICKS { -aside(wall.held, wall.normal) } else { wall.rub };
-            wall.grip = Grip::of(held * (weight / h));
-        }
+        let pressed = max(-wall.held.dot(wall.normal), 0.0) * weight / h;
         wall.touch.begin(pressed);
+        if wall.state == SLIDES && wall.touch.sticks() {
+            let way = bodies.position[wall.row as usize] + *shift - bodies.before[0][wall.row as usize];
+            let slip = aside(way / h - wall.velocity, wall.normal);
+            *shift += wall.grip.hold(&wall.touch, slip, pressed) * h;
+        }
     }
     keep(walls, bodies, shifts);
 }
