@@ -17,7 +17,7 @@ use glam::{Mat3, Vec3};
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
 /// Solutions in turn with the question which walls press, at the most.
-const PASSES: u32 = 5;
+const PASSES: u32 = 8;
 /// The residual at which a solution is good enough, as a share of what it begins with.
 const RESIDUAL: f32 = 1e-4;
 /// The row of a particle that is not there.
@@ -158,6 +158,7 @@ impl Solver<'_> {
         let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
         let Vectors { p, q, weight, .. } = &mut self.vectors;
         lanes::run(Resist { params, step, bending, triangles, cells, strains, hinges, bends, folds, p, q });
+        walls::brake(self.walls, p, q);
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
         }

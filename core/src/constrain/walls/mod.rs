@@ -7,7 +7,7 @@ mod solve;
 
 pub(super) use follow::follow;
 pub(super) use settle::settle;
-pub(super) use solve::{finish, hold, impose, judge, keep};
+pub(super) use solve::{brake, finish, hold, impose, judge, keep};
 
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};
@@ -50,8 +50,9 @@ pub(super) struct Wall {
     approach: f32,
     /// How far off all scenery is, at the least \[m\].
     clear: f32,
-    /// What it takes of the forces that are left \[kg m\].
+    /// What it takes of the forces that are left \[kg m\], and for each metre that its particle slides \[kg\].
     held: Vec3,
+    brake: f32,
     touch: Touch,
     grip: Grip,
 }
@@ -153,8 +154,8 @@ impl Wall {
             most = missing;
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
             let approach = (bodies.velocity[row] - velocity).dot(normal);
-            let (state, held, grip) = (NEAR, Vec3::ZERO, Grip::of(Vec3::ZERO));
-            *self = Self { state, normal, offset, velocity, distance, slack, approach, held, touch, grip, ..*self };
+            let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
+            *self = Self { state, normal, offset, velocity, distance, slack, approach, held, brake, touch, grip, ..*self };
         });
         if self.state == NEAR {
             self.touch.begin(0.0);

@@ -2,8 +2,12 @@
 
 use super::{NEAR, SLIDES, STICKS, Wall};
 use crate::constrain::Bodies;
-use crate::math::{aside, length, max};
+use crate::constrain::contacts::Grip;
+use crate::math::{aside, length, max, min};
 use glam::Vec3;
+
+/// The change of what brakes a particle that is small enough, as a share.
+const SETTLED: f32 = 0.1;
 
 /// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
 pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
@@ -11,6 +15,15 @@ pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
         let borne = if wall.state == STICKS { *left } else { wall.normal * left.dot(wall.normal) };
         wall.held += borne;
         *left -= borne;
+    }
+}
+
+/// Adds how walls brake particles that go `p` along them.
+pub(in crate::constrain) fn brake(walls: &[Wall], p: &[Vec3], q: &mut [Vec3]) {
+    for ((wall, &p), q) in walls.iter().zip(p).zip(q).filter(|((wall, _), _)| wall.state == SLIDES) {
+        if wall.brake > 0.0 {
+            *q += aside(p, wall.normal) * wall.brake;
+        }
     }
 }
 
@@ -49,11 +62,16 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
                 presses
             }
             _ if load < 0.0 => {
-                *left += wall.held;
-                (wall.state, wall.held) = (NEAR, Vec3::ZERO);
+                let braked = wall.slid(bodies, shift) * wall.brake;
+                *left += wall.held + braked;
+                (wall.state, wall.held, wall.brake) = (NEAR, Vec3::ZERO, 0.0);
                 true
             }
             STICKS => wall.let_slip(load, left),
+            _ if wall.touch.sticks() => {
+                let slid = wall.slid(bodies, shift);
+                wall.brake(load, slid, left)
+            }
             _ => false,
         };
     }
@@ -61,7 +79,27 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
 }
 
 impl Wall {
-    /// Lets a particle slide that friction cannot hold. What brakes it then acts on it alone, so that it never drives it.
+    /// How far its particle has gone along it in the sub-step.
+    fn slid(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
+        let row = self.row as usize;
+        let way = bodies.position[row] + shift - bodies.before[0][row] - self.velocity * bodies.substep.seconds();
+        aside(way, self.normal)
+    }
+
+    /// Brakes a particle that slides in proportion to how far it does, so that friction never drives it; tells whether that is other than before.
+    fn brake(&mut self, load: f32, slid: Vec3, left: &mut Vec3) -> bool {
+        let [_, sliding] = self.touch.friction();
+        let brake = min(sliding * load / max(length(slid), f32::MIN_POSITIVE), f32::MAX);
+        let change = brake - self.brake;
+        if !(change.abs() > SETTLED * brake) {
+            return false;
+        }
+        *left -= slid * change;
+        self.brake = brake;
+        true
+    }
+
+    /// Lets a particle slide that friction cannot hold.
     fn let_slip(&mut self, load: f32, left: &mut Vec3) -> bool {
         let pull = aside(self.held, self.normal);
         let [resting, _] = self.touch.friction();
@@ -85,9 +123,12 @@ pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weig
         let pressed = max(-wall.held.dot(wall.normal), 0.0) * weight / h;
         wall.touch.begin(pressed);
         if wall.state == SLIDES && wall.touch.sticks() {
-            let way = bodies.position[wall.row as usize] + *shift - bodies.before[0][wall.row as usize];
-            let slip = aside(way / h - wall.velocity, wall.normal);
-            *shift += wall.grip.hold(&wall.touch, slip, pressed) * h;
+            let slid = wall.slid(bodies, *shift);
+            let [_, sliding] = wall.touch.friction();
+            let (given, most) = (slid * (-wall.brake * weight / h), sliding * pressed);
+            let far = length(given);
+            wall.grip = Grip::of(if far > most { given * (most / far) } else { given });
+            *shift += wall.grip.hold(&wall.touch, slid / h, pressed) * h;
         }
     }
     keep(walls, bodies, shifts);

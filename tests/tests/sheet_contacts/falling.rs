@@ -1,0 +1,122 @@
+//! Sheets that fall on scenery: what presses a few of their particles presses the whole, so that they stretch no more than their material does.
+
+use super::cloths::{Cloths, G, square};
+use pointmass::constrain::ShellParams;
+use pointmass::force::Friction;
+use pointmass::material::ContactMaterial;
+use pointmass::shape::{Capsule, Collider, Cuboid, Plane, Sphere, Surface};
+use pointmass::{Constraint, Gravity, Method, Scene, Time, Vec3};
+use pointmass_tests::started;
+
+/// What a sheet falls on, its highest place being at zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum On {
+    Ball,
+    Capsule,
+    /// A box that is narrower than the sheet.
+    Box,
+    Floor,
+}
+
+/// A sheet of one metre times its size that falls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fall {
+    pub(crate) on: On,
+    pub(crate) cells: u32,
+    pub(crate) speed: f32,
+    pub(crate) substeps: u32,
+    pub(crate) size: f32,
+    pub(crate) method: Method,
+    pub(crate) touches: bool,
+    pub(crate) friction: f32,
+}
+
+/// The largest strain of an edge in any frame, how far a particle was inside at the most in units of the ball's radius, and by how much
+/// the energy without that of the material was ever above that of the beginning, as a share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outcome {
+    pub(crate) strain: f32,
+    pub(crate) depth: f32,
+    pub(crate) gain: f32,
+    pub(crate) crossings: usize,
+}
+
+impl Fall {
+    pub(crate) fn run(&self, frames: u64) -> Outcome {
+        let Self { on, cells, speed, substeps, size, method, touches, friction } = *self;
+        let radius = 0.1 * size;
+        let ball = Sphere { center: Vec3::NEG_Y * radius, radius };
+        let ends = [Vec3::new(-0.2, -0.1, 0.05), Vec3::new(0.2, -0.1, -0.05)].map(|end| end * size);
+        let capsule = Capsule { from: ends[0], to: ends[1], radius };
+        let cuboid = Cuboid { min: Vec3::new(-0.17, -0.2, -0.11) * size, max: Vec3::new(0.13, 0.0, 0.14) * size };
+        let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let (collider, solid): (&dyn Collider, Option<&dyn Surface>) = match on {
+            On::Ball => (&ball, Some(&ball)),
+            On::Capsule => (&capsule, Some(&capsule)),
+            On::Box => (&cuboid, Some(&cuboid)),
+            On::Floor => (&floor, None),
+        };
+        let params = ShellParams {
+            stretch: [1000.0 * size; 2],
+            shear: 400.0 * size,
+            bending: 1e-5 * size * size * size,
+            damping: 2e-3,
+        };
+        let mut cloths = Cloths::default();
+        let center = Vec3::new(0.013, 0.02, -0.007) * size;
+        cloths.add(&square(center, [Vec3::X, Vec3::Z].map(|side| side * size), cells), params, |x| x, Vec3::NEG_Y * (speed * size));
+        cloths.start.iter_mut().for_each(|particle| particle.material = Some(0));
+        let materials = [ContactMaterial {
+            friction: Some(Friction { static_: friction, kinetic: friction }),
+            elasticity: None,
+        }];
+        let contacts = touches.then(|| cloths.contacts(0.004 * size));
+        let constraints: &dyn Constraint = &(&cloths.shells[..], contacts);
+        let gravity = Gravity { acceleration: Vec3::NEG_Y * (G * size) };
+        let scene = Scene {
+            start: &cloths.start,
+            forces: &gravity,
+            colliders: &collider,
+            materials: &materials,
+            constraints,
+            substeps,
+            integrator: method.integrator(),
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, cloths.start.len(), 0);
+        let energy = |x: &[Vec3], v: &[Vec3]| {
+            let one = |i: usize| cloths.start[i].mass * (0.5 * v[i].length_squared() + G * size * x[i].y);
+            (0..x.len()).map(one).sum::<f32>()
+        };
+        let scale = cloths.start.iter().map(|particle| particle.mass).sum::<f32>() * size * size * (0.5 * speed * speed + G * 0.1);
+        let all = |what: fn(&pointmass::Particle) -> Vec3| cloths.start.iter().map(what).collect::<Vec<_>>();
+        let begun = energy(&all(|particle| particle.position), &all(|particle| particle.velocity));
+        let mut outcome = Outcome { strain: 0.0, depth: 0.0, gain: 0.0, crossings: 0 };
+        for frame in 1..=frames {
+            system.step_to(&scene, Time::frame(frame, 60));
+            let (x, v) = (system.particles().position, system.particles().velocity);
+            assert_eq!(x.len(), cloths.start.len());
+            outcome.strain = outcome.strain.max(strain(x, cells as usize + 1, size / cells as f32));
+            outcome.gain = outcome.gain.max((energy(x, v) - begun) / scale);
+            let depth = |x: &Vec3| match solid {
+                Some(solid) if solid.is_inside(*x) => (solid.nearest(*x) - *x).length(),
+                Some(_) => 0.0,
+                None => -x.y,
+            };
+            outcome.depth = x.iter().map(depth).fold(outcome.depth, |most, depth| most.max(depth / radius));
+        }
+        if touches {
+            outcome.crossings = cloths.crossings(system.particles().position);
+        }
+        outcome
+    }
+}
+
+/// The largest strain of an edge along warp or weft.
+fn strain(x: &[Vec3], side: usize, rest: f32) -> f32 {
+    let edges = (0..x.len()).flat_map(|i| {
+        let beside = (i % side + 1 < side).then_some(i + 1);
+        [beside, Some(i + side).filter(|&j| j < x.len())].into_iter().flatten().map(move |j| (i, j))
+    });
+    edges.map(|(i, j)| (x[i] - x[j]).length() / rest - 1.0).fold(0.0, f32::max)
+}
