@@ -64,12 +64,15 @@ impl Fall {
         };
         let mut cloths = Cloths::default();
         let center = Vec3::new(0.013, 0.02, -0.007) * size;
-        cloths.add(&square(center, [Vec3::X, Vec3::Z].map(|side| side * size), cells), params, |x| x, Vec3::NEG_Y * (speed * size));
+        cloths.add(
+            &square(center, [Vec3::X, Vec3::Z].map(|side| side * size), cells),
+            params,
+            |x| x,
+            Vec3::NEG_Y * (speed * size),
+        );
         cloths.start.iter_mut().for_each(|particle| particle.material = Some(0));
-        let materials = [ContactMaterial {
-            friction: Some(Friction { static_: friction, kinetic: friction }),
-            elasticity: None,
-        }];
+        let materials =
+            [ContactMaterial { friction: Some(Friction { static_: friction, kinetic: friction }), elasticity: None }];
         let contacts = touches.then(|| cloths.contacts(0.004 * size));
         let constraints: &dyn Constraint = &(&cloths.shells[..], contacts);
         let gravity = Gravity { acceleration: Vec3::NEG_Y * (G * size) };
@@ -88,7 +91,10 @@ impl Fall {
             let one = |i: usize| cloths.start[i].mass * (0.5 * v[i].length_squared() + G * size * x[i].y);
             (0..x.len()).map(one).sum::<f32>()
         };
-        let scale = cloths.start.iter().map(|particle| particle.mass).sum::<f32>() * size * size * (0.5 * speed * speed + G * 0.1);
+        let scale = cloths.start.iter().map(|particle| particle.mass).sum::<f32>()
+            * size
+            * size
+            * (0.5 * speed * speed + G * 0.1);
         let all = |what: fn(&pointmass::Particle) -> Vec3| cloths.start.iter().map(what).collect::<Vec<_>>();
         let begun = energy(&all(|particle| particle.position), &all(|particle| particle.velocity));
         let mut outcome = Outcome { strain: 0.0, depth: 0.0, gain: 0.0, crossings: 0 };
@@ -119,4 +125,68 @@ fn strain(x: &[Vec3], side: usize, rest: f32) -> f32 {
         [beside, Some(i + side).filter(|&j| j < x.len())].into_iter().flatten().map(move |j| (i, j))
     });
     edges.map(|(i, j)| (x[i] - x[j]).length() / rest - 1.0).fold(0.0, f32::max)
+}
+
+/// Falls, and how far their strain may be above that of the same in many sub-steps: as a share of it, and besides.
+type Case = (Fall, [f32; 2]);
+
+/// What a fall is to keep: nobody inside, no energy from nowhere, no sheet through itself, and no strain but that of its material, as
+/// forty sub-steps tell it.
+fn keeps_its_strain(cases: &[Case], frames: u64) {
+    for (fall, [share, besides]) in cases {
+        let (outcome, finest) = (fall.run(frames), Fall { substeps: 40, ..*fall }.run(frames));
+        let most = share * finest.strain + besides;
+        assert!(outcome.strain <= most, "{fall:?}: {outcome:?}, {finest:?}");
+        assert!(outcome.depth <= 0.01 && outcome.gain <= 1e-3 && outcome.crossings == 0, "{fall:?}: {outcome:?}");
+    }
+}
+
+/// A fall of so many cells, from the parts that cases vary.
+fn fall(
+    cells: u32,
+    (on, speed, substeps): (On, f32, u32),
+    (size, method): (f32, Method),
+    touches: bool,
+    friction: f32,
+) -> Fall {
+    Fall { on, cells, speed, substeps, size, method, touches, friction }
+}
+
+/// Falls at several speeds, sizes, methods and sub-steps, with friction and without.
+pub(crate) fn cases(cells: u32) -> Vec<Case> {
+    let fall = |how, world, touches, friction| fall(cells, how, world, touches, friction);
+    let near = [1.05, 0.01];
+    vec![
+        (fall((On::Ball, 1.0, 5), (1.0, Method::Symplectic), true, 0.0), near),
+        (fall((On::Capsule, 3.0, 5), (0.1, Method::Rk4), false, 0.4), near),
+        (fall((On::Box, 8.0, 10), (10.0, Method::Verlet), true, 0.4), near),
+        (fall((On::Ball, 8.0, 5), (1.0, Method::Verlet), false, 0.3), near),
+        (fall((On::Box, 2.0, 20), (1.0, Method::Midpoint), false, 1.0), near),
+        (fall((On::Floor, 8.0, 1), (1.0, Method::Symplectic), true, 0.5), near),
+        // In long steps a little more.
+        (fall((On::Capsule, 1.0, 2), (1.0, Method::Symplectic), true, 0.0), [1.2, 0.03]),
+        (fall((On::Ball, 3.0, 1), (1.0, Method::Rk4), false, 0.0), [1.2, 0.03]),
+    ]
+}
+
+#[test]
+fn what_falls_on_scenery_stretches_no_more_than_its_material_does() {
+    keeps_its_strain(&cases(7), 10);
+}
+
+#[test]
+#[ignore = "long: minutes"]
+fn large_sheets_that_fall_stretch_no_more_than_their_material_does() {
+    keeps_its_strain(&cases(24), 30);
+    let mut all = Vec::new();
+    for on in [On::Ball, On::Capsule, On::Box, On::Floor] {
+        for (i, speed) in [1.0, 2.0, 4.0, 8.0].into_iter().enumerate() {
+            for (touches, friction) in [(false, 0.0), (true, 0.0), (false, 0.4), (true, 0.4)] {
+                let substeps = [5, 10, 20][i % 3];
+                let how = fall(10, (on, speed, substeps), (1.0, Method::Symplectic), touches, friction);
+                all.push((how, [1.1, 0.02]));
+            }
+        }
+    }
+    keeps_its_strain(&all, 20);
 }

@@ -155,7 +155,8 @@ impl Wall {
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
             let approach = (bodies.velocity[row] - velocity).dot(normal);
             let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
-            *self = Self { state, normal, offset, velocity, distance, slack, approach, held, brake, touch, grip, ..*self };
+            *self =
+                Self { state, normal, offset, velocity, distance, slack, approach, held, brake, touch, grip, ..*self };
         });
         if self.state == NEAR {
             self.touch.begin(0.0);

@@ -8,6 +8,8 @@ use glam::Vec3;
 
 /// The change of what brakes a particle that is small enough, as a share.
 const SETTLED: f32 = 0.1;
+/// The most that a particle is braked by, in its own masses.
+const MOST: f32 = 1e3;
 
 /// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
 pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
@@ -70,7 +72,7 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
             STICKS => wall.let_slip(load, left),
             _ if wall.touch.sticks() => {
                 let slid = wall.slid(bodies, shift);
-                wall.brake(load, slid, left)
+                wall.brake(load, bodies.inverse_mass[wall.row as usize], slid, left)
             }
             _ => false,
         };
@@ -87,9 +89,9 @@ impl Wall {
     }
 
     /// Brakes a particle that slides in proportion to how far it does, so that friction never drives it; tells whether that is other than before.
-    fn brake(&mut self, load: f32, slid: Vec3, left: &mut Vec3) -> bool {
+    fn brake(&mut self, load: f32, weight: f32, slid: Vec3, left: &mut Vec3) -> bool {
         let [_, sliding] = self.touch.friction();
-        let brake = min(sliding * load / max(length(slid), f32::MIN_POSITIVE), f32::MAX);
+        let brake = min(sliding * load / max(length(slid), f32::MIN_POSITIVE), MOST / weight);
         let change = brake - self.brake;
         if !(change.abs() > SETTLED * brake) {
             return false;
