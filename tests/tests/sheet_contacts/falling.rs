@@ -57,9 +57,9 @@ impl Fall {
             On::Floor => (&floor, None),
         };
         let params = ShellParams {
-            stretch: [1000.0 * size; 2],
-            shear: 400.0 * size,
-            bending: 1e-5 * size * size * size,
+            stretch: [1000.0 * size * size; 2],
+            shear: 400.0 * size * size,
+            bending: 1e-5 * size * size * size * size,
             damping: 2e-3,
         };
         let mut cloths = Cloths::default();

@@ -68,6 +68,11 @@ impl ShellParams {
 /// stretch × h² / mass of a particle. Iterations are
 /// counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it is then softer for a while.
 ///
+/// Where particles meet the scenery in a sub-step, that presses and brakes them while the material is solved (an active set of planes, one a
+/// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches no more
+/// than its material does. Edges that turn so far in a sub-step that what is solved along the directions of its beginning leaves them too
+/// long are shortened. The sweep at the step's end is left to those whose way may have passed through something.
+///
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
 /// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. Whoever is fixed
 /// stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.

@@ -45,11 +45,12 @@ impl Solver<'_> {
 
     fn shorten_edge(&mut self, [a, b]: [usize; 2], rest: impl Fn(&Self) -> f32, bodies: &Bodies<'_>) -> bool {
         let Vectors { rows, weight, shift, p: solved, .. } = &self.vectors;
+        let (Some(&first), Some(&second)) = (rows.get(a), rows.get(b)) else { return false };
         let ease = weight[a] + weight[b];
-        if rows[a] == NOBODY || rows[b] == NOBODY || !(ease > 0.0) {
+        if first == NOBODY || second == NOBODY || !(ease > 0.0) {
             return false;
         }
-        let between = |of: &[Vec3]| of[rows[b] as usize] - of[rows[a] as usize];
+        let between = |of: &[Vec3]| of[second as usize] - of[first as usize];
         let way = between(bodies.position);
         let now = way + (shift[b] - shift[a]);
         let before = between(bodies.before[0]);

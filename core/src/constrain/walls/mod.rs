@@ -66,9 +66,9 @@ pub(super) fn of(step: &mut [u32], count: usize) -> &mut [Wall] {
     bytemuck::try_cast_slice_mut(take(&mut rest, count.saturating_mul(WORDS))).unwrap_or_default()
 }
 
-/// Finds the walls that particles may meet in the sub-step. Tells whether one presses on where the method has moved them. Who is far from all is not
+/// Finds the walls that particles may meet in the sub-step, and which of them press on where the method has moved these. Who is far from all is not
 /// asked again before it has gone that far.
-pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>) -> bool {
+pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>) {
     let Substep { number, count, .. } = bodies.substep;
     if number == 0 {
         walls.iter_mut().for_each(|wall| (wall.clear, wall.lost) = (0.0, 0));
@@ -88,10 +88,9 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
     }
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around) {
         walls.iter_mut().for_each(|wall| wall.clear = 0.0);
-        return false;
+        return;
     }
     let ahead = (count - number).min(AHEAD) as f32;
-    let mut presses = false;
     for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
         let row = wall.row as usize;
         let (way, near) = (length(bodies.position[row] - bodies.before[0][row]), reach(bodies, row));
@@ -100,9 +99,7 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
             wall.look(near, bodies);
         }
         wall.clear = max(wall.clear - way, 0.0);
-        presses |= wall.state > NEAR;
     }
-    presses
 }
 
 /// The row of a particle that can be moved.
