@@ -31,17 +31,20 @@ pub(super) struct Fold {
 
 /// The normals of both triangles × twice the area, the edge from the first corner to the second and the ways from there to both far
 /// corners being given.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn normals([e, f, g]: [Vec3; 3]) -> [Vec3; 2] {
     [e.cross(f), g.cross(e)]
 }
 
 /// The angle of a fold, above zero where the far corners are on the side of the normals.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn fold_angle(ways: [Vec3; 3]) -> f32 {
     let [m, n] = normals(ways).map(|normal| normal / length(normal));
     angle(dot(m, n), dot(n.cross(m), ways[0]) / length(ways[0]))
 }
 
 /// An angle, by the nearer way round.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn turn(angle: f32) -> f32 {
     if angle > PI {
         angle - TAU
@@ -92,24 +95,27 @@ impl Fold {
 
     /// The fold with these ways now, along others, and as it was as the sub-step began; with its angle less that at rest, and what
     /// damping adds.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn of(bend: &Bend, step: &Step, [now, along, before]: [[Vec3; 3]; 3]) -> (Self, f32) {
         let [e, f, g] = along;
         let edge = length(e);
         let slope = normals(along).map(|normal| normal * (edge / dot(normal, normal)));
         let foot = [dot(f, e), dot(g, e)].map(|along| along / (edge * edge));
         let this = Self { slope, foot, moment: 0.0 };
-        let open = turn(fold_angle(now) - bend.angle);
-        let open =
-            if step.lag > 0.0 { step.felt(open, open - turn(fold_angle(now) - fold_angle(before))) } else { open };
+        let angle = fold_angle(now);
+        let open = turn(angle - bend.angle);
+        let open = if step.lag > 0.0 { step.felt(open, open - turn(angle - fold_angle(before))) } else { open };
         let acts = bend.curvature[0] != [0.0; 3];
         if acts && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
     }
 
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn is_finite(&self) -> bool {
         self.slope.iter().all(|slope| slope.is_finite()) && self.foot.iter().all(|foot| foot.is_finite())
     }
 
     /// The same, with a moment in it.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn with_moment(self, moment: f32) -> Self {
         Self { moment: moment.abs(), ..self }
     }
@@ -140,6 +146,14 @@ impl Fold {
     pub(super) fn resist(&self, corners: [Vec3; 4]) -> [Vec3; 4] {
         let ([f, g], [m, n]) = (self.ways(corners), self.slope);
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
+    }
+
+    /// What of that the corners on a side do to each other: those of the edge, the first of them and the far one, the second and that.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn held(&self, side: usize) -> [f32; 3] {
+        let (x, slope) = (self.foot[side], self.slope[side]);
+        let held = 0.25 * self.moment * dot(slope, slope);
+        [x * (1.0 - x) * held, -(1.0 - x) * held, -x * held]
     }
 
     /// Forces on both far corners, and against them on the edge.

@@ -3,7 +3,7 @@
 use super::ShellParams;
 use super::solver::Step;
 use crate::math::{dot, length, max, sqrt};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// A triangle at rest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -25,6 +25,8 @@ pub(super) struct Strain {
     pub(super) tension: f32,
     /// Its curvature, or the change of that: along warp, weft, and √2 times that between them \[1/m\].
     pub(super) curvature: [f32; 3],
+    /// What its folds hold along its edges × h²: from the first corner to the second, to the third, and back \[kg\].
+    pub(super) held: [f32; 3],
 }
 
 /// The unit vectors along warp and weft in the plane of a triangle with these edges; none if it is degenerate.
@@ -79,10 +81,11 @@ impl Cell {
 }
 
 impl Strain {
-    pub(super) const NONE: Self = Self { along: [Vec3::ZERO; 2], tension: 0.0, curvature: [0.0; 3] };
+    pub(super) const NONE: Self = Self { along: [Vec3::ZERO; 2], tension: 0.0, curvature: [0.0; 3], held: [0.0; 3] };
 
     /// The triangle with these edges now, along others, and as it was as the sub-step began; with the push × h² on its second and
     /// third corner.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn of(
         cell: &Cell,
         params: &ShellParams,
@@ -127,9 +130,31 @@ impl Strain {
         let [c, d] = cell.forces([change[0] * taut, change[1] * taut]);
         [a + c, b + d]
     }
+
+    /// How its corners resist each other × h²: the blocks of the first and the second, the second and the third, the third and the first.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn blocks(&self, cell: &Cell, params: &ShellParams, step: &Step) -> [Mat3; 3] {
+        let [a, b, c, d] = cell.inverse;
+        // What warp and weft gain as each corner goes.
+        let gain = [[-(a + b), -(c + d)], [a, c], [b, d]];
+        let [warp, weft, shear] = cell.stress(params, step.h, [step.rate; 3]);
+        let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
+        let [u, v] = self.along;
+        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+            let ([p, q], [r, s]) = (gain[i], gain[j]);
+            let (uu, vv) = (warp * p * r + shear * q * s, weft * q * s + shear * p * r);
+            // The block's rows are those of the first corner.
+            let (uv, vu) = (shear * q * r, shear * p * s);
+            let (first, second) = (u * uu + v * vu, u * uv + v * vv);
+            let column = |x: f32, y: f32| first * x + second * y;
+            let own = Mat3::from_diagonal(Vec3::splat(taut * (p * r + q * s) + self.held[i]));
+            Mat3::from_cols(column(u.x, v.x), column(u.y, v.y), column(u.z, v.z)) + own
+        })
+    }
 }
 
 /// Green's strain along warp and weft, and twice that between them.
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn green([u, v]: [Vec3; 2]) -> [f32; 3] {
     [0.5 * (dot(u, u) - 1.0), 0.5 * (dot(v, v) - 1.0), dot(u, v)]
 }

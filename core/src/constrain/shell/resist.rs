@@ -17,6 +17,8 @@ pub(super) struct Resist<'s> {
     pub(super) step: &'s Step,
     /// Bending stiffness × h², for changes within the sub-step.
     pub(super) bending: f32,
+    /// True if what acts along edges is in blocks, and is left out.
+    pub(super) bends_only: bool,
     pub(super) triangles: &'s [[u32; 3]],
     pub(super) cells: &'s [Cell],
     pub(super) strains: &'s mut [Strain],
@@ -33,7 +35,10 @@ impl Kernel for Resist<'_> {
     #[inline(always)]
     fn run<F: Eight>(mut self, like: F) {
         let (triangles, hinges) = (self.triangles.len(), self.hinges.len());
-        for first in (0..triangles).step_by(LANES) {
+        if self.bends_only {
+            self.strains.iter_mut().for_each(|strain| strain.curvature = [0.0; 3]);
+        }
+        for first in (0..if self.bends_only { 0 } else { triangles }).step_by(LANES) {
             if !(WIDE && self.stretch_eight(like, first)) {
                 (first..triangles.min(first + LANES)).for_each(|i| self.stretch(i));
             }
@@ -108,9 +113,12 @@ impl Resist<'_> {
         let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
             return;
         };
+        let forces = fold.forces(moment(self.strains, self.cells, hinge, bend, self.bending));
+        if self.bends_only {
+            return add_all(self.q, hinge.corners(), forces);
+        }
         let Some(corners) = all_at(self.p, hinge.corners()) else { return };
-        let moment = moment(self.strains, self.cells, hinge, bend, self.bending);
-        let ([a, b, c, d], [e, f, g, h]) = (fold.forces(moment), fold.resist(corners));
+        let ([a, b, c, d], [e, f, g, h]) = (forces, fold.resist(corners));
         add_all(self.q, hinge.corners(), [a + e, b + f, c + g, d + h]);
     }
 
@@ -179,19 +187,23 @@ impl Resist<'_> {
             return false;
         };
         let rows = all_corners(hinges);
-        let Some(corners) = gathered(like, self.p, &rows) else { return false };
         let (foot, slope, one) = (feet(like, folds), slopes(like, folds), like.all(1.0));
-        let [f, g] = ways(corners, foot, one);
-        let held = like.all(0.25) * column!(like, folds, |fold| fold.moment);
         let mut moments = [0.0; LANES];
         for (i, sum) in moments.iter_mut().enumerate() {
             *sum = moment(self.strains, self.cells, &hinges[i], &bends[i], self.bending);
         }
         let moments = like.of(moments);
-        let [a, b, c, d] = spread([slope[0] * moments, slope[1] * moments], foot, one);
-        let turning = [f * (held * slope[0].dot(slope[0])), g * (held * slope[1].dot(slope[1]))];
-        let [e, f, g, h] = spread(turning, foot, one);
-        let [a, b, c, d] = [(a + e).rows(), (b + f).rows(), (c + g).rows(), (d + h).rows()];
+        let mut forces = spread([slope[0] * moments, slope[1] * moments], foot, one);
+        if !self.bends_only {
+            let Some(corners) = gathered(like, self.p, &rows) else { return false };
+            let [f, g] = ways(corners, foot, one);
+            let held = like.all(0.25) * column!(like, folds, |fold| fold.moment);
+            let turning = [f * (held * slope[0].dot(slope[0])), g * (held * slope[1].dot(slope[1]))];
+            let [[a, b, c, d], [e, f, g, h]] = [forces, spread(turning, foot, one)];
+            forces = [a + e, b + f, c + g, d + h];
+        }
+        let [a, b, c, d] = forces;
+        let [a, b, c, d] = [a.rows(), b.rows(), c.rows(), d.rows()];
         for (i, &corners) in rows.iter().enumerate() {
             add_all(self.q, corners, [vector(a[i]), vector(b[i]), vector(c[i]), vector(d[i])]);
         }

@@ -1,5 +1,6 @@
 //! The positions of a shell at a sub-step's end, by conjugate gradients.
 
+use super::cycle::Levels;
 use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
 use super::resist::Resist;
@@ -18,8 +19,8 @@ use glam::{Mat3, Vec3};
 const ITERATIONS: u32 = 400;
 /// Solutions in turn with the question which walls press, at the most.
 const PASSES: u32 = 8;
-/// The residual at which a solution is good enough, as a share of what it begins with.
-const RESIDUAL: f32 = 1e-4;
+/// What may be left of a solution, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses.
+const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
@@ -80,9 +81,21 @@ impl<'m> Vectors<'m> {
         rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
     }
 
-    /// z = W r, r being what is left beside what walls bear, and r · z.
-    fn precondition(&mut self, walls: &mut [Wall]) -> f32 {
+    /// The first direction, and r · z.
+    fn begin(&mut self, levels: &mut Levels<'_>, walls: &mut [Wall], by_masses: bool) -> f32 {
+        let left = self.precondition(levels, walls, by_masses);
+        self.p.copy_from_slice(self.q);
+        left
+    }
+
+    /// z ≈ A⁻¹ r, or W r, r being what is left beside what walls bear, and r · z.
+    fn precondition(&mut self, levels: &mut Levels<'_>, walls: &mut [Wall], by_masses: bool) -> f32 {
         walls::hold(walls, self.r);
+        if !by_masses {
+            levels.cycle(self.r, self.q);
+            walls::filter(walls, self.q);
+            return lanes::dot(self.r, self.q);
+        }
         for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
             *z = r * weight;
         }
@@ -93,8 +106,8 @@ impl<'m> Vectors<'m> {
 /// A shell in a sub-step: (M + h² K) Δx = h² f, f being the forces where the method has moved all, along the directions that the sub-step
 /// began with.
 ///
-/// Preconditioned by masses alone, every direction of the search is a sum of forces within the shell: however early it
-/// ends, no momentum comes of it.
+/// However early the search for it ends, no momentum comes of it: preconditioned by masses, its directions are sums of forces within the shell, and
+/// of what a cycle through coarser graphs leaves each piece is rid.
 pub(super) struct Solver<'m> {
     pub(super) params: &'m ShellParams,
     pub(super) step: Step,
@@ -112,6 +125,14 @@ pub(super) struct Solver<'m> {
 impl Solver<'_> {
     /// The forces where all are, and the directions in which they act.
     pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
+        lanes::widest(
+            #[inline(always)]
+            || self.linearise_here(bodies),
+        );
+    }
+
+    #[inline(always)]
+    fn linearise_here(&mut self, bodies: &Bodies<'_>) {
         let (x, v, x0) = (&*bodies.position, &*bodies.velocity, bodies.before[0]);
         let h = self.step.h;
         // From one particle to another: now, along what forces act, and as it was.
@@ -144,20 +165,29 @@ impl Solver<'_> {
     }
 
     /// Bending stiffness × h².
-    fn bending(&self) -> f32 {
+    pub(super) fn bending(&self) -> f32 {
         self.params.bending * (self.step.h * self.step.h)
     }
 
     /// q = (M + h² K) p, zero where nothing moves.
-    fn apply(&mut self) {
+    fn apply(&mut self, levels: &Levels<'_>) {
         let bending = self.bending() * self.step.rate;
         let Vectors { p, q, weight, .. } = &mut self.vectors;
-        for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
-            *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
+        let bends_only = !levels.is_empty();
+        if bends_only {
+            levels.apply(p, q);
+        } else {
+            for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
+                *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
+            }
         }
         let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
         let Vectors { p, q, weight, .. } = &mut self.vectors;
-        lanes::run(Resist { params, step, bending, triangles, cells, strains, hinges, bends, folds, p, q });
+        if !bends_only || bending > 0.0 {
+            let all =
+                Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q };
+            lanes::run(all);
+        }
         walls::brake(self.walls, p, q);
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
@@ -165,46 +195,65 @@ impl Solver<'_> {
     }
 
     /// Solves it, and that anew for as long as other walls press than before.
-    pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>) {
-        let mut enough = 0.0;
+    pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>) {
+        let mut enough = [0.0; 2];
         for pass in 0..PASSES {
             let Vectors { shift, p, .. } = &mut self.vectors;
             if walls::impose(self.walls, bodies, shift, p) {
-                self.apply();
+                self.apply(levels);
                 let Vectors { shift, r, p, q, .. } = &mut self.vectors;
                 add_scaled(shift, 1.0, p);
                 add_scaled(r, -1.0, q);
             }
-            self.descend(&mut enough, bodies.report);
+            self.descend(levels, &mut enough, bodies.report);
             let Vectors { shift, r, .. } = &mut self.vectors;
             if pass + 1 == PASSES || !walls::judge(self.walls, bodies, shift, r) {
                 break;
             }
         }
+        if !self.walls.iter().any(Wall::presses) {
+            let Vectors { rows, weight, shift, .. } = &mut self.vectors;
+            levels.rid_of_drift(
+                rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),
+                shift,
+            );
+        }
         let Vectors { weight, shift, .. } = &mut self.vectors;
         walls::finish(self.walls, bodies, weight, shift);
     }
 
-    /// Conjugate gradients on from what has been found, the masses being the preconditioner, to the residual that is good enough of what they
-    /// begin with, or have begun with before.
-    fn descend(&mut self, enough: &mut f32, report: &mut Report) {
-        let first = self.vectors.precondition(self.walls);
-        self.vectors.p.copy_from_slice(self.vectors.q);
-        *enough = max(first * (RESIDUAL * RESIDUAL), *enough);
-        let solved = |left: f32| left >= 0.0 && left <= *enough;
+    /// Conjugate gradients on from what has been found, by a cycle through coarser graphs where there are any, else by masses: to what is
+    /// good enough of what they begin with, or have begun with before.
+    fn descend(&mut self, levels: &mut Levels<'_>, enough: &mut [f32; 2], report: &mut Report) {
+        let mut by_masses = levels.is_empty();
+        let mut first = self.vectors.begin(levels, self.walls, by_masses);
+        let mut note = |first: f32, by_masses: bool| {
+            let kind = usize::from(by_masses);
+            enough[kind] = max(first * (RESIDUAL[kind] * RESIDUAL[kind]), enough[kind]);
+            enough[kind]
+        };
+        let mut most = note(first, by_masses);
+        let solved = |left: f32, most: f32| left >= 0.0 && left <= most;
         let (mut left, mut iterations) = (first, 0);
-        while !solved(left) && iterations < ITERATIONS {
-            self.apply();
+        while !solved(left, most) && iterations < ITERATIONS {
+            self.apply(levels);
             let Vectors { shift, r, p, q, .. } = &mut self.vectors;
             let curvature = lanes::dot(p, q);
             let far = left / curvature;
             if !(curvature > 0.0 && far > 0.0 && far < f32::INFINITY) {
-                break;
+                if by_masses {
+                    break;
+                }
+                // Rounding has made more of the coarser graphs than there is.
+                by_masses = true;
+                first = self.vectors.begin(levels, self.walls, by_masses);
+                (left, most) = (first, note(first, by_masses));
+                continue;
             }
             add_scaled(shift, far, p);
             add_scaled(r, -far, q);
             let before = left;
-            left = self.vectors.precondition(self.walls);
+            left = self.vectors.precondition(levels, self.walls, by_masses);
             let Vectors { p, q, .. } = &mut self.vectors;
             let beta = left / before;
             for (p, &z) in p.iter_mut().zip(&**q) {
@@ -213,7 +262,7 @@ impl Solver<'_> {
             iterations += 1;
         }
         let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
-        report.effort.solved(iterations, residual, !solved(left));
+        report.effort.solved(iterations, residual, !solved(left, most));
     }
 
     /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.

@@ -7,7 +7,7 @@ mod solve;
 
 pub(super) use follow::follow;
 pub(super) use settle::settle;
-pub(super) use solve::{brake, finish, hold, impose, judge, keep};
+pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep};
 
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};
@@ -122,6 +122,11 @@ fn reach(bodies: &Bodies<'_>, row: usize) -> f32 {
 }
 
 impl Wall {
+    /// Tells whether it presses its particle.
+    pub(super) fn presses(&self) -> bool {
+        self.state > NEAR
+    }
+
     /// Tells whether it has pressed its particle in the sub-step.
     pub(super) fn is_met(&self) -> bool {
         self.state != NONE && self.touch.pressed() > 0.0

@@ -20,6 +20,13 @@ pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
     }
 }
 
+/// Leaves of directions what walls let pass.
+pub(in crate::constrain) fn filter(walls: &[Wall], directions: &mut [Vec3]) {
+    for (wall, p) in walls.iter().zip(directions).filter(|(wall, _)| wall.state > NEAR) {
+        *p = if wall.state == STICKS { Vec3::ZERO } else { aside(*p, wall.normal) };
+    }
+}
+
 /// Adds how walls brake particles that go `p` along them.
 pub(in crate::constrain) fn brake(walls: &[Wall], p: &[Vec3], q: &mut [Vec3]) {
     for ((wall, &p), q) in walls.iter().zip(p).zip(q).filter(|((wall, _), _)| wall.state == SLIDES) {

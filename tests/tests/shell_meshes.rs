@@ -1,0 +1,232 @@
+//! Shells of any mesh: how few iterations they take, and what they keep in one piece and in several, whatever the order of their particles.
+
+use pointmass::constrain::{Hinge, Shell, ShellParams, mesh_hinges};
+use pointmass::{Gravity, Measures, Method, Particle, Scene, Sheet, Time, Vec3};
+use pointmass_tests::points::shuffle;
+use pointmass_tests::{Random, gap, icosahedron, often, started};
+
+const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
+
+type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
+type Cloth = Shell<Vec<u32>, Vec<[u32; 3]>, Vec<Hinge>>;
+
+fn shell((places, triangles): &Mesh, params: ShellParams) -> Cloth {
+    let (particles, hinges) = ((0..places.len() as u32).collect(), mesh_hinges(triangles));
+    Shell { particles, triangles: triangles.clone(), hinges, warp: Vec3::X, params }
+}
+
+fn params(stretch: f32, bending: f32) -> ShellParams {
+    ShellParams { stretch: [stretch; 2], shear: 0.4 * stretch, bending, damping: 1e-3 }
+}
+
+fn sheet(cells: [u32; 2], corner: Vec3) -> Mesh {
+    let sheet = Sheet { corner, sides: [Vec3::X, Vec3::Z * (cells[1] as f32 / cells[0] as f32)], cells };
+    (sheet.positions().collect(), sheet.triangles().collect())
+}
+
+/// A ball of an icosahedron whose edges are halved so often.
+fn ball(times: u32) -> Mesh {
+    let (mut places, mut triangles) = icosahedron();
+    for _ in 0..times {
+        let mut middles = std::collections::BTreeMap::new();
+        let mut middle = |places: &mut Vec<Vec3>, a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                places.push((places[a as usize] + places[b as usize]).normalize());
+                places.len() as u32 - 1
+            })
+        };
+        let halves = triangles.iter().flat_map(|&[a, b, c]| {
+            let [d, e, f] = [middle(&mut places, a, b), middle(&mut places, b, c), middle(&mut places, c, a)];
+            [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+        });
+        triangles = halves.collect();
+    }
+    (places.into_iter().map(|place| place.normalize() * 0.4).collect(), triangles)
+}
+
+/// Triangles around one point.
+fn fan(spokes: u32) -> Mesh {
+    let rim = (0..spokes).map(|i| {
+        let (sin, cos) = (i as f32 * std::f32::consts::TAU / spokes as f32).sin_cos();
+        Vec3::new(cos, 0.0, sin)
+    });
+    let triangles = (0..spokes).map(|i| [0, 1 + (i + 1) % spokes, 1 + i]);
+    (std::iter::once(Vec3::ZERO).chain(rim).collect(), triangles.collect())
+}
+
+/// A band with half a twist.
+fn twisted(length: u32) -> Mesh {
+    let places = (0..length).flat_map(|i| {
+        let round = i as f32 * std::f32::consts::TAU / length as f32;
+        let out = Vec3::new(round.cos(), 0.0, round.sin());
+        let across = (out * (0.5 * round).cos() + Vec3::Y * (0.5 * round).sin()) * 0.15;
+        [-1.0, 0.0, 1.0].map(|side| out + across * side)
+    });
+    let number = move |i: u32, side: u32| if i < length { 3 * i + side } else { 2 - side };
+    let triangles = (0..length).flat_map(move |i| {
+        (0..2).flat_map(move |side| {
+            let [a, b, c, d] = [number(i, side), number(i + 1, side), number(i, side + 1), number(i + 1, side + 1)];
+            [[a, b, d], [a, d, c]]
+        })
+    });
+    (places.collect(), triangles.collect())
+}
+
+/// Triangles a hundred times as long as wide.
+fn needles() -> Mesh {
+    let (places, triangles) = sheet([4, 20], Vec3::ZERO);
+    (places.into_iter().map(|place| place * Vec3::new(1.0, 1.0, 0.01)).collect(), triangles)
+}
+
+/// The same with its vertices in another order.
+fn shuffled((places, triangles): Mesh, random: &mut Random) -> Mesh {
+    let mut order: Vec<u32> = (0..places.len() as u32).collect();
+    shuffle(&mut order, random);
+    let mut moved = places.clone();
+    for (place, &to) in places.iter().zip(&order) {
+        moved[to as usize] = *place;
+    }
+    (moved, triangles.into_iter().map(|corners| corners.map(|corner| order[corner as usize])).collect())
+}
+
+fn start(places: &[Vec3], mass: f32, mut velocity: impl FnMut(Vec3) -> Vec3) -> Vec<Particle> {
+    let at = |&position: &Vec3| Particle { position, velocity: velocity(position), mass, ..Particle::REST };
+    places.iter().map(at).collect()
+}
+
+/// The stiffer and the finer a mesh, the more iterations by the masses alone: as the square root of what is asked here a thousandfold.
+#[test]
+fn finer_and_stiffer_sheets_take_few_more_iterations() {
+    let mut most = [0.0f64; 2];
+    for (cells, substeps, stretch) in
+        [(8u32, 5u32, 100.0f32), (8, 5, 5e4), (24, 5, 500.0), (24, 2, 5e3), (24, 10, 5e4), (32, 5, 5e3)]
+    {
+        let mesh = sheet([cells, cells], Vec3::ZERO);
+        let mut start = start(&mesh.0, 0.2 / mesh.0.len() as f32, |_| Vec3::ZERO);
+        [0, cells as usize].into_iter().for_each(|corner| start[corner].fixed = true);
+        let shell = shell(&mesh, params(stretch, 1e-5));
+        let scene = Scene { start: &start, forces: &DOWN, constraints: &shell, substeps, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        for frame in 1..=often(30) {
+            system.step_to(&scene, Time::frame(frame as u64, 60));
+        }
+        let effort = system.totals().effort;
+        assert_eq!(effort.capped, 0, "{cells} cells, {stretch} N/m: {effort:?}");
+        let mean = effort.iterations as f64 / effort.solves as f64;
+        let which = usize::from(cells > 8);
+        most[which] = most[which].max(mean);
+        assert!(mean < 25.0, "{cells} cells, {substeps} sub-steps, {stretch} N/m: {mean}");
+    }
+    assert!(most[1] < 3.0 * most[0] + 3.0, "{most:?}");
+}
+
+#[test]
+fn meshes_of_all_kinds_keep_their_momenta() {
+    let mut random = Random::new(77);
+    let mut methods = [Method::Symplectic, Method::Verlet, Method::Rk4].into_iter().cycle();
+    for (name, mesh) in [
+        ("ball", ball(2)),
+        ("fan", fan(90)),
+        ("band", twisted(30)),
+        ("needles", needles()),
+        ("strip", sheet([30, 1], Vec3::ZERO)),
+    ] {
+        for (stretch, bending, substeps) in [(50.0, 0.0, 1), (2e3, 1e-4, 4), (1e4, 1e-2, 10)] {
+            let mesh = shuffled(mesh.clone(), &mut random);
+            let start = start(&mesh.0, 1e-3, |x| {
+                Vec3::new(0.3, -0.2, 0.1) + Vec3::new(1.0, 2.0, -1.0).cross(x) + random.vector(0.05)
+            });
+            let shell = shell(&mesh, params(stretch, bending));
+            let method = methods.next().expect("there is always a next one");
+            let integrator = method.integrator();
+            let scene = Scene { start: &start, constraints: &shell, substeps, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            let before = Measures::of(&system, &scene);
+            for frame in 1..=often(100) {
+                system.step_to(&scene, Time::frame(frame as u64, 60));
+            }
+            let after = Measures::of(&system, &scene);
+            let mass = 1e-3 * start.len() as f64;
+            let drift = gap(before.momentum, after.momentum) / mass;
+            assert!(drift < 2e-5, "{name}, {method}, {stretch} N/m: {drift}");
+            let turned = gap(before.angular_momentum, after.angular_momentum);
+            let lost = turned / gap(before.angular_momentum, [0.0; 3]);
+            assert!(lost < 5e-4, "{name}, {method}, {stretch} N/m: {lost}");
+            let kept = after.energy.kinetic / before.energy.kinetic;
+            assert!(kept > 0.3 && kept < 1.001, "{name}, {method}, {stretch} N/m: {kept}");
+        }
+    }
+}
+
+/// One piece trembles, the second is at rest, the third hangs from a nail, the fourth falls: none feels another.
+#[test]
+fn pieces_of_one_shell_do_not_feel_each_other() {
+    for (stretch, substeps, method) in
+        [(100.0f32, 1, Method::Symplectic), (2e3, 4, Method::Verlet), (3e4, 10, Method::Rk4)]
+    {
+        let mut random = Random::new(3);
+        let cells = [[5u32, 4u32], [6, 6], [4, 7]];
+        let (mut places, mut triangles, mut pieces) = (vec![], vec![], vec![]);
+        for (i, cells) in cells.into_iter().enumerate() {
+            let (more, faces) = sheet(cells, Vec3::new(3.0 * i as f32, 0.0, 0.0));
+            let first = places.len() as u32;
+            pieces.push(places.len()..places.len() + more.len());
+            places.extend(more);
+            triangles.extend(faces.into_iter().map(|corners| corners.map(|corner| corner + first)));
+        }
+        let mesh = (places, triangles);
+        let mut start = start(&mesh.0, 1e-3, |_| Vec3::ZERO);
+        start[pieces[0].clone()].iter_mut().for_each(|particle| particle.velocity = random.vector(1.0));
+        start[pieces[2].start].fixed = true;
+        start[pieces[2].clone()].iter_mut().for_each(|particle| particle.velocity = random.vector(1.0));
+        let (shell, integrator) = (shell(&mesh, params(stretch, 1e-4)), method.integrator());
+        let scene = Scene { start: &start, constraints: &shell, substeps, integrator, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        let momentum = |velocities: &[Vec3]| velocities.iter().sum::<Vec3>() / velocities.len() as f32;
+        let before = momentum(&system.particles().velocity[pieces[0].clone()]);
+        for frame in 1..=often(200) {
+            system.step_to(&scene, Time::frame(frame as u64, 60));
+        }
+        let (x, v) = (system.particles().position, system.particles().velocity);
+        let drift = (momentum(&v[pieces[0].clone()]) - before).length();
+        assert!(drift < 2e-5, "{method}, {stretch} N/m: {drift}");
+        for row in pieces[1].clone() {
+            let gone = (x[row] - start[row].position).length();
+            assert!(gone < 1e-5 && v[row].length() < 1e-4, "{method}, {stretch} N/m: {gone}, {}", v[row]);
+        }
+        assert!(x[pieces[2].start] == start[pieces[2].start].position);
+    }
+}
+
+/// The order of particles, and hinges that are none, change what rounding and the iterations leave, and no more.
+#[test]
+fn the_order_of_particles_does_not_matter() {
+    let mesh = sheet([9, 7], Vec3::ZERO);
+    let mut random = Random::new(8);
+    let mut order: Vec<u32> = (0..mesh.0.len() as u32).collect();
+    let mut run = |order: &[u32], extra: usize| {
+        let mut places = mesh.0.clone();
+        mesh.0.iter().zip(order).for_each(|(place, &to)| places[to as usize] = *place);
+        let triangles = mesh.1.iter().map(|corners| corners.map(|corner| order[corner as usize])).collect();
+        let mut start = start(&places, 1e-3, |_| Vec3::ZERO);
+        [0, 9].into_iter().for_each(|corner: usize| start[order[corner] as usize].fixed = true);
+        let mut shell = shell(&(places, triangles), params(300.0, 0.0));
+        // So many that there is no room for the mesh's own edges.
+        let hinge = shell.hinges[0];
+        shell.hinges.extend(std::iter::repeat_n(hinge, extra));
+        let scene = Scene { start: &start, forces: &DOWN, constraints: &shell, substeps: 6, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        for frame in 1..=12 {
+            system.step_to(&scene, Time::frame(frame, 60));
+        }
+        let x = system.particles().position;
+        order.iter().map(|&to| x[to as usize]).collect::<Vec<Vec3>>()
+    };
+    let plain = run(&order, 0);
+    for extra in [0, 1000] {
+        shuffle(&mut order, &mut random);
+        for (a, b) in run(&order, extra).iter().zip(&plain) {
+            assert!(a.distance(*b) < 2e-3, "{extra}: {a}, not {b}");
+        }
+    }
+}
