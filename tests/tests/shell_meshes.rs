@@ -204,7 +204,7 @@ fn the_order_of_particles_does_not_matter() {
     let mesh = sheet([9, 7], Vec3::ZERO);
     let mut random = Random::new(8);
     let mut order: Vec<u32> = (0..mesh.0.len() as u32).collect();
-    let mut run = |order: &[u32], extra: usize| {
+    let run = |order: &[u32], extra: usize| {
         let mut places = mesh.0.clone();
         mesh.0.iter().zip(order).for_each(|(place, &to)| places[to as usize] = *place);
         let triangles = mesh.1.iter().map(|corners| corners.map(|corner| order[corner as usize])).collect();

@@ -247,6 +247,11 @@ mod avx2 {
         avx2.combine_f32x4(f32x4::from_slice(avx2, &low), f32x4::from_slice(avx2, &high)).into()
     }
 
+    #[inline(always)]
+    fn halves(avx2: Avx2, rows: __m256) -> [[f32; 4]; 2] {
+        bytemuck::cast::<[f32; LANES], _>(f32x8::simd_from(avx2, rows).into())
+    }
+
     #[derive(Clone, Copy)]
     pub(super) struct Wide(f32x8<Avx2>);
 
@@ -366,19 +371,16 @@ mod avx2 {
             let [a, b, c, d, e, f, g, h] = rows;
             let [a, b] = [both(avx2, a, e), both(avx2, b, f)];
             let [c, d] = [both(avx2, c, g), both(avx2, d, h)];
-            turned(avx2, a, b, c, d).map(
-                #[inline(always)]
-                |column| Self(column.simd_into(avx2)),
-            )
+            // Spelled out: `map` of an array would be called, for other registers.
+            let [x, y, z, w] = turned(avx2, a, b, c, d);
+            [Self(x.simd_into(avx2)), Self(y.simd_into(avx2)), Self(z.simd_into(avx2)), Self(w.simd_into(avx2))]
         }
         #[inline(always)]
         fn vectors_of([x, y, z]: [Self; 3]) -> [[f32; 4]; LANES] {
             let avx2 = x.0.token();
-            let rows = turned_back(avx2, x.0.into(), y.0.into(), z.0.into()).map(
-                #[inline(always)]
-                |rows| bytemuck::cast::<[f32; LANES], [[f32; 4]; 2]>(f32x8::simd_from(avx2, rows).into()),
-            );
-            let [[a, e], [b, f], [c, g], [d, h]] = rows;
+            let [ae, bf, cg, dh] = turned_back(avx2, x.0.into(), y.0.into(), z.0.into());
+            let [[a, e], [b, f], [c, g], [d, h]] =
+                [halves(avx2, ae), halves(avx2, bf), halves(avx2, cg), halves(avx2, dh)];
             [a, b, c, d, e, f, g, h]
         }
         #[inline(always)]
