@@ -5,7 +5,7 @@ use super::packet::{Outcome, Paths, Riders};
 use super::path::Path;
 use super::sweep::{Sweep, facing, surroundings};
 use super::waiting::{Packet, Queue, ones};
-use crate::constrain::{CARRIED, SHIFTED, TOUCHING};
+use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
 use crate::lanes::{Eight, Kernel, LANES, Vectors, run, widest};
 use crate::material::on_surface;
 use crate::math::{largest, max};
@@ -385,7 +385,7 @@ impl TileSweep<'_, '_> {
         }
         let lives = &m.lives;
         // Constraints know nothing of the newborn.
-        let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) } else { 0 };
+        let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
         // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
         // may not touch anything.
         let path = if mark & SHIFTED != 0 { path.straightened() } else { path };

@@ -19,6 +19,8 @@ pub(crate) const TOUCHING: u32 = 2;
 /// The particle belongs to a body that meets the scenery as a whole, or its way has been followed past that in each sub-step: the sweep looks
 /// for sinks on its path, and for nothing else.
 pub(crate) const CARRIED: u32 = 4;
+/// The bits of a mark that say what constraints have done to its particle; the others are those of how far it is kept off scenery.
+pub(crate) const DONE: u32 = SHIFTED | TOUCHING | CARRIED;
 
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +124,18 @@ impl Bodies<'_> {
             self.velocity[row] += by * (1.0 / h);
         }
         self.marks[row] |= SHIFTED;
+    }
+
+    /// Says that the particle in a row is kept so far off the scenery \[m\], to rounding, by a constraint that follows its way past that.
+    pub(crate) fn keep_off(&mut self, row: usize, distance: f32) {
+        if distance > 0.0 && distance < f32::INFINITY {
+            self.marks[row] = self.marks[row] & DONE | distance.to_bits() & !DONE;
+        }
+    }
+
+    /// How far off the scenery a constraint keeps the particle in a row \[m\]; zero: none does.
+    pub(crate) fn clearance(&self, row: usize) -> f32 {
+        f32::from_bits(self.marks[row] & !DONE)
     }
 
     /// Tells whoever watches that a particle is kept from another thing with which it came together.

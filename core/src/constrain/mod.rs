@@ -19,10 +19,11 @@ mod shell;
 mod strand;
 mod turn;
 mod union;
+mod walls;
 
 pub use attach::Attach;
 pub use bodies::{Around, Bodies, Near, Share, Substep};
-pub(crate) use bodies::{CARRIED, SHIFTED, TOUCHING};
+pub(crate) use bodies::{CARRIED, DONE, SHIFTED, TOUCHING};
 pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]

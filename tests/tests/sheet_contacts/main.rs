@@ -2,6 +2,7 @@
 
 mod cloths;
 mod curved;
+mod falling;
 mod friction;
 mod lists;
 

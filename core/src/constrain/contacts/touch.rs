@@ -1,5 +1,7 @@
 //! Two that touch in a sub-step: what presses them, and Coulomb's friction by just that.
 
+use super::super::Substep;
+use crate::collide::RESTING;
 use crate::force::Friction;
 use crate::material::Mixed;
 use crate::math::{length, max, min, sqrt};
@@ -33,6 +35,16 @@ impl Touch {
     /// By how much the contact has changed the speed at which they part \[m/s\].
     pub(in crate::constrain) fn pressed(&self) -> f32 {
         self.pressed
+    }
+
+    /// Tells whether friction can hold it in its place.
+    pub(in crate::constrain) fn sticks(&self) -> bool {
+        self.static_ > 0.0
+    }
+
+    /// The coefficients of what rests and of what slides.
+    pub(in crate::constrain) fn friction(&self) -> [f32; 2] {
+        [self.static_, self.kinetic]
     }
 
     pub(super) fn has_friction(&self) -> bool {
@@ -90,6 +102,11 @@ impl Touch {
 pub(in crate::constrain) struct Grip(Vec3);
 
 impl Grip {
+    /// What friction has given already \[m/s\].
+    pub(in crate::constrain) fn of(given: Vec3) -> Self {
+        Self(given)
+    }
+
     /// Tells whether friction has something to take, or to give back.
     pub(in crate::constrain) fn acts(&self, touch: &Touch) -> bool {
         touch.has_friction() && (touch.pressed > 0.0 || self.0 != Vec3::ZERO)
@@ -108,6 +125,14 @@ impl Grip {
         self.0 = given;
         change
     }
+}
+
+/// The speed at which two are to part that came together with the second speed, and had the first before forces pressed them: none where
+/// the bounce would be over within a part of the step.
+pub(in crate::constrain) fn bounce(substep: &Substep, elasticity: f32, [begun, approach]: [f32; 2]) -> f32 {
+    let bounce = max(-approach * elasticity, 0.0);
+    let pressing = max(begun - approach, 0.0) / substep.seconds();
+    if 2.0 * bounce < RESTING * substep.step.seconds() * pressing { 0.0 } else { bounce }
 }
 
 /// How far friction moves two along their surface that has `taken` so much of their slip in a sub-step of `h`: as a steady

@@ -9,6 +9,7 @@ mod scenery;
 mod search;
 mod settle;
 mod solver;
+mod taut;
 mod tree;
 mod zones;
 
@@ -34,6 +35,9 @@ use rest::Rest;
 /// [`Effort::capped`](crate::Effort::capped). That holds for what this constraint sees: it has to be the last, and what a script does to
 /// particles after it can bring sheets through each other. So can the scenery's sweep, to which only those are left that something without
 /// [`contacts`](crate::shape::Collider::contacts) stops in the step. Sheets that begin through each other stay so.
+///
+/// What is pushed takes along what it hangs on: edges that pushes have lengthened are shortened between them, so that a push on a corner is one on the
+/// sheet.
 ///
 /// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method; with explicit Euler and
 /// two sub-steps what should lie still creeps by millimetres all the same. What leans against
@@ -121,9 +125,16 @@ where
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()).filter(|rest| !rest.is_known()) else { return };
-        if !self.is_empty() && self.fault().is_none() {
+        let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()) else { return };
+        if !rest.is_known() && !self.is_empty() && self.fault().is_none() {
             rest.learn(self, bodies, share.scratch);
+        }
+        if rest.is_known() && bodies.substep.number == 0 {
+            for (&particle, &half) in self.particles.as_ref().iter().zip(&*rest.half) {
+                if let Some(row) = bodies.row_of_start(particle) {
+                    bodies.keep_off(row, half);
+                }
+            }
         }
     }
 

@@ -1,12 +1,11 @@
 //! Velocities of sheets that have been moved apart: how fast they part, and what friction takes of their slip.
 
 use super::super::Bodies;
-use super::super::contacts::Touch;
+use super::super::contacts::{Touch, bounce};
 use super::lists::{Contact, Kept, NOBODY, Surface};
 use super::solver::ease;
 use super::zones::{LITTLE, Whole};
-use crate::collide::RESTING;
-use crate::math::{aside, length, max, min};
+use crate::math::{aside, length, min};
 use glam::Vec3;
 
 /// Passes over all contacts.
@@ -47,7 +46,7 @@ fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
             let along = |of: &[Vec3]| contact.between(|i| of[kept.rows[i] as usize]).dot(normal);
             let parting = along(bodies.velocity);
             let approach = contact.between(|i| kept.pushed[i]).dot(normal);
-            let mut wanted = bounce(bodies, contact.touch.elasticity, [along(bodies.before[1]), approach]);
+            let mut wanted = bounce(&bodies.substep, contact.touch.elasticity, [along(bodies.before[1]), approach]);
             if leaning {
                 let most = if first { contact.touch.pressed() } else { 0.0 };
                 wanted = min(parting + most, wanted);
@@ -62,7 +61,7 @@ fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
         if touches(surface, bodies.position[row]) {
             let along = |v: Vec3| (v - surface.velocity).dot(normal);
             let ends = [along(bodies.before[1][row]), along(kept.pushed[i])];
-            let wanted = bounce(bodies, surface.touch.elasticity, ends);
+            let wanted = bounce(&bodies.substep, surface.touch.elasticity, ends);
             let change = surface.touch.press(wanted, along(bodies.velocity[row]));
             bodies.velocity[row] += normal * change;
         }
@@ -108,14 +107,6 @@ fn push(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &mut Bodies<'_>
         bodies.velocity[rows[i] as usize] += by * (share * weight[i]);
     }
     contact.between(|i| bodies.position[rows[i] as usize]).cross(by)
-}
-
-/// The speed at which two are to part that came together with the second speed, and had the first before forces pressed them: none where
-/// the bounce would be over within a part of the step.
-fn bounce(bodies: &Bodies<'_>, elasticity: f32, [begun, approach]: [f32; 2]) -> f32 {
-    let bounce = max(-approach * elasticity, 0.0);
-    let pressing = max(begun - approach, 0.0) / bodies.substep.seconds();
-    if 2.0 * bounce < RESTING * bodies.substep.step.seconds() * pressing { 0.0 } else { bounce }
 }
 
 /// Turns all sheets together by what pushes would change of their angular momentum that do not go along the line between two, where nothing else holds them.

@@ -3,7 +3,7 @@
 use super::super::Bodies;
 use super::lists::{Contact, Kept, NOBODY, Surface, Work};
 use super::rest::Rest;
-use super::{scenery, search, zones};
+use super::{scenery, search, taut, zones};
 use crate::math::{aside, length, min};
 use glam::Vec3;
 
@@ -33,6 +33,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
         work.searched.copy_from_slice(work.now);
         let before = torque;
         for _ in 0..SWEEPS {
+            torque += taut::hold(rest, kept, work);
             torque += sweep(kept, work, h);
             torque += rub(kept, work, h);
         }

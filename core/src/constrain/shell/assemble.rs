@@ -106,6 +106,11 @@ impl Solver<'_> {
                 [0, 4, 8].into_iter().for_each(|i| sum[i] += 1.0 / own);
                 without.copy_from_slice(&sum);
                 all.iter_mut().zip(sum).for_each(|(number, sum)| *number += sum);
+                // What a wall presses hardly gives way, in the cycle too; conjugate gradients know that it does not at all.
+                if let Some(wall) = self.walls.get(row).filter(|wall| wall.presses()) {
+                    let stiff = wall.stiffness(all[0] + all[4] + all[8]).to_cols_array();
+                    all.iter_mut().zip(stiff).for_each(|(number, stiff)| *number += stiff);
+                }
             } else {
                 without.fill(0.0);
                 all.fill(0.0);

@@ -7,8 +7,9 @@ mod membrane;
 mod mesh;
 mod resist;
 mod solver;
+mod taut;
 
-use super::{Bodies, Constraint, Demand, Share, Words};
+use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
 use crate::memory::take;
 use cycle::Levels;
@@ -73,6 +74,11 @@ impl ShellParams {
 /// it is; where bending resists more than stretching, some dozens. They end where what is left is 0.3 % of the whole in the norm of energy, or
 /// 0.01 % of the residual of fewer particles. Iterations are
 /// counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it is then softer for a while.
+///
+/// Where particles meet the scenery in a sub-step, that presses and brakes them while the material is solved (an active set of planes, one a
+/// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches no more
+/// than its material does. Edges that turn so far in a sub-step that what is solved along the directions of its beginning leaves them too
+/// long are shortened. The sweep at the step's end is left to those whose way may have passed through something.
 ///
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
 /// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. Whoever is fixed
@@ -221,7 +227,8 @@ where
             sum([triangles.saturating_mul(WORK[0]), hinges.saturating_mul(WORK[1]), particles.saturating_mul(WORK[2])]);
         let work = work.saturating_add(cycle::words(&room));
         let words = |fixed| Words { per_row: 0, fixed };
-        Demand { kept: words(kept), scratch: words(work), ..Demand::NONE }
+        let step = particles.saturating_mul(walls::WORDS);
+        Demand { kept: words(kept), step: words(step), scratch: words(work), ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
@@ -254,11 +261,25 @@ where
             bends,
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
+            walls: &mut [],
         };
         solver.linearise(bodies);
+        let walls = walls::of(share.step, particles);
+        walls::gather(walls, self.particles.as_ref(), bodies);
+        solver.walls = walls;
         solver.assemble(&mut levels);
-        solver.solve(&mut levels, bodies.report);
+        solver.solve(bodies, &mut levels);
+        solver.tighten(bodies);
         solver.keep_spin(bodies);
         solver.act(bodies);
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let [particles, ..] = self.counts();
+        if bodies.substep.seconds() > 0.0 {
+            let walls = walls::of(share.step, particles);
+            walls::settle(walls, bodies);
+            walls::follow(walls, bodies);
+        }
     }
 }

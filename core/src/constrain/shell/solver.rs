@@ -7,8 +7,9 @@ use super::resist::Resist;
 use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
 use crate::constrain::turn::turn_of;
+use crate::constrain::walls::{self, Wall};
 use crate::lanes;
-use crate::math::sqrt;
+use crate::math::{max, sqrt};
 use crate::memory::take;
 use crate::report::Report;
 use crate::rows::add_scaled;
@@ -16,10 +17,12 @@ use glam::{Mat3, Vec3};
 
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
+/// Solutions in turn with the question which walls press, at the most.
+const PASSES: u32 = 8;
 /// What may be left of a solution, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses.
 const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
 /// The row of a particle that is not there.
-const NOBODY: u32 = u32::MAX;
+pub(super) const NOBODY: u32 = u32::MAX;
 
 /// A sub-step.
 pub(super) struct Step {
@@ -40,14 +43,14 @@ impl Step {
 
 /// The particles of a shell in a sub-step, by their place in its list.
 pub(super) struct Vectors<'m> {
-    rows: &'m mut [u32],
+    pub(super) rows: &'m mut [u32],
     /// Inverse masses; zero for what does not move \[1/kg\].
     pub(super) weight: &'m mut [f32],
     /// How far they are moved \[m\].
-    shift: &'m mut [Vec3],
+    pub(super) shift: &'m mut [Vec3],
     /// Residuals, directions, and what the system makes of these.
     r: &'m mut [Vec3],
-    p: &'m mut [Vec3],
+    pub(super) p: &'m mut [Vec3],
     q: &'m mut [Vec3],
 }
 
@@ -79,16 +82,18 @@ impl<'m> Vectors<'m> {
     }
 
     /// The first direction, and r · z.
-    fn begin(&mut self, levels: &mut Levels<'_>, by_masses: bool) -> f32 {
-        let left = self.precondition(levels, by_masses);
+    fn begin(&mut self, levels: &mut Levels<'_>, walls: &mut [Wall], by_masses: bool) -> f32 {
+        let left = self.precondition(levels, walls, by_masses);
         self.p.copy_from_slice(self.q);
         left
     }
 
-    /// z ≈ A⁻¹ r, or W r, and r · z.
-    fn precondition(&mut self, levels: &mut Levels<'_>, by_masses: bool) -> f32 {
+    /// z ≈ A⁻¹ r, or W r, r being what is left beside what walls bear, and r · z.
+    fn precondition(&mut self, levels: &mut Levels<'_>, walls: &mut [Wall], by_masses: bool) -> f32 {
+        walls::hold(walls, self.r);
         if !by_masses {
             levels.cycle(self.r, self.q);
+            walls::filter(walls, self.q);
             return lanes::dot(self.r, self.q);
         }
         for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
@@ -113,6 +118,8 @@ pub(super) struct Solver<'m> {
     pub(super) bends: &'m [Bend],
     pub(super) folds: &'m mut [Fold],
     pub(super) vectors: Vectors<'m>,
+    /// The scenery that particles are pressed by.
+    pub(super) walls: &'m mut [Wall],
 }
 
 impl Solver<'_> {
@@ -181,21 +188,54 @@ impl Solver<'_> {
                 Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q };
             lanes::run(all);
         }
+        walls::brake(self.walls, p, q);
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
         }
     }
 
-    /// Conjugate gradients from zero, by a cycle through coarser graphs where there are any, else by masses.
-    pub(super) fn solve(&mut self, levels: &mut Levels<'_>, report: &mut Report) {
+    /// Solves it, and that anew for as long as other walls press than before.
+    pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>) {
+        let mut enough = [0.0; 2];
+        for pass in 0..PASSES {
+            let Vectors { shift, p, .. } = &mut self.vectors;
+            if walls::impose(self.walls, bodies, shift, p) {
+                self.apply(levels);
+                let Vectors { shift, r, p, q, .. } = &mut self.vectors;
+                add_scaled(shift, 1.0, p);
+                add_scaled(r, -1.0, q);
+            }
+            self.descend(levels, &mut enough, bodies.report);
+            let Vectors { shift, r, .. } = &mut self.vectors;
+            if pass + 1 == PASSES || !walls::judge(self.walls, bodies, shift, r) {
+                break;
+            }
+        }
+        if !self.walls.iter().any(Wall::presses) {
+            let Vectors { rows, weight, shift, .. } = &mut self.vectors;
+            levels.rid_of_drift(
+                rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),
+                shift,
+            );
+        }
+        let Vectors { weight, shift, .. } = &mut self.vectors;
+        walls::finish(self.walls, bodies, weight, shift);
+    }
+
+    /// Conjugate gradients on from what has been found, by a cycle through coarser graphs where there are any, else by masses: to what is
+    /// good enough of what they begin with, or have begun with before.
+    fn descend(&mut self, levels: &mut Levels<'_>, enough: &mut [f32; 2], report: &mut Report) {
         let mut by_masses = levels.is_empty();
-        let mut first = self.vectors.begin(levels, by_masses);
-        let solved = |left: f32, first: f32, by_masses: bool| {
-            let share = RESIDUAL[usize::from(by_masses)];
-            left >= 0.0 && left <= first * (share * share)
+        let mut first = self.vectors.begin(levels, self.walls, by_masses);
+        let mut note = |first: f32, by_masses: bool| {
+            let kind = usize::from(by_masses);
+            enough[kind] = max(first * (RESIDUAL[kind] * RESIDUAL[kind]), enough[kind]);
+            enough[kind]
         };
+        let mut most = note(first, by_masses);
+        let solved = |left: f32, most: f32| left >= 0.0 && left <= most;
         let (mut left, mut iterations) = (first, 0);
-        while !solved(left, first, by_masses) && iterations < ITERATIONS {
+        while !solved(left, most) && iterations < ITERATIONS {
             self.apply(levels);
             let Vectors { shift, r, p, q, .. } = &mut self.vectors;
             let curvature = lanes::dot(p, q);
@@ -206,14 +246,14 @@ impl Solver<'_> {
                 }
                 // Rounding has made more of the coarser graphs than there is.
                 by_masses = true;
-                first = self.vectors.begin(levels, by_masses);
-                left = first;
+                first = self.vectors.begin(levels, self.walls, by_masses);
+                (left, most) = (first, note(first, by_masses));
                 continue;
             }
             add_scaled(shift, far, p);
             add_scaled(r, -far, q);
             let before = left;
-            left = self.vectors.precondition(levels, by_masses);
+            left = self.vectors.precondition(levels, self.walls, by_masses);
             let Vectors { p, q, .. } = &mut self.vectors;
             let beta = left / before;
             for (p, &z) in p.iter_mut().zip(&**q) {
@@ -221,13 +261,8 @@ impl Solver<'_> {
             }
             iterations += 1;
         }
-        let Vectors { rows, weight, shift, .. } = &mut self.vectors;
-        levels.rid_of_drift(
-            rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),
-            shift,
-        );
         let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
-        report.effort.solved(iterations, residual, !solved(left, first, by_masses));
+        report.effort.solved(iterations, residual, !solved(left, most));
     }
 
     /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.
@@ -236,7 +271,7 @@ impl Solver<'_> {
         let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
         let all = || rows.iter().zip(&**weight).map(living);
         let Some((origin, _)) = all().flatten().next() else { return };
-        if all().flatten().any(|(_, weight)| weight == 0.0) {
+        if all().flatten().any(|(_, weight)| weight == 0.0) || self.walls.iter().any(Wall::is_met) {
             return;
         }
         let h = bodies.substep.seconds();

@@ -1,0 +1,191 @@
+//! The scenery as what holds together meets it within a sub-step: walls that press particles while the material gives way, so that a hit on a few
+//! of them is one on all that hangs on them.
+
+mod follow;
+mod settle;
+mod solve;
+
+pub(super) use follow::follow;
+pub(super) use settle::settle;
+pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep};
+
+use super::contacts::{Grip, Touch};
+use super::{Bodies, Substep};
+use crate::material::on_surface;
+use crate::math::{high, length, low, max, min};
+use crate::memory::take;
+use crate::shape::{Aabb, Contact};
+use glam::{Mat3, Vec3};
+
+/// Sub-steps ahead that a search of the scenery looks, at the most.
+const AHEAD: u32 = 8;
+/// The share of a gap that is missing that a sub-step gives back.
+const RECOVERY: f32 = 0.2;
+/// The row of a particle that is not there.
+const NOBODY: u32 = u32::MAX;
+/// What a wall does to its particle: none is near, it is left alone, it slides along, it goes as the wall does.
+const NONE: u32 = 0;
+const NEAR: u32 = 1;
+const SLIDES: u32 = 2;
+const STICKS: u32 = 3;
+
+/// The face of the scenery that a particle is about to meet, and what it does to that in the sub-step.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Wall {
+    row: u32,
+    state: u32,
+    /// 1 if its particle has yet to be brought to where the wall wants it.
+    fresh: u32,
+    /// 1 if its particle's way through the step may pass through the scenery.
+    lost: u32,
+    normal: Vec3,
+    /// How far along the normal the particle is to be from the origin at the sub-step's end \[m\], at the least.
+    offset: f32,
+    /// How the surface moves \[m/s\], how far off it is as the sub-step begins, and by how much rounding may be wrong about that \[m\].
+    velocity: Vec3,
+    distance: f32,
+    slack: f32,
+    /// The speed away from it before the material answers \[m/s\].
+    approach: f32,
+    /// How far off all scenery is, at the least \[m\].
+    clear: f32,
+    /// What it takes of the forces that are left \[kg m\], and for each metre that its particle slides \[kg\].
+    held: Vec3,
+    brake: f32,
+    touch: Touch,
+    grip: Grip,
+}
+
+/// The words of the wall of a particle.
+pub(super) const WORDS: usize = size_of::<Wall>() / 4;
+
+/// The walls of so many particles in words that last through a step.
+pub(super) fn of(step: &mut [u32], count: usize) -> &mut [Wall] {
+    let mut rest = step;
+    bytemuck::try_cast_slice_mut(take(&mut rest, count.saturating_mul(WORDS))).unwrap_or_default()
+}
+
+/// Finds the walls that particles may meet in the sub-step, and which of them press on where the method has moved these. Who is far from all is not
+/// asked again before it has gone that far.
+pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>) {
+    let Substep { number, count, .. } = bodies.substep;
+    if number == 0 {
+        walls.iter_mut().for_each(|wall| (wall.clear, wall.lost) = (0.0, 0));
+    }
+    let mut around = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+    for (wall, &particle) in walls.iter_mut().zip(particles) {
+        wall.state = NONE;
+        wall.touch.begin(0.0);
+        wall.row = find(particle, bodies);
+        if wall.row != NOBODY {
+            let row = wall.row as usize;
+            let (from, to) = (bodies.before[0][row], bodies.position[row]);
+            let near = reach(bodies, row);
+            around.min = low(low(from, to) - near, around.min);
+            around.max = high(high(from, to) + near, around.max);
+        }
+    }
+    if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around) {
+        walls.iter_mut().for_each(|wall| wall.clear = 0.0);
+        return;
+    }
+    let ahead = (count - number).min(AHEAD) as f32;
+    for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
+        let row = wall.row as usize;
+        let (way, near) = (length(bodies.position[row] - bodies.before[0][row]), reach(bodies, row));
+        if wall.clear < near {
+            wall.clear = near + ahead * way;
+            wall.look(near, bodies);
+        }
+        wall.clear = max(wall.clear - way, 0.0);
+    }
+}
+
+/// The row of a particle that can be moved.
+fn find(particle: u32, bodies: &Bodies<'_>) -> u32 {
+    let sound = |&row: &usize| {
+        let inverse = bodies.inverse_mass[row];
+        let moves = inverse > 0.0 && inverse < f32::INFINITY;
+        moves
+            && bodies.position[row].is_finite()
+            && bodies.velocity[row].is_finite()
+            && bodies.before[0][row].is_finite()
+    };
+    bodies.row_of_start(particle).filter(sound).map_or(NOBODY, |row| row as u32)
+}
+
+/// How near a face has to be to be met in the sub-step: what hangs on a particle may take it as far again.
+fn reach(bodies: &Bodies<'_>, row: usize) -> f32 {
+    let way = length(bodies.position[row] - bodies.before[0][row]);
+    2.0 * (max(bodies.clearance(row), bodies.radius[row]) + way)
+}
+
+impl Wall {
+    /// Tells whether it presses its particle.
+    pub(super) fn presses(&self) -> bool {
+        self.state > NEAR
+    }
+
+    /// What a stiffness of it, that is as good as none giving way, adds to what a particle of so much of its own does.
+    pub(super) fn stiffness(&self, own: f32) -> Mat3 {
+        /// Its stiffness in those of its particle.
+        const STIFF: f32 = 100.0;
+        let all = own * STIFF;
+        match self.state {
+            STICKS => Mat3::from_diagonal(Vec3::splat(all)),
+            SLIDES => {
+                let [x, y, z] = self.normal.to_array().map(|along| self.normal * (along * all));
+                Mat3::from_cols(x, y, z)
+            }
+            _ => Mat3::ZERO,
+        }
+    }
+
+    /// Tells whether it has pressed its particle in the sub-step.
+    pub(super) fn is_met(&self) -> bool {
+        self.state != NONE && self.touch.pressed() > 0.0
+    }
+
+    /// Takes the face that the particle is farthest behind where the method has moved it.
+    fn look(&mut self, near: f32, bodies: &Bodies<'_>) {
+        let row = self.row as usize;
+        let (own, elasticity) = (bodies.material[row].checked_sub(1), bodies.elasticity[row]);
+        let (from, to, h) = (bodies.before[0][row], bodies.position[row], bodies.substep.seconds());
+        let radius = bodies.radius[row];
+        let mut most = f32::NEG_INFINITY;
+        bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
+            let Contact { point, normal, distance, velocity, material, slack } = *contact;
+            // What moves is asked again in every sub-step.
+            self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
+            if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() {
+                return;
+            }
+            let keep = max(bodies.clearance(row), radius + 2.0 * slack);
+            let gap = if distance < keep { distance + RECOVERY * (keep - distance) } else { keep };
+            let offset = normal.dot(point + velocity * h) + gap;
+            let missing = offset - normal.dot(to);
+            if !(missing > most) {
+                return;
+            }
+            most = missing;
+            let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
+            let approach = (bodies.velocity[row] - velocity).dot(normal);
+            let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
+            *self =
+                Self { state, normal, offset, velocity, distance, slack, approach, held, brake, touch, grip, ..*self };
+        });
+        if self.state == NEAR {
+            self.touch.begin(0.0);
+            if most > 0.0 {
+                self.press();
+            }
+        }
+    }
+
+    /// Begins to press: with friction as if that held it.
+    fn press(&mut self) {
+        self.state = if self.touch.sticks() { STICKS } else { SLIDES };
+        self.fresh = 1;
+    }
+}

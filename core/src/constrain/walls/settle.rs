@@ -1,0 +1,29 @@
+//! Velocities of what walls have pressed.
+
+use super::{NONE, Wall};
+use crate::constrain::Bodies;
+use crate::constrain::contacts::bounce;
+use crate::math::aside;
+
+/// Lets particles leave walls as fast as elasticity wants, and takes what friction can of their slip by all that has pressed.
+pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) {
+    for wall in walls.iter_mut().filter(|wall| wall.state != NONE) {
+        let (row, normal) = (wall.row as usize, wall.normal);
+        let near = || bodies.position[row].dot(normal) < wall.offset + 0.5 * wall.slack;
+        if !(wall.touch.pressed() > 0.0 || near()) {
+            continue;
+        }
+        let begun = (bodies.before[1][row] - wall.velocity).dot(normal);
+        let wanted = bounce(&bodies.substep, wall.touch.elasticity, [begun, wall.approach]);
+        let parting = (bodies.velocity[row] - wall.velocity).dot(normal);
+        bodies.velocity[row] += normal * wall.touch.press(wanted, parting);
+        if wall.grip.acts(&wall.touch) {
+            let slip = aside(bodies.velocity[row] - wall.velocity, normal);
+            bodies.velocity[row] += wall.grip.hold(&wall.touch, slip, wall.touch.pressed());
+        }
+        if wall.touch.pressed() > 0.0 {
+            bodies.report.hits += 1;
+            bodies.mark_touching(row);
+        }
+    }
+}

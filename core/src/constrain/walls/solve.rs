@@ -1,0 +1,156 @@
+//! Walls while the material is solved: which press, and how particles slide along them.
+
+use super::{NEAR, SLIDES, STICKS, Wall};
+use crate::constrain::Bodies;
+use crate::constrain::contacts::Grip;
+use crate::math::{aside, length, max, min};
+use glam::Vec3;
+
+/// The change of what brakes a particle that is small enough, as a share.
+const SETTLED: f32 = 0.1;
+/// The most that a particle is braked by, in its own masses.
+const MOST: f32 = 1e3;
+
+/// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
+pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
+    for (wall, left) in walls.iter_mut().zip(left).filter(|(wall, _)| wall.state > NEAR) {
+        let borne = if wall.state == STICKS { *left } else { wall.normal * left.dot(wall.normal) };
+        wall.held += borne;
+        *left -= borne;
+    }
+}
+
+/// Leaves of directions what walls let pass.
+pub(in crate::constrain) fn filter(walls: &[Wall], directions: &mut [Vec3]) {
+    for (wall, p) in walls.iter().zip(directions).filter(|(wall, _)| wall.state > NEAR) {
+        *p = if wall.state == STICKS { Vec3::ZERO } else { aside(*p, wall.normal) };
+    }
+}
+
+/// Adds how walls brake particles that go `p` along them.
+pub(in crate::constrain) fn brake(walls: &[Wall], p: &[Vec3], q: &mut [Vec3]) {
+    for ((wall, &p), q) in walls.iter().zip(p).zip(q).filter(|((wall, _), _)| wall.state == SLIDES) {
+        if wall.brake > 0.0 {
+            *q += aside(p, wall.normal) * wall.brake;
+        }
+    }
+}
+
+/// How far particles have to be moved besides to be where walls want them; tells whether anybody has to.
+pub(in crate::constrain) fn impose(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], by: &mut [Vec3]) -> bool {
+    let h = bodies.substep.seconds();
+    by.fill(Vec3::ZERO);
+    let mut some = false;
+    for ((wall, &shift), by) in walls.iter_mut().zip(shift).zip(by) {
+        if wall.state <= NEAR || wall.fresh == 0 {
+            continue;
+        }
+        wall.fresh = 0;
+        some = true;
+        let row = wall.row as usize;
+        let now = bodies.position[row] + shift;
+        let to = if wall.state == STICKS { bodies.before[0][row] + wall.velocity * h } else { now };
+        *by = to + wall.normal * (wall.offset - to.dot(wall.normal)) - now;
+    }
+    some
+}
+
+/// Looks which walls press what has been moved so far, and adds to the forces that are `left` \[kg m\] what others give back; tells whether
+/// that is other than before.
+pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], left: &mut [Vec3]) -> bool {
+    let mut changed = false;
+    for ((wall, &shift), left) in walls.iter_mut().zip(shift).zip(left).filter(|((wall, _), _)| wall.state >= NEAR) {
+        let load = -wall.held.dot(wall.normal);
+        changed |= match wall.state {
+            NEAR => {
+                let missing = wall.offset - (bodies.position[wall.row as usize] + shift).dot(wall.normal);
+                let presses = missing > 0.5 * wall.slack;
+                if presses {
+                    wall.press();
+                }
+                presses
+            }
+            _ if load < 0.0 => {
+                let braked = wall.slid(bodies, shift) * wall.brake;
+                *left += wall.held + braked;
+                (wall.state, wall.held, wall.brake) = (NEAR, Vec3::ZERO, 0.0);
+                true
+            }
+            STICKS => wall.let_slip(load, left),
+            _ if wall.touch.sticks() => {
+                let slid = wall.slid(bodies, shift);
+                wall.brake(load, bodies.inverse_mass[wall.row as usize], slid, left)
+            }
+            _ => false,
+        };
+    }
+    changed
+}
+
+impl Wall {
+    /// How far its particle has gone along it in the sub-step.
+    fn slid(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
+        let row = self.row as usize;
+        let way = bodies.position[row] + shift - bodies.before[0][row] - self.velocity * bodies.substep.seconds();
+        aside(way, self.normal)
+    }
+
+    /// Brakes a particle that slides in proportion to how far it does, so that friction never drives it; tells whether that is other than before.
+    fn brake(&mut self, load: f32, weight: f32, slid: Vec3, left: &mut Vec3) -> bool {
+        let [_, sliding] = self.touch.friction();
+        let brake = min(sliding * load / max(length(slid), f32::MIN_POSITIVE), MOST / weight);
+        let change = brake - self.brake;
+        if !(change.abs() > SETTLED * brake) {
+            return false;
+        }
+        *left -= slid * change;
+        self.brake = brake;
+        true
+    }
+
+    /// Lets a particle slide that friction cannot hold.
+    fn let_slip(&mut self, load: f32, left: &mut Vec3) -> bool {
+        let pull = aside(self.held, self.normal);
+        let [resting, _] = self.touch.friction();
+        if length(pull) <= resting * load {
+            return false;
+        }
+        self.state = SLIDES;
+        self.held -= pull;
+        *left += pull;
+        true
+    }
+}
+
+/// Takes from what walls bear how hard they have pressed, brakes by that who slides, and moves out whoever is still behind one.
+pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weight: &[f32], shifts: &mut [Vec3]) {
+    let h = bodies.substep.seconds();
+    for ((wall, &weight), shift) in walls.iter_mut().zip(weight).zip(&mut *shifts) {
+        if wall.state <= NEAR || !shift.is_finite() {
+            continue;
+        }
+        let pressed = max(-wall.held.dot(wall.normal), 0.0) * weight / h;
+        wall.touch.begin(pressed);
+        if wall.state == SLIDES && wall.touch.sticks() {
+            let slid = wall.slid(bodies, *shift);
+            let [_, sliding] = wall.touch.friction();
+            let (given, most) = (slid * (-wall.brake * weight / h), sliding * pressed);
+            let far = length(given);
+            wall.grip = Grip::of(if far > most { given * (most / far) } else { given });
+            *shift += wall.grip.hold(&wall.touch, slid / h, pressed) * h;
+        }
+    }
+    keep(walls, bodies, shifts);
+}
+
+/// Moves out whoever is still behind a wall, or again.
+pub(in crate::constrain) fn keep(walls: &mut [Wall], bodies: &Bodies<'_>, shifts: &mut [Vec3]) {
+    let h = bodies.substep.seconds();
+    for (wall, shift) in walls.iter_mut().zip(shifts).filter(|(wall, _)| wall.state >= NEAR) {
+        let missing = wall.offset - (bodies.position[wall.row as usize] + *shift).dot(wall.normal);
+        if missing > 0.0 {
+            *shift += wall.normal * missing;
+            wall.touch.begin(wall.touch.pressed() + missing / h);
+        }
+    }
+}
