@@ -21,6 +21,9 @@ use glam::{Mat3, Vec3};
 const AHEAD: u32 = 8;
 /// The share of a gap that is missing that a sub-step gives back.
 const RECOVERY: f32 = 0.2;
+/// So many times what rounding may be wrong by has to be missing for a wall to press: what presses less is left to whoever settles velocities, as
+/// rounding would be a large part of it.
+const NOTICED: f32 = 4.0;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 /// What a wall does to its particle: none is near, it is left alone, it slides along, it goes as the wall does.
@@ -177,7 +180,7 @@ impl Wall {
         });
         if self.state == NEAR {
             self.touch.begin(0.0);
-            if most > 0.0 {
+            if most > NOTICED * self.slack {
                 self.press();
             }
         }

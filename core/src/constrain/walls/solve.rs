@@ -1,6 +1,6 @@
 //! Walls while the material is solved: which press, and how particles slide along them.
 
-use super::{NEAR, SLIDES, STICKS, Wall};
+use super::{NEAR, NOTICED, SLIDES, STICKS, Wall};
 use crate::constrain::Bodies;
 use crate::constrain::contacts::Grip;
 use crate::math::{aside, length, max, min};
@@ -64,7 +64,7 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
         changed |= match wall.state {
             NEAR => {
                 let missing = wall.offset - (bodies.position[wall.row as usize] + shift).dot(wall.normal);
-                let presses = missing > 0.5 * wall.slack;
+                let presses = missing > NOTICED * wall.slack;
                 if presses {
                     wall.press();
                 }
