@@ -120,7 +120,7 @@ const CENTRED: [(Vec3, Vec3); 1] = [(Vec3::splat(0.1), Vec3::new(0.0, 0.1, 0.0))
 const APART: [(Vec3, Vec3); 3] = [
     (Vec3::splat(0.1), Vec3::new(0.7, 0.1, 0.2)),
     (Vec3::new(0.3, 0.05, 0.2), Vec3::new(-0.4, 0.05, 0.1)),
-    (Vec3::new(0.05, 0.15, 0.05), Vec3::new(0.05, 0.15, -0.8)),
+    (Vec3::new(0.05, 0.1, 0.05), Vec3::new(0.05, 0.1, -0.8)),
 ];
 const STACKED: [(Vec3, Vec3); 2] =
     [(Vec3::splat(0.1), Vec3::new(0.3, 0.1, 0.0)), (Vec3::new(0.08, 0.05, 0.08), Vec3::new(0.32, 0.25, 0.01))];
@@ -150,7 +150,6 @@ fn a_turntable_carries_what_lies_on_it() {
         let turn = Mat3::from_rotation_y(spin * 10.0);
         for (from, to) in start.into_iter().zip(end) {
             let (off, way) = (to - turn * from, 10.0 * spin * from.with_y(0.0).length());
-            println!("{case}: {off} after {way}");
             assert!(off.y.abs() < 5e-4 * scale, "{case}: {off}");
             assert!(off.length() < 0.01 * way + 2e-4 * scale, "{case}: {off} after {way}");
         }
@@ -170,7 +169,6 @@ fn a_table_that_tilts_carries_what_lies_on_it() {
             let back = Mat3::from_rotation_z(-angle);
             for (from, to) in start.into_iter().zip(end) {
                 let off = back * to - from;
-                println!("{case}: {off}");
                 if holds {
                     assert!(off.length() < 2e-3 * scale, "{case}: {off}");
                 } else {
@@ -186,7 +184,7 @@ fn a_table_that_tilts_carries_what_lies_on_it() {
 fn a_turntable_that_is_too_fast_sheds_what_lies_on_it() {
     for (boxes, substeps, scale) in [(&APART[..], 4, 1.0), (&APART, 20, 0.3), (&STACKED, 10, 1.0)] {
         let case = format!("{} boxes, {substeps} sub-steps, scale {scale}", boxes.len());
-        let (_, end, left_out) = OnTable { boxes, scale, substeps, spin: 0.0 }.run(spinning(12.0), 300);
+        let (_, end, left_out) = OnTable { boxes, scale, substeps, spin: 0.0 }.run(spinning(5.0 / scale.sqrt()), 300);
         assert_eq!(left_out, 0, "{case}");
         for place in end {
             assert!(place.y < -scale, "{case}: {place}");

@@ -94,7 +94,6 @@ pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
         let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
         pair.stand();
         pair.ride(span.h);
-        pair.lag(0.0);
         for i in 0..pair.count {
             let closing = -pair.parting(i);
             let point = &mut pair.points[i];
@@ -175,20 +174,17 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Leaves out of how far apart they are, and of what has crept, the way that the scenery has gone in a sub-step of `h` \[s\].
+    /// Leaves out of how far apart they are, and of what has crept, the way that the scenery has gone in a sub-step of `h` \[s\]; lets them slip as it
+    /// moves from now on, and no longer back.
     fn ride(&mut self, h: f32) {
-        for point in &mut self.points[..self.count] {
-            point.gap -= dot(point.surface, self.normal) * h;
-            point.crept -= aside(point.surface, self.normal) * h;
-        }
-    }
-
-    /// Says how fast they shall slip: as the scenery moves, and so many times a second back by what has crept.
-    fn lag(&mut self, back: f32) {
         let (normal, along) = (self.normal, *self.along);
         for point in &mut self.points[..self.count] {
-            point.lift = dot(point.surface, normal);
-            point.lag = along.map(|along| dot(point.crept, along) * back - dot(point.surface, along));
+            point.lag = [0.0; 2];
+            if point.surface != Vec3::ZERO {
+                point.gap -= point.lift * h;
+                point.crept -= aside(point.surface, normal) * h;
+                point.lag = along.map(|along| -dot(point.surface, along));
+            }
         }
     }
 
@@ -207,9 +203,14 @@ impl<'a> Pair<'a> {
             let [uu, vv, nn, uv, un, vn] = sum;
             point.rub = [uu, 2.0 * uv, vv];
             point.answer = [un, vn];
+            point.lag = along.map(|along| dot(point.crept, along) * back);
+            point.lift = 0.0;
+            if point.surface != Vec3::ZERO {
+                point.lift = dot(point.surface, normal);
+                point.lag = [0, 1].map(|k| point.lag[k] - dot(point.surface, along[k]));
+            }
             point.mass = 1.0 / nn;
         }
-        self.lag(back);
     }
 
     /// Says how fast two that come together shall part: the elastic answer to the speed at which they meet, u² = u₀² + 2 a s over the gap s, so that
