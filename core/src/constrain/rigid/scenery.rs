@@ -185,6 +185,7 @@ impl Visit<'_> {
         slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
         if let Some(point) = slot.points.get_mut(slot.count as usize - 1) {
             point.surface = mean_velocity(bodies, contact, self.body.small());
+            point.lift = dot(point.surface, slot.normal);
         }
     }
 

@@ -132,6 +132,8 @@ pub(super) fn remember(order: &mut Order<'_>) {
 /// Two bodies, and where they touch.
 struct Pair<'a> {
     bodies: [&'a mut Body; 2],
+    /// The first is the world.
+    on_scenery: bool,
     /// Tells who is pushed: not one that sleeps and has been lain against since before.
     gives: [bool; 2],
     /// From the first to the second, in the world.
@@ -158,7 +160,16 @@ impl<'a> Pair<'a> {
         let Manifold { friction, rested, .. } = *manifold;
         manifold.axis = normal;
         let gives = [0, 1].map(|side| bodies[side].gives(rested));
-        Some(Self { bodies, gives, normal, friction, points: &mut manifold.points, count, along: &mut manifold.along })
+        Some(Self {
+            bodies,
+            on_scenery: numbers[0] == 0,
+            gives,
+            normal,
+            friction,
+            points: &mut manifold.points,
+            count,
+            along: &mut manifold.along,
+        })
     }
 
     /// Follows the bodies' places.
@@ -177,10 +188,10 @@ impl<'a> Pair<'a> {
     /// Leaves out of how far apart they are, and of what has crept, the way that the scenery has gone in a sub-step of `h` \[s\]; lets them slip as it
     /// moves from now on, and no longer back.
     fn ride(&mut self, h: f32) {
-        let (normal, along) = (self.normal, *self.along);
+        let (on_scenery, normal, along) = (self.on_scenery, self.normal, *self.along);
         for point in &mut self.points[..self.count] {
             point.lag = [0.0; 2];
-            if point.surface != Vec3::ZERO {
+            if on_scenery && point.surface != Vec3::ZERO {
                 point.gap -= point.lift * h;
                 point.crept -= aside(point.surface, normal) * h;
                 point.lag = along.map(|along| -dot(point.surface, along));
@@ -190,7 +201,7 @@ impl<'a> Pair<'a> {
 
     /// Finds what impulses at each point do to the speeds there; so many times a second what has crept is taken back.
     fn weigh(&mut self, back: f32) {
-        let (normal, [a, b], gives) = (self.normal, &self.bodies, self.gives);
+        let (on_scenery, normal, [a, b], gives) = (self.on_scenery, self.normal, &self.bodies, self.gives);
         let along = [across(normal), normal.cross(across(normal))];
         *self.along = along;
         let directions = [along[0], along[1], normal];
@@ -204,9 +215,7 @@ impl<'a> Pair<'a> {
             point.rub = [uu, 2.0 * uv, vv];
             point.answer = [un, vn];
             point.lag = along.map(|along| dot(point.crept, along) * back);
-            point.lift = 0.0;
-            if point.surface != Vec3::ZERO {
-                point.lift = dot(point.surface, normal);
+            if on_scenery && point.surface != Vec3::ZERO {
                 point.lag = [0, 1].map(|k| point.lag[k] - dot(point.surface, along[k]));
             }
             point.mass = 1.0 / nn;
