@@ -191,3 +191,17 @@ fn a_turntable_that_is_too_fast_sheds_what_lies_on_it() {
         }
     }
 }
+
+/// A box asleep in the middle of a table wakes when that begins to turn, where its middle is not moved by it, and goes round with it.
+#[test]
+fn who_sleeps_on_an_axis_turns() {
+    for (substeps, scale, angle) in [(10, 1.0, 0.5), (4, 0.3, 0.05)] {
+        let key = |time, turn| Key { time, place: Vec3::ZERO, rotation: Vec3::Y * turn };
+        let motion = Motion::with_keys(vec![key(0.0, 0.0), key(4.0, 0.0), key(8.0, angle), key(20.0, angle)], 0.0);
+        let (start, end, _) = OnTable { boxes: &CENTRED, scale, substeps, spin: 0.0 }.run(motion, 600);
+        for (from, to) in start.into_iter().zip(end) {
+            let (off, way) = (to - Mat3::from_rotation_y(angle) * from, angle * from.length());
+            assert!(off.length() < 0.01 * way + 1e-4 * scale, "{substeps} {scale} {angle}: {off} after {way}");
+        }
+    }
+}
