@@ -14,7 +14,7 @@ use glam::{Mat3, Vec3};
 pub(super) struct Point {
     /// The place on each, in its box's frame \[m\].
     pub(super) places: [Vec3; 2],
-    /// From the centre of each to the middle between them \[m\]. Passes read this and what follows up to the friction in one go.
+    /// From the centre of each to the middle between them \[m\]. Passes read this and what follows up to the lift in one go.
     pub(super) arms: [Vec3; 2],
     /// How fast they shall part in the passes under way \[m/s\].
     pub(super) wanted: f32,
