@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::facets::{Spot, four};
 use super::forms::{Form, with_apart};
+use super::solver::Span;
 use crate::material::Mixed;
 use crate::math::{dot, max, min};
 use glam::{Mat3, Vec3};
@@ -13,15 +14,15 @@ use glam::{Mat3, Vec3};
 pub(super) struct Point {
     /// The place on each, in its box's frame \[m\].
     pub(super) places: [Vec3; 2],
-    /// From the centre of each to the middle between them \[m\]. Passes read this and what follows up to the friction in one go.
+    /// From the centre of each to the middle between them \[m\]. Passes read this and what follows up to the lift in one go.
     pub(super) arms: [Vec3; 2],
     /// How fast they shall part in the passes under way \[m/s\].
     pub(super) wanted: f32,
     /// The impulse that makes them part by 1 m/s \[kg\], and how the slip along the surface changes by one along the normal \[1/kg\].
     pub(super) mass: f32,
     pub(super) answer: [f32; 2],
-    /// How far the second has crept along the first since friction has held them there, along the two directions across the normal \[m\].
-    pub(super) crept_along: [f32; 2],
+    /// How fast what has crept shall be taken back, less how fast the scenery moves, along the two directions across the normal \[m/s\].
+    pub(super) lag: [f32; 2],
     /// How much the slip (u, v) along the surface changes by an impulse along itself \[1/kg\]: the factors of u², uv and v².
     pub(super) rub: [f32; 3],
     /// The change that forces make to the speed of either in a sub-step \[m/s\].
@@ -29,15 +30,24 @@ pub(super) struct Point {
     /// The impulse that keeps them apart, and that of friction on the second along these directions \[N s\].
     pub(super) pressed: f32,
     pub(super) held_along: [f32; 2],
+    /// How fast the scenery moves there along the normal \[m/s\].
+    pub(super) lift: f32,
+    /// How the scenery moves there, in the mean over the sub-step \[m/s\].
+    pub(super) surface: Vec3,
     /// How far apart they are \[m\].
     pub(super) gap: f32,
-    /// The impulse of friction, and the way crept, in the world \[N s, m\].
+    /// The impulse of friction, and how far the second has crept along the first since that has held them there, in the world \[N s, m\].
     pub(super) held: Vec3,
     pub(super) crept: Vec3,
     /// How fast they shall part \[m/s\].
     pub(super) bounce: f32,
-    /// The speed below which they come together by their weight, not by a blow \[m/s\].
-    pub(super) calm: f32,
+}
+
+impl Point {
+    /// The speed below which the two come together by their weight, not by a blow \[m/s\].
+    pub(super) fn calm(&self, span: Span) -> f32 {
+        self.driven * span.step / span.h
+    }
 }
 
 /// Points that two have at the most.
@@ -68,8 +78,6 @@ pub(super) struct Manifold {
     /// The normal, and two directions across it, in the world. Passes read this and what follows up to the friction in one go.
     pub(super) axis: Vec3,
     pub(super) along: [Vec3; 2],
-    /// How the scenery moves \[m/s\].
-    pub(super) surface: Vec3,
     pub(super) friction: [f32; 2],
     pub(super) elasticity: f32,
     /// 1 if they are gone over until blows are shared.

@@ -230,7 +230,7 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         let mut order = numbers.with([&mut pairs[..len], scenery]);
         solver::begin(all, &mut order, span);
         solver::hold_on(all, &mut order);
-        solver::keep_apart(all, &mut order, span);
+        solver::keep_apart(all, &mut order);
         solver::mark_pressed(all, &order);
         all.iter_mut().for_each(|body| body.go(span.h));
         solver::part(all, &mut order, span);
@@ -331,7 +331,7 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         if kept.bodies[1..].iter().any(Body::is_awake) {
             self.solve(bodies, &mut kept, share.scratch, span);
             tell_balls(bodies, &kept);
-            tell::all(bodies, &kept, self.forms());
+            tell::all(bodies, &kept, self.forms(), span);
         }
         bodies.report.contacts += kept.pairs[..len].iter().filter(|pair| presses(pair)).count() as u64;
         bodies.report.hits += kept.scenery.iter().filter(|slot| presses(slot)).count() as u64;

@@ -17,8 +17,6 @@ pub(super) struct Passes<'a, 'b> {
     pub(super) order: &'a mut Order<'b>,
     /// How often at the most.
     pub(super) count: u32,
-    /// So many times a second what has crept is taken back.
-    pub(super) back: f32,
 }
 
 /// Some of those that touch, by their numbers in the order.
@@ -111,7 +109,7 @@ impl Passes<'_, '_> {
                 bodies[lane] = body.unwrap_or(nobody);
             }
         }
-        let mut touch = Touch::of(like, &manifolds, &bodies, self.back);
+        let mut touch = Touch::of(like, &manifolds, &bodies);
         touch.press_evenly();
         for i in 0..POINTS {
             touch.press(i);
@@ -230,10 +228,11 @@ struct Spot<F> {
     /// Where there is such a point.
     is_there: F,
     arms: [Vectors<F>; 2],
+    /// How fast they shall part, the scenery's own speed included.
     wanted: F,
     mass: F,
     answer: [F; 2],
-    crept: [F; 2],
+    lag: [F; 2],
     rub: [F; 3],
     /// The change of speed that is too small to go over their neighbours for.
     little: F,
@@ -243,7 +242,7 @@ struct Spot<F> {
 
 impl<F: Eight> Spot<F> {
     #[inline(always)]
-    fn of(like: F, manifolds: &[&Manifold; LANES], i: usize, back: F) -> Self {
+    fn of(like: F, manifolds: &[&Manifold; LANES], i: usize) -> Self {
         let (mut rows, mut count) = ([[[0.0; 4]; LANES]; 5], [0.0; LANES]);
         for (lane, manifold) in manifolds.iter().enumerate() {
             count[lane] = manifold.count as f32;
@@ -256,14 +255,14 @@ impl<F: Eight> Spot<F> {
         let [by, bz, wanted, mass] = like.quads_of(b);
         let [p, q, s, t] = like.quads_of(c);
         let [uu, uv, vv, driven] = like.quads_of(d);
-        let [pressed, u, v] = like.columns_of(e);
+        let [pressed, u, v, lift] = like.quads_of(e);
         Self {
             is_there: like.of(count).simd_gt(like.all(i as f32)),
             arms: [Vectors([ax, ay, az]), Vectors([bx, by, bz])],
-            wanted,
+            wanted: wanted + lift,
             mass,
             answer: [p, q],
-            crept: [s * back, t * back],
+            lag: [s, t],
             rub: [uu, uv, vv],
             little: max(max(wanted, like.all(0.0)), driven) * like.all(SETTLED),
             pressed,
@@ -277,7 +276,6 @@ struct Touch<F> {
     motions: [Motion<F>; 2],
     normal: Vectors<F>,
     along: [Vectors<F>; 2],
-    surface: Vectors<F>,
     friction: [F; 2],
     spots: [Spot<F>; POINTS],
     /// Where some change was large enough to go over their neighbours again.
@@ -286,30 +284,27 @@ struct Touch<F> {
 
 impl<F: Eight> Touch<F> {
     #[inline(always)]
-    fn of(like: F, manifolds: &[&Manifold; LANES], bodies: &[[&Body; LANES]; 2], back: f32) -> Self {
-        let mut rows = [[[0.0; 4]; LANES]; 4];
+    fn of(like: F, manifolds: &[&Manifold; LANES], bodies: &[[&Body; LANES]; 2]) -> Self {
+        let mut rows = [[[0.0; 4]; LANES]; 3];
         for (lane, &manifold) in manifolds.iter().enumerate() {
             for (k, row) in rows.iter_mut().enumerate() {
                 row[lane] = four(manifold, offset_of!(Manifold, axis) / 4 + 4 * k);
             }
         }
-        let [a, b, c, d] = rows;
+        let [a, b, c] = rows;
         let [x, y, z, ux] = like.quads_of(a);
         let [uy, uz, vx, vy] = like.quads_of(b);
-        let [vz, sx, sy, sz] = like.quads_of(c);
-        let [sticks, slides, ..] = like.quads_of(d);
-        let back = like.all(back);
+        let [vz, sticks, slides, _] = like.quads_of(c);
         Self {
             motions: [Motion::of(like, &bodies[0]), Motion::of(like, &bodies[1])],
             normal: Vectors([x, y, z]),
             along: [Vectors([ux, uy, uz]), Vectors([vx, vy, vz])],
-            surface: Vectors([sx, sy, sz]),
             friction: [sticks, slides],
             spots: [
-                Spot::of(like, manifolds, 0, back),
-                Spot::of(like, manifolds, 1, back),
-                Spot::of(like, manifolds, 2, back),
-                Spot::of(like, manifolds, 3, back),
+                Spot::of(like, manifolds, 0),
+                Spot::of(like, manifolds, 1),
+                Spot::of(like, manifolds, 2),
+                Spot::of(like, manifolds, 3),
             ],
             is_changed: like.all(0.0),
         }
@@ -319,7 +314,7 @@ impl<F: Eight> Touch<F> {
     #[inline(always)]
     fn slip(&self, [one, other]: [Vectors<F>; 2]) -> Vectors<F> {
         let [a, b] = &self.motions;
-        b.at(other) - a.at(one) - self.surface
+        b.at(other) - a.at(one)
     }
 
     #[inline(always)]
@@ -364,17 +359,17 @@ impl<F: Eight> Touch<F> {
     }
 
     /// Brings the speed at which they part at a point to what is wanted, as far as pushing alone does it; then takes from their slip, and from
-    /// what they have crept at so many times a second, what Coulomb's friction can.
+    /// what they lag behind the scenery and where they were held, what Coulomb's friction can.
     #[inline(always)]
     fn press(&mut self, i: usize) {
         let like = self.friction[0];
         let (zero, one) = (like.all(0.0), like.all(1.0));
-        let Spot { is_there, arms, wanted, mass, answer, crept, rub, little, pressed, held } = self.spots[i];
+        let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, pressed, held } = self.spots[i];
         let slip = self.slip(arms);
         let new = max(pressed + (wanted - slip.dot(self.normal)) * mass, zero);
         let impulse = new - pressed;
-        let u = slip.dot(self.along[0]) + answer[0] * impulse + crept[0];
-        let v = slip.dot(self.along[1]) + answer[1] * impulse + crept[1];
+        let u = slip.dot(self.along[0]) + answer[0] * impulse + lag[0];
+        let v = slip.dot(self.along[1]) + answer[1] * impulse + lag[1];
         let (square, yields) = (u * u + v * v, rub[0] * (u * u) + rub[1] * (u * v) + rub[2] * (v * v));
         let rubs = (square / yields) & square.simd_gt(zero);
         let [x, y] = [held[0] - u * rubs, held[1] - v * rubs];

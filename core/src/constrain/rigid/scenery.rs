@@ -59,13 +59,17 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
     let mut visit = Visit { body, form, number, slots, before, reach };
     (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
     visit.scenery(bodies);
-    let is_moving = visit.slots.iter().any(|slot| slot.count > 0 && slot.surface != Vec3::ZERO);
-    body.spare = if is_moving { 0.0 } else { small };
+    body.spare = if is_carried(visit.slots) { 0.0 } else { small };
 }
 
-/// The number of places of the scenery that are near a body; none if one of them moves.
-pub(super) fn faces(bodies: &Bodies<'_>, body: &Body) -> Option<u32> {
-    let (mut count, mut moves) = (0, false);
+/// Tells whether the scenery moves at any place where a body touches it: what turns stands still on its axis.
+fn is_carried(slots: &[Manifold]) -> bool {
+    slots.iter().flat_map(Manifold::points).any(|point| point.surface != Vec3::ZERO)
+}
+
+/// The number of places of the scenery that are near a body; none if one of them moves, or one where it touches.
+pub(super) fn faces(bodies: &Bodies<'_>, body: &Body, slots: &[Manifold]) -> Option<u32> {
+    let (mut count, mut moves) = (0, is_carried(slots));
     if !bodies.colliders.is_empty() {
         let reach = length(body.half) + body.small();
         bodies.colliders.contacts(body.middle(), reach, bodies.substep.during[0], &mut |contact| {
@@ -76,14 +80,14 @@ pub(super) fn faces(bodies: &Bodies<'_>, body: &Body) -> Option<u32> {
     (!moves).then_some(count)
 }
 
-/// Tells whether the scenery still is where a body touches it.
+/// Tells whether the scenery still is where a body touches it, and at rest.
 pub(super) fn holds(bodies: &Bodies<'_>, body: &Body, slots: &[Manifold]) -> bool {
     let (at, small) = (bodies.substep.during[0], body.small());
     slots.iter().all(|slot| {
         slot.points().iter().all(|point| {
             let (place, mut is_there) = (point.places[0], false);
             bodies.colliders.contacts(place, small, at, &mut |contact| {
-                is_there |= length(contact.point - place) <= 0.1 * small;
+                is_there |= length(contact.point - place) <= 0.1 * small && contact.velocity == Vec3::ZERO;
             });
             is_there
         })
@@ -148,48 +152,79 @@ impl Visit<'_> {
 
     /// Adds a place, to the points on the same face if there are any.
     fn put(&mut self, bodies: &mut Bodies<'_>, contact: &Contact, place: Vec3) {
-        let Contact { point, normal, velocity, material, .. } = *contact;
-        let on = |slot: &Manifold| slot.count > 0 && slot.surface == velocity && dot(slot.normal, normal) > ONE_FACE;
-        let free = |slot: &Manifold| slot.count == 0;
-        let number = self.slots.iter().position(on).or_else(|| self.slots.iter().position(free));
-        let Some(slot) = number.and_then(|number| self.slots.get_mut(number)) else {
+        let Contact { point, normal, .. } = *contact;
+        let Some(number) = self.slot(bodies, contact) else {
             bodies.report.caps.contacts += 1;
             return;
         };
-        if slot.count == 0 {
-            let own = (self.body.material as u16).checked_sub(1);
-            let mixed = on_surface(bodies.materials, self.body.elasticity, own, material);
-            *slot = Manifold { normal, surface: velocity, ..Manifold::of([0, self.number], mixed) };
-        }
+        let Some(slot) = self.slots.get_mut(number) else { return };
         // Where it is over the surface, whatever the way on which that was met.
         let over = self.body.point(place);
         let on = over - normal * dot(normal, over - point);
-        let twice = slot.points().iter().any(|other| other.places[1] == place);
-        let gap = |point: Vec3| dot(normal, self.body.point(place) - point);
-        if twice {
+        if slot.points().iter().any(|other| other.places[1] == place) {
             return;
         }
         let near = |slot: &&Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
         let before = self.before.iter().find(near).map_or(&[][..], Manifold::points);
-        if slot.count < 4 {
-            slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
-            return;
-        }
-        // Of more than four on a face the deepest count.
-        let (body, mut least) = (self.body, (0, f32::NEG_INFINITY));
-        for (i, other) in slot.points.iter().enumerate() {
-            let gap = dot(normal, body.point(other.places[1]) - other.places[0]);
-            if gap > least.1 {
-                least = (i, gap);
+        if slot.count >= 4 {
+            // Of more than four on a face the deepest count.
+            let (body, mut least) = (self.body, (0, f32::NEG_INFINITY));
+            for (i, other) in slot.points.iter().enumerate() {
+                let gap = dot(normal, body.point(other.places[1]) - other.places[0]);
+                if gap > least.1 {
+                    least = (i, gap);
+                }
             }
-        }
-        if gap(point) < least.1 {
+            if !(dot(normal, over - point) < least.1) {
+                return;
+            }
             let last = slot.points[3];
             slot.points[least.0] = last;
             slot.count = 3;
-            slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
+        }
+        slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
+        if let Some(point) = slot.points.get_mut(slot.count as usize - 1) {
+            point.surface = mean_velocity(bodies, contact, self.body.small());
+            point.lift = dot(point.surface, slot.normal);
         }
     }
+
+    /// The number of the slot of a face: of its normal, and of what moves as the first place there does or feels like it; a free one if there is none.
+    fn slot(&mut self, bodies: &Bodies<'_>, contact: &Contact) -> Option<usize> {
+        let Contact { normal, velocity, material, .. } = *contact;
+        let own = (self.body.material as u16).checked_sub(1);
+        let fresh = || {
+            let mixed = on_surface(bodies.materials, self.body.elasticity, own, material);
+            Manifold { normal, ..Manifold::of([0, self.number], mixed) }
+        };
+        let is_like = |slot: &Manifold| {
+            let fresh = fresh();
+            slot.friction == fresh.friction && slot.elasticity == fresh.elasticity
+        };
+        let on = |slot: &Manifold| {
+            slot.count > 0
+                && dot(slot.normal, normal) > ONE_FACE
+                && (slot.points[0].surface == velocity || is_like(slot))
+        };
+        if let Some(number) = self.slots.iter().position(on) {
+            return Some(number);
+        }
+        let number = self.slots.iter().position(|slot| slot.count == 0)?;
+        self.slots[number] = fresh();
+        Some(number)
+    }
+}
+
+/// The mean velocity in the sub-step of what the scenery has at a contact \[m/s\]: what turns leads on along its arc.
+fn mean_velocity(bodies: &Bodies<'_>, contact: &Contact, small: f32) -> Vec3 {
+    let Contact { point, normal, velocity, .. } = *contact;
+    if velocity == Vec3::ZERO {
+        return velocity;
+    }
+    let way = normal * small;
+    let seat = Segment { from: point + way, to: point - way, radius: 0.0, during: bodies.substep.during };
+    let change = bodies.colliders.ride(&seat).map_or(Vec3::ZERO, |ride| ride.velocity[1] - ride.velocity[0]);
+    velocity + change * 0.5
 }
 
 /// A bound on how far a body goes in a time \[m\].

@@ -225,7 +225,8 @@ pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
 pub(super) fn look_around(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     for number in 1..kept.first_ball() {
         let (body, slots) = (&kept.bodies[number], &kept.scenery[DIRECTIONS * (number - 1)..][..DIRECTIONS]);
-        if body.sleeps() && !(scenery::faces(bodies, body) == Some(body.faces) && scenery::holds(bodies, body, slots)) {
+        let is_as_before = || scenery::faces(bodies, body, slots) == Some(body.faces);
+        if body.sleeps() && !(is_as_before() && scenery::holds(bodies, body, slots)) {
             call(kept.bodies, number);
         }
     }
@@ -343,7 +344,7 @@ fn free(all: &mut [Body]) {
 /// At the end of a step: lets those sleep who have lain still for long enough, if all that they touch have.
 pub(super) fn settle(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     let (step, first) = (bodies.substep.step.seconds(), kept.first_ball());
-    let Kept { bodies: all, pairs, lists, .. } = kept;
+    let Kept { bodies: all, pairs, lists, scenery, .. } = kept;
     let pairs = &mut pairs[..lists.pairs as usize];
     if !all[1..first].iter().any(Body::is_awake) {
         return;
@@ -354,7 +355,8 @@ pub(super) fn settle(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
         if body.is_awake() {
             body.calls = RESTLESS;
             if number < first && body.is_still(step) {
-                let faces = scenery::faces(bodies, body);
+                let slots = scenery.chunks(DIRECTIONS).nth(number - 1).unwrap_or(&[]);
+                let faces = scenery::faces(bodies, body, slots);
                 body.faces = faces.unwrap_or(0);
                 body.calls = if faces.is_some() { 0 } else { BORNE };
             }

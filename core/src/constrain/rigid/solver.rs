@@ -50,7 +50,7 @@ pub(super) fn begin(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
         let Some(mut pair) = Pair::of(bodies, manifold) else { continue };
         pair.let_slide();
         pair.stand();
-        pair.weigh();
+        pair.weigh(RECOVERY / span.h);
         pair.expect(elasticity, span);
     }
 }
@@ -71,8 +71,8 @@ pub(super) fn hold_on(bodies: &mut [Body], order: &mut Order<'_>) {
 }
 
 /// Keeps all from passing into each other within the sub-step, by velocities: before they go.
-pub(super) fn keep_apart(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
-    run_abreast(Passes { bodies, order, count: PASSES, back: RECOVERY / span.h });
+pub(super) fn keep_apart(bodies: &mut [Body], order: &mut Order<'_>) {
+    run_abreast(Passes { bodies, order, count: PASSES });
 }
 
 /// Notes what presses on whom.
@@ -100,7 +100,7 @@ pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
             point.wanted = point.bounce;
             if !(point.pressed > 0.0 || point.gap <= 0.0) {
                 // Who does not touch yet closes the gap in the next sub-step at the most, or meets for a blow then.
-                let is_calm = closing <= point.calm;
+                let is_calm = closing <= point.calm(span);
                 point.wanted = if is_calm { -point.gap / span.h } else { f32::NEG_INFINITY };
             }
             if point.wanted > 0.0 {
@@ -114,7 +114,7 @@ pub(super) fn part(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
             manifold.lasts = manifold.bodies.iter().map(|&number| bodies[number as usize].bounces).fold(0, u32::max);
         }
     }
-    run_abreast(Passes { bodies, order, count: if bounces { BLOWS } else { PASSES }, back: 0.0 });
+    run_abreast(Passes { bodies, order, count: if bounces { BLOWS } else { PASSES } });
 }
 
 /// Notes the friction at all points, for the next sub-step.
@@ -132,11 +132,12 @@ pub(super) fn remember(order: &mut Order<'_>) {
 /// Two bodies, and where they touch.
 struct Pair<'a> {
     bodies: [&'a mut Body; 2],
+    /// The first is the world.
+    on_scenery: bool,
     /// Tells who is pushed: not one that sleeps and has been lain against since before.
     gives: [bool; 2],
     /// From the first to the second, in the world.
     normal: Vec3,
-    surface: Vec3,
     friction: [f32; 2],
     points: &'a mut [Point; 4],
     count: usize,
@@ -156,14 +157,14 @@ impl<'a> Pair<'a> {
             return None;
         }
         let normal = bodies[0].rotation * manifold.normal;
-        let Manifold { surface, friction, rested, .. } = *manifold;
+        let Manifold { friction, rested, .. } = *manifold;
         manifold.axis = normal;
         let gives = [0, 1].map(|side| bodies[side].gives(rested));
         Some(Self {
             bodies,
+            on_scenery: numbers[0] == 0,
             gives,
             normal,
-            surface,
             friction,
             points: &mut manifold.points,
             count,
@@ -184,15 +185,23 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Leaves out of what has crept in a sub-step of `h` \[s\] the way that the scenery has gone meanwhile.
+    /// Leaves out of how far apart they are, and of what has crept, the way that the scenery has gone in a sub-step of `h` \[s\]; lets them slip as it
+    /// moves from now on, and no longer back.
     fn ride(&mut self, h: f32) {
-        let way = aside(self.surface, self.normal) * h;
-        self.points[..self.count].iter_mut().for_each(|point| point.crept -= way);
+        let (on_scenery, normal, along) = (self.on_scenery, self.normal, *self.along);
+        for point in &mut self.points[..self.count] {
+            point.lag = [0.0; 2];
+            if on_scenery && point.surface != Vec3::ZERO {
+                point.gap -= point.lift * h;
+                point.crept -= aside(point.surface, normal) * h;
+                point.lag = along.map(|along| -dot(point.surface, along));
+            }
+        }
     }
 
-    /// Finds what impulses at each point do to the speeds there.
-    fn weigh(&mut self) {
-        let (normal, [a, b], gives) = (self.normal, &self.bodies, self.gives);
+    /// Finds what impulses at each point do to the speeds there; so many times a second what has crept is taken back.
+    fn weigh(&mut self, back: f32) {
+        let (on_scenery, normal, [a, b], gives) = (self.on_scenery, self.normal, &self.bodies, self.gives);
         let along = [across(normal), normal.cross(across(normal))];
         *self.along = along;
         let directions = [along[0], along[1], normal];
@@ -205,7 +214,10 @@ impl<'a> Pair<'a> {
             let [uu, vv, nn, uv, un, vn] = sum;
             point.rub = [uu, 2.0 * uv, vv];
             point.answer = [un, vn];
-            point.crept_along = along.map(|along| dot(point.crept, along));
+            point.lag = along.map(|along| dot(point.crept, along) * back);
+            if on_scenery && point.surface != Vec3::ZERO {
+                point.lag = [0, 1].map(|k| point.lag[k] - dot(point.surface, along[k]));
+            }
             point.mass = 1.0 / nn;
         }
     }
@@ -221,10 +233,9 @@ impl<'a> Pair<'a> {
             let meets = sqrt(max(before * before + 2.0 * (now - before) / span.h * point.gap, 0.0));
             let bounce = if now > 0.0 { elasticity * meets } else { 0.0 };
             point.bounce = if 2.0 * bounce * span.h < RESTING * span.step * driven { 0.0 } else { bounce };
-            point.calm = driven * span.step / span.h;
             point.driven = driven;
             point.wanted = -point.gap * if point.gap > 0.0 { 1.0 } else { RECOVERY } / span.h;
-            if max(now.abs(), before.abs()) > point.calm {
+            if max(now.abs(), before.abs()) > point.calm(span) {
                 // What held the last sub-step says nothing of a blow.
                 (point.pressed, point.held) = (0.0, Vec3::ZERO);
             }
@@ -245,8 +256,8 @@ impl<'a> Pair<'a> {
 
     /// How the second moves there as seen from the first \[m/s\].
     fn slip(&self, i: usize) -> Vec3 {
-        let ([a, b], arms) = (&self.bodies, self.points[i].arms);
-        b.velocity_at(arms[1]) - a.velocity_at(arms[0]) - self.surface
+        let ([a, b], Point { arms, surface, .. }) = (&self.bodies, self.points[i]);
+        b.velocity_at(arms[1]) - a.velocity_at(arms[0]) - surface
     }
 
     fn parting(&self, i: usize) -> f32 {
@@ -255,8 +266,8 @@ impl<'a> Pair<'a> {
 
     /// The same as the sub-step began.
     fn parting_before(&self, i: usize) -> f32 {
-        let ([a, b], arms) = (&self.bodies, self.points[i].arms);
-        dot(b.velocity_before(arms[1]) - a.velocity_before(arms[0]) - self.surface, self.normal)
+        let ([a, b], Point { arms, surface, .. }) = (&self.bodies, self.points[i]);
+        dot(b.velocity_before(arms[1]) - a.velocity_before(arms[0]) - surface, self.normal)
     }
 
     fn push(&mut self, arms: [Vec3; 2], impulse: Vec3) {

@@ -4,19 +4,20 @@ use super::super::Bodies;
 use super::balls::Ball;
 use super::forms::Forms;
 use super::lists::Kept;
-use super::manifold::Manifold;
+use super::manifold::{Manifold, Point};
+use super::solver::Span;
 use crate::math::dot;
 use crate::observe::{Attention, Impact};
 use glam::Vec3;
 
 /// Tells of all blows in the sub-step: of who came together faster than what rests does.
-pub(super) fn all(bodies: &mut Bodies<'_>, kept: &Kept<'_>, forms: Forms<'_>) {
+pub(super) fn all(bodies: &mut Bodies<'_>, kept: &Kept<'_>, forms: Forms<'_>, span: Span) {
     if bodies.observer.attention() == Attention::Nothing {
         return;
     }
     let pairs = &kept.pairs[..kept.lists.pairs as usize];
     for manifold in pairs.iter().chain(&*kept.scenery) {
-        if let Some(blow) = Blow::of(manifold, kept) {
+        if let Some(blow) = Blow::of(manifold, kept, span) {
             blow.tell(bodies, kept, forms);
         }
     }
@@ -28,21 +29,23 @@ struct Blow<'a> {
     /// From the first to the second.
     normal: Vec3,
     arms: [Vec3; 2],
+    /// How the scenery moves there \[m/s\].
+    surface: Vec3,
     /// How fast they came together \[m/s\].
     closing: f32,
 }
 
 impl<'a> Blow<'a> {
-    fn of(manifold: &'a Manifold, kept: &Kept<'_>) -> Option<Self> {
+    fn of(manifold: &'a Manifold, kept: &Kept<'_>, span: Span) -> Option<Self> {
         let [a, b] = manifold.bodies.map(|number| &kept.bodies[number as usize]);
         let normal = a.rotation * manifold.normal;
         let mut hardest: Option<Self> = None;
         for point in manifold.points().iter().filter(|point| point.pressed > 0.0) {
-            let [one, other] = point.arms;
-            let slip = b.velocity_before(other) - a.velocity_before(one) - manifold.surface;
+            let Point { arms: [one, other], surface, .. } = *point;
+            let slip = b.velocity_before(other) - a.velocity_before(one) - surface;
             let closing = -dot(slip, normal);
-            if closing > point.calm && hardest.as_ref().is_none_or(|blow| closing > blow.closing) {
-                hardest = Some(Self { manifold, normal, arms: point.arms, closing });
+            if closing > point.calm(span) && hardest.as_ref().is_none_or(|blow| closing > blow.closing) {
+                hardest = Some(Self { manifold, normal, arms: point.arms, surface, closing });
             }
         }
         hardest
@@ -57,7 +60,7 @@ impl<'a> Blow<'a> {
             let (arm, other) = (self.arms[side], rows[1 - side].and_then(|row| bodies.id(row)));
             let (before, after) = (body.velocity_before(arm), body.velocity_at(arm));
             let (mass, place, time) = (1.0 / body.inverse_mass, body.center + arm, bodies.substep.during[1]);
-            let (closing, surface) = (self.closing, self.manifold.surface);
+            let (closing, surface) = (self.closing, self.surface);
             bodies.tell(&Impact { id, row, other, mass, place, normal, closing, before, after, surface, time });
         }
     }
