@@ -47,7 +47,7 @@ impl Touch {
         [self.static_, self.kinetic]
     }
 
-    pub(super) fn has_friction(&self) -> bool {
+    pub(in crate::constrain) fn has_friction(&self) -> bool {
         self.static_ + self.kinetic > 0.0
     }
 

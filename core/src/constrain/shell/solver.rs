@@ -20,9 +20,9 @@ const ITERATIONS: u32 = 400;
 /// Solutions in turn with the question which walls press, at the most.
 const PASSES: u32 = 8;
 /// What may be left of a solution, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses; and where
-/// walls press, as friction goes by what these bear.
+/// walls press that are rough, as friction goes by what these bear.
 const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
-const PRESSED: [f32; 2] = [3e-4, 1e-4];
+const ROUGH: [f32; 2] = [3e-4, 1e-4];
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
@@ -229,7 +229,7 @@ impl Solver<'_> {
     fn descend(&mut self, levels: &mut Levels<'_>, enough: &mut [f32; 2], report: &mut Report) {
         let mut by_masses = levels.is_empty();
         let mut first = self.vectors.begin(levels, self.walls, by_masses);
-        let residual = if self.walls.iter().any(Wall::presses) { PRESSED } else { RESIDUAL };
+        let residual = if self.walls.iter().any(Wall::rubs) { ROUGH } else { RESIDUAL };
         let mut note = |first: f32, by_masses: bool| {
             let kind = usize::from(by_masses);
             enough[kind] = max(first * (residual[kind] * residual[kind]), enough[kind]);

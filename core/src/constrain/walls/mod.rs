@@ -130,6 +130,11 @@ impl Wall {
         self.state > NEAR
     }
 
+    /// Tells whether it presses its particle, and not smoothly.
+    pub(super) fn rubs(&self) -> bool {
+        self.presses() && self.touch.has_friction()
+    }
+
     /// What a stiffness of it, that is as good as none giving way, adds to what a particle of so much of its own does.
     pub(super) fn stiffness(&self, own: f32) -> Mat3 {
         /// Its stiffness in those of its particle.
