@@ -93,7 +93,7 @@ fn particle(random: &mut Random, plane: &Plane, [scale, radius]: [f32; 2], wild:
     let (up, aside) = (plane.normal.normalize(), r.vector(3.0 * scale));
     let height = one_of(r, &[0.0, 0.0, 1e-6, 0.01, 0.3, 1.0, -0.2]) * scale * r.between(0.5, 1.0);
     let speed = one_of(r, &[0.0, 0.01, 1.0, 12.0]) * scale;
-    let is_odd = |r: &mut Random| wild && r.word() % 40 == 0;
+    let is_odd = |r: &mut Random| wild && r.word().is_multiple_of(40);
     let strange = if is_odd(r) { one_of(r, &[f32::NAN, f32::INFINITY, 1e3, 1e-40]) } else { 1.0 };
     let radius = radius * one_of(r, &[1.0, 1.0, 0.4, 3.0]);
     Particle {
@@ -104,7 +104,7 @@ fn particle(random: &mut Random, plane: &Plane, [scale, radius]: [f32; 2], wild:
         mass: if is_odd(r) { one_of(r, &[1e-38, 1e38, 0.0, f32::INFINITY, -1.0]) } else { r.between(0.5, 2.0) },
         elasticity: one_of(r, &[0.0, 0.5, 0.9, 1.0, 1.5, f32::NAN, -0.1, 0.3, 0.7]),
         material: one_of(r, &[None, Some(0), Some(1), Some(9)]),
-        fixed: r.word() % 41 == 0,
+        fixed: r.word().is_multiple_of(41),
         lifetime: one_of(r, &[0.0, 0.0, 0.0, -1.0, f32::NAN, f32::INFINITY, 1e-9, 1e30, 0.1, 0.3, 0.5]),
         ..Particle::REST
     }
@@ -146,7 +146,7 @@ fn compare(random: &mut Random, scenes: [&Scene<'_>; 6], new: &[Particle], numbe
         let late = one_of(r, &[1.0, 5.0]);
         let seconds = one_of(r, &[usual, usual, usual, usual, usual, usual, 0.0, 3e-10, 0.1, late]);
         let dt = Time::from_seconds(seconds);
-        let (comes, goes, row) = (r.word() % 2 == 0, r.word() % 2 == 0, r.word() as usize);
+        let (comes, goes, row) = (r.word().is_multiple_of(2), r.word().is_multiple_of(2), r.word() as usize);
         let mut ways = systems.iter_mut().zip(scenes).enumerate().map(|(way, (system, scene))| {
             if comes && !new.is_empty() {
                 let _ = system.spawn(&new[row % new.len()]);
@@ -179,7 +179,7 @@ fn short_ways_have_the_bits_of_the_long_one() {
         let normals = [Vec3::Y, Vec3::Y, Vec3::NEG_Y * 3.0, Vec3::X * -0.1, Vec3::Z, r.direction() * 0.7];
         let plane = Plane { point: r.vector(far), normal: one_of(r, &normals) };
         let sizes = [scale, one_of(r, &[0.0, 0.0, 0.02, 1e-7, 0.2]) * scale];
-        let (wild, len) = (r.word() % 2 == 0, one_of(r, &[0, 1, 2, 7, 31, 64, 65, 163, 300, 1281]));
+        let (wild, len) = (r.word().is_multiple_of(2), one_of(r, &[0, 1, 2, 7, 31, 64, 65, 163, 300, 1281]));
         let mut start: Vec<Particle> = (0..len + 4).map(|_| particle(r, &plane, sizes, wild)).collect();
         let new = start.split_off(len);
         let down = plane.normal.normalize() * -9.8 * scale;
@@ -200,7 +200,7 @@ fn short_ways_have_the_bits_of_the_long_one() {
         let base = Scene { start: &start, forces, colliders, sinks, integrator: method, ..Scene::EMPTY };
         let base = if wild { base } else { Scene { materials, ..base } };
         let emitter = fountain(r, &plane, scale);
-        let base = if r.word() % 2 == 0 { base } else { Scene { emitters: &emitter, ..base } };
+        let base = if r.word().is_multiple_of(2) { base } else { Scene { emitters: &emitter, ..base } };
         let (max_bounces, substeps) = (one_of(r, &[8, 8, 8, 1, 2, 0, 3, 4, 5]), one_of(r, &[1, 1, 1, 1, 3, 0]));
         let fast = Scene { max_bounces, substeps, ..base };
         let says = |is_local, drifts| Reticent { method, is_local, drifts };
