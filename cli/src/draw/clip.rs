@@ -8,7 +8,7 @@ use glam::Vec3;
 pub(super) struct Vertex {
     pub(super) place: Vec3,
     pub(super) normal: Vec3,
-    /// What light it returns of that which its material does.
+    /// The share of the light that its material returns which it does.
     pub(super) tint: Vec3,
 }
 

@@ -1,4 +1,4 @@
-//! What there is to draw, in a hash: every target has to make the same lists.
+//! Hashes of what there is to draw: every target has to make the same lists.
 
 use pointmass::draw::{
     Instance, Line, Lock, Patch, Sprite, StrandLight, Vertex, View, back_to_front, bodies, solids, sprites, strands,

@@ -137,7 +137,7 @@ fn every_structure_finds_what_is_near_in_the_same_order() {
     }
 }
 
-/// What lies beyond a plane, and has been found there.
+/// A half-space, and what has been found there.
 struct Beyond(Vec3, f32, Vec<usize>);
 
 impl Visitor for Beyond {

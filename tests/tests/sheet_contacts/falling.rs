@@ -8,7 +8,7 @@ use pointmass::shape::{Capsule, Collider, Cuboid, Plane, Sphere, Surface};
 use pointmass::{Constraint, Gravity, Method, Scene, Time, Vec3};
 use pointmass_tests::started;
 
-/// What a sheet falls on, its highest place being at zero.
+/// The thing that a sheet falls on, its highest place being at zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum On {
     Ball,
@@ -130,7 +130,7 @@ fn strain(x: &[Vec3], side: usize, rest: f32) -> f32 {
 /// Falls, and how far their strain may be above that of the same in many sub-steps: as a share of it, and besides.
 type Case = (Fall, [f32; 2]);
 
-/// What a fall is to keep: nobody inside, no energy from nowhere, no sheet through itself, and no strain but that of its material, as
+/// The bounds that a fall has to keep: nobody inside, no energy from nowhere, no sheet through itself, and no strain but that of its material, as
 /// forty sub-steps tell it.
 fn keeps_its_strain(cases: &[Case], frames: u64) {
     for (fall, [share, besides]) in cases {

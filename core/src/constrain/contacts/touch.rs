@@ -102,7 +102,7 @@ impl Touch {
 pub(in crate::constrain) struct Grip(Vec3);
 
 impl Grip {
-    /// What friction has given already \[m/s\].
+    /// A grip by which friction has given so much already \[m/s\].
     pub(in crate::constrain) fn of(given: Vec3) -> Self {
         Self(given)
     }

@@ -36,7 +36,7 @@ use rest::Rest;
 /// particles after it can bring sheets through each other. So can the scenery's sweep, to which only those are left that something without
 /// [`contacts`](crate::shape::Collider::contacts) stops in the step. Sheets that begin through each other stay so.
 ///
-/// What is pushed takes along what it hangs on: edges that pushes have lengthened are shortened between them, so that a push on a corner is one on the
+/// A push takes along what its corner hangs on: edges that pushes have lengthened are shortened between them, so that a push on a corner is one on the
 /// sheet.
 ///
 /// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method; with explicit Euler and

@@ -17,9 +17,9 @@ pub(super) struct Level<'m> {
     pub(super) blocks: &'m mut [f32],
     /// Those of its rows with themselves; when all is known their inverses, zero for what does not move.
     pub(super) diagonal: &'m mut [f32],
-    /// Of the finest: these without what bending adds.
+    /// The same of the finest without what bending adds.
     pub(super) own: &'m mut [f32],
-    /// Of all but the finest: what is to be solved for, and the solution.
+    /// The right-hand side and the solution, of all but the finest.
     r: &'m mut [Vec3],
     x: &'m mut [Vec3],
 }
@@ -223,7 +223,7 @@ impl Level<'_> {
         }
     }
 
-    /// What is left after that, summed up for the next graph.
+    /// The residual after that, summed up for the next graph.
     #[inline(always)]
     fn leave(&self, x: &[Vec3], into: &mut [Vec3]) {
         into.fill(Vec3::ZERO);

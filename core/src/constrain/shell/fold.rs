@@ -148,7 +148,7 @@ impl Fold {
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
     }
 
-    /// What of that the corners on a side do to each other: those of the edge, the first of them and the far one, the second and that.
+    /// The part of that which the corners on a side do to each other: those of the edge, the first of them and the far one, the second and that.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn held(&self, side: usize) -> [f32; 3] {
         let (x, slope) = (self.foot[side], self.slope[side]);

@@ -25,7 +25,7 @@ pub(super) struct Strain {
     pub(super) tension: f32,
     /// Its curvature, or the change of that: along warp, weft, and √2 times that between them \[1/m\].
     pub(super) curvature: [f32; 3],
-    /// What its folds hold along its edges × h²: from the first corner to the second, to the third, and back \[kg\].
+    /// The tension that its folds hold along its edges × h²: from the first corner to the second, to the third, and back \[kg\].
     pub(super) held: [f32; 3],
 }
 

@@ -1,4 +1,4 @@
-//! Who hangs together with whom: the graph of a shell's particles, and coarser ones of groups of these.
+//! The graph of a shell's particles: who hangs together with whom; and coarser graphs of groups of these.
 
 use crate::memory::take;
 
@@ -178,7 +178,7 @@ fn group(graph: &Graph<'_>, into: &mut [u32]) -> usize {
     groups as usize
 }
 
-/// Who hangs together with most of a group, of those that are in none: the first of several.
+/// The particle in no group that hangs together with most of one: the first of several.
 fn nearest(graph: &Graph<'_>, into: &[u32], members: &[usize]) -> Option<usize> {
     let mut best = None;
     for &member in members {

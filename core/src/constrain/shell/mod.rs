@@ -197,7 +197,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 }
 
-/// What a shell keeps: whether it is known, its triangles and folds at rest, and its graphs.
+/// All that a shell keeps: whether it is known, its triangles and folds at rest, and its graphs.
 struct Rest<'m> {
     known: &'m mut [u32],
     cells: &'m mut [Cell],

@@ -19,7 +19,7 @@ use glam::{Mat3, Vec3};
 const ITERATIONS: u32 = 400;
 /// Solutions in turn with the question which walls press, at the most.
 const PASSES: u32 = 8;
-/// What may be left of a solution, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses; and where
+/// The residual that a solution may have, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses; and where
 /// walls press that are rough, as friction goes by what these bear.
 const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
 const ROUGH: [f32; 2] = [3e-4, 1e-4];

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// Passes over all edges, at the most.
 const PASSES: u32 = 8;
-/// What they leave of an edge's length too much, as a share.
+/// The share of an edge's length by which they leave it too long.
 const SLACK: f32 = 1e-3;
 
 impl Solver<'_> {

@@ -26,7 +26,7 @@ const RECOVERY: f32 = 0.2;
 const NOTICED: f32 = 4.0;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
-/// What a wall does to its particle: none is near, it is left alone, it slides along, it goes as the wall does.
+/// The state of a wall and its particle: none is near, it is left alone, it slides along, it goes as the wall does.
 const NONE: u32 = 0;
 const NEAR: u32 = 1;
 const SLIDES: u32 = 2;
@@ -53,7 +53,7 @@ pub(super) struct Wall {
     approach: f32,
     /// How far off all scenery is, at the least \[m\].
     clear: f32,
-    /// What it takes of the forces that are left \[kg m\], and for each metre that its particle slides \[kg\].
+    /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\].
     held: Vec3,
     brake: f32,
     touch: Touch,
@@ -135,7 +135,7 @@ impl Wall {
         self.presses() && self.touch.has_friction()
     }
 
-    /// What a stiffness of it, that is as good as none giving way, adds to what a particle of so much of its own does.
+    /// The stiffness of it, as good as not giving way, that is added to that of a particle with so much of its own.
     pub(super) fn stiffness(&self, own: f32) -> Mat3 {
         /// Its stiffness in those of its particle.
         const STIFF: f32 = 100.0;
