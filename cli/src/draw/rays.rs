@@ -2,9 +2,16 @@
 
 use super::camera::Lens;
 use super::model::{Facet, Model, Role};
-use glam::{Mat3, Vec2, Vec3};
-use pointmass::rays::{IndexBuf, Pieces, Structure, Visitor};
-use pointmass::shape::{Aabb, Segment};
+use glam::{Mat3, Vec2, Vec3, Vec3Swizzles};
+
+/// The number of walls that are not worth a box each.
+const LEAF: usize = 4;
+
+/// From this depth on walls are halved, which leaves a tree that is no deeper than twice as much, however many there are.
+const HALVING: usize = 48;
+
+/// The deepest that a tree can be.
+const DEPTH: usize = 2 * HALVING;
 
 /// The triangles of a model.
 ///
@@ -17,7 +24,7 @@ pub(super) struct Rays {
     endless: Vec<Wall>,
     /// The others, sorted into a tree of boxes.
     solid: Vec<Wall>,
-    index: IndexBuf,
+    nodes: Vec<Node>,
 }
 
 /// A triangle.
@@ -27,6 +34,15 @@ struct Wall {
     sides: [Vec3; 2],
     flat: Vec3,
     opacity: f32,
+}
+
+/// A box around a run of walls. An inner node has no walls of its own; its first child follows it.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: Vec3,
+    high: Vec3,
+    walls: (usize, usize),
+    second_child: usize,
 }
 
 /// A place where a ray meets a wall.
@@ -42,11 +58,14 @@ impl Rays {
         let walls = |role| {
             let facets = model.facets.iter().map(|facet| (facet, &model.skins[facet.skin]));
             let walls = facets.filter(move |(_, skin)| skin.role == role);
-            walls.map(|(facet, skin)| Wall::new(facet, upright, skin.opacity)).collect::<Vec<_>>()
+            walls.map(|(facet, skin)| Wall::new(facet, upright, skin.opacity)).collect()
         };
         let (endless, solid) = (walls(Role::Endless), walls(Role::Solid));
-        let index = IndexBuf::new(Structure::Bvh, &Walls(&solid));
-        Self { upright, endless, solid, index }
+        let mut rays = Self { upright, endless, solid, nodes: Vec::new() };
+        if !rays.solid.is_empty() {
+            rays.sort(0, rays.solid.len(), 0);
+        }
+        rays
     }
 
     /// The first wall along a ray, if there is one within `reach`.
@@ -97,44 +116,129 @@ impl Rays {
         passing.iter().sum::<f32>() / N as f32
     }
 
-    /// Shows the solid walls that rays may meet, in no particular order, to whoever may shorten the rays.
-    fn walk<const N: usize>(&self, packet: Packet<N>, look: impl FnMut(&Wall, &mut Packet<N>)) {
-        self.index.view().visit(&Walls(&self.solid), &mut Walk { packet, walls: &self.solid, look });
+    /// Visits the solid walls that rays may meet, in no particular order. The visitor may shorten the rays.
+    fn walk<const N: usize>(&self, mut packet: Packet<N>, mut visit: impl FnMut(&Wall, &mut Packet<N>)) {
+        // One child of each node waits; trees are no deeper than this.
+        let mut open = [0; DEPTH + 2];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            let at = open[count];
+            let node = &self.nodes[at];
+            if !packet.crosses(node) {
+                continue;
+            }
+            if node.second_child > 0 {
+                open[count] = node.second_child;
+                open[count + 1] = at + 1;
+                count += 2;
+            }
+            for wall in &self.solid[node.walls.0..node.walls.1] {
+                visit(wall, &mut packet);
+            }
+        }
+    }
+
+    /// Puts a box around some walls, and boxes around both parts of them.
+    fn sort(&mut self, first: usize, end: usize, depth: usize) {
+        let walls = &mut self.solid[first..end];
+        let mut node = Node { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, walls: (first, end), second_child: 0 };
+        for place in walls.iter().flat_map(Wall::corners) {
+            node.low = node.low.min(place);
+            node.high = node.high.max(place);
+        }
+        let at = self.nodes.len();
+        let low_half = match walls.len() {
+            0..=LEAF => 0,
+            count if depth >= HALVING => count / 2,
+            _ => split(walls),
+        };
+        if low_half > 0 {
+            node.walls = (0, 0);
+            self.nodes.push(node);
+            self.sort(first, first + low_half, depth + 1);
+            self.nodes[at].second_child = self.nodes.len();
+            self.sort(first + low_half, end, depth + 1);
+        } else {
+            self.nodes.push(node);
+        }
     }
 }
 
-/// Rays on their way through walls.
-struct Walk<'w, const N: usize, F> {
-    packet: Packet<N>,
-    walls: &'w [Wall],
-    look: F,
+/// Parts walls so that rays are likely to miss the boxes of most: the chance to meet a box goes with its surface. Tells how
+/// many come first.
+fn split(walls: &mut [Wall]) -> usize {
+    const BINS: usize = 16;
+    let middles = walls.iter().map(Wall::middle);
+    let (low, high) = middles.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let bin = |wall: &Wall, axis: usize| {
+        let part = (wall.middle()[axis] - low[axis]) / (high[axis] - low[axis]);
+        ((part * BINS as f32) as usize).min(BINS - 1)
+    };
+    let mut best = (f32::INFINITY, 0, 0);
+    for axis in 0..3 {
+        let mut bins = [Bounds::default(); BINS];
+        walls.iter().for_each(|wall| bins[bin(wall, axis)].add(wall));
+        let mut below = [0.0; BINS];
+        let mut sum = Bounds::default();
+        for at in 0..BINS {
+            below[at] = sum.cost();
+            sum = sum.join(&bins[at]);
+        }
+        let mut sum = Bounds::default();
+        for at in (1..BINS).rev() {
+            sum = sum.join(&bins[at]);
+            let cost = below[at] + sum.cost();
+            if cost < best.0 {
+                best = (cost, axis, at);
+            }
+        }
+    }
+    let (_, axis, border) = best;
+    let mut count = 0;
+    for at in 0..walls.len() {
+        if bin(&walls[at], axis) < border {
+            walls.swap(count, at);
+            count += 1;
+        }
+    }
+    if (1..walls.len()).contains(&count) {
+        return count;
+    }
+    // All in one place.
+    walls.len() / 2
 }
 
-impl<const N: usize, F: FnMut(&Wall, &mut Packet<N>)> Visitor for Walk<'_, N, F> {
-    fn enters(&mut self, bounds: &Aabb) -> bool {
-        self.packet.crosses(bounds)
-    }
+/// A box around some walls.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+    count: usize,
+}
 
-    fn visit(&mut self, wall: usize) {
-        (self.look)(&self.walls[wall], &mut self.packet);
+impl Default for Bounds {
+    fn default() -> Self {
+        Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, count: 0 }
     }
 }
 
-/// Walls as pieces of a structure.
-struct Walls<'w>(&'w [Wall]);
-
-impl Pieces for Walls<'_> {
-    fn count(&self) -> usize {
-        self.0.len()
+impl Bounds {
+    fn add(&mut self, wall: &Wall) {
+        for corner in wall.corners() {
+            (self.low, self.high) = (self.low.min(corner), self.high.max(corner));
+        }
+        self.count += 1;
     }
 
-    fn box_of(&self, wall: usize) -> Aabb {
-        let [a, b, c] = self.0[wall].corners();
-        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+    fn join(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high), count: self.count + other.count }
     }
 
-    fn hit(&self, _: usize, _: &Segment) -> Option<pointmass::shape::Hit> {
-        None
+    /// The number of walls that rays are tried on, times that of the rays.
+    fn cost(&self) -> f32 {
+        let sides = (self.high - self.low).max(Vec3::ZERO);
+        if self.count == 0 { 0.0 } else { self.count as f32 * (sides * sides.yzx()).element_sum() }
     }
 }
 
@@ -156,12 +260,11 @@ impl<const N: usize> Packet<N> {
         Self { from, towards, inverse, reach: [reach; N] }
     }
 
-    /// Tells whether any of the rays crosses a box.
-    #[inline(always)]
-    fn crosses(&self, bounds: &Aabb) -> bool {
+    /// Whether any of the rays crosses a box.
+    fn crosses(&self, node: &Node) -> bool {
         let (mut enter, mut leave) = ([0.0; N], self.reach);
         for axis in 0..3 {
-            let (low, high) = (bounds.min[axis] - self.from[axis], bounds.max[axis] - self.from[axis]);
+            let (low, high) = (node.low[axis] - self.from[axis], node.high[axis] - self.from[axis]);
             for at in 0..N {
                 let (a, b) = (low * self.inverse[axis][at], high * self.inverse[axis][at]);
                 let (near, far) = if a < b { (a, b) } else { (b, a) };
@@ -187,6 +290,12 @@ impl Wall {
     fn new(facet: &Facet, upright: Mat3, opacity: f32) -> Self {
         let [a, b, c] = facet.corners.map(|corner| upright * corner.place);
         Self { corner: a, sides: [b - a, c - a], flat: upright * facet.flat, opacity }
+    }
+
+    /// The middle of its box.
+    fn middle(&self) -> Vec3 {
+        let [a, b, c] = self.corners();
+        0.5 * (a.min(b).min(c) + a.max(b).max(c))
     }
 
     fn corners(&self) -> [Vec3; 3] {
