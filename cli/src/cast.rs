@@ -206,16 +206,16 @@ impl<'m> Cast<'m> {
 
     /// The number of instants at which things are seen for a picture so many pixels wide.
     fn exposures(&self, state: &State<'_>, begun: &[Vec3], model: &Model, pixels: u32) -> u32 {
-        let is_still = |row: usize| sprite(state, row, &self.view).is_none() && solid(state, row).is_none();
+        let is_dot = |row: usize| sprite(state, row, &self.view).is_none() && solid(state, row).is_none();
         let are_joined = self.has_pieces(model) || !model.locks.is_empty() || !state.springs.springs.is_empty();
         let moved = |row: usize| {
             let (place, way) = (state.position[row], (state.position[row] - begun[row]).length());
             way * pixels as f32 / (self.width * (place - self.view.eye).length())
         };
-        if self.shutter.is_none() {
+        if self.shutter.as_ref().is_none_or(|shutter| shutter.seconds() == 0.0) {
             return 1;
         }
-        let seen = (0..begun.len()).filter(|&row| are_joined || !is_still(row)).map(moved);
+        let seen = (0..begun.len()).filter(|&row| are_joined || !is_dot(row)).map(moved);
         let scenery = if moves(model) { LEAST_EXPOSURES } else { 1 };
         // The cast sends what is no number to zero.
         ((seen.fold(0.0, f32::max) / PACE) as u32).clamp(scenery, MOST_EXPOSURES)

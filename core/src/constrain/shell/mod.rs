@@ -76,8 +76,8 @@ impl ShellParams {
 /// counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it is then softer for a while.
 ///
 /// Where particles meet the scenery in a sub-step, that presses and brakes them while the material is solved (an active set of planes, one a
-/// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches no more
-/// than its material does. Edges that turn so far in a sub-step that what is solved along the directions of its beginning leaves them too
+/// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches little
+/// more than its material gives. Edges that turn so far in a sub-step that what is solved along the directions of its beginning leaves them too
 /// long are shortened. The sweep at the step's end is left to those whose way may have passed through something.
 ///
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
@@ -161,7 +161,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         wrong.or_else(|| self.params.fault())
     }
 
-    /// What it keeps, in words.
+    /// All that it keeps, in words.
     fn rest<'m>(&self, kept: &'m mut [u32]) -> Rest<'m> {
         let [_, triangles, hinges] = self.counts();
         let mut rest = kept;
