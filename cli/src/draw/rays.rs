@@ -2,16 +2,11 @@
 
 use super::camera::Lens;
 use super::model::{Facet, Model, Role};
-use glam::{Mat3, Vec2, Vec3, Vec3Swizzles};
-
-/// The number of walls that are not worth a box each.
-const LEAF: usize = 4;
-
-/// From this depth on walls are halved, which leaves a tree that is no deeper than twice as much, however many there are.
-const HALVING: usize = 48;
-
-/// The deepest that a tree can be.
-const DEPTH: usize = 2 * HALVING;
+use glam::{Mat3, Vec2, Vec3};
+use pointmass::rays::{Aabb8, IndexBuf, Pieces, Structure, Visitor};
+use pointmass::shape::{self, Aabb, Segment};
+use std::ops::ControlFlow;
+use wide::f32x8;
 
 /// The triangles of a model.
 ///
@@ -23,8 +18,8 @@ pub(super) struct Rays {
     /// Few and huge; boxes around them would hold everything.
     endless: Vec<Wall>,
     /// The others, sorted into a tree of boxes.
-    solid: Vec<Wall>,
-    nodes: Vec<Node>,
+    solid: Walls,
+    index: IndexBuf,
 }
 
 /// A triangle.
@@ -34,15 +29,6 @@ struct Wall {
     sides: [Vec3; 2],
     flat: Vec3,
     opacity: f32,
-}
-
-/// A box around a run of walls. An inner node has no walls of its own; its first child follows it.
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    low: Vec3,
-    high: Vec3,
-    walls: (usize, usize),
-    second_child: usize,
 }
 
 /// A place where a ray meets a wall.
@@ -58,30 +44,20 @@ impl Rays {
         let walls = |role| {
             let facets = model.facets.iter().map(|facet| (facet, &model.skins[facet.skin]));
             let walls = facets.filter(move |(_, skin)| skin.role == role);
-            walls.map(|(facet, skin)| Wall::new(facet, upright, skin.opacity)).collect()
+            walls.map(|(facet, skin)| Wall::new(facet, upright, skin.opacity)).collect::<Vec<_>>()
         };
-        let (endless, solid) = (walls(Role::Endless), walls(Role::Solid));
-        let mut rays = Self { upright, endless, solid, nodes: Vec::new() };
-        if !rays.solid.is_empty() {
-            rays.sort(0, rays.solid.len(), 0);
-        }
-        rays
+        let (endless, solid) = (walls(Role::Endless), Walls::new(walls(Role::Solid)));
+        let index = IndexBuf::new(Structure::Bvh, &solid);
+        Self { upright, endless, solid, index }
     }
 
     /// The first wall along a ray, if there is one within `reach`.
     pub(super) fn first(&self, from: Vec3, towards: Vec3, reach: f32) -> Option<Hit> {
-        let mut packet = Packet::new(self.upright * from, [self.upright * towards], reach);
-        let mut hit = None;
-        let mut look = |wall: &Wall, packet: &mut Packet<1>| {
-            let [distance] = wall.distances(packet);
-            if distance < packet.reach[0] {
-                packet.reach = [distance];
-                hit = Some(Hit { distance, normal: self.upright.transpose() * wall.flat });
-            }
-        };
-        self.endless.iter().for_each(|wall| look(wall, &mut packet));
-        self.walk(packet, look);
-        hit
+        let path = Segment::new(self.upright * from, self.upright * (from + reach * towards));
+        let endless = self.endless.iter().filter_map(|wall| wall.hit(&path));
+        let hits = endless.chain(self.index.view().first_hit(&self.solid, &path));
+        let hit = hits.min_by(|a, b| a.time.total_cmp(&b.time))?;
+        Some(Hit { distance: hit.time * reach, normal: self.upright.transpose() * hit.normal })
     }
 
     /// The share of a lamp that can be seen from a place. The lamp is a round disc `reach` away whose
@@ -94,151 +70,167 @@ impl Rays {
         let (x, y) = towards.any_orthonormal_pair();
         let ray = |at: Vec2| towards + width * (at.x * x + at.y * y);
         // Four rays say whether this is the edge of a shadow; if so, ask more.
-        let few = self.passing(Packet::new(from, spread::<4>(turn).map(ray), reach));
+        let few = self.passing(spread::<4>(turn).map(ray), from, reach);
         if few == 0.0 || few == 1.0 {
             return few;
         }
-        self.passing(Packet::new(from, spread::<24>(turn).map(ray), reach))
+        self.passing(spread::<24>(turn).map(ray), from, reach)
     }
 
-    /// The share of light that gets through along some rays.
-    fn passing<const N: usize>(&self, packet: Packet<N>) -> f32 {
-        let mut passing = [1.0; N];
-        self.walk(packet, |wall, packet| {
-            if wall.flat.dot(packet.from - wall.corner) > 0.0 {
-                let distances = wall.distances(packet);
-                for at in 0..N {
-                    passing[at] *= if distances[at] < packet.reach[at] { 1.0 - wall.opacity } else { 1.0 };
-                    packet.reach[at] = if passing[at] > 0.0 { packet.reach[at] } else { -1.0 };
-                }
-            }
-        });
-        passing.iter().sum::<f32>() / N as f32
-    }
-
-    /// Visits the solid walls that rays may meet, in no particular order. The visitor may shorten the rays.
-    fn walk<const N: usize>(&self, mut packet: Packet<N>, mut visit: impl FnMut(&Wall, &mut Packet<N>)) {
-        // One child of each node waits; trees are no deeper than this.
-        let mut open = [0; DEPTH + 2];
-        let mut count = usize::from(!self.nodes.is_empty());
-        while count > 0 {
-            count -= 1;
-            let at = open[count];
-            let node = &self.nodes[at];
-            if !packet.crosses(node) {
-                continue;
-            }
-            if node.second_child > 0 {
-                open[count] = node.second_child;
-                open[count + 1] = at + 1;
-                count += 2;
-            }
-            for wall in &self.solid[node.walls.0..node.walls.1] {
-                visit(wall, &mut packet);
-            }
-        }
-    }
-
-    /// Puts a box around some walls, and boxes around both parts of them.
-    fn sort(&mut self, first: usize, end: usize, depth: usize) {
-        let walls = &mut self.solid[first..end];
-        let mut node = Node { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, walls: (first, end), second_child: 0 };
-        for place in walls.iter().flat_map(Wall::corners) {
-            node.low = node.low.min(place);
-            node.high = node.high.max(place);
-        }
-        let at = self.nodes.len();
-        let low_half = match walls.len() {
-            0..=LEAF => 0,
-            count if depth >= HALVING => count / 2,
-            _ => split(walls),
-        };
-        if low_half > 0 {
-            node.walls = (0, 0);
-            self.nodes.push(node);
-            self.sort(first, first + low_half, depth + 1);
-            self.nodes[at].second_child = self.nodes.len();
-            self.sort(first + low_half, end, depth + 1);
-        } else {
-            self.nodes.push(node);
-        }
+    /// The share of light that gets through along some rays from one place.
+    fn passing<const N: usize>(&self, rays: [Vec3; N], from: Vec3, reach: f32) -> f32 {
+        let packet = Packet::new(from, rays, reach);
+        let mut light =
+            Light { bundle: Bundle::new(&packet, reach), packet, walls: &self.solid.walls, passing: [1.0; N] };
+        self.index.view().visit(&self.solid, &mut light);
+        light.passing.iter().sum::<f32>() / N as f32
     }
 }
 
-/// Parts walls so that rays are likely to miss the boxes of most: the chance to meet a box goes with its surface. Tells how
-/// many come first.
-fn split(walls: &mut [Wall]) -> usize {
-    const BINS: usize = 16;
-    let middles = walls.iter().map(Wall::middle);
-    let (low, high) = middles.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-    let bin = |wall: &Wall, axis: usize| {
-        let part = (wall.middle()[axis] - low[axis]) / (high[axis] - low[axis]);
-        ((part * BINS as f32) as usize).min(BINS - 1)
-    };
-    let mut best = (f32::INFINITY, 0, 0);
-    for axis in 0..3 {
-        let mut bins = [Bounds::default(); BINS];
-        walls.iter().for_each(|wall| bins[bin(wall, axis)].add(wall));
-        let mut below = [0.0; BINS];
-        let mut sum = Bounds::default();
-        for at in 0..BINS {
-            below[at] = sum.cost();
-            sum = sum.join(&bins[at]);
+/// Walls as pieces of a structure, and the largest of their coordinates.
+#[derive(Debug, Default)]
+struct Walls {
+    walls: Vec<Wall>,
+    reach: f32,
+}
+
+impl Walls {
+    fn new(walls: Vec<Wall>) -> Self {
+        let mut walls = Self { walls, reach: 0.0 };
+        let reach = |at: usize| walls.box_of(at).min.abs().max(walls.box_of(at).max.abs()).max_element();
+        walls.reach = (0..walls.count()).map(reach).filter(|reach| reach.is_finite()).fold(0.0, f32::max);
+        walls
+    }
+}
+
+impl Pieces for Walls {
+    fn count(&self) -> usize {
+        self.walls.len()
+    }
+
+    fn box_of(&self, wall: usize) -> Aabb {
+        let [a, b, c] = self.walls[wall].corners();
+        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+    }
+
+    fn hit(&self, wall: usize, path: &Segment) -> Option<shape::Hit> {
+        self.walls[wall].hit(path)
+    }
+
+    fn reach(&self) -> f32 {
+        self.reach
+    }
+}
+
+/// Light on its way through walls.
+struct Light<'w, const N: usize> {
+    bundle: Bundle,
+    packet: Packet<N>,
+    walls: &'w [Wall],
+    /// The share of each ray that has got through so far.
+    passing: [f32; N],
+}
+
+impl<const N: usize> Visitor for Light<'_, N> {
+    fn enters(&mut self, bounds: &Aabb) -> bool {
+        let mut boxes = Aabb8::EMPTY;
+        for axis in 0..3 {
+            (boxes.min[axis][0], boxes.max[axis][0]) = (bounds.min[axis], bounds.max[axis]);
         }
-        let mut sum = Bounds::default();
-        for at in (1..BINS).rev() {
-            sum = sum.join(&bins[at]);
-            let cost = below[at] + sum.cost();
-            if cost < best.0 {
-                best = (cost, axis, at);
+        self.enters_which(&boxes) & 1 != 0
+    }
+
+    /// Most boxes are beside all rays, which one look tells; those among the rays are held against each ray.
+    fn enters_which(&mut self, boxes: &Aabb8) -> u32 {
+        let boxes = Boxes::new(boxes, self.packet.from);
+        let among = boxes.met(self.bundle.inverse, self.bundle.reach);
+        let mut entered = 0;
+        for at in 0..N {
+            if entered & among == among {
+                break;
+            }
+            if self.packet.reach[at] >= 0.0 {
+                let inverse = [0, 1, 2].map(|axis| self.packet.inverse[axis][at]);
+                entered |= boxes.met([inverse; 2], self.packet.reach[at]);
             }
         }
+        entered & among
     }
-    let (_, axis, border) = best;
-    let mut count = 0;
-    for at in 0..walls.len() {
-        if bin(&walls[at], axis) < border {
-            walls.swap(count, at);
-            count += 1;
+
+    fn visit(&mut self, wall: usize) -> ControlFlow<()> {
+        let (wall, packet) = (&self.walls[wall], &mut self.packet);
+        if wall.flat.dot(packet.from - wall.corner) > 0.0 {
+            let distances = wall.distances(packet);
+            for ((distance, reach), passing) in distances.iter().zip(&mut packet.reach).zip(&mut self.passing) {
+                *passing *= if distance < reach { 1.0 - wall.opacity } else { 1.0 };
+                *reach = if *passing > 0.0 { *reach } else { -1.0 };
+            }
+            if packet.reach.iter().all(|&reach| reach < 0.0) {
+                return ControlFlow::Break(());
+            }
         }
-    }
-    if (1..walls.len()).contains(&count) {
-        return count;
-    }
-    // All in one place.
-    walls.len() / 2
-}
-
-/// A box around some walls.
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: Vec3,
-    high: Vec3,
-    count: usize,
-}
-
-impl Default for Bounds {
-    fn default() -> Self {
-        Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, count: 0 }
+        ControlFlow::Continue(())
     }
 }
 
-impl Bounds {
-    fn add(&mut self, wall: &Wall) {
-        for corner in wall.corners() {
-            (self.low, self.high) = (self.low.min(corner), self.high.max(corner));
+/// All between the least and the greatest coordinates of some directions: rays from one place are held against eight boxes for the
+/// price of one.
+struct Bundle {
+    /// One over the least, and one over the greatest.
+    inverse: [[f32; 3]; 2],
+    reach: f32,
+}
+
+impl Bundle {
+    fn new<const N: usize>(packet: &Packet<N>, reach: f32) -> Self {
+        let least = packet.towards.map(|row| over(row.into_iter().fold(f32::INFINITY, f32::min), -STILL));
+        let greatest = packet.towards.map(|row| over(row.into_iter().fold(f32::NEG_INFINITY, f32::max), STILL));
+        Self { inverse: [least, greatest], reach }
+    }
+}
+
+/// Steps shorter than this count as this long: a division by zero would make the boxes' bounds meaningless.
+const STILL: f32 = 1e-12;
+
+/// One over a step; over `short`, if it is shorter.
+fn over(step: f32, short: f32) -> f32 {
+    1.0 / if step.abs() < STILL { short } else { step }
+}
+
+/// Eight boxes, seen from where rays begin.
+struct Boxes {
+    min: [f32x8; 3],
+    max: [f32x8; 3],
+}
+
+impl Boxes {
+    #[inline(always)]
+    fn new(boxes: &Aabb8, from: Vec3) -> Self {
+        let seen = |planes: &[[f32; 8]; 3]| [0, 1, 2].map(|axis| f32x8::new(planes[axis]) - f32x8::splat(from[axis]));
+        Self { min: seen(&boxes.min), max: seen(&boxes.max) }
+    }
+
+    /// Tells which of them are met by what is, at t, between t · least and t · greatest along each axis, t being at most `reach`; given is
+    /// one over both. t · greatest ≥ min and t · least ≤ max are bounds of t from below or above, as the signs are.
+    #[inline(always)]
+    fn met(&self, [least, greatest]: [[f32; 3]; 2], reach: f32) -> u32 {
+        let (mut enter, mut leave) = (f32x8::ZERO, f32x8::splat(reach));
+        for axis in 0..3 {
+            let (min, max) =
+                (self.min[axis] * f32x8::splat(greatest[axis]), self.max[axis] * f32x8::splat(least[axis]));
+            if greatest[axis] > 0.0 {
+                enter = min.fast_max(enter);
+            } else {
+                leave = min.fast_min(leave);
+            }
+            if least[axis] > 0.0 {
+                leave = max.fast_min(leave);
+            } else {
+                enter = max.fast_max(enter);
+            }
         }
-        self.count += 1;
-    }
-
-    fn join(&self, other: &Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high), count: self.count + other.count }
-    }
-
-    /// The number of walls that rays are tried on, times that of the rays.
-    fn cost(&self) -> f32 {
-        let sides = (self.high - self.low).max(Vec3::ZERO);
-        if self.count == 0 { 0.0 } else { self.count as f32 * (sides * sides.yzx()).element_sum() }
+        // Rounding must not lose a wall that lies flat in its box.
+        enter.simd_le(leave * f32x8::splat(1.000_01)).to_bitmask()
     }
 }
 
@@ -255,25 +247,8 @@ struct Packet<const N: usize> {
 impl<const N: usize> Packet<N> {
     fn new(from: Vec3, rays: [Vec3; N], reach: f32) -> Self {
         let towards = [0, 1, 2].map(|axis| rays.map(|ray| ray[axis]));
-        // No division by zero, which would make the boxes' bounds meaningless.
-        let inverse = towards.map(|row| row.map(|d| 1.0 / if d.abs() < 1e-12 { 1e-12 } else { d }));
+        let inverse = towards.map(|row| row.map(|step| over(step, STILL)));
         Self { from, towards, inverse, reach: [reach; N] }
-    }
-
-    /// Whether any of the rays crosses a box.
-    fn crosses(&self, node: &Node) -> bool {
-        let (mut enter, mut leave) = ([0.0; N], self.reach);
-        for axis in 0..3 {
-            let (low, high) = (node.low[axis] - self.from[axis], node.high[axis] - self.from[axis]);
-            for at in 0..N {
-                let (a, b) = (low * self.inverse[axis][at], high * self.inverse[axis][at]);
-                let (near, far) = if a < b { (a, b) } else { (b, a) };
-                enter[at] = if near > enter[at] { near } else { enter[at] };
-                leave[at] = if far < leave[at] { far } else { leave[at] };
-            }
-        }
-        // Rounding must not lose a wall that lies flat in its box.
-        (0..N).fold(false, |any, at| any | (enter[at] <= leave[at] * 1.000_01))
     }
 }
 
@@ -292,14 +267,15 @@ impl Wall {
         Self { corner: a, sides: [b - a, c - a], flat: upright * facet.flat, opacity }
     }
 
-    /// The middle of its box.
-    fn middle(&self) -> Vec3 {
-        let [a, b, c] = self.corners();
-        0.5 * (a.min(b).min(c) + a.max(b).max(c))
-    }
-
     fn corners(&self) -> [Vec3; 3] {
         [self.corner, self.corner + self.sides[0], self.corner + self.sides[1]]
+    }
+
+    /// Where a path meets it, from either side.
+    fn hit(&self, path: &Segment) -> Option<shape::Hit> {
+        let [time] = self.distances(&Packet::new(path.from, [path.step()], 1.0));
+        let hit = shape::Hit { time, normal: self.flat, slack: 0.0, velocity: Vec3::ZERO, material: None, face: 0 };
+        (time <= 1.0).then_some(hit)
     }
 
     /// How far along each ray the wall is; infinite or not a number for not at all (Möller and

@@ -16,6 +16,9 @@ const SHADOW_LIGHT: f32 = 0.22;
 /// How wide lamps are, as a tangent; it makes the edges of shadows soft.
 const LAMP_WIDTH: f32 = 0.04;
 
+/// Light whose shadow nobody sees: a tenth of the darkest step of a picture's bytes, in linear light.
+const FAINT: f32 = 3e-5;
+
 /// The steepest angle, as a sine, at which an endless surface begins to melt into the background.
 const MELTING: f32 = 0.16;
 
@@ -48,11 +51,10 @@ impl Shader<'_> {
                 let half = (beam.from + eye).normalize_or(normal);
                 let highlight = normal.dot(half).max(0.0).powf(skin.shininess);
                 let returned = cosine * tint * skin.diffuse + highlight * skin.specular;
-                let passing = match skin.role {
-                    Role::Line => 1.0,
-                    _ => self.passing(place, flat, &beam, fragment),
-                };
-                color += (SHADOW_LIGHT + (1.0 - SHADOW_LIGHT) * passing) * beam.color * returned;
+                let light = beam.color * returned;
+                let casts = skin.role != Role::Line && light.max_element() > FAINT;
+                let passing = if casts { self.passing(place, flat, &beam, fragment) } else { 1.0 };
+                color += (SHADOW_LIGHT + (1.0 - SHADOW_LIGHT) * passing) * light;
             }
         }
         let color = self.eye.haze(place).through(soften(color));

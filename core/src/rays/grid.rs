@@ -9,6 +9,7 @@ use super::visit::{Visit, Visitor};
 use super::{Pieces, Structure, TooSmall};
 use crate::math::{largest, max, min};
 use crate::shape::Aabb;
+use core::ops::ControlFlow;
 use glam::Vec3;
 
 /// Cells for every piece: meshes are surfaces, and leave most of them empty.
@@ -262,14 +263,14 @@ pub(super) fn near<P: Pieces + ?Sized>(words: &[u32], pieces: &P, bounds: &Aabb,
     });
 }
 
-/// Goes through the slices, rows and cells that a visitor enters.
-pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut Visit<'_, P, V>) {
+/// Goes through the slices, rows and cells that a visitor enters, until it breaks off.
+pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut Visit<'_, P, V>) -> ControlFlow<()> {
     let Some(grid) = Grid::of(words) else {
-        return;
+        return ControlFlow::Continue(());
     };
     let frame = grid.frame;
     if frame.count() == 1 {
-        return grid.pieces(0).iter().for_each(|&piece| visit.ask(piece as usize));
+        return grid.pieces(0).iter().try_for_each(|&piece| visit.ask(piece as usize));
     }
     let last = frame.cells.map(|cells| cells as usize - 1);
     let between = |first: [usize; 3], last: [usize; 3]| {
@@ -293,11 +294,12 @@ pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut V
                 let pieces = grid.pieces(frame.number([x, y, z]));
                 if !pieces.is_empty() && visit.visitor.enters(&between([x, y, z], [x, y, z])) {
                     visit.cost.visits += 1;
-                    pieces.iter().for_each(|&piece| visit.ask(piece as usize));
+                    pieces.iter().try_for_each(|&piece| visit.ask(piece as usize))?;
                 }
             }
         }
     }
+    ControlFlow::Continue(())
 }
 
 /// Goes outward from the point's own cell along each axis, and leaves out slices, rows and cells that are too far away.

@@ -118,14 +118,16 @@ impl<'w> Index<'w> {
         }
     }
 
-    /// Shows a visitor every piece whose own box it enters, in an order of the structure's own; cells may show a piece several times.
+    /// Shows a visitor every piece whose own box it enters, in an order of the structure's own, until it breaks off; cells may show a
+    /// piece several times.
     pub fn visit<P: Pieces + ?Sized, V: Visitor>(&self, pieces: &P, visitor: &mut V) -> Cost {
         let mut visit = Visit { pieces, visitor, cost: Cost::default() };
-        match self.structure_for(pieces) {
-            Structure::Brute => (0..pieces.count()).for_each(|piece| visit.ask(piece)),
+        // Whether it broke off, it knows.
+        let _ = match self.structure_for(pieces) {
+            Structure::Brute => (0..pieces.count()).try_for_each(|piece| visit.ask(piece)),
             Structure::Grid => grid::visit(self.words, &mut visit),
             _ => tree::visit(self.words, &mut visit),
-        }
+        };
         visit.cost
     }
 

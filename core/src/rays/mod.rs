@@ -59,7 +59,7 @@ pub(crate) use nearest::{Closest, square_to};
 pub use pieces::{Pieces, Solids};
 pub(crate) use probe::{Best, Probe};
 pub use structure::{Structure, UnknownStructure};
-pub use visit::Visitor;
+pub use visit::{Aabb8, Visitor};
 
 /// The work that a query took: the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! A segment made ready to be held against boxes, and the best hit so far.
 
+use super::visit::Aabb8;
 use super::{Cost, Pieces};
 use crate::math::{high, low};
 use crate::shape::{Aabb, Hit, Segment};
@@ -62,12 +63,12 @@ impl<'s> Probe<'s> {
         (enter <= leave).then_some((enter, leave))
     }
 
-    /// The same for the boxes of eight lanes, by their lower and upper planes; which of them it meets not after `best`.
+    /// The same for eight boxes; which of them it meets not after `best`.
     #[inline(always)]
-    pub(super) fn spans(&self, planes: &[[f32; 8]; 6], best: f32) -> (f32x8, f32x8, u32) {
+    pub(super) fn spans(&self, boxes: &Aabb8, best: f32) -> (f32x8, f32x8, u32) {
         let (mut enter, mut leave) = (f32x8::ZERO, f32x8::ONE);
         for axis in 0..3 {
-            let (low, high) = (&planes[axis], &planes[axis + 3]);
+            let (low, high) = (&boxes.min[axis], &boxes.max[axis]);
             let (near, far) = if self.down[axis] { (high, low) } else { (low, high) };
             let inverse = f32x8::splat(self.inverse[axis]);
             let near = (f32x8::new(*near) - f32x8::splat(self.near_from[axis])) * inverse;

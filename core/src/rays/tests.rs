@@ -7,6 +7,7 @@ use crate::rng::Stream;
 use crate::shape::{Aabb, MeshBuf, Segment};
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::ControlFlow;
 
 #[test]
 fn poisoned_words_are_refused_or_harmless() {
@@ -57,7 +58,9 @@ impl Visitor for Into {
     fn enters(&mut self, bounds: &Aabb) -> bool {
         bounds.min.cmple(self.0.max).all() && bounds.max.cmpge(self.0.min).all()
     }
-    fn visit(&mut self, _: usize) {}
+    fn visit(&mut self, _: usize) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 fn draw(i: u32, k: u32) -> [f32; 3] {

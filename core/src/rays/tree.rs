@@ -8,8 +8,9 @@ use super::header::{HEADER, Header, UNIT};
 use super::near::Gathered;
 use super::nearest::Closest;
 use super::probe::{Best, Probe};
-use super::visit::{Visit, Visitor};
+use super::visit::{Aabb8, Visit, Visitor};
 use crate::shape::Aabb;
+use core::ops::ControlFlow;
 use glam::Vec3;
 use wide::f32x8;
 
@@ -20,11 +21,11 @@ pub(super) const DEEPEST: usize = 32;
 /// Children that wait on the deepest way.
 pub(super) const WAITING: usize = DEEPEST * (WIDE - 1) + WIDE;
 
-/// A node: the planes of its children's boxes, three lower and three upper, and what the children are.
+/// A node: its children's boxes, and what the children are.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Node {
-    pub(super) planes: [[f32; WIDE]; 6],
+    pub(super) boxes: Aabb8,
     pub(super) children: [u32; WIDE],
 }
 
@@ -52,37 +53,17 @@ pub(super) const LAST: u32 = 1 << 31;
 
 impl Node {
     /// One without children: boxes that nothing meets.
-    pub(super) const EMPTY: Self = Self {
-        planes: [
-            [f32::INFINITY; WIDE],
-            [f32::INFINITY; WIDE],
-            [f32::INFINITY; WIDE],
-            [f32::NEG_INFINITY; WIDE],
-            [f32::NEG_INFINITY; WIDE],
-            [f32::NEG_INFINITY; WIDE],
-        ],
-        children: [NOTHING; WIDE],
-    };
+    pub(super) const EMPTY: Self = Self { boxes: Aabb8::EMPTY, children: [NOTHING; WIDE] };
 
     pub(super) fn set(&mut self, lane: usize, bounds: &Aabb, child: u32) {
-        for axis in 0..3 {
-            self.planes[axis][lane] = bounds.min[axis];
-            self.planes[axis + 3][lane] = bounds.max[axis];
-        }
+        self.boxes.set(lane, bounds);
         self.children[lane] = child;
-    }
-
-    /// The box of one of its children.
-    #[inline(always)]
-    fn bounds(&self, lane: usize) -> Aabb {
-        let corner = |first: usize| Vec3::from([0, 1, 2].map(|axis| self.planes[first + axis][lane]));
-        Aabb { min: corner(0), max: corner(3) }
     }
 
     /// Which of its children's boxes share a point with another.
     fn meets(&self, bounds: &Aabb) -> u32 {
         (0..3).fold(!0, |met, axis| {
-            let (low, high) = (f32x8::new(self.planes[axis]), f32x8::new(self.planes[axis + 3]));
+            let (low, high) = (f32x8::new(self.boxes.min[axis]), f32x8::new(self.boxes.max[axis]));
             let below = low.simd_le(f32x8::splat(bounds.max[axis])).to_bitmask();
             met & below & high.simd_ge(f32x8::splat(bounds.min[axis])).to_bitmask()
         })
@@ -91,7 +72,7 @@ impl Node {
     /// The squares of the distances from a point to its children's boxes, by the same operations as to one.
     fn squares(&self, point: Vec3) -> [f32; WIDE] {
         let gap = |axis: usize| {
-            let (low, high) = (f32x8::new(self.planes[axis]), f32x8::new(self.planes[axis + 3]));
+            let (low, high) = (f32x8::new(self.boxes.min[axis]), f32x8::new(self.boxes.max[axis]));
             let center = f32x8::splat(point[axis]);
             (low - center).fast_max(center - high).fast_max(f32x8::ZERO)
         };
@@ -180,7 +161,7 @@ pub(super) fn first_hit<P: Pieces + ?Sized>(words: &[u32], pieces: &P, probe: &P
             continue;
         };
         best.cost.visits += 1;
-        let (enter, leave, mut met) = probe.spans(&node.planes, best.time);
+        let (enter, leave, mut met) = probe.spans(&node.boxes, best.time);
         if met == 0 {
             continue;
         }
@@ -238,30 +219,32 @@ pub(super) fn near<P: Pieces + ?Sized>(words: &[u32], pieces: &P, bounds: &Aabb,
     }
 }
 
-/// Goes wherever a visitor enters.
-pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut Visit<'_, P, V>) {
+/// Goes wherever a visitor enters, until it breaks off.
+pub(super) fn visit<P: Pieces + ?Sized, V: Visitor>(words: &[u32], visit: &mut Visit<'_, P, V>) -> ControlFlow<()> {
     let body = body(words);
     let mut waiting = heapless::Vec::<u32, WAITING>::new();
     let _ = waiting.push(0);
     while let Some(child) = waiting.pop() {
         if child & NOTHING == RUN {
-            run(body, child & NUMBER).for_each(|piece| visit.ask(piece));
+            run(body, child & NUMBER).try_for_each(|piece| visit.ask(piece))?;
             continue;
         }
         let Some(node) = Node::at(body, child) else {
             continue;
         };
         visit.cost.visits += 1;
-        for (lane, &child) in node.children.iter().enumerate() {
-            if child & NOTHING == NOTHING || !visit.visitor.enters(&node.bounds(lane)) {
-                continue;
-            }
+        let mut entered = visit.visitor.enters_which(&node.boxes) & ((1 << WIDE) - 1);
+        while entered != 0 {
+            let child = node.children[entered.trailing_zeros() as usize];
+            entered &= entered - 1;
             match child & NOTHING {
-                PIECE => visit.meet((child & NUMBER) as usize),
+                NOTHING => {}
+                PIECE => visit.meet((child & NUMBER) as usize)?,
                 _ => drop(waiting.push(child)),
             }
         }
     }
+    ControlFlow::Continue(())
 }
 
 /// Goes down to the nearest child first.

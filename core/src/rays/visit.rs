@@ -2,10 +2,47 @@
 
 use super::{Cost, Pieces};
 use crate::shape::Aabb;
+use core::ops::ControlFlow;
+use glam::Vec3;
+
+/// Eight boxes side by side: for each axis their lower and their upper planes \[m\].
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Aabb8 {
+    /// The least coordinates, an array for each axis.
+    pub min: [[f32; 8]; 3],
+    /// The greatest.
+    pub max: [[f32; 8]; 3],
+}
+
+impl Aabb8 {
+    /// Boxes that nothing is in.
+    pub const EMPTY: Self = Self { min: [[f32::INFINITY; 8]; 3], max: [[f32::NEG_INFINITY; 8]; 3] };
+
+    /// One of the boxes.
+    ///
+    /// # Panics
+    /// If there is no such lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, lane: usize) -> Aabb {
+        let corner = |planes: &[[f32; 8]; 3]| Vec3::from(planes.each_ref().map(|planes| planes[lane]));
+        Aabb { min: corner(&self.min), max: corner(&self.max) }
+    }
+
+    /// Sets one of the boxes.
+    pub(super) fn set(&mut self, lane: usize, bounds: &Aabb) {
+        for axis in 0..3 {
+            self.min[axis][lane] = bounds.min[axis];
+            self.max[axis][lane] = bounds.max[axis];
+        }
+    }
+}
 
 /// Whoever goes through a structure, see [`Index::visit`](super::Index::visit).
 ///
 /// ```
+/// use core::ops::ControlFlow;
 /// use pointmass::rays::{Solids, Structure, Visitor};
 /// use pointmass::shape::{Aabb, Sphere};
 /// use pointmass::Vec3;
@@ -17,8 +54,9 @@ use crate::shape::Aabb;
 ///     fn enters(&mut self, bounds: &Aabb) -> bool {
 ///         bounds.max.y > self.0
 ///     }
-///     fn visit(&mut self, _: usize) {
+///     fn visit(&mut self, _: usize) -> ControlFlow<()> {
 ///         self.1 += 1;
+///         ControlFlow::Continue(())
 ///     }
 /// }
 ///
@@ -35,8 +73,16 @@ pub trait Visitor {
     /// a point with what it looks for, and may have elsewhere.
     fn enters(&mut self, bounds: &Aabb) -> bool;
 
-    /// It has come to a piece, and may have less business from then on.
-    fn visit(&mut self, piece: usize);
+    /// Tells in which of eight boxes it has business, by bits from the lowest on; what it says of lanes without a box does not matter.
+    /// As many calls of [`enters`](Self::enters), where it says nothing else.
+    #[inline(always)]
+    fn enters_which(&mut self, boxes: &Aabb8) -> u32 {
+        (0..8).fold(0, |which, lane| which | (u32::from(self.enters(&boxes.get(lane))) << lane))
+    }
+
+    /// It has come to a piece, and may have less business from then on; none at all where it breaks off. Boxes that it entered before are
+    /// not asked about again.
+    fn visit(&mut self, piece: usize) -> ControlFlow<()>;
 }
 
 /// A walk.
@@ -49,17 +95,18 @@ pub(super) struct Visit<'v, P: ?Sized, V> {
 impl<P: Pieces + ?Sized, V: Visitor> Visit<'_, P, V> {
     /// Comes to a piece, if its own box is entered. Nobody enters one that is not finite.
     #[inline(always)]
-    pub(super) fn ask(&mut self, piece: usize) {
+    pub(super) fn ask(&mut self, piece: usize) -> ControlFlow<()> {
         let bounds = self.pieces.box_of(piece);
         if bounds.min.is_finite() && bounds.max.is_finite() && self.visitor.enters(&bounds) {
-            self.meet(piece);
+            return self.meet(piece);
         }
+        ControlFlow::Continue(())
     }
 
     /// Comes to a piece whose own box is entered.
     #[inline(always)]
-    pub(super) fn meet(&mut self, piece: usize) {
+    pub(super) fn meet(&mut self, piece: usize) -> ControlFlow<()> {
         self.cost.tests += 1;
-        self.visitor.visit(piece);
+        self.visitor.visit(piece)
     }
 }

@@ -1,6 +1,7 @@
 //! The same answers from all.
 
 use super::meshes;
+use core::ops::ControlFlow;
 use pointmass::Time;
 use pointmass::Vec3;
 use pointmass::rays::{Index, Structure, Visitor};
@@ -137,8 +138,8 @@ fn every_structure_finds_what_is_near_in_the_same_order() {
     }
 }
 
-/// A half-space, and what has been found there.
-struct Beyond(Vec3, f32, Vec<usize>);
+/// A half-space, what has been found there, and how much is enough.
+struct Beyond(Vec3, f32, Vec<usize>, usize);
 
 impl Visitor for Beyond {
     fn enters(&mut self, Aabb { min, max }: &Aabb) -> bool {
@@ -146,8 +147,9 @@ impl Visitor for Beyond {
         most(0) + most(1) + most(2) >= self.1
     }
 
-    fn visit(&mut self, piece: usize) {
+    fn visit(&mut self, piece: usize) -> ControlFlow<()> {
         self.2.push(piece);
+        if self.2.len() < self.3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }
 
@@ -161,15 +163,23 @@ fn every_structure_shows_all_that_is_beyond_a_plane() {
             let index = Index::new(&words).expect("they are as they were built");
             for _ in 0..often(60) {
                 let (normal, at) = (random.direction(), mesh.sample([random.unit(), random.unit(), random.unit()]));
-                let beyond = |index: &Index<'_>| {
-                    let mut beyond = Beyond(normal, normal.dot(at.point), vec![]);
+                let found = |index: &Index<'_>, enough: usize| {
+                    let mut beyond = Beyond(normal, normal.dot(at.point), vec![], enough);
                     let cost = index.visit(&view, &mut beyond);
                     assert_eq!(cost.tests, beyond.2.len() as u64);
-                    beyond.2.sort_unstable();
-                    beyond.2.dedup();
                     beyond.2
                 };
-                assert_eq!(beyond(&index), beyond(&Index::BRUTE), "{structure} of {name}");
+                let all = found(&index, usize::MAX);
+                if !all.is_empty() {
+                    let enough = 1 + random.word() as usize % all.len();
+                    assert_eq!(found(&index, enough), all[..enough], "{structure} of {name} breaks off");
+                }
+                let sorted = |mut found: Vec<usize>| {
+                    found.sort_unstable();
+                    found.dedup();
+                    found
+                };
+                assert_eq!(sorted(all), sorted(found(&Index::BRUTE, usize::MAX)), "{structure} of {name}");
             }
         }
     }
