@@ -7,7 +7,7 @@ use crate::reap::Cause;
 use crate::time::Time;
 use glam::Vec3;
 
-/// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away.
+/// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away, and a pair of observers is one.
 ///
 /// ```
 /// use pointmass::{Attention, Cause, Heap, LifeEvent, Observer, Particle, Scene, System, Time};
@@ -53,7 +53,8 @@ pub trait Observer {
         let _ = (state, custom);
     }
 
-    /// A particle met a collider or another particle, and was answered.
+    /// A particle met a collider or another particle, and was answered. What rests on a collider meets it in every step: whoever counts
+    /// blows passes over those with a small [`closing`](Impact::closing) speed.
     fn hit(&mut self, hit: &Impact) {
         let _ = hit;
     }
@@ -91,12 +92,59 @@ impl Observer for () {
     }
 }
 
+/// Both watch, the first before the second.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn after(&mut self, phase: Phase, state: &State<'_>) {
+        self.0.after(phase, state);
+        self.1.after(phase, state);
+    }
+
+    fn attention(&self) -> Attention {
+        self.0.attention().max(self.1.attention())
+    }
+
+    fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
+        self.0.write(state, custom);
+        self.1.write(state, custom);
+    }
+
+    fn hit(&mut self, hit: &Impact) {
+        self.0.hit(hit);
+        self.1.hit(hit);
+    }
+
+    fn touched(&mut self, touch: &Impact) {
+        self.0.touched(touch);
+        self.1.touched(touch);
+    }
+
+    fn slid(&mut self, slide: &Sliding) {
+        self.0.slid(slide);
+        self.1.slid(slide);
+    }
+
+    fn born(&mut self, birth: &LifeEvent) {
+        self.0.born(birth);
+        self.1.born(birth);
+    }
+
+    fn died(&mut self, death: &LifeEvent, cause: Cause) {
+        self.0.died(death, cause);
+        self.1.died(death, cause);
+    }
+
+    fn refused(&mut self, count: u64, time: Time) {
+        self.0.refused(count, time);
+        self.1.refused(count, time);
+    }
+}
+
 /// The parts of a step that an observer wants to know of: each of these is more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Attention {
-    /// Nothing at all.
+    /// Nothing at all; phases may be told all the same.
     Nothing,
-    /// The events of particles: all but [`Observer::after`].
+    /// The events of particles; phases may be told all the same.
     Events,
     /// The state after each phase as well.
     Phases,

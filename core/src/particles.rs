@@ -43,7 +43,7 @@ pub struct Particle {
 }
 
 impl Particle {
-    /// A particle of 1 kg at rest in the origin, free, without drag, immortal.
+    /// A point of 1 kg at rest in the origin, free, without drag, immortal, of elasticity 0.5.
     pub const REST: Self = Self {
         position: Vec3::ZERO,
         velocity: Vec3::ZERO,

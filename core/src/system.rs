@@ -64,9 +64,9 @@ impl<B: Storage> System<B> {
     /// beyond the capacity are refused and counted.
     pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), InsufficientMemory> {
         self.status = Status { seed, ..Status::NEW };
-        let (need, have) = (scene.size(), self.memory.columns().size());
+        let have = self.memory.columns().size();
         if !scene.fits(have) {
-            return Err(InsufficientMemory { need, have });
+            return Err(InsufficientMemory { need: scene.size_for(have.particles), have });
         }
         self.workspace().start(scene);
         Ok(())
@@ -82,10 +82,16 @@ impl<B: Storage> System<B> {
     ///
     /// Stepping to [`Time::frame`] after frame drifts by nothing, however long.
     pub fn step_to(&mut self, scene: &Scene<'_>, instant: Time) -> Report {
-        if instant > self.status.time { self.step(scene, instant - self.status.time) } else { Report::default() }
+        self.step_to_observed(scene, instant, &mut ())
     }
 
-    /// `step`, while somebody watches.
+    /// [`step_to`](Self::step_to), while somebody watches.
+    pub fn step_to_observed(&mut self, scene: &Scene<'_>, instant: Time, observer: &mut dyn Observer) -> Report {
+        let now = self.status.time;
+        if instant > now { self.step_observed(scene, instant - now, observer) } else { Report::default() }
+    }
+
+    /// [`step`](Self::step), while somebody watches.
     pub fn step_observed(&mut self, scene: &Scene<'_>, dt: Time, observer: &mut dyn Observer) -> Report {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());

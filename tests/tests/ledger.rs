@@ -1,11 +1,12 @@
 //! The ledger closes: what is left over is the method's own error.
 
-use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, Uniform, Viscosity, Wind};
+use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, State, Uniform, Viscosity, Wind};
 use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
 use pointmass::{
-    Adaptive, Books, ClothSprings, ContactMaterial, Drag, Emitter, Force, Gravity, Heap, Ledger, Measures, Meetings,
-    Method, MutualGravity, Particle, Rk4, Scene, Sheet, Size, Spring, SpringParams, System, Time, Varied, Vec3, Verlet,
+    Adaptive, Books, Cause, ClothSprings, ContactMaterial, Drag, Emitter, Force, Gravity, Heap, Impact, Ledger,
+    LifeEvent, Measures, Meetings, Method, MutualGravity, Observer, Particle, Phase, Rk4, Scene, Sheet, Size, Spring,
+    SpringParams, System, Time, Varied, Vec3, Verlet,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, point};
@@ -297,4 +298,48 @@ fn friction_of_hard_balls_has_its_line() {
         let (books, share) = books(&scene, 2, 1.0 / 240.0);
         assert!(books.friction < least && books.scenery.abs() < 1e-4 && share < bound, "{name} {share}: {books:?}");
     }
+}
+
+/// Counts calls.
+#[derive(Default)]
+struct Counter([usize; 4]);
+
+impl Observer for Counter {
+    fn after(&mut self, _: Phase, _: &State<'_>) {
+        self.0[0] += 1;
+    }
+    fn hit(&mut self, _: &Impact) {
+        self.0[1] += 1;
+    }
+    fn born(&mut self, _: &LifeEvent) {
+        self.0[2] += 1;
+    }
+    fn died(&mut self, _: &LifeEvent, _: Cause) {
+        self.0[3] += 1;
+    }
+}
+
+#[test]
+fn two_may_watch_as_one() {
+    busy(|scene| {
+        let watched = |by: &mut dyn FnMut(&mut System<Heap>, Time)| {
+            let mut system = System::with(Heap::new(SIZE));
+            system.start(scene, 3).expect("it fits");
+            for i in 1..=90 {
+                by(&mut system, Time::frame(i, 60));
+            }
+            system.hash()
+        };
+        let mut system = System::with(Heap::new(SIZE));
+        system.start(scene, 3).expect("it fits");
+        let alone = || (Ledger::new(&system, scene), Counter::default());
+        let ((mut ledger, mut counter), mut both) = (alone(), alone());
+        let unseen = watched(&mut |system, instant| drop(system.step_to(scene, instant)));
+        let one = watched(&mut |system, instant| drop(system.step_to_observed(scene, instant, &mut ledger)));
+        let other = watched(&mut |system, instant| drop(system.step_to_observed(scene, instant, &mut counter)));
+        let two = watched(&mut |system, instant| drop(system.step_to_observed(scene, instant, &mut both)));
+        assert_eq!([one, other, two], [unseen; 3]);
+        assert_eq!((ledger.books(), counter.0), (both.0.books(), both.1.0));
+        assert!(counter.0.iter().all(|&calls| calls > 0), "{:?}", counter.0);
+    });
 }

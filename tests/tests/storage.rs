@@ -1,9 +1,11 @@
 //! Memory and its bounds: who owns it, how little there may be, and that nobody is lost.
 
+use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::Burst;
+use pointmass::shape::Sphere;
 use pointmass::{
-    Emitter, Gravity, Heap, Inline, Method, MutualGravity, Particle, Report, Scene, Size, Storage, System, Time,
-    Varied, Vec3,
+    Constraint, Emitter, Gravity, Heap, Inline, Method, MutualGravity, Particle, Report, Scene, Size, Storage, System,
+    Time, Varied, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy, emitters};
 use pointmass_tests::{config, started};
@@ -116,7 +118,7 @@ fn a_step_that_does_not_fit_is_counted_and_changes_nothing() {
             let small = Scene { start: &[Particle { velocity: Vec3::X, ..Particle::REST }], ..Scene::EMPTY };
             let mut system = System::with(Heap::new(size));
             let error = system.start(scene, 1).expect_err("it does not fit");
-            assert_eq!((error.need, error.have), (scene.size(), size));
+            assert_eq!((error.need, error.have), (scene.size_for(size.particles), size));
             assert!(error.to_string().contains("needs 3 emitters, 8 springs, 5 columns"));
             assert!(system.is_empty());
             system.start(&small, 1).expect("it fits");
@@ -133,6 +135,49 @@ fn a_step_that_does_not_fit_is_counted_and_changes_nothing() {
             assert_eq!(system.particles().position, [Vec3::X * 2.0]);
         }
     });
+}
+
+/// Keeps words that are not for particles, and works in others.
+struct Keeper;
+
+impl Constraint for Keeper {
+    fn demand(&self) -> Demand {
+        let words = |fixed| Words { per_row: 1, fixed };
+        Demand { kept: words(1000), step: words(900), scratch: words(90), finds_near: false }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        assert_eq!(share.kept.fixed.len(), 1000);
+        share.kept.fixed[999] += 1;
+        for row in 0..bodies.len() {
+            bodies.shift(row, Vec3::NEG_Y * bodies.position[row].y);
+        }
+    }
+}
+
+#[test]
+fn what_is_not_for_particles_is_judged_by_how_many_there_may_be() {
+    for (start, particles) in [(0, 1), (0, 500), (3, 3), (3, 40), (200, 200), (200, 7)] {
+        let start = vec![Particle::REST; start];
+        let ball = Sphere { center: Vec3::Y, radius: 0.1 };
+        let source = Emitter { lifetime: Varied::exactly(0.5), ..Emitter::new(ball, 60.0) };
+        let scene = Scene { start: &start, emitters: &source, constraints: &Keeper, substeps: 3, ..Scene::EMPTY };
+        let size = scene.size_for(particles);
+        // No more than what is asked for, but what rounding up to whole columns adds.
+        assert!(size.kept * particles <= 1000 + 3 * particles, "{size:?}");
+        let run = |size: Size| {
+            let mut system = System::with(Heap::new(size));
+            system.start(&scene, 1).expect("it fits");
+            (1..=30).for_each(|i| drop(system.step_to(&scene, Time::frame(i, 60))));
+            assert_eq!(system.totals().caps.insufficient_memory, 0);
+            system.hash()
+        };
+        assert_eq!(run(size), run(Size { columns: size.columns + 9, kept: size.kept + 4, ..size }));
+        for less in [Size { columns: size.columns - 1, ..size }, Size { kept: size.kept - 1, ..size }] {
+            let refused = System::with(Heap::new(less)).start(&scene, 1).expect_err("it does not fit");
+            assert_eq!(refused.need, size);
+        }
+    }
 }
 
 #[test]

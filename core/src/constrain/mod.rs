@@ -49,6 +49,9 @@ use crate::composed::composed;
 /// A tuple, slice or reference of constraints is a constraint: all of them, one after the other in each phase. Every
 /// constraint sees what those before it have done.
 ///
+/// What is born in a step comes under it in the next. Colliders act at the end of the step, after the last sub-step: what they stop may be off the
+/// constraint, and has the velocity that they leave it, until then. (Shells and contacts of sheets meet the scenery by themselves.)
+///
 /// Whatever goes to the nearest place that satisfies it takes energy out of the motion, the less the shorter the sub-steps. To keep it, go
 /// back along the direction of the sub-step's beginning ([`Bodies::before`]), take what violates the constraint out of velocities in
 /// [`settle`](Constraint::settle), and use `Verlet` (RATTLE); the example `own_constraint` does so.
@@ -78,17 +81,17 @@ use crate::composed::composed;
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 pub trait Constraint: Sync {
-    /// The memory it works in.
+    /// The memory it works in; by default none.
     fn demand(&self) -> Demand {
         Demand::NONE
     }
 
-    /// Tells whether it constrains nothing: a scene of such constraints keeps no memory for them.
+    /// Tells whether it constrains nothing, which by default it denies: a scene of such constraints keeps no memory for them.
     fn is_empty(&self) -> bool {
         false
     }
 
-    /// The function that a step calls to have it met; none, where it is known that it constrains nothing.
+    /// The function that a step calls to have it met; none, where it is known that it constrains nothing. The default is right for all others.
     fn code(&self) -> Option<ConstraintCode> {
         Some(ConstraintCode::ALL)
     }

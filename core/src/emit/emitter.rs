@@ -167,7 +167,7 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
 }
 
 impl<S> Emitter<S> {
-    /// An emitter of `rate` births per second that are at rest, of 1 kg, immortal.
+    /// An emitter of `rate` births per second: points at rest, of 1 kg, immortal, of elasticity 0.5.
     #[must_use]
     pub const fn new(shape: S, rate: f32) -> Self {
         Self::moving(shape, rate, ())

@@ -89,15 +89,17 @@ use glam::Vec3;
 pub trait Force: Sync {
     /// Adds the force \[N\] on each particle of `rows` to `total`, whose first entry is that of the first row.
     ///
-    /// Rows are independent of each other, so that any division of the work gives the same bits.
+    /// Rows are independent of each other, so that any division of the work gives the same bits. Roots are the same on all machines;
+    /// other functions are where they come from [`math`](crate::math), and not from `std`.
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]);
 
-    /// The parts of the state that it has to find there.
+    /// The parts of the state that it has to find there; by default neither neighbours nor trees.
     fn needs(&self) -> Needs {
         Needs::default()
     }
 
-    /// Tells whether the force on a particle depends on nothing but its own row and the time. A step then takes a few
+    /// Tells whether the force on a particle depends on nothing but its own row and the time. By default it says no, which is always
+    /// right; yes is for speed. A step then takes a few
     /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it.
     fn is_local(&self) -> bool {
         false
@@ -120,8 +122,9 @@ pub trait Force: Sync {
     /// Adds how the force on each particle changes as they move: (∂f/∂x) δx + (∂f/∂v) δv \[N\], for methods that solve for
     /// the state at a step's end. All rows at once.
     ///
-    /// It has to be symmetric and must not push what is displaced any farther (negative semidefinite), so parts that do
-    /// are left out. A force that leaves it out altogether is taken as constant over the step, as an explicit method would.
+    /// It has to be symmetric and must not push what is displaced any farther (negative semidefinite). Nobody checks that: whoever writes
+    /// it leaves out the parts that are not so, and all of it for a force across the way, such as a swirl. A force without one, as by default, is
+    /// taken as constant over each of the solver's steps.
     fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         let _ = (state, change, total);
     }
@@ -141,15 +144,15 @@ pub trait Force: Sync {
     }
 
     /// The power \[W\] that it brings into kinetic and its own potential energy taken together: below zero for what slows
-    /// things down, zero (unless it says otherwise) for a force that is the slope of its energy. Without an energy it is the sum of
-    /// F·v; where that is left out, its work turns up in the ledger's remainder.
+    /// things down. Zero by default, which is right for a force that is the slope of its [`energy`](Self::energy). A force without one
+    /// has to return the sum of F·v; where it does not, its work turns up in the ledger's remainder.
     #[cfg(feature = "std")]
     fn power(&self, state: &State<'_>) -> f64 {
         let _ = state;
         0.0
     }
 
-    /// Its name in reports.
+    /// Its name in reports, by which forces are told apart there; by default "force".
     #[cfg(feature = "std")]
     fn name(&self) -> &'static str {
         "force"

@@ -45,7 +45,8 @@ pub struct State<'a> {
     pub custom: CustomColumns<'a>,
     /// The springs between them.
     pub springs: Springs<'a>,
-    /// The neighbours of each.
+    /// The neighbours of each: `near.of(rows, radius, &mut |row, others| …)` tells, in a step and outside, who is around whom, which leaves
+    /// out who is asked about.
     pub near: Neighbours<'a>,
     /// Their masses in a tree, while a step is made, if a force needs it and there are at least 128 of them.
     pub mass_tree: Option<&'a BarnesHut<'a>>,

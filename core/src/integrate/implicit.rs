@@ -14,7 +14,8 @@ use glam::Vec3;
 /// Order 1, stable at any step; fast motion is damped the more, the longer the step. For what is stiff and may look soft:
 /// cloth, hair, thick springs at sixty steps a second. Each Newton step costs one evaluation and as many products with the
 /// forces' Jacobian as conjugate gradients take, preconditioned by its diagonal. Forces that give no Jacobian are
-/// taken as constant over the step. Nothing is allocated; a solution that is cut off is still a step toward it, and counted.
+/// taken as constant over each Newton step: with one they act as in an explicit method, with several they are iterated, which
+/// diverges, uncounted, where h² times their slope over the mass is more than one. Nothing is allocated; a solution that is cut off is still a step toward it, and counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Implicit {
     /// Newton steps; one solves a linear system exactly, and that of springs well enough.

@@ -96,6 +96,7 @@ pub enum BoxForm {
 }
 
 impl BoxForm {
+    #[cfg(feature = "serde")]
     fn is_box(&self) -> bool {
         *self == Self::Box
     }

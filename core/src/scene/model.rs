@@ -219,6 +219,7 @@ impl Model {
     #[must_use]
     pub fn size(&self, particles: usize) -> Size {
         let scene = self.scene();
-        Size { particles, columns: scene.columns_with_lists(), ..scene.size() }
+        let size = scene.size_for(particles);
+        Size { columns: size.columns + scene.list_columns(), ..size }
     }
 }

@@ -93,7 +93,12 @@ impl Scene<'_> {
     /// With less memory they are looked up anew in each evaluation, to the same bits.
     #[must_use]
     pub fn columns_with_lists(&self) -> usize {
-        self.columns() + if self.forces.needs().lists.is_some() { LISTS } else { 0 }
+        self.columns() + self.list_columns()
+    }
+
+    /// The part of it for lists alone.
+    pub(crate) fn list_columns(&self) -> usize {
+        if self.forces.needs().lists.is_some() { LISTS } else { 0 }
     }
 
     /// Words that are kept of each particle, if there is room for as many as it begins with or more.
@@ -129,15 +134,33 @@ impl Scene<'_> {
         self.substeps.clamp(1, 1000)
     }
 
-    /// The least memory it runs in; `particles` is what it begins with.
+    /// The least memory it runs in with as many particles as it begins with; where emitters add to them, see [`size_for`](Self::size_for).
     #[must_use]
     pub fn size(&self) -> Size {
+        self.size_for(self.start.len())
+    }
+
+    /// The least memory it runs in with at most so many particles alive at once.
+    ///
+    /// ```
+    /// use pointmass::shape::Sphere;
+    /// use pointmass::{Emitter, Heap, Scene, System, Varied, Vec3};
+    ///
+    /// let ball = Sphere { center: Vec3::ZERO, radius: 0.1 };
+    /// let source = Emitter { lifetime: Varied::exactly(2.0), ..Emitter::new(ball, 100.0) };
+    /// let scene = Scene { emitters: &source, ..Scene::EMPTY };
+    /// let system = System::with(Heap::new(scene.size_for(200)));
+    /// assert_eq!(system.capacity(), 200);
+    /// ```
+    #[must_use]
+    pub fn size_for(&self, particles: usize) -> Size {
+        let plan = self.plan();
         Size {
-            particles: self.start.len(),
+            particles,
             emitters: self.emitters.count(),
             springs: self.springs.list().len(),
-            columns: self.columns(),
-            kept: self.kept(),
+            columns: plan.columns(particles),
+            kept: plan.kept_columns(particles),
         }
     }
 
@@ -152,7 +175,7 @@ impl Scene<'_> {
 
     /// Tells whether a step can be made in memory of size `have`: all but the particles must fit.
     pub(crate) fn fits(&self, have: Size) -> bool {
-        let need = self.size();
+        let need = self.size_for(have.particles);
         let pairs = [[need.emitters, have.emitters], [need.springs, have.springs], [need.columns, have.columns]];
         pairs.iter().all(|[need, have]| need <= have) && need.kept <= have.kept
     }
