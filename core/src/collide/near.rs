@@ -15,6 +15,12 @@ pub(super) const BLOCK: usize = 1280;
 /// A bit for each row of a block.
 pub(super) type Marks = [u8; BLOCK / LANES];
 
+/// Who may touch a face, and who of them may lie on it as well: others are too far from it when the step begins.
+pub(super) struct Near {
+    pub(super) touching: Marks,
+    pub(super) lying: Marks,
+}
+
 /// Balls on cubics: places and velocities at both ends, so many seconds apart.
 #[derive(Clone, Copy)]
 pub(super) struct Balls<'a> {
@@ -78,18 +84,23 @@ impl<'a> Balls<'a> {
 
     /// The answers for eight after the other, side by side.
     #[inline(always)]
-    fn marks(&self, near: impl Fn([&[Vec3; LANES]; 4], &[f32; LANES]) -> u8) -> Marks {
-        let mut marks = [0; BLOCK / LANES];
+    fn marks(&self, near: impl Fn([&[Vec3; LANES]; 4], &[f32; LANES]) -> [u8; 2]) -> Near {
+        let mut marks = Near { touching: [0; BLOCK / LANES], lying: [0; BLOCK / LANES] };
+        let places = marks.touching.iter_mut().zip(&mut marks.lying);
         let [(x0, x0_rest), (v0, v0_rest), (x1, x1_rest), (v1, v1_rest)] = self.ends.map(<[Vec3]>::as_chunks);
         let (radius, radius_rest) = self.radius.as_chunks();
         let columns = x0.iter().zip(v0).zip(x1.iter().zip(v1)).zip(radius);
-        for (mark, (((x0, v0), (x1, v1)), radius)) in marks.iter_mut().zip(columns) {
-            *mark = near([x0, v0, x1, v1], radius);
+        for ((touching, lying), (((x0, v0), (x1, v1)), radius)) in places.zip(columns) {
+            [*touching, *lying] = near([x0, v0, x1, v1], radius);
         }
-        if let Some(mark) = marks.get_mut(radius.len()).filter(|_| !radius_rest.is_empty()) {
+        if !radius_rest.is_empty() {
             let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
             // There are fewer rows than eight.
-            *mark = near([&x0, &v0, &x1, &v1], &filled(radius_rest)) & !(u8::MAX << radius_rest.len());
+            let are_there = !(u8::MAX << radius_rest.len());
+            let last = near([&x0, &v0, &x1, &v1], &filled(radius_rest)).map(|marks| marks & are_there);
+            for (marks, last) in [&mut marks.touching, &mut marks.lying].into_iter().zip(last) {
+                marks[radius.len()..].iter_mut().take(1).for_each(|mark| *mark = last);
+            }
         }
         marks
     }
@@ -99,7 +110,7 @@ impl Block<'_> {
     /// A mask of those that may touch the face, as far as boxes around their paths tell: never fewer than
     /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
     #[inline(never)]
-    pub(super) fn near(&self, face: &Face) -> Marks {
+    pub(super) fn near(&self, face: &Face) -> Near {
         let Self { balls, bends, .. } = *self;
         let ([point, _, unit], third) = (face.vectors(), balls.third());
         // No number of the paths is larger, of those that are finite: others are followed nowhere.
@@ -107,13 +118,13 @@ impl Block<'_> {
         let room = self.radius + largest * (128.0 * f32::EPSILON);
         let sides = |axis: usize| [point[axis] - room, point[axis] + room];
         match unit.abs().to_array() {
-            _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
+            _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
             [1.0, 0.0, 0.0] => run(Slab::<0> { balls, bends, sides: sides(0) }),
             [0.0, 1.0, 0.0] => run(Slab::<1> { balls, bends, sides: sides(1) }),
             [0.0, 0.0, 1.0] => run(Slab::<2> { balls, bends, sides: sides(2) }),
             _ => widest(
                 #[inline(always)]
-                || balls.marks(|ends, radius| near(face, ends, radius, third)),
+                || balls.marks(|ends, radius| [near(face, ends, radius, third); 2]),
             ),
         }
     }
@@ -126,12 +137,18 @@ impl Block<'_> {
         let room = radius + largest * (256.0 * f32::EPSILON);
         let extent = bounds.max - bounds.min;
         let sides = |axis: usize| [bounds.min[axis] - room, bounds.max[axis] + room];
-        match extent.min_element() {
-            _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
+        let marks = match extent.min_element() {
+            _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
             least if least == extent.x => run(Slab::<0> { balls, bends, sides: sides(0) }),
             least if least == extent.y => run(Slab::<1> { balls, bends, sides: sides(1) }),
             _ => run(Slab::<2> { balls, bends, sides: sides(2) }),
-        }
+        };
+        marks.touching
+    }
+
+    /// Tells whether all of them are points.
+    pub(super) fn are_points(&self) -> bool {
+        self.radius == 0.0
     }
 
     /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
@@ -164,10 +181,10 @@ fn most_apart(a: &[Vec3], b: &[Vec3]) -> f32 {
 }
 
 impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
-    type Output = Marks;
+    type Output = Near;
 
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Marks {
+    fn run<F: Eight>(self, like: F) -> Near {
         let Bends { after_start, before_end } = self.bends;
         let (third, [low, high]) = (like.all(self.balls.third()), self.sides.map(|side| like.all(side)));
         self.balls.marks(
@@ -183,9 +200,13 @@ impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
                     let b = x1 - coordinate::<F, AXIS>(like, v1) * third;
                     (least, most) = (least.least(b), most.most(b));
                 }
-                let is_near = least.simd_le(high) & most.simd_ge(low);
+                // Who lies on a floor begins no higher than this; who is below it is held to lie until that is looked at closer.
+                let (is_near, is_low) = (most.simd_ge(low), x0.simd_le(high));
                 let rows = const { &rows_of_bits(AXIS) };
-                rows[is_near.to_bitmask() as usize % 256]
+                [is_near & least.simd_le(high), is_near & is_low].map(
+                    #[inline(always)]
+                    |mask| rows[mask.to_bitmask() as usize % 256],
+                )
             },
         )
     }

@@ -17,8 +17,8 @@ pub(super) use paths::Paths;
 
 /// Properties of eight particles that decide how they meet a face.
 pub(super) struct Riders<F> {
-    /// Those that are held where they are.
-    pub(super) is_fixed: F,
+    /// Those that are not held where they are, on paths all of whose numbers are finite.
+    pub(super) are_free: F,
     pub(super) radius: F,
     pub(super) elasticity: F,
     /// Coefficients of friction.
@@ -30,33 +30,33 @@ pub(super) struct Riders<F> {
 const ROUNDS: usize = 4;
 
 /// The outcome of a packet: a bit for each particle.
-pub(super) struct Outcome {
+pub(super) struct Outcome<F> {
     /// Particles that are at the end of the step now, and those to be followed alone.
     pub(super) settled: u32,
     pub(super) left: u32,
     /// How often those who are at the end were hit, and the largest of their coordinates \[m\].
     pub(super) hits: u32,
     pub(super) farthest: f32,
-    /// Places and velocities, each with some number behind it.
-    pub(super) ends: [[[f32; 4]; LANES]; 2],
+    /// Places and velocities.
+    pub(super) ends: [Vectors<F>; 2],
 }
 
-impl Outcome {
+impl<F: Eight> Outcome<F> {
     /// The outcome for those who are `settled` on their paths, after so many hits, and for those who are `left`.
     #[inline(always)]
-    fn of<F: Eight>(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
+    fn of(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
         let farthest = (paths.x1.largest() & settled).largest_lane();
-        Self { settled: settled.to_bitmask(), left, hits, farthest, ends: paths.ends() }
+        Self { settled: settled.to_bitmask(), left, hits, farthest, ends: [paths.x1, paths.v1] }
     }
 }
 
 impl<F: Eight> Riders<F> {
     /// Those of who are `present` who lie on a face: along it, from their own places, for a step.
     #[inline(always)]
-    pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome {
+    pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome<F> {
         let acceleration = paths.acceleration();
         let (lying, normal) = self.seated(paths, face, acceleration);
-        let lying = lying & paths.are_finite() & not(self.is_fixed);
+        let lying = lying & self.are_free;
         if !lying.any() {
             return Outcome::of(paths, lying, 0, 0);
         }
@@ -135,9 +135,9 @@ impl<F: Eight> Riders<F> {
     /// Those of who are `present` who bounce off a face, come to rest on it, or miss it, and fly on till the end of a step of so long;
     /// not those who are hit so many times.
     #[inline(always)]
-    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, present: u32, step: Time, max_bounces: u32) -> Outcome {
+    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, present: u32, step: Time, max_bounces: u32) -> Outcome<F> {
         let (mut onward, mut cubics) = (*paths, paths.cubics());
-        let mut clear = paths.are_finite() & not(cubics.lag() | self.is_fixed);
+        let mut clear = self.are_free & not(cubics.lag());
         let mut meetings = paths.first_meetings(&cubics, face, self.radius, clear);
         let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);

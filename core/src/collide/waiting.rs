@@ -2,10 +2,13 @@
 
 use crate::lanes::LANES;
 
-/// Rows that wait until there are eight: those of a word of marks besides fewer than eight of before.
-#[derive(Clone, Copy, Default)]
+/// Places in a queue: for a word of marks besides fewer than eight of before.
+const PLACES: usize = 128;
+
+/// Rows that wait until there are eight.
+#[derive(Clone, Copy)]
 pub(super) struct Queue {
-    rows: [[usize; LANES]; 9],
+    rows: [u32; PLACES],
     len: usize,
 }
 
@@ -24,39 +27,37 @@ impl Packet {
 }
 
 impl Queue {
+    pub(super) const EMPTY: Self = Self { rows: [0; PLACES], len: 0 };
+
     /// Puts a row in, behind no more than there is room for.
     #[inline(always)]
-    pub(super) fn push(&mut self, row: usize) {
-        if let Some(place) = self.rows.as_flattened_mut().get_mut(self.len) {
-            *place = row;
-            self.len += 1;
-        }
+    pub(super) fn push(&mut self, row: u32) {
+        self.rows[self.len % PLACES] = row;
+        self.len += 1;
     }
 
     /// Puts in those from the first on that are marked.
     #[inline(always)]
-    pub(super) fn push_all(&mut self, first: usize, mut marks: u64) {
-        let (rows, mut len) = (self.rows.as_flattened_mut(), self.len);
-        while let Some(place) = rows.get_mut(len).filter(|_| marks != 0) {
-            *place = first + marks.trailing_zeros() as usize;
+    pub(super) fn push_all(&mut self, first: u32, mut marks: u64) {
+        while marks != 0 {
+            self.push(first + marks.trailing_zeros());
             marks &= marks - 1;
-            len += 1;
         }
-        self.len = len;
     }
 
     /// The last eight, once there are so many.
     #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<Packet> {
         let rest = self.len.checked_sub(LANES)?;
-        let rows = *self.rows.as_flattened().get(rest..)?.first_chunk()?;
+        let rows: [u32; LANES] = *self.rows.get(rest..)?.first_chunk()?;
         self.len = rest;
-        Some(Packet { rows, len: LANES })
+        Some(Packet { rows: rows.map(|row| row as usize), len: LANES })
     }
 
     /// Those who still wait, if anybody does.
     pub(super) fn rest(&self) -> Option<Packet> {
-        let mut rows = self.rows[0];
+        let rows: [u32; LANES] = *self.rows.first_chunk()?;
+        let mut rows = rows.map(|row| row as usize);
         let (first, len) = (rows[0], self.len.min(LANES));
         rows[len..].fill(first);
         (len > 0).then_some(Packet { rows, len })

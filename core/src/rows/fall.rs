@@ -103,33 +103,53 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Le
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
+        let g = self.fall.numbers(like);
+        let Some(factors) = self.fall.of_all() else {
+            return self.go(
+                like,
+                #[inline(always)]
+                |v, factors| Fall::<FALLS, DRAGS>::of(g, v, factors),
+            );
+        };
+        let [m, k, inverse] = [like.all(factors[0]), like.all(factors[1]), like.all(factors[2])];
+        let pull = Fall::<FALLS, DRAGS>::pull(g, [m; 3]);
+        self.go(
+            like,
+            #[inline(always)]
+            |v, _| Fall::<FALLS, DRAGS>::rate(pull, v, [k; 3], [inverse; 3]),
+        )
+    }
+}
+
+impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
+    /// The whole of it, where velocities of eight rows with such factors change at a `rate`.
+    #[inline(always)]
+    fn go<F: Eight>(self, like: F, rate: impl Fn([F; 3], Factors<'_>) -> [F; 3]) -> Option<Extents> {
         let Self { fall, ends: [position, velocity], start: [start_x, start_v], h } = self;
-        let (g, (factors, factors_rest), h) = (fall.numbers(like), fall.eights(), like.all(h));
+        let ((factors, factors_rest), h) = (fall.eights(), like.all(h));
         let ((x, x_rest), (v, v_rest)) = (position.as_chunks_mut(), velocity.as_chunks_mut());
         let ((x0, x0_rest), (v0, v0_rest)) = (start_x.as_chunks_mut(), start_v.as_chunks_mut());
         let (mut start, mut seen) = (x0.iter_mut().zip(v0), Seen::none(like.all(0.0)));
         for ((x, v), factors) in x.iter_mut().zip(v).zip(factors) {
-            Self::eight(g, [x, v], start.next(), factors, h, &mut seen);
+            Self::eight(&rate, [x, v], start.next(), factors, h, &mut seen);
         }
         if !x_rest.is_empty() {
             x0_rest.iter_mut().zip(&*x_rest).for_each(|(x0, x)| *x0 = *x);
             v0_rest.iter_mut().zip(&*v_rest).for_each(|(v0, v)| *v0 = *v);
             let [mut x, mut v] = [filled(x_rest), filled(v_rest)];
-            Self::eight(g, [&mut x, &mut v], None, factors_rest.each_ref(), h, &mut seen);
+            Self::eight(&rate, [&mut x, &mut v], None, factors_rest.each_ref(), h, &mut seen);
             x_rest.copy_from_slice(&x[..x_rest.len()]);
             v_rest.copy_from_slice(&v[..v_rest.len()]);
         }
         seen.extents(if SYMPLECTIC { Drift::After } else { Drift::Before })
     }
-}
 
-impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
     #[inline(always)]
     fn eight<F: Eight>(
-        g: [F; 3],
+        rate: &impl Fn([F; 3], Factors<'_>) -> [F; 3],
         [x, v]: [&mut [Vec3; 8]; 2],
         start: Option<(&mut [Vec3; 8], &mut [Vec3; 8])>,
-        factors: [&[f32; 8]; 3],
+        factors: Factors<'_>,
         h: F,
         seen: &mut Seen<F>,
     ) {
@@ -137,7 +157,7 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALL
         if let Some((x0, v0)) = start {
             [*x0, *v0] = [stored(from), stored(before)];
         }
-        let rate = Fall::<FALLS, DRAGS>::of(g, before, factors);
+        let rate = rate(before, factors);
         let (mut to, mut after) = (from, before);
         for i in 0..3 {
             after[i] = before[i] + rate[i] * h;
@@ -170,6 +190,13 @@ impl<'a, const FALLS: bool, const DRAGS: bool> Fall<'a, FALLS, DRAGS> {
         (eights, [filled(m_rest), filled(k_rest), filled(inverse_rest)])
     }
 
+    /// The factors, if they are the same for all rows and nobody is fixed, as where one emitter feeds a fountain.
+    #[inline(always)]
+    fn of_all(&self) -> Option<[f32; 3]> {
+        let factors = [same(self.mass)?, same(self.drag)?, same(self.inverse_mass)?];
+        (factors[2] != 0.0).then_some(factors)
+    }
+
     /// The sum of forces over the mass, for eight rows: number by number, as they follow one another. What is fixed stays so under a
     /// force beyond an f32.
     #[inline(always)]
@@ -177,19 +204,50 @@ impl<'a, const FALLS: bool, const DRAGS: bool> Fall<'a, FALLS, DRAGS> {
         let (like, zero) = (g[0], g[0].all(0.0));
         let [m, k, inverse] =
             [like.of(*factors[0]).thrice(), like.of(*factors[1]).thrice(), like.of(*factors[2]).thrice()];
-        let mut rate = v;
+        let mut rate = Self::rate(Self::pull(g, m), v, k, inverse);
         for i in 0..3 {
-            let mut force = zero;
-            if FALLS {
-                force = force + g[i] * m[i];
-            }
-            if DRAGS {
-                force = force - v[i] * k[i];
-            }
-            rate[i] = (force * inverse[i]) & not(inverse[i].simd_eq(zero));
+            rate[i] = rate[i] & not(inverse[i].simd_eq(zero));
         }
         rate
     }
+
+    /// The steady part of the forces, and the sum of both parts over the mass.
+    #[inline(always)]
+    fn pull<F: Eight>(g: [F; 3], m: [F; 3]) -> [F; 3] {
+        let zero = g[0].all(0.0);
+        if FALLS { [zero + g[0] * m[0], zero + g[1] * m[1], zero + g[2] * m[2]] } else { [zero; 3] }
+    }
+
+    #[inline(always)]
+    fn rate<F: Eight>(pull: [F; 3], v: [F; 3], k: [F; 3], inverse: [F; 3]) -> [F; 3] {
+        let mut rate = pull;
+        for i in 0..3 {
+            let force = if DRAGS { pull[i] - v[i] * k[i] } else { pull[i] };
+            rate[i] = force * inverse[i];
+        }
+        rate
+    }
+}
+
+/// The number that a column consists of, if it is one.
+#[inline(always)]
+fn same(column: &[f32]) -> Option<f32> {
+    let first = *column.first()?;
+    let (chunks, rest) = column.as_chunks::<64>();
+    for chunk in chunks {
+        let mut differ = 0;
+        for x in chunk {
+            differ |= x.to_bits() ^ first.to_bits();
+        }
+        if differ != 0 {
+            return None;
+        }
+    }
+    let mut differ = 0;
+    for x in rest {
+        differ |= x.to_bits() ^ first.to_bits();
+    }
+    (differ == 0).then_some(first)
 }
 
 /// Eight vectors, number by number, in registers.

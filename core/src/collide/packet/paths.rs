@@ -1,7 +1,7 @@
 //! Paths of eight particles side by side, and the polynomials that they are.
 
 use crate::collide::path::CHORD_ERROR;
-use crate::lanes::{Eight, LANES, Vectors, max, not};
+use crate::lanes::{Eight, Vectors, max, not};
 
 /// Eight cubics, as `Path`.
 #[derive(Clone, Copy)]
@@ -36,12 +36,6 @@ impl<F: Eight> Paths<F> {
         }
     }
 
-    /// Where they lead, and the velocities there.
-    #[inline(always)]
-    pub(super) fn ends(&self) -> [[[f32; 4]; LANES]; 2] {
-        [self.x1.rows(), self.v1.rows()]
-    }
-
     #[inline(always)]
     pub(super) fn acceleration(&self) -> Vectors<F> {
         (self.v1 - self.v0) / self.time
@@ -49,7 +43,7 @@ impl<F: Eight> Paths<F> {
 
     /// Those of which all numbers are finite, and their sums.
     #[inline(always)]
-    pub(super) fn are_finite(&self) -> F {
+    pub(in crate::collide) fn are_finite(&self) -> F {
         let zero = self.time.all(0.0);
         let nought = (self.x0 + self.v0 + self.x1 + self.v1) * zero;
         let [x, y, z] = nought.0;
