@@ -185,28 +185,37 @@ impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Near {
-        let Bends { after_start, before_end } = self.bends;
-        let (third, [low, high]) = (like.all(self.balls.third()), self.sides.map(|side| like.all(side)));
+        match self.bends {
+            Bends { after_start: true, before_end: false } => self.marks::<F, true, false>(like),
+            Bends { after_start: false, before_end: true } => self.marks::<F, false, true>(like),
+            _ => self.marks::<F, true, true>(like),
+        }
+    }
+}
+
+impl<const AXIS: usize> Slab<'_, AXIS> {
+    /// The answers for paths that bend there, and perhaps nowhere else.
+    #[inline(always)]
+    fn marks<F: Eight, const AFTER_START: bool, const BEFORE_END: bool>(&self, like: F) -> Near {
+        let (third, [low, high]) = (like.all(self.balls.third()), [like.all(self.sides[0]), like.all(self.sides[1])]);
         self.balls.marks(
             #[inline(always)]
             |[x0, v0, x1, v1], _| {
                 let (x0, x1) = (coordinate::<F, AXIS>(like, x0), coordinate::<F, AXIS>(like, x1));
                 let (mut least, mut most) = (x0.least(x1), x0.most(x1));
-                if after_start {
+                if AFTER_START {
                     let a = x0 + coordinate::<F, AXIS>(like, v0) * third;
                     (least, most) = (least.least(a), most.most(a));
                 }
-                if before_end {
+                if BEFORE_END {
                     let b = x1 - coordinate::<F, AXIS>(like, v1) * third;
                     (least, most) = (least.least(b), most.most(b));
                 }
                 // Who lies on a floor begins no higher than this; who is below it is held to lie until that is looked at closer.
                 let (is_near, is_low) = (most.simd_ge(low), x0.simd_le(high));
                 let rows = const { &rows_of_bits(AXIS) };
-                [is_near & least.simd_le(high), is_near & is_low].map(
-                    #[inline(always)]
-                    |mask| rows[mask.to_bitmask() as usize % 256],
-                )
+                let (touching, lying) = (is_near & least.simd_le(high), is_near & is_low);
+                [rows[touching.to_bitmask() as usize % 256], rows[lying.to_bitmask() as usize % 256]]
             },
         )
     }

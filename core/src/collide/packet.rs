@@ -15,8 +15,8 @@ use hits::{Hits, Meetings, Segments};
 use paths::Cubics;
 pub(super) use paths::Paths;
 
-/// Properties of eight particles that decide how they meet a face.
-pub(super) struct Riders<F> {
+/// Properties of eight particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
+pub(super) struct Riders<F, const POINTS: bool> {
     /// Those that are not held where they are, on paths all of whose numbers are finite.
     pub(super) are_free: F,
     pub(super) radius: F,
@@ -28,6 +28,9 @@ pub(super) struct Riders<F> {
 
 /// The number of hits of a particle in a step are found in packets.
 const ROUNDS: usize = 4;
+
+/// Ticks of a step in which particles bounce in packets, at the most: so few that 32 bits do for what is left of it.
+const MOST_TICKS: u64 = 1 << 30;
 
 /// The outcome of a packet: a bit for each particle.
 pub(super) struct Outcome<F> {
@@ -50,7 +53,7 @@ impl<F: Eight> Outcome<F> {
     }
 }
 
-impl<F: Eight> Riders<F> {
+impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
     /// Those of who are `present` who lie on a face: along it, from their own places, for a step.
     #[inline(always)]
     pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome<F> {
@@ -65,7 +68,7 @@ impl<F: Eight> Riders<F> {
         let (way, end) = self.slide(slip, drive, pressing, paths.time);
         let along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
         let straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
-        let passes = Segments { from: along.x0, to: along.x1 }.first_hits(face, self.radius).are;
+        let passes = Segments { from: along.x0, to: along.x1 }.first_hits::<POINTS>(face, self.radius).are;
         let settled = lying & straight & not(passes) & along.end_finite();
         let which = settled.to_bitmask() & present;
         Outcome::of(&along, settled, lying.to_bitmask() & !which, which.count_ones())
@@ -138,10 +141,13 @@ impl<F: Eight> Riders<F> {
     pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, present: u32, step: Time, max_bounces: u32) -> Outcome<F> {
         let (mut onward, mut cubics) = (*paths, paths.cubics());
         let mut clear = self.are_free & not(cubics.lag());
-        let mut meetings = paths.first_meetings(&cubics, face, self.radius, clear);
+        if step.ticks() > MOST_TICKS {
+            return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
+        }
+        let mut meetings = paths.first_meetings::<POINTS>(&cubics, face, self.radius, clear);
         let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);
-        let (mut left, mut hits, mut rounds) = ([step; LANES], [0; ROUNDS], 1);
+        let (mut left, mut hits, mut rounds) = ([step.ticks() as i32; LANES], [0; ROUNDS], 1);
         for hits in &mut hits {
             hit = hit & clear;
             if !hit.any() || rounds >= max_bounces {
@@ -154,7 +160,7 @@ impl<F: Eight> Riders<F> {
             clear = clear & not(hit & not(is_free & next.time.simd_gt(next.time.all(0.0))));
             onward = Paths::select(hit, next, onward);
             cubics = onward.cubics();
-            meetings = onward.first_meetings(&cubics, face, self.radius, hit);
+            meetings = onward.first_meetings::<POINTS>(&cubics, face, self.radius, hit);
             clear = clear & not(hit & meetings.unclear);
             hit = hit & meetings.hits.are;
         }
@@ -163,7 +169,7 @@ impl<F: Eight> Riders<F> {
         Outcome::of(&onward, settled, !which, hits.iter().map(|hits| (hits & which).count_ones()).sum())
     }
 
-    /// The ways on from hits in steps of `dt` \[s\], of which so much is left, and whose are free.
+    /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, and whose are free.
     #[inline(always)]
     fn rebound(
         &self,
@@ -172,16 +178,18 @@ impl<F: Eight> Riders<F> {
         meetings: &Meetings<F>,
         face: &Face,
         dt: f32,
-        left: &mut [Time; LANES],
+        left: &mut [i32; LANES],
     ) -> (Paths<F>, F) {
         let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
-        for (left, s) in left.iter_mut().zip(s.to_array()) {
-            let ticks = left.ticks();
-            *left = Time::from_ticks(ticks - ((ticks as f32 * s) as u64).min(ticks));
+        // As `Path` has it: numbers of ticks and what is rounded of them are the same in 32 bits.
+        let mut rest = s.to_array();
+        for (left, rest) in left.iter_mut().zip(&mut rest) {
+            *left -= ((*left as f32 * *rest) as i32).max(0).min(*left);
+            *rest = *left as f32;
         }
-        let rest = like.of(left.map(Time::seconds));
+        let rest = like.of(rest) / all(Time::SECOND.ticks() as f32);
         let acceleration = paths.acceleration();
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
@@ -243,8 +251,8 @@ impl<F: Eight> Riders<F> {
         let beside = place + normal * (all(2.0) * slack);
         let back = all(2.0) * slack / (closing * paths.time);
         let before = cubics.at(max(time - back, begun));
-        let is_free = not(Segments { from: chord_from, to: before }.first_hits(face, self.radius).are);
-        let aside = Segments { from: before, to: beside }.first_hits(face, self.radius).are;
+        let is_free = not(Segments { from: chord_from, to: before }.first_hits::<POINTS>(face, self.radius).are);
+        let aside = Segments { from: before, to: beside }.first_hits::<POINTS>(face, self.radius).are;
         (Vectors::select(aside, before, beside), is_free)
     }
 

@@ -69,14 +69,14 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
 }
 
 /// Rows that may lie on a face.
-struct Lie<'t, 's, 'a> {
+struct Lie<'t, 's, 'a, const POINTS: bool> {
     of: &'t mut TileSweep<'s, 'a>,
     packet: &'t Packet,
     face: &'t Face,
 }
 
 /// Rows that may bounce off a face.
-struct Bounce<'t, 's, 'a> {
+struct Bounce<'t, 's, 'a, const POINTS: bool> {
     of: &'t mut TileSweep<'s, 'a>,
     packet: &'t Packet,
     face: &'t Face,
@@ -88,21 +88,21 @@ struct Unsettled {
     others: u32,
 }
 
-impl Kernel for Lie<'_, '_, '_> {
+impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
     type Output = Unsettled;
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Unsettled {
-        let (riders, paths) = self.of.packet::<F, true>(like, &self.packet.rows, self.face);
+        let (riders, paths) = self.of.packet::<F, true, POINTS>(like, &self.packet.rows, self.face);
         let outcome = riders.lie(&paths, self.face, self.packet.present());
         self.of.settle(self.packet, &outcome)
     }
 }
 
-impl Kernel for Bounce<'_, '_, '_> {
+impl<const POINTS: bool> Kernel for Bounce<'_, '_, '_, POINTS> {
     type Output = Unsettled;
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Unsettled {
-        let (riders, paths) = self.of.packet::<F, false>(like, &self.packet.rows, self.face);
+        let (riders, paths) = self.of.packet::<F, false, POINTS>(like, &self.packet.rows, self.face);
         let Tile { dt, scene, .. } = *self.of.tile;
         let outcome = riders.bounce(&paths, self.face, self.packet.present(), dt, scene.max_bounces);
         self.of.settle(self.packet, &outcome)
@@ -301,7 +301,10 @@ impl TileSweep<'_, '_> {
     /// Lets those who lie on the face do so; the others bounce.
     #[inline(never)]
     fn lie(&mut self, packet: &Packet, Waiting { face, bouncing, .. }: &mut Waiting) {
-        let unsettled = run(Lie { of: self, packet, face });
+        let unsettled = match self.are_points {
+            true => run(Lie::<true> { of: self, packet, face }),
+            false => run(Lie::<false> { of: self, packet, face }),
+        };
         ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES]));
         ones(unsettled.others).for_each(|i| bouncing.push(packet.rows[i % LANES] as u32));
         while let Some(packet) = bouncing.pop() {
@@ -312,7 +315,10 @@ impl TileSweep<'_, '_> {
     /// Lets those bounce off the face who do so a few times.
     #[inline(never)]
     fn bounce(&mut self, packet: &Packet, face: &Face) {
-        let unsettled = run(Bounce { of: self, packet, face });
+        let unsettled = match self.are_points {
+            true => run(Bounce::<true> { of: self, packet, face }),
+            false => run(Bounce::<false> { of: self, packet, face }),
+        };
         ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES]));
     }
 
@@ -342,7 +348,12 @@ impl TileSweep<'_, '_> {
 
     /// Rows side by side, none of which is the tile's last. Of those who may lie on a face, only what that takes is read.
     #[inline(always)]
-    fn packet<F: Eight, const LIES: bool>(&self, like: F, rows: &[usize; LANES], face: &Face) -> (Riders<F>, Paths<F>) {
+    fn packet<F: Eight, const LIES: bool, const POINTS: bool>(
+        &self,
+        like: F,
+        rows: &[usize; LANES],
+        face: &Face,
+    ) -> (Riders<F, POINTS>, Paths<F>) {
         let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
         let (last, [start_x, start_v]) = (position.len() - 1, self.past.start);
         let column = |column: &[f32]| {
@@ -369,7 +380,7 @@ impl TileSweep<'_, '_> {
         }
         let riders = Riders {
             are_free,
-            radius: if self.are_points { like.all(0.0) } else { like.of(column(m.lives.radius)) },
+            radius: if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) },
             elasticity: like.of(elasticity),
             at_rest: like.of(at_rest),
             kinetic: like.of(kinetic),
