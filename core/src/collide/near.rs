@@ -1,6 +1,5 @@
 //! Whom a flat face may touch: all rows of a tile are held against it, and most are far from it.
 
-use crate::integrate::Drift;
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
 use crate::math::{largest, max};
 use crate::rows::{Extents, farthest, filled, flat, largest_of};
@@ -29,29 +28,22 @@ pub(super) struct Balls<'a> {
     pub(super) time: f32,
 }
 
-/// The control points that may lie beside the ends of the paths: where places go by the velocity of an end, the one beyond that end lies
-/// on the way between the ends.
-#[derive(Clone, Copy)]
-struct Bends {
-    after_start: bool,
-    before_end: bool,
-}
-
 /// Some of them, and how large the numbers of their paths are.
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
     balls: Balls<'a>,
-    bends: Bends,
+    /// How far control points are beside the ways between the ends \[m\], and by how much velocities change \[m/s\], where that is known.
+    bend: Option<[f32; 2]>,
     /// The largest number of the velocities, of the control points, and of the radii; or more, but what is no number does not count.
     fastest: f32,
     largest: f32,
     radius: f32,
 }
 
-/// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far.
-struct Slab<'a, const AXIS: usize> {
+/// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far. If they are not `BENT`, their control
+/// points are no farther beyond than that.
+struct Slab<'a, const AXIS: usize, const BENT: bool> {
     balls: Balls<'a>,
-    bends: Bends,
     sides: [f32; 2],
 }
 
@@ -64,15 +56,17 @@ impl<'a> Balls<'a> {
         let third = balls.third();
         let radius = largest_of(balls.radius);
         match reached {
-            // From where they are, they have come no faster than that; what rounding adds is in the room for it.
-            Some(Extents { place, speed, drift }) => {
-                let bends = Bends { after_start: drift == Drift::After, before_end: drift == Drift::Before };
-                Block { balls, bends, fastest: speed, largest: place + (time + third) * speed, radius }
+            // From where they are, they have come no faster than that, and by the velocity of one end: the control point beyond that lies
+            // on the way between the ends, and the other beside it by what the other velocity differs. What rounding adds is in the
+            // room for it.
+            Some(Extents { place, speed, change }) => {
+                let bend = Some([third * change, change]);
+                Block { balls, bend, fastest: speed, largest: place + (time + third) * speed, radius }
             }
             None => {
-                let ([x0, v0, x1, v1], bends) =
-                    (balls.ends.map(farthest), Bends { after_start: true, before_end: true });
-                Block { balls, bends, fastest: max(v0, v1), largest: max(x0 + third * v0, x1 + third * v1), radius }
+                let [x0, v0, x1, v1] = balls.ends.map(farthest);
+                let largest = max(x0 + third * v0, x1 + third * v1);
+                Block { balls, bend: None, fastest: max(v0, v1), largest, radius }
             }
         }
     }
@@ -111,17 +105,17 @@ impl Block<'_> {
     /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
     #[inline(never)]
     pub(super) fn near(&self, face: &Face) -> Near {
-        let Self { balls, bends, .. } = *self;
+        let Self { balls, bend, .. } = *self;
         let ([point, _, unit], third) = (face.vectors(), balls.third());
         // No number of the paths is larger, of those that are finite: others are followed nowhere.
         let largest = self.largest + face.size() + self.radius;
-        let room = self.radius + largest * (128.0 * f32::EPSILON);
+        let room = self.radius + bend.map_or(0.0, |[bend, _]| bend) + largest * (128.0 * f32::EPSILON);
         let sides = |axis: usize| [point[axis] - room, point[axis] + room];
         match unit.abs().to_array() {
             _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
-            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, bends, sides: sides(0) }),
-            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, bends, sides: sides(1) }),
-            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, bends, sides: sides(2) }),
+            [1.0, 0.0, 0.0] => self.beside::<0>(sides(0)),
+            [0.0, 1.0, 0.0] => self.beside::<1>(sides(1)),
+            [0.0, 0.0, 1.0] => self.beside::<2>(sides(2)),
             _ => widest(
                 #[inline(always)]
                 || balls.marks(|ends, radius| [near(face, ends, radius, third); 2]),
@@ -129,19 +123,28 @@ impl Block<'_> {
         }
     }
 
+    /// The same of a plane across an axis, or what lies between two of them.
+    fn beside<const AXIS: usize>(&self, sides: [f32; 2]) -> Near {
+        let balls = self.balls;
+        match self.bend {
+            Some(_) => run(Slab::<AXIS, false> { balls, sides }),
+            None => run(Slab::<AXIS, true> { balls, sides }),
+        }
+    }
+
     /// A mask of those that may touch a box, as far as the axis tells that it is thinnest along.
     #[inline(never)]
     pub(super) fn near_box(&self, bounds: &Aabb) -> Marks {
-        let Self { balls, bends, radius, .. } = *self;
+        let Self { balls, bend, radius, .. } = *self;
         let largest = self.largest + largest(bounds.min) + largest(bounds.max) + radius;
-        let room = radius + largest * (256.0 * f32::EPSILON);
+        let room = radius + bend.map_or(0.0, |[bend, _]| bend) + largest * (256.0 * f32::EPSILON);
         let extent = bounds.max - bounds.min;
         let sides = |axis: usize| [bounds.min[axis] - room, bounds.max[axis] + room];
         let marks = match extent.min_element() {
             _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
-            least if least == extent.x => run(Slab::<0> { balls, bends, sides: sides(0) }),
-            least if least == extent.y => run(Slab::<1> { balls, bends, sides: sides(1) }),
-            _ => run(Slab::<2> { balls, bends, sides: sides(2) }),
+            least if least == extent.x => self.beside::<0>(sides(0)),
+            least if least == extent.y => self.beside::<1>(sides(1)),
+            _ => self.beside::<2>(sides(2)),
         };
         marks.touching
     }
@@ -154,9 +157,10 @@ impl Block<'_> {
     /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
     /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
     pub(super) fn reach(&self, size: f32) -> f32 {
-        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, fastest, largest, radius, .. } = *self;
+        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, bend, fastest, largest, radius } = *self;
+        let apart = bend.map_or_else(|| most_apart(v0, v1), |[_, change]| change);
         // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
-        let way = 2.5 * time * (fastest + 4.0 * most_apart(v0, v1));
+        let way = 2.5 * time * (fastest + 4.0 * apart);
         way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)
     }
 }
@@ -180,36 +184,21 @@ fn most_apart(a: &[Vec3], b: &[Vec3]) -> f32 {
     most.into_iter().fold(rest, max)
 }
 
-impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
+impl<const AXIS: usize, const BENT: bool> Kernel for Slab<'_, AXIS, BENT> {
     type Output = Near;
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Near {
-        match self.bends {
-            Bends { after_start: true, before_end: false } => self.marks::<F, true, false>(like),
-            Bends { after_start: false, before_end: true } => self.marks::<F, false, true>(like),
-            _ => self.marks::<F, true, true>(like),
-        }
-    }
-}
-
-impl<const AXIS: usize> Slab<'_, AXIS> {
-    /// The answers for paths that bend there, and perhaps nowhere else.
-    #[inline(always)]
-    fn marks<F: Eight, const AFTER_START: bool, const BEFORE_END: bool>(&self, like: F) -> Near {
         let (third, [low, high]) = (like.all(self.balls.third()), [like.all(self.sides[0]), like.all(self.sides[1])]);
         self.balls.marks(
             #[inline(always)]
             |[x0, v0, x1, v1], _| {
                 let (x0, x1) = (coordinate::<F, AXIS>(like, x0), coordinate::<F, AXIS>(like, x1));
                 let (mut least, mut most) = (x0.least(x1), x0.most(x1));
-                if AFTER_START {
+                if BENT {
                     let a = x0 + coordinate::<F, AXIS>(like, v0) * third;
-                    (least, most) = (least.least(a), most.most(a));
-                }
-                if BEFORE_END {
                     let b = x1 - coordinate::<F, AXIS>(like, v1) * third;
-                    (least, most) = (least.least(b), most.most(b));
+                    (least, most) = (least.least(a).least(b), most.most(a).most(b));
                 }
                 // Who lies on a floor begins no higher than this; who is below it is held to lie until that is looked at closer.
                 let (is_near, is_low) = (most.simd_ge(low), x0.simd_le(high));

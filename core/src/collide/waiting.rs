@@ -39,10 +39,13 @@ impl Queue {
     /// Puts in those from the first on that are marked.
     #[inline(always)]
     pub(super) fn push_all(&mut self, first: u32, mut marks: u64) {
+        let mut len = self.len;
         while marks != 0 {
-            self.push(first + marks.trailing_zeros());
+            self.rows[len % PLACES] = first + marks.trailing_zeros();
             marks &= marks - 1;
+            len += 1;
         }
+        self.len = len;
     }
 
     /// The last eight, once there are so many.

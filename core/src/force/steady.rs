@@ -109,10 +109,13 @@ mod tests {
             let number = |i: usize, place: usize| strange((7 * i + place + len) as u32);
             let velocity: std::vec::Vec<Vec3> =
                 (0..len).map(|i| Vec3::new(number(i, 0), number(i, 1), number(i, 2))).collect();
-            let mass: std::vec::Vec<f32> = (0..len).map(|i| number(i, 3).abs()).collect();
-            let drag: std::vec::Vec<f32> = (0..len).map(|i| number(i, 4)).collect();
+            // In some of these all are alike.
+            let row = |i: usize| if len % 3 == 0 { 0 } else { i };
+            let mass: std::vec::Vec<f32> = (0..len).map(|i| number(row(i), 3).abs()).collect();
+            let drag: std::vec::Vec<f32> = (0..len).map(|i| number(row(i), 4)).collect();
+            let is_fixed = |i: usize| len % 6 != 0 && row(i).is_multiple_of(5);
             let inverse_mass: std::vec::Vec<f32> =
-                mass.iter().enumerate().map(|(i, m)| if i % 5 == 0 { 0.0 } else { 1.0 / m }).collect();
+                mass.iter().enumerate().map(|(i, m)| if is_fixed(i) { 0.0 } else { 1.0 / m }).collect();
             let state = State { velocity: &velocity, position: &velocity, mass: &mass, drag: &drag, ..State::EMPTY };
             let g = gravity(len as u32);
             for forces in [&() as &dyn Force, &g, &Drag {}, &(g, Drag {}), &(Drag {}, g), &((), (g, ()), [Drag {}])] {
@@ -131,10 +134,15 @@ mod tests {
                     let reached = steady.leap(rows, [&mut x, &mut v], [&mut start_x, &mut start_v], 0.3, drift);
                     let kept = &velocity[..keeps * len];
                     assert!(is_same(&start_x, kept) && is_same(&start_v, kept));
-                    if let Some(Extents { place, speed, drift: went_by }) = reached {
-                        assert_eq!(went_by, drift);
+                    if let Some(Extents { place, speed, change }) = reached {
                         assert!(flat(&x).iter().chain(flat(&v)).all(|number| number.is_finite()));
-                        assert_eq!([place, speed], [farthest(&x), max(farthest(&velocity), farthest(&v))]);
+                        assert_eq!(place, farthest(&x));
+                        let (before, after) = (farthest(&velocity), farthest(&v));
+                        let pairs = flat(&velocity).iter().zip(flat(&v));
+                        let apart = pairs.fold(0.0, |most, (before, after)| max((after - before).abs(), most));
+                        // No more than there is, but for rounding: as much as the fastest may change, where all are alike.
+                        assert!(speed >= max(before, after) && change + 1e-6 * (speed + apart) >= apart);
+                        assert!(speed <= 1.000_001 * (before + change), "{speed} {before} {change}");
                     }
                     let (mut place, mut after) = (velocity.clone(), velocity.clone());
                     add_scaled(&mut after, 0.3, &once);

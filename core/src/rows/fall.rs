@@ -1,7 +1,6 @@
 //! Rows that fall, each braked by its own drag: their accelerations, or a whole step of an Euler method in one pass.
 
 use super::filled;
-use crate::integrate::Drift;
 use crate::lanes::{Eight, Kernel, not};
 use crate::math::{largest, max};
 use glam::Vec3;
@@ -23,12 +22,13 @@ pub(crate) struct Accelerate<'a, const FALLS: bool, const DRAGS: bool> {
 }
 
 /// How far rows have got in a leap, if all of them are finite: no coordinate of any place is beyond `place` \[m\] at its end, none of a
-/// velocity beyond `speed` \[m/s\] at its beginning or its end, and which of these they went by. Hits change velocities later.
+/// velocity beyond `speed` \[m/s\] at its beginning or its end, and none of a velocity has changed by more than `change` \[m/s\]. Hits
+/// change velocities later.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
     pub(crate) place: f32,
     pub(crate) speed: f32,
-    pub(crate) drift: Drift,
+    pub(crate) change: f32,
 }
 
 /// Moves their places and velocities by a step of `h` \[s\] of an Euler method: the symplectic one goes by the new velocity. Says how
@@ -60,10 +60,12 @@ impl<const FALLS: bool, const DRAGS: bool> Kernel for Accelerate<'_, FALLS, DRAG
     }
 }
 
-/// The largest numbers of eight rows after the other, and sums that tell what is not finite: few enough to stay in registers.
+/// The largest numbers of eight rows after the other: of places at a leap's end, of velocities at its beginning, and of how much these
+/// change; and sums that tell what is not finite. They are few enough to stay in registers.
 struct Seen<F> {
     place: F,
     speed: F,
+    change: F,
     sum: F,
 }
 
@@ -78,24 +80,32 @@ impl Extents {
 impl<F: Eight> Seen<F> {
     #[inline(always)]
     fn none(zero: F) -> Self {
-        Self { place: zero, speed: zero, sum: zero }
+        Self { place: zero, speed: zero, change: zero, sum: zero }
     }
 
     /// Sees eight rows at both ends of a leap. What is not finite in velocities is not in places that are gone to by them.
     #[inline(always)]
     fn see(&mut self, before: [F; 3], [to, after]: [[F; 3]; 2], is_symplectic: bool) {
-        let most = |[a, b, c]: [F; 3]| a.abs().most(b.abs()).most(c.abs());
         let sum = |[a, b, c]: [F; 3]| a + b + c;
         self.place = most(to).most(self.place);
-        self.speed = most(before).most(most(after)).most(self.speed);
+        self.speed = most(before).most(self.speed);
         self.sum = self.sum + if is_symplectic { sum(to) } else { sum(to) + sum(after) };
     }
 
+    /// Tells how far all of them have got, none of whose velocities has changed by more.
     #[inline(always)]
-    fn extents(self, drift: Drift) -> Option<Extents> {
+    fn extents(&self, change: f32) -> Option<Extents> {
         let nought = self.sum.to_array().into_iter().fold(0.0, |nought, x| nought + x * 0.0);
-        (nought == 0.0).then(|| Extents { place: self.place.largest_lane(), speed: self.speed.largest_lane(), drift })
+        // The room is for the rounding of sums.
+        let speed = (self.speed.largest_lane() + change) * (1.0 + 4.0 * f32::EPSILON);
+        (nought == 0.0).then(|| Extents { place: self.place.largest_lane(), speed, change })
     }
+}
+
+/// The largest of three times eight numbers, whatever their signs.
+#[inline(always)]
+fn most<F: Eight>([a, b, c]: [F; 3]) -> F {
+    a.abs().most(b.abs()).most(c.abs())
 }
 
 impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
@@ -103,49 +113,55 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Le
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let g = self.fall.numbers(like);
+        let (g, h) = (self.fall.numbers(like), self.h);
         let Some(factors) = self.fall.of_all() else {
-            return self.go(
+            let seen = self.go::<F, false>(
                 like,
                 #[inline(always)]
                 |v, factors| Fall::<FALLS, DRAGS>::of(g, v, factors),
             );
+            return seen.extents(seen.change.largest_lane());
         };
         let [m, k, inverse] = [like.all(factors[0]), like.all(factors[1]), like.all(factors[2])];
         let pull = Fall::<FALLS, DRAGS>::pull(g, [m; 3]);
-        self.go(
+        let seen = self.go::<F, true>(
             like,
             #[inline(always)]
             |v, _| Fall::<FALLS, DRAGS>::rate(pull, v, [k; 3], [inverse; 3]),
-        )
+        );
+        // The fastest of all is braked the most; there is room for rounding.
+        let brakes = if DRAGS { factors[1].abs() * seen.speed.largest_lane() } else { 0.0 };
+        let change = (most(pull).largest_lane() + brakes) * (factors[2] * h).abs();
+        seen.extents(change * (1.0 + 16.0 * f32::EPSILON) + f32::MIN_POSITIVE)
     }
 }
 
 impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALLS, DRAGS, SYMPLECTIC> {
-    /// The whole of it, where velocities of eight rows with such factors change at a `rate`.
+    /// The whole of it, where velocities of eight rows with such factors change at a `rate`. How much they do is only looked at if that is
+    /// not `ALIKE` for all.
     #[inline(always)]
-    fn go<F: Eight>(self, like: F, rate: impl Fn([F; 3], Factors<'_>) -> [F; 3]) -> Option<Extents> {
+    fn go<F: Eight, const ALIKE: bool>(self, like: F, rate: impl Fn([F; 3], Factors<'_>) -> [F; 3]) -> Seen<F> {
         let Self { fall, ends: [position, velocity], start: [start_x, start_v], h } = self;
         let ((factors, factors_rest), h) = (fall.eights(), like.all(h));
         let ((x, x_rest), (v, v_rest)) = (position.as_chunks_mut(), velocity.as_chunks_mut());
         let ((x0, x0_rest), (v0, v0_rest)) = (start_x.as_chunks_mut(), start_v.as_chunks_mut());
         let (mut start, mut seen) = (x0.iter_mut().zip(v0), Seen::none(like.all(0.0)));
         for ((x, v), factors) in x.iter_mut().zip(v).zip(factors) {
-            Self::eight(&rate, [x, v], start.next(), factors, h, &mut seen);
+            Self::eight::<F, ALIKE>(&rate, [x, v], start.next(), factors, h, &mut seen);
         }
         if !x_rest.is_empty() {
             x0_rest.iter_mut().zip(&*x_rest).for_each(|(x0, x)| *x0 = *x);
             v0_rest.iter_mut().zip(&*v_rest).for_each(|(v0, v)| *v0 = *v);
             let [mut x, mut v] = [filled(x_rest), filled(v_rest)];
-            Self::eight(&rate, [&mut x, &mut v], None, factors_rest.each_ref(), h, &mut seen);
+            Self::eight::<F, ALIKE>(&rate, [&mut x, &mut v], None, factors_rest.each_ref(), h, &mut seen);
             x_rest.copy_from_slice(&x[..x_rest.len()]);
             v_rest.copy_from_slice(&v[..v_rest.len()]);
         }
-        seen.extents(if SYMPLECTIC { Drift::After } else { Drift::Before })
+        seen
     }
 
     #[inline(always)]
-    fn eight<F: Eight>(
+    fn eight<F: Eight, const ALIKE: bool>(
         rate: &impl Fn([F; 3], Factors<'_>) -> [F; 3],
         [x, v]: [&mut [Vec3; 8]; 2],
         start: Option<(&mut [Vec3; 8], &mut [Vec3; 8])>,
@@ -159,8 +175,12 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALL
         }
         let rate = rate(before, factors);
         let (mut to, mut after) = (from, before);
+        let change = [rate[0] * h, rate[1] * h, rate[2] * h];
+        if !ALIKE {
+            seen.change = most(change).most(seen.change);
+        }
         for i in 0..3 {
-            after[i] = before[i] + rate[i] * h;
+            after[i] = before[i] + change[i];
             to[i] = from[i] + if SYMPLECTIC { after[i] } else { before[i] } * h;
         }
         seen.see(before, [to, after], SYMPLECTIC);
