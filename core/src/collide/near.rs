@@ -1,7 +1,7 @@
 //! Whom a flat face may touch: all rows of a tile are held against it, and most are far from it.
 
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
-use crate::math::{largest, max};
+use crate::math::{largest, max, min};
 use crate::rows::{Extents, farthest, filled, flat, largest_of};
 use crate::shape::{Aabb, Face};
 use core::ops::Range;
@@ -32,8 +32,8 @@ pub(super) struct Balls<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
     balls: Balls<'a>,
-    /// How far control points are beside the ways between the ends \[m\], and by how much velocities change \[m/s\], where that is known.
-    bend: Option<[f32; 2]>,
+    /// The vectors between which velocities change \[m/s\], where that is known.
+    change: Option<[Vec3; 2]>,
     /// The largest number of the velocities, of the control points, and of the radii; or more, but what is no number does not count.
     fastest: f32,
     largest: f32,
@@ -57,16 +57,15 @@ impl<'a> Balls<'a> {
         let radius = largest_of(balls.radius);
         match reached {
             // From where they are, they have come no faster than that, and by the velocity of one end: the control point beyond that lies
-            // on the way between the ends, and the other beside it by what the other velocity differs. What rounding adds is in the
-            // room for it.
+            // on the way between the ends, and the other a third of the time by the change of velocity back from there. What rounding
+            // adds is in the room for it.
             Some(Extents { place, speed, change }) => {
-                let bend = Some([third * change, change]);
-                Block { balls, bend, fastest: speed, largest: place + (time + third) * speed, radius }
+                Block { balls, change: Some(change), fastest: speed, largest: place + (time + third) * speed, radius }
             }
             None => {
                 let [x0, v0, x1, v1] = balls.ends.map(farthest);
                 let largest = max(x0 + third * v0, x1 + third * v1);
-                Block { balls, bend: None, fastest: max(v0, v1), largest, radius }
+                Block { balls, change: None, fastest: max(v0, v1), largest, radius }
             }
         }
     }
@@ -105,11 +104,11 @@ impl Block<'_> {
     /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
     #[inline(never)]
     pub(super) fn near(&self, face: &Face) -> Near {
-        let Self { balls, bend, .. } = *self;
+        let balls = self.balls;
         let ([point, _, unit], third) = (face.vectors(), balls.third());
         // No number of the paths is larger, of those that are finite: others are followed nowhere.
         let largest = self.largest + face.size() + self.radius;
-        let room = self.radius + bend.map_or(0.0, |[bend, _]| bend) + largest * (128.0 * f32::EPSILON);
+        let room = self.radius + largest * (128.0 * f32::EPSILON);
         let sides = |axis: usize| [point[axis] - room, point[axis] + room];
         match unit.abs().to_array() {
             _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
@@ -126,18 +125,18 @@ impl Block<'_> {
     /// The same of a plane across an axis, or what lies between two of them.
     fn beside<const AXIS: usize>(&self, sides: [f32; 2]) -> Near {
         let balls = self.balls;
-        match self.bend {
-            Some(_) => run(Slab::<AXIS, false> { balls, sides }),
-            None => run(Slab::<AXIS, true> { balls, sides }),
-        }
+        let Some([least, most]) = self.change else { return run(Slab::<AXIS, true> { balls, sides }) };
+        let third = balls.third();
+        let sides = [sides[0] + third * min(least[AXIS], 0.0), sides[1] + third * max(most[AXIS], 0.0)];
+        run(Slab::<AXIS, false> { balls, sides })
     }
 
     /// A mask of those that may touch a box, as far as the axis tells that it is thinnest along.
     #[inline(never)]
     pub(super) fn near_box(&self, bounds: &Aabb) -> Marks {
-        let Self { balls, bend, radius, .. } = *self;
+        let Self { balls, radius, .. } = *self;
         let largest = self.largest + largest(bounds.min) + largest(bounds.max) + radius;
-        let room = radius + bend.map_or(0.0, |[bend, _]| bend) + largest * (256.0 * f32::EPSILON);
+        let room = radius + largest * (256.0 * f32::EPSILON);
         let extent = bounds.max - bounds.min;
         let sides = |axis: usize| [bounds.min[axis] - room, bounds.max[axis] + room];
         let marks = match extent.min_element() {
@@ -157,8 +156,8 @@ impl Block<'_> {
     /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
     /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
     pub(super) fn reach(&self, size: f32) -> f32 {
-        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, bend, fastest, largest, radius } = *self;
-        let apart = bend.map_or_else(|| most_apart(v0, v1), |[_, change]| change);
+        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, change, fastest, largest, radius } = *self;
+        let apart = change.map_or_else(|| most_apart(v0, v1), |change| max(self::largest(change[0]), self::largest(change[1])));
         // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
         let way = 2.5 * time * (fastest + 4.0 * apart);
         way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)

@@ -138,11 +138,12 @@ mod tests {
                         assert!(flat(&x).iter().chain(flat(&v)).all(|number| number.is_finite()));
                         assert_eq!(place, farthest(&x));
                         let (before, after) = (farthest(&velocity), farthest(&v));
-                        let pairs = flat(&velocity).iter().zip(flat(&v));
-                        let apart = pairs.fold(0.0, |most, (before, after)| max((after - before).abs(), most));
-                        // No more than there is, but for rounding: as much as the fastest may change, where all are alike.
-                        assert!(speed >= max(before, after) && change + 1e-6 * (speed + apart) >= apart);
-                        assert!(speed <= 1.000_001 * (before + change), "{speed} {before} {change}");
+                        let most = max(farthest(&change[..1]), farthest(&change[1..]));
+                        assert!(speed >= max(before, after) && speed <= 1.000_01 * (before + most) + 1e-37);
+                        for (v0, v1) in velocity.iter().zip(&v) {
+                            let (apart, rounding) = (*v1 - *v0, Vec3::splat(1e-6 * speed));
+                            assert!(apart.cmpge(change[0] - rounding).all() && apart.cmple(change[1] + rounding).all());
+                        }
                     }
                     let (mut place, mut after) = (velocity.clone(), velocity.clone());
                     add_scaled(&mut after, 0.3, &once);

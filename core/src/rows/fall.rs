@@ -22,13 +22,13 @@ pub(crate) struct Accelerate<'a, const FALLS: bool, const DRAGS: bool> {
 }
 
 /// How far rows have got in a leap, if all of them are finite: no coordinate of any place is beyond `place` \[m\] at its end, none of a
-/// velocity beyond `speed` \[m/s\] at its beginning or its end, and none of a velocity has changed by more than `change` \[m/s\]. Hits
-/// change velocities later.
+/// velocity beyond `speed` \[m/s\] at its beginning or its end, and each velocity has changed by something between the two vectors of
+/// `change` \[m/s\]. Hits change velocities later.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
     pub(crate) place: f32,
     pub(crate) speed: f32,
-    pub(crate) change: f32,
+    pub(crate) change: [Vec3; 2],
 }
 
 /// Moves their places and velocities by a step of `h` \[s\] of an Euler method: the symplectic one goes by the new velocity. Says how
@@ -92,12 +92,15 @@ impl<F: Eight> Seen<F> {
         self.sum = self.sum + if is_symplectic { sum(to) } else { sum(to) + sum(after) };
     }
 
-    /// Tells how far all of them have got, none of whose velocities has changed by more.
+    /// Tells how far all of them have got, whose velocities have changed by no more than `beside` from `change`.
     #[inline(always)]
-    fn extents(&self, change: f32) -> Option<Extents> {
+    fn extents(&self, change: Vec3, beside: f32) -> Option<Extents> {
         let nought = self.sum.to_array().into_iter().fold(0.0, |nought, x| nought + x * 0.0);
-        // The room is for the rounding of sums.
-        let speed = (self.speed.largest_lane() + change) * (1.0 + 4.0 * f32::EPSILON);
+        let most = largest(change) + beside;
+        // The room is for rounding.
+        let beside = beside + 16.0 * f32::EPSILON * most + f32::MIN_POSITIVE;
+        let speed = (self.speed.largest_lane() + most) * (1.0 + 32.0 * f32::EPSILON) + f32::MIN_POSITIVE;
+        let change = [change - beside, change + beside];
         (nought == 0.0).then(|| Extents { place: self.place.largest_lane(), speed, change })
     }
 }
@@ -113,26 +116,26 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Kernel for Le
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let (g, h) = (self.fall.numbers(like), self.h);
+        let (g, h, numbers) = (self.fall.g, self.h, self.fall.numbers(like));
         let Some(factors) = self.fall.of_all() else {
             let seen = self.go::<F, false>(
                 like,
                 #[inline(always)]
-                |v, factors| Fall::<FALLS, DRAGS>::of(g, v, factors),
+                |v, factors| Fall::<FALLS, DRAGS>::of(numbers, v, factors),
             );
-            return seen.extents(seen.change.largest_lane());
+            return seen.extents(Vec3::ZERO, seen.change.largest_lane());
         };
         let [m, k, inverse] = [like.all(factors[0]), like.all(factors[1]), like.all(factors[2])];
-        let pull = Fall::<FALLS, DRAGS>::pull(g, [m; 3]);
+        let pull = Fall::<FALLS, DRAGS>::pull(numbers, [m; 3]);
         let seen = self.go::<F, true>(
             like,
             #[inline(always)]
             |v, _| Fall::<FALLS, DRAGS>::rate(pull, v, [k; 3], [inverse; 3]),
         );
-        // The fastest of all is braked the most; there is room for rounding.
+        // The fastest of all is braked the most.
         let brakes = if DRAGS { factors[1].abs() * seen.speed.largest_lane() } else { 0.0 };
-        let change = (most(pull).largest_lane() + brakes) * (factors[2] * h).abs();
-        seen.extents(change * (1.0 + 16.0 * f32::EPSILON) + f32::MIN_POSITIVE)
+        let steady = if FALLS { g * factors[0] } else { Vec3::ZERO };
+        seen.extents(steady * (factors[2] * h), brakes * (factors[2] * h).abs())
     }
 }
 
