@@ -20,6 +20,8 @@ pub(super) struct Riders<F, const POINTS: bool> {
     /// Those that are not held where they are, on paths all of whose numbers are finite.
     pub(super) are_free: F,
     pub(super) radius: F,
+    /// True if rounding leaves a path along a face that is braked steadily as straight as [`Paths::hardly_bend`] asks.
+    pub(super) are_close: bool,
     pub(super) elasticity: F,
     /// Coefficients of friction.
     pub(super) at_rest: F,
@@ -65,9 +67,12 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         }
         let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
         let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
-        let (way, end) = self.slide(slip, drive, pressing, paths.time);
+        let ([way, end], is_steady) = self.slide(slip, drive, pressing, paths.time);
         let along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
-        let straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
+        let mut straight = along.hardly_bend();
+        if !(self.are_close && is_steady) || (lying & not(straight)).any() {
+            straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
+        }
         let passes = Segments { from: along.x0, to: along.x1 }.first_hits::<POINTS>(face, self.radius).are;
         let settled = lying & straight & not(passes) & along.end_finite();
         let which = settled.to_bitmask() & present;
@@ -95,9 +100,9 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         (is_near & is_there & rests, normal)
     }
 
-    /// How far they slide in a time, and how fast they are then, as `Slide` has it.
+    /// How far they slide in a time, and how fast they are then, as `Slide` has it; and whether all are driven steadily meanwhile.
     #[inline(always)]
-    fn slide(&self, velocity: Vectors<F>, drive: Vectors<F>, pressing: F, time: F) -> (Vectors<F>, Vectors<F>) {
+    fn slide(&self, velocity: Vectors<F>, drive: Vectors<F>, pressing: F, time: F) -> ([Vectors<F>; 2], bool) {
         let all = |x| time.all(x);
         let (square, zero) = (velocity.dot(velocity), all(0.0));
         let held = self.kinetic * pressing;
@@ -109,7 +114,8 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
             steady = Vectors::select(brakes, drive - along * held, drive);
         }
         let (mut way, mut end) = (going(steady, time), velocity + steady * time);
-        if (stays | brakes).any() {
+        let is_steady = !(stays | brakes).any();
+        if !is_steady {
             let speed = square.sqrt();
             let along = velocity / speed;
             let acceleration = drive - along * held;
@@ -121,7 +127,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
             way = Vectors::select(stays, rest, Vectors::select(stops, stopped, way));
             end = Vectors::select(stops | stays, velocity, end);
         }
-        (way, end)
+        ([way, end], is_steady)
     }
 
     /// The same from rest.
@@ -225,7 +231,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
         let (zero, still) = (s.all(0.0), Vectors::splat(s, Vec3::ZERO));
         let slip = came + self.answer(came, zero - incoming);
-        let (way, end) = self.slide(slip, acceleration + normal * pressing, pressing, rest);
+        let ([way, end], _) = self.slide(slip, acceleration + normal * pressing, pressing, rest);
         // Falling onto the face anew each step, what has lain on it has not moved at all.
         let near = s.all(LAIN) * slack;
         let off = paths.x0 - place;

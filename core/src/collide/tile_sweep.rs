@@ -363,10 +363,12 @@ impl TileSweep<'_, '_> {
         };
         // Rows that have leapt are finite, and such as are held have stayed as they were, which is not how something falls onto a face.
         let have_leapt = self.tile.reached.is_some();
+        let time = self.tile.dt.seconds();
+        let are_close = self.tile.reached.is_some_and(|to| to.place + 100.0 * to.speed * time <= Paths::<F>::CLOSE);
         let gathered = |column: &[Vec3]| Vectors::gather(like, column, last, rows);
         let (x0, v0, v1) = (gathered(start_x), gathered(start_v), gathered(velocity));
         let x1 = if LIES && have_leapt { x0 } else { gathered(position) };
-        let paths = Paths { x0, v0, x1, v1, time: like.all(self.tile.dt.seconds()) };
+        let paths = Paths { x0, v0, x1, v1, time: like.all(time) };
         let mut are_free = like.all(f32::from_bits(u32::MAX));
         if !(LIES && have_leapt) {
             are_free = paths.are_finite() & not(like.of(column(m.inverse_mass)).simd_eq(like.all(0.0)));
@@ -380,6 +382,7 @@ impl TileSweep<'_, '_> {
         }
         let riders = Riders {
             are_free,
+            are_close,
             radius: if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) },
             elasticity: like.of(elasticity),
             at_rest: like.of(at_rest),
