@@ -157,7 +157,8 @@ impl Block<'_> {
     /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
     pub(super) fn reach(&self, size: f32) -> f32 {
         let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, change, fastest, largest, radius } = *self;
-        let apart = change.map_or_else(|| most_apart(v0, v1), |change| max(self::largest(change[0]), self::largest(change[1])));
+        let apart =
+            change.map_or_else(|| most_apart(v0, v1), |change| max(self::largest(change[0]), self::largest(change[1])));
         // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
         let way = 2.5 * time * (fastest + 4.0 * apart);
         way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)

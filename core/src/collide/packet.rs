@@ -144,7 +144,14 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
     /// Those of who are `present` who bounce off a face, come to rest on it, or miss it, and fly on till the end of a step of so long;
     /// not those who are hit so many times.
     #[inline(always)]
-    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, present: u32, step: Time, max_bounces: u32) -> Outcome<F> {
+    pub(super) fn bounce(
+        &self,
+        paths: &Paths<F>,
+        face: &Face,
+        present: u32,
+        step: Time,
+        max_bounces: u32,
+    ) -> Outcome<F> {
         let (mut onward, mut cubics) = (*paths, paths.cubics());
         let mut clear = self.are_free & not(cubics.lag());
         if step.ticks() > MOST_TICKS {

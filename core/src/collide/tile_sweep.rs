@@ -1,14 +1,16 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
+mod among;
+
 use super::near::{BLOCK, Balls, Marks as Bits, Near};
 use super::packet::{Outcome, Paths, Riders};
 use super::path::Path;
-use super::sweep::{Sweep, facing, surroundings};
+use super::sweep::{Sweep, facing};
 use super::waiting::{Packet, Queue, ones};
 use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
-use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run, widest};
+use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run};
 use crate::material::on_surface;
-use crate::math::{largest, max};
+use crate::math::max;
 use crate::memory::Past;
 use crate::observe::{Attention, Observer};
 use crate::particles::Id;
@@ -59,7 +61,8 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
     let (has_sinks, has_materials) = (!tile.scene.sinks.is_empty(), tile.scene.materials.count() > 0);
-    let mut tile_sweep = TileSweep { tile: &mut *tile, past, has_materials, facing, are_points: false, report, observer };
+    let mut tile_sweep =
+        TileSweep { tile: &mut *tile, past, has_materials, facing, are_points: false, report, observer };
     match (facing, many.zip(outskirts)) {
         (Facing::Face(face), _) if SHORT_WAY && !has_sinks => tile_sweep.go_past(&face),
         (_, Some((many, (face, things)))) if tile_sweep.goes_in_packets() => tile_sweep.go_among(many, face, &things),
@@ -174,70 +177,6 @@ impl TileSweep<'_, '_> {
             let eights = (first..len).step_by(LANES).zip(marks.touching);
             eights.for_each(|(row, marks)| ones(marks).for_each(|i| self.follow(row + i)));
         }
-    }
-
-    /// Follows all past many things, those in packets that meet nothing but a flat face: `face`, outside a box around all others.
-    #[inline(never)]
-    fn go_among(&mut self, many: &dyn Many, face: Option<Face>, things: &Aabb) {
-        let (len, old) = (self.tile.position.len(), self.tile.old);
-        self.are_points = true;
-        let mut waiting = face.map(Waiting::before);
-        let size = max(max(largest(things.min), largest(things.max)), face.map_or(0.0, |face| face.size()));
-        for first in (0..old).step_by(BLOCK) {
-            let rows = first..old.min(first + BLOCK);
-            let block = self.balls().block(rows.clone(), self.tile.reached);
-            let are_points = block.are_points();
-            let by_face = face.map_or([0; BLOCK / LANES], |face| block.near(&face).touching);
-            let by_things = block.near_box(things);
-            // Who gains speed by hits may get anywhere.
-            let elasticities = &self.tile.attributes.elasticity[rows.clone()];
-            let reach = if never_gain(elasticities) { block.reach(size) } else { f32::INFINITY };
-            let room = Aabb { min: things.min - reach, max: things.max + reach };
-            self.are_points &= are_points;
-            let marks = words(&by_face).zip(words(&by_things));
-            for (row, (mut past_face, by_things)) in rows.step_by(u64::BITS as usize).zip(marks) {
-                for k in ones(past_face | by_things) {
-                    if self.is_between(row + k, &room) && self.go_between(row + k, many, size) {
-                        past_face &= !(1 << k);
-                    }
-                }
-                if let Some(waiting) = &mut waiting {
-                    self.queue(row, [past_face; 2], waiting);
-                }
-            }
-        }
-        if let Some(waiting) = &mut waiting {
-            self.go_on(waiting);
-        }
-        let known = face.map_or(Facing::Nothing, Facing::Face);
-        for row in old..len {
-            if !self.go_between(row, many, size) {
-                self.follow_past(row, self.tile.scene.colliders, Some(known));
-            }
-        }
-    }
-
-    /// Tells whether a box may be in between where a row's path begins and where it ends. Of what is no number it may.
-    #[inline(always)]
-    fn is_between(&self, row: usize, room: &Aabb) -> bool {
-        let (a, b) = (self.past.start[0][row], self.tile.position[row]);
-        let is_beside = |axis: usize| {
-            (a[axis] < room.min[axis]) & (b[axis] < room.min[axis])
-                | (a[axis] > room.max[axis]) & (b[axis] > room.max[axis])
-        };
-        !(is_beside(0) | is_beside(1) | is_beside(2))
-    }
-
-    /// Follows the particle in a row past the things that it is near, among such as are no farther from the origin than `size` \[m\];
-    /// false, if there is nothing near but the face outside their box.
-    fn go_between(&mut self, row: usize, many: &dyn Many, size: f32) -> bool {
-        let Tile { dt, attributes: ref m, .. } = *self.tile;
-        let own = [m.lives.radius[row], m.elasticity[row]];
-        let Some(bounds) = surroundings(&self.path(row), own, dt.seconds(), size) else {
-            self.follow(row);
-            return true;
-        };
-        many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
     }
 
     /// All rows on their ways.
@@ -492,15 +431,6 @@ impl TileSweep<'_, '_> {
 #[inline(always)]
 fn words(marks: &Bits) -> impl Iterator<Item = u64> + '_ {
     marks.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes))
-}
-
-/// Tells whether all elasticities are between zero and one: the bits of such numbers are in the same order, and below those of all others.
-fn never_gain(elasticities: &[f32]) -> bool {
-    let most = widest(
-        #[inline(always)]
-        || elasticities.iter().fold(0, |most: u32, elasticity| most.max(elasticity.to_bits())),
-    );
-    most <= 1.0_f32.to_bits()
 }
 
 /// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.

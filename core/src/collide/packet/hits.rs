@@ -96,7 +96,14 @@ impl<F: Eight> Meetings<F> {
 
     /// Takes those that chords have found before `end` to their instants on the paths.
     #[inline(always)]
-    fn put_on_path<const POINTS: bool>(&mut self, paths: &Paths<F>, cubics: &Cubics<F>, face: &Face, radius: F, end: F) {
+    fn put_on_path<const POINTS: bool>(
+        &mut self,
+        paths: &Paths<F>,
+        cubics: &Cubics<F>,
+        face: &Face,
+        radius: F,
+        end: F,
+    ) {
         let all = |x| radius.all(x);
         let found = self.place;
         let time = cubics.crossings(&self.hits, found, [self.begun, end]);
