@@ -95,7 +95,7 @@ impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
     type Output = Unsettled;
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Unsettled {
-        let (riders, paths) = self.of.packet::<F, true, POINTS>(like, &self.packet.rows, self.face);
+        let (riders, paths) = self.of.packet::<F, true, POINTS>(like, self.packet.rows, self.face);
         let outcome = riders.lie(&paths, self.face, self.packet.present());
         self.of.settle(self.packet, &outcome)
     }
@@ -105,7 +105,7 @@ impl<const POINTS: bool> Kernel for Bounce<'_, '_, '_, POINTS> {
     type Output = Unsettled;
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Unsettled {
-        let (riders, paths) = self.of.packet::<F, false, POINTS>(like, &self.packet.rows, self.face);
+        let (riders, paths) = self.of.packet::<F, false, POINTS>(like, self.packet.rows, self.face);
         let Tile { dt, scene, .. } = *self.of.tile;
         let outcome = riders.bounce(&paths, self.face, self.packet.present(), dt, scene.max_bounces);
         self.of.settle(self.packet, &outcome)
@@ -244,8 +244,8 @@ impl TileSweep<'_, '_> {
             true => run(Lie::<true> { of: self, packet, face }),
             false => run(Lie::<false> { of: self, packet, face }),
         };
-        ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES]));
-        ones(unsettled.others).for_each(|i| bouncing.push(packet.rows[i % LANES] as u32));
+        ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES] as usize));
+        ones(unsettled.others).for_each(|i| bouncing.push(packet.rows[i % LANES]));
         while let Some(packet) = bouncing.pop() {
             self.bounce(&packet, face);
         }
@@ -258,7 +258,7 @@ impl TileSweep<'_, '_> {
             true => run(Bounce::<true> { of: self, packet, face }),
             false => run(Bounce::<false> { of: self, packet, face }),
         };
-        ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES]));
+        ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES] as usize));
     }
 
     /// Puts rows where they have come to, and says which are left.
@@ -276,7 +276,7 @@ impl TileSweep<'_, '_> {
             |ends| ends.rows(),
         );
         for i in 0..LANES {
-            let (row, [x, y, z, _], [u, v, w, _]) = (packet.rows[i], places[i], velocities[i]);
+            let (row, [x, y, z, _], [u, v, w, _]) = (packet.rows[i] as usize, places[i], velocities[i]);
             // Who is missing is the first over again.
             if outcome.settled >> i & 1 != 0 {
                 (position[row], velocity[row]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
@@ -290,9 +290,10 @@ impl TileSweep<'_, '_> {
     fn packet<F: Eight, const LIES: bool, const POINTS: bool>(
         &self,
         like: F,
-        rows: &[usize; LANES],
+        [a, b, c, d, e, f, g, h]: [u32; LANES],
         face: &Face,
     ) -> (Riders<F, POINTS>, Paths<F>) {
+        let rows = &[a as usize, b as usize, c as usize, d as usize, e as usize, f as usize, g as usize, h as usize];
         let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
         let (last, [start_x, start_v]) = (position.len() - 1, self.past.start);
         let column = |column: &[f32]| {

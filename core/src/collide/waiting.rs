@@ -15,7 +15,7 @@ pub(super) struct Queue {
 /// Rows that go together, the first of them in place of those that are missing, and how many they are.
 #[derive(Clone, Copy)]
 pub(super) struct Packet {
-    pub(super) rows: [usize; LANES],
+    pub(super) rows: [u32; LANES],
     pub(super) len: usize,
 }
 
@@ -52,15 +52,14 @@ impl Queue {
     #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<Packet> {
         let rest = self.len.checked_sub(LANES)?;
-        let rows: [u32; LANES] = *self.rows.get(rest..)?.first_chunk()?;
+        let rows = *self.rows.get(rest..)?.first_chunk()?;
         self.len = rest;
-        Some(Packet { rows: rows.map(|row| row as usize), len: LANES })
+        Some(Packet { rows, len: LANES })
     }
 
     /// Those who still wait, if anybody does.
     pub(super) fn rest(&self) -> Option<Packet> {
-        let rows: [u32; LANES] = *self.rows.first_chunk()?;
-        let mut rows = rows.map(|row| row as usize);
+        let mut rows = *self.rows.first_chunk()?;
         let (first, len) = (rows[0], self.len.min(LANES));
         rows[len..].fill(first);
         (len > 0).then_some(Packet { rows, len })

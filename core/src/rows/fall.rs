@@ -148,9 +148,15 @@ impl<const FALLS: bool, const DRAGS: bool, const SYMPLECTIC: bool> Leap<'_, FALL
         let ((factors, factors_rest), h) = (fall.eights(), like.all(h));
         let ((x, x_rest), (v, v_rest)) = (position.as_chunks_mut(), velocity.as_chunks_mut());
         let ((x0, x0_rest), (v0, v0_rest)) = (start_x.as_chunks_mut(), start_v.as_chunks_mut());
-        let (mut start, mut seen) = (x0.iter_mut().zip(v0), Seen::none(like.all(0.0)));
-        for ((x, v), factors) in x.iter_mut().zip(v).zip(factors) {
-            Self::eight::<F, ALIKE>(&rate, [x, v], start.next(), factors, h, &mut seen);
+        let (mut seen, eights) = (Seen::none(like.all(0.0)), x.iter_mut().zip(v).zip(factors));
+        if x0.is_empty() {
+            for ((x, v), factors) in eights {
+                Self::eight::<F, ALIKE>(&rate, [x, v], None, factors, h, &mut seen);
+            }
+        } else {
+            for (((x, v), factors), start) in eights.zip(x0.iter_mut().zip(v0)) {
+                Self::eight::<F, ALIKE>(&rate, [x, v], Some(start), factors, h, &mut seen);
+            }
         }
         if !x_rest.is_empty() {
             x0_rest.iter_mut().zip(&*x_rest).for_each(|(x0, x)| *x0 = *x);
