@@ -271,10 +271,7 @@ impl TileSweep<'_, '_> {
         }
         let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
         let velocity = &mut velocity[..position.len()];
-        let [places, velocities] = outcome.ends.map(
-            #[inline(always)]
-            |ends| ends.rows(),
-        );
+        let [places, velocities] = [outcome.ends[0].rows(), outcome.ends[1].rows()];
         for i in 0..LANES {
             let (row, [x, y, z, _], [u, v, w, _]) = (packet.rows[i] as usize, places[i], velocities[i]);
             // Who is missing is the first over again.
