@@ -17,30 +17,37 @@ pub(crate) struct Lifetime;
 impl Reaper for Lifetime {
     fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
         let last = state.time.min(BEFORE_NEVER);
-        let (dies, next) = (&state.dies[rows], last + Time::from_ticks(1));
+        let dies = &state.dies[rows];
+        if !BLOCKS {
+            return end_due(0, dies, last, verdicts);
+        }
+        let next = last + Time::from_ticks(1);
+        let mut end_few = |first: usize, dies: &[Time]| {
+            for (few, dies) in dies.chunks(FEW).enumerate().filter(|(_, dies)| may_end(dies, next)) {
+                end_due(first + FEW * few, dies, last, verdicts);
+            }
+        };
         widest(
             #[inline(always)]
             || {
                 let (chunks, rest) = dies.as_chunks::<CHUNK>();
                 for (nth, dies) in chunks.iter().enumerate() {
-                    if !BLOCKS || may_end(dies, next) {
-                        end_few(CHUNK * nth, dies, [last, next], verdicts);
+                    if may_end(dies, next) {
+                        end_few(CHUNK * nth, dies);
                     }
                 }
-                end_few(dies.len() - rest.len(), rest, [last, next], verdicts);
+                end_few(dies.len() - rest.len(), rest);
             },
         );
     }
 }
 
-/// Ends those of some rows from the first on whose time has come by `last`, which is before `next`.
+/// Ends those of some rows from the first on whose time has come by `last`.
 #[inline(always)]
-fn end_few(first: usize, dies: &[Time], [last, next]: [Time; 2], verdicts: &mut Verdicts<'_>) {
-    for (few, dies) in dies.chunks(FEW).enumerate().filter(|(_, dies)| !BLOCKS || may_end(dies, next)) {
-        for (nth, &dies) in dies.iter().enumerate() {
-            if dies <= last {
-                verdicts.end(first + FEW * few + nth, Cause::Lifetime);
-            }
+fn end_due(first: usize, dies: &[Time], last: Time, verdicts: &mut Verdicts<'_>) {
+    for (nth, &dies) in dies.iter().enumerate() {
+        if dies <= last {
+            verdicts.end(first + nth, Cause::Lifetime);
         }
     }
 }
