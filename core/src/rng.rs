@@ -113,6 +113,14 @@ mod tests {
     }
 
     #[test]
+    fn four_places_side_by_side_hold_what_each_holds() {
+        for serial in 0..100 {
+            let (stream, places) = (Stream::new(11, 2, serial), [0, serial, 7, u32::MAX - serial]);
+            assert_eq!(stream.units_of(places), places.map(|place| stream.units(place)));
+        }
+    }
+
+    #[test]
     fn streams_of_neighbours_are_uncorrelated() {
         let n = 20_000;
         let mut sum = 0.0;
