@@ -62,9 +62,14 @@ impl Particle {
     /// and not below zero).
     #[must_use]
     pub fn is_sound(&self) -> bool {
+        self.lifetime.is_finite() && self.is_usable()
+    }
+
+    /// Tells whether every number of it but the lifetime can be used.
+    pub(crate) fn is_usable(&self) -> bool {
         let finite = are_finite(&[self.position, self.velocity])
             && (0.0..f32::INFINITY).contains(&self.radius)
-            && [self.mass, self.drag, self.charge, self.elasticity, self.lifetime].iter().all(|x| x.is_finite());
+            && [self.mass, self.drag, self.charge, self.elasticity].iter().all(|x| x.is_finite());
         // The inverse of a mass below 3e-39 kg overflows.
         let heavy = if self.fixed { self.mass >= 0.0 } else { self.mass > 0.0 && (1.0 / self.mass).is_finite() };
         finite && heavy

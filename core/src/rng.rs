@@ -4,6 +4,10 @@
 //! Threefry-2x32-20 (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011), which passes BigCrush and
 //! needs nothing but 32-bit additions, rotations and exclusive ors.
 
+use core::num::Wrapping;
+use core::ops::{Add, BitXor};
+use wide::u32x4;
+
 /// The random numbers of one newborn, each addressed by its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
@@ -32,7 +36,18 @@ impl Stream {
     /// Two numbers uniform in [0, 1), multiples of 2⁻²⁴.
     #[must_use]
     pub fn units(&self, place: u32) -> [f32; 2] {
-        self.words(place).map(|word| (word >> 8) as f32 * (1.0 / 16_777_216.0))
+        self.words(place).map(unit)
+    }
+
+    /// The same of four places, side by side.
+    #[inline]
+    pub(crate) fn units_of(&self, places: [u32; 4]) -> [[f32; 2]; 4] {
+        if cfg!(target_os = "none") {
+            return places.map(|place| self.units(place));
+        }
+        let turned = |words: u32x4, turn| (words << turn) | (words >> (u32::BITS - turn));
+        let [x, y] = rounds(self.key, [u32x4::new(places), u32x4::ZERO], u32x4::splat, turned).map(u32x4::to_array);
+        core::array::from_fn(|i| [unit(x[i]), unit(y[i])])
     }
 }
 
@@ -44,21 +59,38 @@ pub fn later(name: u32, place: u32) -> u32 {
     if place == 0 { name } else { threefry([name, place], [0, 0])[0] }
 }
 
+/// The number in [0, 1) that a word stands for.
+#[inline(always)]
+fn unit(word: u32) -> f32 {
+    (word >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
 /// Threefry-2x32 with 20 rounds: a bijection of `counter` for each `key`.
 #[must_use]
 pub fn threefry(key: [u32; 2], counter: [u32; 2]) -> [u32; 2] {
+    let turned = |Wrapping(word): Wrapping<u32>, turn| Wrapping(word.rotate_left(turn));
+    rounds(key, counter.map(Wrapping), Wrapping, turned).map(|Wrapping(word)| word)
+}
+
+/// The same of words, or of several side by side: `all` is one in each place, `turned` rotates them to the left.
+#[inline(always)]
+fn rounds<T: Copy + Add<Output = T> + BitXor<Output = T>>(
+    key: [u32; 2],
+    [x, y]: [T; 2],
+    all: impl Fn(u32) -> T,
+    turned: impl Fn(T, u32) -> T,
+) -> [T; 2] {
     const ROTATIONS: [[u32; 4]; 2] = [[13, 15, 26, 6], [17, 29, 16, 24]];
     let keys = [key[0], key[1], key[0] ^ key[1] ^ 0x1BD1_1BDA];
-    let mut x = counter[0].wrapping_add(keys[0]);
-    let mut y = counter[1].wrapping_add(keys[1]);
+    let (mut x, mut y) = (x + all(keys[0]), y + all(keys[1]));
     for group in 0..5 {
         for turn in ROTATIONS[group % 2] {
-            x = x.wrapping_add(y);
-            y = y.rotate_left(turn) ^ x;
+            x = x + y;
+            y = turned(y, turn) ^ x;
         }
         let next = group + 1;
-        x = x.wrapping_add(keys[next % 3]);
-        y = y.wrapping_add(keys[(next + 1) % 3]).wrapping_add(next as u32);
+        x = x + all(keys[next % 3]);
+        y = y + all(keys[(next + 1) % 3].wrapping_add(next as u32));
     }
     [x, y]
 }
@@ -77,6 +109,14 @@ mod tests {
         ];
         for (key, counter, expected) in cases {
             assert_eq!(threefry(key, counter), expected);
+        }
+    }
+
+    #[test]
+    fn four_places_side_by_side_hold_what_each_holds() {
+        for serial in 0..100 {
+            let (stream, places) = (Stream::new(11, 2, serial), [0, serial, 7, u32::MAX - serial]);
+            assert_eq!(stream.units_of(places), places.map(|place| stream.units(place)));
         }
     }
 

@@ -181,6 +181,13 @@ fn short_ways_have_the_bits_of_the_long_one() {
         let sizes = [scale, one_of(r, &[0.0, 0.0, 0.02, 1e-7, 0.2]) * scale];
         let (wild, len) = (r.word().is_multiple_of(2), one_of(r, &[0, 1, 2, 7, 31, 64, 65, 163, 300, 1281]));
         let mut start: Vec<Particle> = (0..len + 4).map(|_| particle(r, &plane, sizes, wild)).collect();
+        if r.word().is_multiple_of(3) {
+            // All but one fall alike, or all.
+            let (one, odd) = (start[0], one_of(r, &[None, Some(0), Some(len / 2), Some(len + 1)]));
+            for (_, other) in start.iter_mut().enumerate().filter(|(i, _)| Some(*i) != odd) {
+                *other = Particle { mass: one.mass, drag: one.drag, fixed: one.fixed, ..*other };
+            }
+        }
         let new = start.split_off(len);
         let down = plane.normal.normalize() * -9.8 * scale;
         let askew = down + r.vector(2.0 * scale);

@@ -1,8 +1,7 @@
 //! Whom a flat face may touch: all rows of a tile are held against it, and most are far from it.
 
-use crate::integrate::Drift;
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
-use crate::math::{largest, max};
+use crate::math::{largest, max, min};
 use crate::rows::{Extents, farthest, filled, flat, largest_of};
 use crate::shape::{Aabb, Face};
 use core::ops::Range;
@@ -15,6 +14,12 @@ pub(super) const BLOCK: usize = 1280;
 /// A bit for each row of a block.
 pub(super) type Marks = [u8; BLOCK / LANES];
 
+/// Who may touch a face, and who of them may lie on it as well: others are too far from it when the step begins.
+pub(super) struct Near {
+    pub(super) touching: Marks,
+    pub(super) lying: Marks,
+}
+
 /// Balls on cubics: places and velocities at both ends, so many seconds apart.
 #[derive(Clone, Copy)]
 pub(super) struct Balls<'a> {
@@ -23,29 +28,22 @@ pub(super) struct Balls<'a> {
     pub(super) time: f32,
 }
 
-/// The control points that may lie beside the ends of the paths: where places go by the velocity of an end, the one beyond that end lies
-/// on the way between the ends.
-#[derive(Clone, Copy)]
-struct Bends {
-    after_start: bool,
-    before_end: bool,
-}
-
 /// Some of them, and how large the numbers of their paths are.
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
     balls: Balls<'a>,
-    bends: Bends,
+    /// The vectors between which velocities change \[m/s\], where that is known.
+    change: Option<[Vec3; 2]>,
     /// The largest number of the velocities, of the control points, and of the radii; or more, but what is no number does not count.
     fastest: f32,
     largest: f32,
     radius: f32,
 }
 
-/// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far.
-struct Slab<'a, const AXIS: usize> {
+/// Balls beside a plane across an axis: whoever's coordinate stays beyond a side of this is far. If they are not `BENT`, their control
+/// points are no farther beyond than that.
+struct Slab<'a, const AXIS: usize, const BENT: bool> {
     balls: Balls<'a>,
-    bends: Bends,
     sides: [f32; 2],
 }
 
@@ -58,15 +56,16 @@ impl<'a> Balls<'a> {
         let third = balls.third();
         let radius = largest_of(balls.radius);
         match reached {
-            // From where they are, they have come no faster than that; what rounding adds is in the room for it.
-            Some(Extents { place, speed, drift }) => {
-                let bends = Bends { after_start: drift == Drift::After, before_end: drift == Drift::Before };
-                Block { balls, bends, fastest: speed, largest: place + (time + third) * speed, radius }
+            // From where they are, they have come no faster than that, and by the velocity of one end: the control point beyond that lies
+            // on the way between the ends, and the other a third of the time by the change of velocity back from there. What rounding
+            // adds is in the room for it.
+            Some(Extents { place, speed, change }) => {
+                Block { balls, change: Some(change), fastest: speed, largest: place + (time + third) * speed, radius }
             }
             None => {
-                let ([x0, v0, x1, v1], bends) =
-                    (balls.ends.map(farthest), Bends { after_start: true, before_end: true });
-                Block { balls, bends, fastest: max(v0, v1), largest: max(x0 + third * v0, x1 + third * v1), radius }
+                let [x0, v0, x1, v1] = balls.ends.map(farthest);
+                let largest = max(x0 + third * v0, x1 + third * v1);
+                Block { balls, change: None, fastest: max(v0, v1), largest, radius }
             }
         }
     }
@@ -78,18 +77,23 @@ impl<'a> Balls<'a> {
 
     /// The answers for eight after the other, side by side.
     #[inline(always)]
-    fn marks(&self, near: impl Fn([&[Vec3; LANES]; 4], &[f32; LANES]) -> u8) -> Marks {
-        let mut marks = [0; BLOCK / LANES];
+    fn marks(&self, near: impl Fn([&[Vec3; LANES]; 4], &[f32; LANES]) -> [u8; 2]) -> Near {
+        let mut marks = Near { touching: [0; BLOCK / LANES], lying: [0; BLOCK / LANES] };
+        let places = marks.touching.iter_mut().zip(&mut marks.lying);
         let [(x0, x0_rest), (v0, v0_rest), (x1, x1_rest), (v1, v1_rest)] = self.ends.map(<[Vec3]>::as_chunks);
         let (radius, radius_rest) = self.radius.as_chunks();
         let columns = x0.iter().zip(v0).zip(x1.iter().zip(v1)).zip(radius);
-        for (mark, (((x0, v0), (x1, v1)), radius)) in marks.iter_mut().zip(columns) {
-            *mark = near([x0, v0, x1, v1], radius);
+        for ((touching, lying), (((x0, v0), (x1, v1)), radius)) in places.zip(columns) {
+            [*touching, *lying] = near([x0, v0, x1, v1], radius);
         }
-        if let Some(mark) = marks.get_mut(radius.len()).filter(|_| !radius_rest.is_empty()) {
+        if !radius_rest.is_empty() {
             let (x0, v0, x1, v1) = (filled(x0_rest), filled(v0_rest), filled(x1_rest), filled(v1_rest));
             // There are fewer rows than eight.
-            *mark = near([&x0, &v0, &x1, &v1], &filled(radius_rest)) & !(u8::MAX << radius_rest.len());
+            let are_there = !(u8::MAX << radius_rest.len());
+            let last = near([&x0, &v0, &x1, &v1], &filled(radius_rest)).map(|marks| marks & are_there);
+            for (marks, last) in [&mut marks.touching, &mut marks.lying].into_iter().zip(last) {
+                marks[radius.len()..].iter_mut().take(1).for_each(|mark| *mark = last);
+            }
         }
         marks
     }
@@ -99,47 +103,64 @@ impl Block<'_> {
     /// A mask of those that may touch the face, as far as boxes around their paths tell: never fewer than
     /// [`Plane::may_touch`](crate::shape::Plane) would name, nor than lie on it.
     #[inline(never)]
-    pub(super) fn near(&self, face: &Face) -> Marks {
-        let Self { balls, bends, .. } = *self;
+    pub(super) fn near(&self, face: &Face) -> Near {
+        let balls = self.balls;
         let ([point, _, unit], third) = (face.vectors(), balls.third());
         // No number of the paths is larger, of those that are finite: others are followed nowhere.
         let largest = self.largest + face.size() + self.radius;
         let room = self.radius + largest * (128.0 * f32::EPSILON);
         let sides = |axis: usize| [point[axis] - room, point[axis] + room];
         match unit.abs().to_array() {
-            _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
-            [1.0, 0.0, 0.0] => run(Slab::<0> { balls, bends, sides: sides(0) }),
-            [0.0, 1.0, 0.0] => run(Slab::<1> { balls, bends, sides: sides(1) }),
-            [0.0, 0.0, 1.0] => run(Slab::<2> { balls, bends, sides: sides(2) }),
+            _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
+            [1.0, 0.0, 0.0] => self.beside::<0>(sides(0)),
+            [0.0, 1.0, 0.0] => self.beside::<1>(sides(1)),
+            [0.0, 0.0, 1.0] => self.beside::<2>(sides(2)),
             _ => widest(
                 #[inline(always)]
-                || balls.marks(|ends, radius| near(face, ends, radius, third)),
+                || balls.marks(|ends, radius| [near(face, ends, radius, third); 2]),
             ),
         }
+    }
+
+    /// The same of a plane across an axis, or what lies between two of them.
+    fn beside<const AXIS: usize>(&self, sides: [f32; 2]) -> Near {
+        let balls = self.balls;
+        let Some([least, most]) = self.change else { return run(Slab::<AXIS, true> { balls, sides }) };
+        let third = balls.third();
+        let sides = [sides[0] + third * min(least[AXIS], 0.0), sides[1] + third * max(most[AXIS], 0.0)];
+        run(Slab::<AXIS, false> { balls, sides })
     }
 
     /// A mask of those that may touch a box, as far as the axis tells that it is thinnest along.
     #[inline(never)]
     pub(super) fn near_box(&self, bounds: &Aabb) -> Marks {
-        let Self { balls, bends, radius, .. } = *self;
+        let Self { balls, radius, .. } = *self;
         let largest = self.largest + largest(bounds.min) + largest(bounds.max) + radius;
         let room = radius + largest * (256.0 * f32::EPSILON);
         let extent = bounds.max - bounds.min;
         let sides = |axis: usize| [bounds.min[axis] - room, bounds.max[axis] + room];
-        match extent.min_element() {
-            _ if !(largest < 1e37) => balls.marks(|_, _| u8::MAX),
-            least if least == extent.x => run(Slab::<0> { balls, bends, sides: sides(0) }),
-            least if least == extent.y => run(Slab::<1> { balls, bends, sides: sides(1) }),
-            _ => run(Slab::<2> { balls, bends, sides: sides(2) }),
-        }
+        let marks = match extent.min_element() {
+            _ if !(largest < 1e37) => balls.marks(|_, _| [u8::MAX; 2]),
+            least if least == extent.x => self.beside::<0>(sides(0)),
+            least if least == extent.y => self.beside::<1>(sides(1)),
+            _ => self.beside::<2>(sides(2)),
+        };
+        marks.touching
+    }
+
+    /// Tells whether all of them are points.
+    pub(super) fn are_points(&self) -> bool {
+        self.radius == 0.0
     }
 
     /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
     /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
     pub(super) fn reach(&self, size: f32) -> f32 {
-        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, fastest, largest, radius, .. } = *self;
+        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, change, fastest, largest, radius } = *self;
+        let apart =
+            change.map_or_else(|| most_apart(v0, v1), |change| max(self::largest(change[0]), self::largest(change[1])));
         // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
-        let way = 2.5 * time * (fastest + 4.0 * most_apart(v0, v1));
+        let way = 2.5 * time * (fastest + 4.0 * apart);
         way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)
     }
 }
@@ -163,29 +184,27 @@ fn most_apart(a: &[Vec3], b: &[Vec3]) -> f32 {
     most.into_iter().fold(rest, max)
 }
 
-impl<const AXIS: usize> Kernel for Slab<'_, AXIS> {
-    type Output = Marks;
+impl<const AXIS: usize, const BENT: bool> Kernel for Slab<'_, AXIS, BENT> {
+    type Output = Near;
 
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Marks {
-        let Bends { after_start, before_end } = self.bends;
-        let (third, [low, high]) = (like.all(self.balls.third()), self.sides.map(|side| like.all(side)));
+    fn run<F: Eight>(self, like: F) -> Near {
+        let (third, [low, high]) = (like.all(self.balls.third()), [like.all(self.sides[0]), like.all(self.sides[1])]);
         self.balls.marks(
             #[inline(always)]
             |[x0, v0, x1, v1], _| {
                 let (x0, x1) = (coordinate::<F, AXIS>(like, x0), coordinate::<F, AXIS>(like, x1));
                 let (mut least, mut most) = (x0.least(x1), x0.most(x1));
-                if after_start {
+                if BENT {
                     let a = x0 + coordinate::<F, AXIS>(like, v0) * third;
-                    (least, most) = (least.least(a), most.most(a));
-                }
-                if before_end {
                     let b = x1 - coordinate::<F, AXIS>(like, v1) * third;
-                    (least, most) = (least.least(b), most.most(b));
+                    (least, most) = (least.least(a).least(b), most.most(a).most(b));
                 }
-                let is_near = least.simd_le(high) & most.simd_ge(low);
+                // Who lies on a floor begins no higher than this; who is below it is held to lie until that is looked at closer.
+                let (is_near, is_low) = (most.simd_ge(low), x0.simd_le(high));
                 let rows = const { &rows_of_bits(AXIS) };
-                rows[is_near.to_bitmask() as usize % 256]
+                let (touching, lying) = (is_near & least.simd_le(high), is_near & is_low);
+                [rows[touching.to_bitmask() as usize % 256], rows[lying.to_bitmask() as usize % 256]]
             },
         )
     }

@@ -15,11 +15,13 @@ use hits::{Hits, Meetings, Segments};
 use paths::Cubics;
 pub(super) use paths::Paths;
 
-/// Properties of eight particles that decide how they meet a face.
-pub(super) struct Riders<F> {
-    /// Those that are held where they are.
-    pub(super) is_fixed: F,
+/// Properties of eight particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
+pub(super) struct Riders<F, const POINTS: bool> {
+    /// Those that are not held where they are, on paths all of whose numbers are finite.
+    pub(super) are_free: F,
     pub(super) radius: F,
+    /// True if rounding leaves a path along a face that is braked steadily as straight as [`Paths::hardly_bend`] asks.
+    pub(super) are_close: bool,
     pub(super) elasticity: F,
     /// Coefficients of friction.
     pub(super) at_rest: F,
@@ -29,43 +31,49 @@ pub(super) struct Riders<F> {
 /// The number of hits of a particle in a step are found in packets.
 const ROUNDS: usize = 4;
 
+/// Ticks of a step in which particles bounce in packets, at the most: so few that 32 bits do for what is left of it.
+const MOST_TICKS: u64 = 1 << 30;
+
 /// The outcome of a packet: a bit for each particle.
-pub(super) struct Outcome {
+pub(super) struct Outcome<F> {
     /// Particles that are at the end of the step now, and those to be followed alone.
     pub(super) settled: u32,
     pub(super) left: u32,
     /// How often those who are at the end were hit, and the largest of their coordinates \[m\].
     pub(super) hits: u32,
     pub(super) farthest: f32,
-    /// Places and velocities, each with some number behind it.
-    pub(super) ends: [[[f32; 4]; LANES]; 2],
+    /// Places and velocities.
+    pub(super) ends: [Vectors<F>; 2],
 }
 
-impl Outcome {
+impl<F: Eight> Outcome<F> {
     /// The outcome for those who are `settled` on their paths, after so many hits, and for those who are `left`.
     #[inline(always)]
-    fn of<F: Eight>(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
+    fn of(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
         let farthest = (paths.x1.largest() & settled).largest_lane();
-        Self { settled: settled.to_bitmask(), left, hits, farthest, ends: paths.ends() }
+        Self { settled: settled.to_bitmask(), left, hits, farthest, ends: [paths.x1, paths.v1] }
     }
 }
 
-impl<F: Eight> Riders<F> {
+impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
     /// Those of who are `present` who lie on a face: along it, from their own places, for a step.
     #[inline(always)]
-    pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome {
+    pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome<F> {
         let acceleration = paths.acceleration();
         let (lying, normal) = self.seated(paths, face, acceleration);
-        let lying = lying & paths.are_finite() & not(self.is_fixed);
+        let lying = lying & self.are_free;
         if !lying.any() {
             return Outcome::of(paths, lying, 0, 0);
         }
         let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
         let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
-        let (way, end) = self.slide(slip, drive, pressing, paths.time);
+        let ([way, end], is_steady) = self.slide(slip, drive, pressing, paths.time);
         let along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
-        let straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
-        let passes = Segments { from: along.x0, to: along.x1 }.first_hits(face, self.radius).are;
+        let mut straight = along.hardly_bend();
+        if !(self.are_close && is_steady) || (lying & not(straight)).any() {
+            straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
+        }
+        let passes = Segments { from: along.x0, to: along.x1 }.first_hits::<POINTS>(face, self.radius).are;
         let settled = lying & straight & not(passes) & along.end_finite();
         let which = settled.to_bitmask() & present;
         Outcome::of(&along, settled, lying.to_bitmask() & !which, which.count_ones())
@@ -92,9 +100,9 @@ impl<F: Eight> Riders<F> {
         (is_near & is_there & rests, normal)
     }
 
-    /// How far they slide in a time, and how fast they are then, as `Slide` has it.
+    /// How far they slide in a time, and how fast they are then, as `Slide` has it; and whether all are driven steadily meanwhile.
     #[inline(always)]
-    fn slide(&self, velocity: Vectors<F>, drive: Vectors<F>, pressing: F, time: F) -> (Vectors<F>, Vectors<F>) {
+    fn slide(&self, velocity: Vectors<F>, drive: Vectors<F>, pressing: F, time: F) -> ([Vectors<F>; 2], bool) {
         let all = |x| time.all(x);
         let (square, zero) = (velocity.dot(velocity), all(0.0));
         let held = self.kinetic * pressing;
@@ -106,7 +114,8 @@ impl<F: Eight> Riders<F> {
             steady = Vectors::select(brakes, drive - along * held, drive);
         }
         let (mut way, mut end) = (going(steady, time), velocity + steady * time);
-        if (stays | brakes).any() {
+        let is_steady = !(stays | brakes).any();
+        if !is_steady {
             let speed = square.sqrt();
             let along = velocity / speed;
             let acceleration = drive - along * held;
@@ -118,7 +127,7 @@ impl<F: Eight> Riders<F> {
             way = Vectors::select(stays, rest, Vectors::select(stops, stopped, way));
             end = Vectors::select(stops | stays, velocity, end);
         }
-        (way, end)
+        ([way, end], is_steady)
     }
 
     /// The same from rest.
@@ -135,13 +144,23 @@ impl<F: Eight> Riders<F> {
     /// Those of who are `present` who bounce off a face, come to rest on it, or miss it, and fly on till the end of a step of so long;
     /// not those who are hit so many times.
     #[inline(always)]
-    pub(super) fn bounce(&self, paths: &Paths<F>, face: &Face, present: u32, step: Time, max_bounces: u32) -> Outcome {
+    pub(super) fn bounce(
+        &self,
+        paths: &Paths<F>,
+        face: &Face,
+        present: u32,
+        step: Time,
+        max_bounces: u32,
+    ) -> Outcome<F> {
         let (mut onward, mut cubics) = (*paths, paths.cubics());
-        let mut clear = paths.are_finite() & not(cubics.lag() | self.is_fixed);
-        let mut meetings = paths.first_meetings(&cubics, face, self.radius, clear);
+        let mut clear = self.are_free & not(cubics.lag());
+        if step.ticks() > MOST_TICKS {
+            return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
+        }
+        let mut meetings = paths.first_meetings::<POINTS>(&cubics, face, self.radius, clear);
         let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);
-        let (mut left, mut hits, mut rounds) = ([step; LANES], [0; ROUNDS], 1);
+        let (mut left, mut hits, mut rounds) = ([step.ticks() as i32; LANES], [0; ROUNDS], 1);
         for hits in &mut hits {
             hit = hit & clear;
             if !hit.any() || rounds >= max_bounces {
@@ -154,7 +173,7 @@ impl<F: Eight> Riders<F> {
             clear = clear & not(hit & not(is_free & next.time.simd_gt(next.time.all(0.0))));
             onward = Paths::select(hit, next, onward);
             cubics = onward.cubics();
-            meetings = onward.first_meetings(&cubics, face, self.radius, hit);
+            meetings = onward.first_meetings::<POINTS>(&cubics, face, self.radius, hit);
             clear = clear & not(hit & meetings.unclear);
             hit = hit & meetings.hits.are;
         }
@@ -163,7 +182,7 @@ impl<F: Eight> Riders<F> {
         Outcome::of(&onward, settled, !which, hits.iter().map(|hits| (hits & which).count_ones()).sum())
     }
 
-    /// The ways on from hits in steps of `dt` \[s\], of which so much is left, and whose are free.
+    /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, and whose are free.
     #[inline(always)]
     fn rebound(
         &self,
@@ -172,16 +191,18 @@ impl<F: Eight> Riders<F> {
         meetings: &Meetings<F>,
         face: &Face,
         dt: f32,
-        left: &mut [Time; LANES],
+        left: &mut [i32; LANES],
     ) -> (Paths<F>, F) {
         let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
-        for (left, s) in left.iter_mut().zip(s.to_array()) {
-            let ticks = left.ticks();
-            *left = Time::from_ticks(ticks - ((ticks as f32 * s) as u64).min(ticks));
+        // As `Path` has it: numbers of ticks and what is rounded of them are the same in 32 bits.
+        let mut rest = s.to_array();
+        for (left, rest) in left.iter_mut().zip(&mut rest) {
+            *left -= ((*left as f32 * *rest) as i32).max(0).min(*left);
+            *rest = *left as f32;
         }
-        let rest = like.of(left.map(Time::seconds));
+        let rest = like.of(rest) / all(Time::SECOND.ticks() as f32);
         let acceleration = paths.acceleration();
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
@@ -217,7 +238,7 @@ impl<F: Eight> Riders<F> {
         let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
         let (zero, still) = (s.all(0.0), Vectors::splat(s, Vec3::ZERO));
         let slip = came + self.answer(came, zero - incoming);
-        let (way, end) = self.slide(slip, acceleration + normal * pressing, pressing, rest);
+        let ([way, end], _) = self.slide(slip, acceleration + normal * pressing, pressing, rest);
         // Falling onto the face anew each step, what has lain on it has not moved at all.
         let near = s.all(LAIN) * slack;
         let off = paths.x0 - place;
@@ -243,8 +264,8 @@ impl<F: Eight> Riders<F> {
         let beside = place + normal * (all(2.0) * slack);
         let back = all(2.0) * slack / (closing * paths.time);
         let before = cubics.at(max(time - back, begun));
-        let is_free = not(Segments { from: chord_from, to: before }.first_hits(face, self.radius).are);
-        let aside = Segments { from: before, to: beside }.first_hits(face, self.radius).are;
+        let is_free = not(Segments { from: chord_from, to: before }.first_hits::<POINTS>(face, self.radius).are);
+        let aside = Segments { from: before, to: beside }.first_hits::<POINTS>(face, self.radius).are;
         (Vectors::select(aside, before, beside), is_free)
     }
 

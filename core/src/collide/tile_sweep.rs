@@ -1,15 +1,17 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
-use super::near::{BLOCK, Balls};
+mod among;
+
+use super::near::{BLOCK, Balls, Marks as Bits, Near};
 use super::packet::{Outcome, Paths, Riders};
 use super::path::Path;
-use super::sweep::{Sweep, facing, surroundings};
+use super::sweep::{Sweep, facing};
 use super::waiting::{Packet, Queue, ones};
 use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
-use crate::lanes::{Eight, Kernel, LANES, Vectors, run, widest};
+use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run};
 use crate::material::on_surface;
-use crate::math::{largest, max};
-use crate::memory::{Layout, Past};
+use crate::math::max;
+use crate::memory::Past;
 use crate::observe::{Attention, Observer};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
@@ -32,6 +34,8 @@ struct TileSweep<'s, 'a> {
     /// True if surfaces may have friction, or take more of a bounce than particles do by themselves.
     has_materials: bool,
     facing: Facing,
+    /// True if all that may wait are points for sure.
+    are_points: bool,
     report: &'s mut Report,
     observer: Option<&'s mut dyn Observer>,
 }
@@ -46,7 +50,7 @@ struct Waiting {
 /// Sends every free particle of a tile along its path through the step, past all others.
 pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
     let work = core::mem::take(&mut tile.work);
-    let past = Layout::of(tile.scene.plan(), tile.capacity).past(work);
+    let past = tile.layout.past(work);
     let many = if SHORT_WAY { tile.scene.colliders.many() } else { None };
     let outskirts = many.and_then(Many::outskirts);
     let facing = match outskirts {
@@ -57,7 +61,8 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
     let (has_sinks, has_materials) = (!tile.scene.sinks.is_empty(), tile.scene.materials.count() > 0);
-    let mut tile_sweep = TileSweep { tile: &mut *tile, past, has_materials, facing, report, observer };
+    let mut tile_sweep =
+        TileSweep { tile: &mut *tile, past, has_materials, facing, are_points: false, report, observer };
     match (facing, many.zip(outskirts)) {
         (Facing::Face(face), _) if SHORT_WAY && !has_sinks => tile_sweep.go_past(&face),
         (_, Some((many, (face, things)))) if tile_sweep.goes_in_packets() => tile_sweep.go_among(many, face, &things),
@@ -67,40 +72,49 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
 }
 
 /// Rows that may lie on a face.
-struct Lie<'t, 's, 'a> {
-    of: &'t TileSweep<'s, 'a>,
+struct Lie<'t, 's, 'a, const POINTS: bool> {
+    of: &'t mut TileSweep<'s, 'a>,
     packet: &'t Packet,
     face: &'t Face,
 }
 
 /// Rows that may bounce off a face.
-struct Bounce<'t, 's, 'a> {
-    of: &'t TileSweep<'s, 'a>,
+struct Bounce<'t, 's, 'a, const POINTS: bool> {
+    of: &'t mut TileSweep<'s, 'a>,
     packet: &'t Packet,
     face: &'t Face,
 }
 
-impl Kernel for Lie<'_, '_, '_> {
-    type Output = Outcome;
+/// The rows of a packet that are to be followed alone, and those that neither are nor have come to the end of the step: a bit each.
+struct Unsettled {
+    left: u32,
+    others: u32,
+}
+
+impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
+    type Output = Unsettled;
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Outcome {
-        let (riders, paths) = self.of.packet(like, &self.packet.rows, self.face);
-        riders.lie(&paths, self.face, self.packet.present())
+    fn run<F: Eight>(self, like: F) -> Unsettled {
+        let (riders, paths) = self.of.packet::<F, true, POINTS>(like, self.packet.rows, self.face);
+        let outcome = riders.lie(&paths, self.face, self.packet.present());
+        self.of.settle(self.packet, &outcome)
     }
 }
 
-impl Kernel for Bounce<'_, '_, '_> {
-    type Output = Outcome;
+impl<const POINTS: bool> Kernel for Bounce<'_, '_, '_, POINTS> {
+    type Output = Unsettled;
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Outcome {
-        let (riders, paths) = self.of.packet(like, &self.packet.rows, self.face);
-        riders.bounce(&paths, self.face, self.packet.present(), self.of.tile.dt, self.of.tile.scene.max_bounces)
+    fn run<F: Eight>(self, like: F) -> Unsettled {
+        let (riders, paths) = self.of.packet::<F, false, POINTS>(like, self.packet.rows, self.face);
+        let Tile { dt, scene, .. } = *self.of.tile;
+        let outcome = riders.bounce(&paths, self.face, self.packet.present(), dt, scene.max_bounces);
+        self.of.settle(self.packet, &outcome)
     }
 }
 
 impl Waiting {
     fn before(face: Face) -> Self {
-        Self { face, lying: Queue::default(), bouncing: Queue::default() }
+        Self { face, lying: Queue::EMPTY, bouncing: Queue::EMPTY }
     }
 }
 
@@ -124,10 +138,10 @@ impl TileSweep<'_, '_> {
                 }
             }
             if let Some(waiting) = &mut waiting {
-                self.queue(first, in_packet, waiting);
+                self.queue(first, [in_packet; 2], waiting);
             }
         }
-        if let Some(waiting) = waiting {
+        if let Some(waiting) = &mut waiting {
             self.go_on(waiting);
         }
     }
@@ -136,83 +150,33 @@ impl TileSweep<'_, '_> {
     fn go_past(&mut self, face: &Face) {
         let (old, in_packets) = (self.tile.old, self.goes_in_packets());
         let mut waiting = Waiting::before(*face);
+        self.are_points = true;
         for first in (0..old).step_by(BLOCK) {
-            let count = (old - first).min(BLOCK);
-            let marks = self.balls().block(first..first + count, self.tile.reached).near(face);
-            let words = marks.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
-            for (row, marks) in (first..first + count).step_by(u64::BITS as usize).zip(words) {
+            let block = self.balls().block(first..old.min(first + BLOCK), self.tile.reached);
+            let (Near { touching, lying }, are_points) = (block.near(face), block.are_points());
+            self.are_points &= are_points;
+            let marks = words(&touching).zip(words(&lying));
+            for (row, (touching, lying)) in (first..old).step_by(u64::BITS as usize).zip(marks) {
                 if in_packets {
-                    self.queue(row, marks, &mut waiting);
+                    self.queue(row, [touching, lying], &mut waiting);
                 } else {
-                    ones(marks).for_each(|i| self.follow(row + i));
+                    ones(touching).for_each(|i| self.follow(row + i));
                 }
             }
         }
-        self.go_on(waiting);
-        (old..self.tile.position.len()).for_each(|row| self.follow(row));
+        self.go_on(&mut waiting);
+        self.let_go_past(face);
     }
 
-    /// Follows all past many things, those in packets that meet nothing but a flat face: `face`, outside a box around all others.
-    #[inline(never)]
-    fn go_among(&mut self, many: &dyn Many, face: Option<Face>, things: &Aabb) {
-        let (len, old) = (self.tile.position.len(), self.tile.old);
-        let mut waiting = face.map(Waiting::before);
-        let size = max(max(largest(things.min), largest(things.max)), face.map_or(0.0, |face| face.size()));
-        for first in (0..old).step_by(BLOCK) {
-            let rows = first..old.min(first + BLOCK);
-            let block = self.balls().block(rows.clone(), self.tile.reached);
-            let by_face = face.map_or([0; BLOCK / LANES], |face| block.near(&face));
-            let by_things = block.near_box(things);
-            // Who gains speed by hits may get anywhere.
-            let elasticities = &self.tile.attributes.elasticity[rows.clone()];
-            let reach = if never_gain(elasticities) { block.reach(size) } else { f32::INFINITY };
-            let room = Aabb { min: things.min - reach, max: things.max + reach };
-            let words = by_face.as_chunks().0.iter().zip(by_things.as_chunks().0);
-            for (row, (by_face, by_things)) in rows.step_by(u64::BITS as usize).zip(words) {
-                let mut past_face = u64::from_le_bytes(*by_face);
-                let by_things = u64::from_le_bytes(*by_things);
-                for k in ones(past_face | by_things) {
-                    if self.is_between(row + k, &room) && self.go_between(row + k, many, size) {
-                        past_face &= !(1 << k);
-                    }
-                }
-                if let Some(waiting) = &mut waiting {
-                    self.queue(row, past_face, waiting);
-                }
-            }
+    /// Follows the newborn past a face. The control points of paths that take only part of the step lie between those that a whole one
+    /// would have, and so do their boxes.
+    fn let_go_past(&mut self, face: &Face) {
+        let len = self.tile.position.len();
+        for first in (self.tile.old..len).step_by(BLOCK) {
+            let marks = self.balls().block(first..len.min(first + BLOCK), None).near(face);
+            let eights = (first..len).step_by(LANES).zip(marks.touching);
+            eights.for_each(|(row, marks)| ones(marks).for_each(|i| self.follow(row + i)));
         }
-        if let Some(waiting) = waiting {
-            self.go_on(waiting);
-        }
-        let known = face.map_or(Facing::Nothing, Facing::Face);
-        for row in old..len {
-            if !self.go_between(row, many, size) {
-                self.follow_past(row, self.tile.scene.colliders, Some(known));
-            }
-        }
-    }
-
-    /// Tells whether a box may be in between where a row's path begins and where it ends. Of what is no number it may.
-    #[inline(always)]
-    fn is_between(&self, row: usize, room: &Aabb) -> bool {
-        let (a, b) = (self.past.start[0][row], self.tile.position[row]);
-        let is_beside = |axis: usize| {
-            (a[axis] < room.min[axis]) & (b[axis] < room.min[axis])
-                | (a[axis] > room.max[axis]) & (b[axis] > room.max[axis])
-        };
-        !(is_beside(0) | is_beside(1) | is_beside(2))
-    }
-
-    /// Follows the particle in a row past the things that it is near, among such as are no farther from the origin than `size` \[m\];
-    /// false, if there is nothing near but the face outside their box.
-    fn go_between(&mut self, row: usize, many: &dyn Many, size: f32) -> bool {
-        let Tile { dt, attributes: ref m, .. } = *self.tile;
-        let own = [m.lives.radius[row], m.elasticity[row]];
-        let Some(bounds) = surroundings(&self.path(row), own, dt.seconds(), size) else {
-            self.follow(row);
-            return true;
-        };
-        many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
     }
 
     /// All rows on their ways.
@@ -236,25 +200,30 @@ impl TileSweep<'_, '_> {
         }
     }
 
-    /// Lets those of some rows from the first on that are marked wait for others. A tile's last row goes alone, as none is behind it
-    /// to be read with it.
+    /// Lets those of some rows from the first on that are marked wait for others: who may touch a face, and who of them may lie on it. A
+    /// tile's last row goes alone, as none is behind it to be read with it.
     #[inline(always)]
-    fn queue(&mut self, first: usize, mut marks: u64, waiting: &mut Waiting) {
+    fn queue(&mut self, first: usize, [mut touching, mut lying]: [u64; 2], waiting: &mut Waiting) {
         let last = self.tile.position.len() - 1;
-        if let Some(bit) = 1_u64.checked_shl((last - first) as u32).filter(|bit| marks & bit != 0) {
-            marks ^= bit;
+        if let Some(bit) = 1_u64.checked_shl((last - first) as u32).filter(|bit| touching & bit != 0) {
+            (touching, lying) = (touching ^ bit, lying & !bit);
             self.follow(last);
         }
-        waiting.lying.push_all(first, marks);
+        // There are fewer than 2³² slots, and so fewer rows.
+        waiting.lying.push_all(first as u32, lying);
+        waiting.bouncing.push_all(first as u32, touching & !lying);
         while let Some(packet) = waiting.lying.pop() {
             self.lie(&packet, waiting);
+        }
+        while let Some(packet) = waiting.bouncing.pop() {
+            self.bounce(&packet, &waiting.face);
         }
     }
 
     /// Lets those go who still wait.
-    fn go_on(&mut self, mut waiting: Waiting) {
+    fn go_on(&mut self, waiting: &mut Waiting) {
         if let Some(packet) = waiting.lying.rest() {
-            self.lie(&packet, &mut waiting);
+            self.lie(&packet, waiting);
         }
         if let Some(packet) = waiting.bouncing.rest() {
             self.bounce(&packet, &waiting.face);
@@ -271,10 +240,12 @@ impl TileSweep<'_, '_> {
     /// Lets those who lie on the face do so; the others bounce.
     #[inline(never)]
     fn lie(&mut self, packet: &Packet, Waiting { face, bouncing, .. }: &mut Waiting) {
-        let outcome = run(Lie { of: self, packet, face });
-        for i in ones(self.settle(packet, &outcome)) {
-            bouncing.push(packet.rows[i % LANES]);
-        }
+        let unsettled = match self.are_points {
+            true => run(Lie::<true> { of: self, packet, face }),
+            false => run(Lie::<false> { of: self, packet, face }),
+        };
+        ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES] as usize));
+        ones(unsettled.others).for_each(|i| bouncing.push(packet.rows[i % LANES]));
         while let Some(packet) = bouncing.pop() {
             self.bounce(&packet, face);
         }
@@ -283,60 +254,76 @@ impl TileSweep<'_, '_> {
     /// Lets those bounce off the face who do so a few times.
     #[inline(never)]
     fn bounce(&mut self, packet: &Packet, face: &Face) {
-        let outcome = run(Bounce { of: self, packet, face });
-        self.settle(packet, &outcome);
+        let unsettled = match self.are_points {
+            true => run(Bounce::<true> { of: self, packet, face }),
+            false => run(Bounce::<false> { of: self, packet, face }),
+        };
+        ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES] as usize));
     }
 
-    /// Puts rows where they have come to, follows those who have to be, and says which are left: a bit each.
+    /// Puts rows where they have come to, and says which are left.
     #[inline(always)]
-    fn settle(&mut self, packet: &Packet, outcome: &Outcome) -> u32 {
-        let (rows, present) = (&packet.rows, packet.present());
+    fn settle<F: Eight>(&mut self, packet: &Packet, outcome: &Outcome<F>) -> Unsettled {
+        let present = packet.present();
         self.report.hits += u64::from(outcome.hits);
         if let Some(reached) = &mut self.tile.reached {
             reached.place = max(reached.place, outcome.farthest);
         }
         let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
         let velocity = &mut velocity[..position.len()];
-        let [places, velocities] = &outcome.ends;
-        for (i, (&row, ([x, y, z, _], [u, v, w, _]))) in rows.iter().zip(places.iter().zip(velocities)).enumerate() {
+        let [places, velocities] = [outcome.ends[0].rows(), outcome.ends[1].rows()];
+        for i in 0..LANES {
+            let (row, [x, y, z, _], [u, v, w, _]) = (packet.rows[i] as usize, places[i], velocities[i]);
             // Who is missing is the first over again.
             if outcome.settled >> i & 1 != 0 {
-                (position[row], velocity[row]) = (Vec3::new(*x, *y, *z), Vec3::new(*u, *v, *w));
+                (position[row], velocity[row]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
             }
         }
-        for i in ones(outcome.left & present) {
-            self.follow(rows[i % LANES]);
-        }
-        present & !(outcome.settled | outcome.left)
+        Unsettled { left: outcome.left & present, others: present & !(outcome.settled | outcome.left) }
     }
 
-    /// Rows side by side, none of which is the tile's last.
+    /// Rows side by side, none of which is the tile's last. Of those who may lie on a face, only what that takes is read.
     #[inline(always)]
-    fn packet<F: Eight>(&self, like: F, rows: &[usize; LANES], face: &Face) -> (Riders<F>, Paths<F>) {
+    fn packet<F: Eight, const LIES: bool, const POINTS: bool>(
+        &self,
+        like: F,
+        [a, b, c, d, e, f, g, h]: [u32; LANES],
+        face: &Face,
+    ) -> (Riders<F, POINTS>, Paths<F>) {
+        let rows = &[a as usize, b as usize, c as usize, d as usize, e as usize, f as usize, g as usize, h as usize];
         let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
         let (last, [start_x, start_v]) = (position.len() - 1, self.past.start);
-        let (radii, inverse_masses, own) = (&m.lives.radius[..last], &m.inverse_mass[..last], &m.elasticity[..last]);
-        let (mut radius, mut inverse_mass, mut elasticity) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for (i, &row) in rows.iter().enumerate() {
-            (radius[i], inverse_mass[i], elasticity[i]) = (radii[row], inverse_masses[row], own[row]);
+        let column = |column: &[f32]| {
+            let mut lanes = [0.0; LANES];
+            lanes.iter_mut().zip(rows).for_each(|(lane, &row)| *lane = column[..last][row]);
+            lanes
+        };
+        // Rows that have leapt are finite, and such as are held have stayed as they were, which is not how something falls onto a face.
+        let have_leapt = self.tile.reached.is_some();
+        let time = self.tile.dt.seconds();
+        let are_close = self.tile.reached.is_some_and(|to| to.place + 100.0 * to.speed * time <= Paths::<F>::CLOSE);
+        let gathered = |column: &[Vec3]| Vectors::gather(like, column, last, rows);
+        let (x0, v0, v1) = (gathered(start_x), gathered(start_v), gathered(velocity));
+        let x1 = if LIES && have_leapt { x0 } else { gathered(position) };
+        let paths = Paths { x0, v0, x1, v1, time: like.all(time) };
+        let mut are_free = like.all(f32::from_bits(u32::MAX));
+        if !(LIES && have_leapt) {
+            are_free = paths.are_finite() & not(like.of(column(m.inverse_mass)).simd_eq(like.all(0.0)));
         }
-        let (mut at_rest, mut kinetic) = ([0.0; LANES], [0.0; LANES]);
+        let (mut elasticity, mut at_rest, mut kinetic) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        if !LIES || self.has_materials {
+            elasticity = column(m.elasticity);
+        }
         if self.has_materials {
             [elasticity, at_rest, kinetic] = self.mixed(rows, face, &elasticity);
         }
         let riders = Riders {
-            is_fixed: like.of(inverse_mass).simd_eq(like.all(0.0)),
-            radius: like.of(radius),
+            are_free,
+            are_close,
+            radius: if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) },
             elasticity: like.of(elasticity),
             at_rest: like.of(at_rest),
             kinetic: like.of(kinetic),
-        };
-        let paths = Paths {
-            x0: Vectors::gather(like, start_x, last, rows),
-            v0: Vectors::gather(like, start_v, last, rows),
-            x1: Vectors::gather(like, position, last, rows),
-            v1: Vectors::gather(like, velocity, last, rows),
-            time: like.all(self.tile.dt.seconds()),
         };
         (riders, paths)
     }
@@ -438,13 +425,10 @@ impl TileSweep<'_, '_> {
     }
 }
 
-/// Tells whether all elasticities are between zero and one: the bits of such numbers are in the same order, and below those of all others.
-fn never_gain(elasticities: &[f32]) -> bool {
-    let most = widest(
-        #[inline(always)]
-        || elasticities.iter().fold(0, |most: u32, elasticity| most.max(elasticity.to_bits())),
-    );
-    most <= 1.0_f32.to_bits()
+/// The marks of 64 rows after the other.
+#[inline(always)]
+fn words(marks: &Bits) -> impl Iterator<Item = u64> + '_ {
+    marks.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes))
 }
 
 /// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.

@@ -2,17 +2,20 @@
 
 use crate::lanes::LANES;
 
-/// Rows that wait until there are eight: those of a word of marks besides fewer than eight of before.
-#[derive(Clone, Copy, Default)]
+/// Places in a queue: for a word of marks besides fewer than eight of before.
+const PLACES: usize = 128;
+
+/// Rows that wait until there are eight.
+#[derive(Clone, Copy)]
 pub(super) struct Queue {
-    rows: [[usize; LANES]; 9],
+    rows: [u32; PLACES],
     len: usize,
 }
 
 /// Rows that go together, the first of them in place of those that are missing, and how many they are.
 #[derive(Clone, Copy)]
 pub(super) struct Packet {
-    pub(super) rows: [usize; LANES],
+    pub(super) rows: [u32; LANES],
     pub(super) len: usize,
 }
 
@@ -24,21 +27,21 @@ impl Packet {
 }
 
 impl Queue {
+    pub(super) const EMPTY: Self = Self { rows: [0; PLACES], len: 0 };
+
     /// Puts a row in, behind no more than there is room for.
     #[inline(always)]
-    pub(super) fn push(&mut self, row: usize) {
-        if let Some(place) = self.rows.as_flattened_mut().get_mut(self.len) {
-            *place = row;
-            self.len += 1;
-        }
+    pub(super) fn push(&mut self, row: u32) {
+        self.rows[self.len % PLACES] = row;
+        self.len += 1;
     }
 
     /// Puts in those from the first on that are marked.
     #[inline(always)]
-    pub(super) fn push_all(&mut self, first: usize, mut marks: u64) {
-        let (rows, mut len) = (self.rows.as_flattened_mut(), self.len);
-        while let Some(place) = rows.get_mut(len).filter(|_| marks != 0) {
-            *place = first + marks.trailing_zeros() as usize;
+    pub(super) fn push_all(&mut self, first: u32, mut marks: u64) {
+        let mut len = self.len;
+        while marks != 0 {
+            self.rows[len % PLACES] = first + marks.trailing_zeros();
             marks &= marks - 1;
             len += 1;
         }
@@ -49,14 +52,14 @@ impl Queue {
     #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<Packet> {
         let rest = self.len.checked_sub(LANES)?;
-        let rows = *self.rows.as_flattened().get(rest..)?.first_chunk()?;
+        let rows = *self.rows.get(rest..)?.first_chunk()?;
         self.len = rest;
         Some(Packet { rows, len: LANES })
     }
 
     /// Those who still wait, if anybody does.
     pub(super) fn rest(&self) -> Option<Packet> {
-        let mut rows = self.rows[0];
+        let mut rows = *self.rows.first_chunk()?;
         let (first, len) = (rows[0], self.len.min(LANES));
         rows[len..].fill(first);
         (len > 0).then_some(Packet { rows, len })

@@ -282,9 +282,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
 
     /// A newborn. Each property draws from a place of its own, so that a change of one leaves the others alone.
     fn newborn(&self, random: Stream, at: Time) -> Particle {
-        let [u, v] = random.units(0);
-        let [w, p] = random.units(1);
-        let [q, speed] = random.units(2);
+        let [[u, v], [w, p], [q, speed], [bounce, life]] = random.units_of([0, 1, 2, 4]);
         let inside = if self.inside { self.place_inside(random) } else { None };
         let spot = inside.unwrap_or_else(|| self.shape.sample([u, v, w]));
         let axis = self.direction.map_or(spot.normal, unit);
@@ -298,8 +296,8 @@ impl<S: Surface, M: Script> Emitter<S, M> {
             fixed: self.fixed,
             drag: self.drag.pick(|| random.units(3)[1]),
             charge: self.charge.pick(|| random.units(7)[0]),
-            elasticity: self.elasticity.pick(|| random.units(4)[0]),
-            lifetime: self.lifetime.pick(|| random.units(4)[1]),
+            elasticity: self.elasticity.pick(|| bounce),
+            lifetime: self.lifetime.pick(|| life),
             material: self.material,
             color: Some(self.tint(random)),
         }

@@ -190,6 +190,11 @@ impl Layout {
         Self { plan, capacity }
     }
 
+    /// The number of particles that there is room for.
+    pub(crate) const fn capacity(&self) -> usize {
+        self.capacity
+    }
+
     /// All shares.
     pub(crate) fn shares<'m>(&self, work: &'m mut [Vec3]) -> Shares<'m> {
         let least = self.plan.columns(self.capacity).saturating_mul(self.capacity).min(work.len());

@@ -24,8 +24,9 @@ use glam::Vec3;
 pub(crate) use lifetime::Lifetime;
 pub(crate) use nonfinite::Nonfinite;
 
-/// Rows that are looked at together.
+/// Rows that are looked at together, and those of them that are looked at closer where some of all may matter.
 pub(crate) const CHUNK: usize = 64;
+pub(crate) const FEW: usize = 16;
 
 /// A rule by which particles die.
 ///

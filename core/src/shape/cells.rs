@@ -3,10 +3,12 @@
 use super::Aabb;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 use glam::Vec3;
+use wide::f32x4;
 
 /// Cells for each box, at the most.
-const CELLS: usize = 4;
+const CELLS: usize = 16;
 
 /// Places in the lists for each box, at the most.
 const ENTRIES: usize = 16;
@@ -27,6 +29,8 @@ pub(super) struct Cells {
     /// Cells to a metre, and how many there are along each axis.
     scale: f32,
     counts: [u32; 3],
+    /// The last one's number along each axis.
+    last: Vec3,
     /// Where each cell's list begins in the numbers of all, and where the last one ends.
     starts: Vec<u32>,
     numbers: Vec<u32>,
@@ -60,7 +64,8 @@ impl Cells {
         let is_divisible = extent.is_finite() && side > 0.0 && (1.0 / side).is_finite();
         let scale = if is_divisible { 1.0 / side } else { 0.0 };
         let counts = [0, 1, 2].map(|axis| ((extent[axis] * scale) as u32).min(MOST - 1) + 1);
-        Self { origin: all.min, scale, counts, ..Self::default() }
+        let last = Vec3::from_array(counts.map(|count| (count - 1) as f32));
+        Self { origin: all.min, scale, counts, last, ..Self::default() }
     }
 
     fn len(&self) -> usize {
@@ -86,12 +91,42 @@ impl Cells {
     /// The cells that a box reaches into: rounding keeps coordinates in order, and so none is missed.
     #[inline]
     fn range(&self, bounds: &Aabb) -> CellRange {
-        let cell = |corner: Vec3, axis: usize| {
-            // The cast saturates.
-            (((corner[axis] - self.origin[axis]) * self.scale) as u32).min(self.counts[axis] - 1)
+        let four = |v: Vec3| f32x4::new([v.x, v.y, v.z, 0.0]);
+        let (origin, last) = (four(self.origin), four(self.last));
+        let cells = |corner: Vec3| {
+            let cell = (four(corner) - origin) * self.scale;
+            // Counts have room in 24 bits; what is no number is in some cell.
+            let [x, y, z, _] = cell.fast_max(f32x4::ZERO).fast_min(last).fast_trunc_int().to_array();
+            let [columns, rows, layers] = self.counts;
+            [(x as u32).min(columns - 1), (y as u32).min(rows - 1), (z as u32).min(layers - 1)]
         };
-        let corners = |corner: Vec3| [cell(corner, 0), cell(corner, 1), cell(corner, 2)];
-        CellRange { first: corners(bounds.min), last: corners(bounds.max) }
+        CellRange { first: cells(bounds.min), last: cells(bounds.max) }
+    }
+
+    /// Tells whether any of the boxes may meet another.
+    #[inline]
+    pub(super) fn any(&self, boxes: &[Aabb], bounds: &Aabb) -> bool {
+        if self.starts.is_empty() {
+            return false;
+        }
+        let range = self.range(bounds);
+        let mut any = range.len() > LOOKS;
+        if !any {
+            range.lines(self.counts, |cells| {
+                for &number in self.numbers_in(cells) {
+                    any |= boxes.get(number as usize).is_some_and(|one| meet(one, bounds));
+                }
+            });
+        }
+        any
+    }
+
+    /// The numbers in the lists of cells side by side, which follow one another.
+    #[inline]
+    fn numbers_in(&self, cells: Range<u32>) -> &[u32] {
+        let ends = [self.starts.get(cells.start as usize), self.starts.get(cells.end as usize)];
+        let [Some(&start), Some(&end)] = ends else { return &[] };
+        self.numbers.get(start as usize..end as usize).unwrap_or_default()
     }
 
     /// Adds those that meet a box to the numbers in `found`; false, if they may be more than there is room for, or are too far apart.
@@ -105,23 +140,13 @@ impl Cells {
             return false;
         }
         let mut has_room = true;
-        let [columns, rows, _] = self.counts;
-        for z in range.first[2]..range.last[2] + 1 {
-            for y in range.first[1]..range.last[1] + 1 {
-                // The lists of cells side by side follow one another.
-                let row = columns * (rows * z + y);
-                let ends = [
-                    self.starts.get((row + range.first[0]) as usize),
-                    self.starts.get((row + range.last[0] + 1) as usize),
-                ];
-                let [Some(&start), Some(&end)] = ends else { continue };
-                for &number in self.numbers.get(start as usize..end as usize).unwrap_or_default() {
-                    if boxes.get(number as usize).is_some_and(|one| meet(one, bounds)) {
-                        has_room &= insert(found, number);
-                    }
+        range.lines(self.counts, |cells| {
+            for &number in self.numbers_in(cells) {
+                if boxes.get(number as usize).is_some_and(|one| meet(one, bounds)) {
+                    has_room &= insert(found, number);
                 }
             }
-        }
+        });
         has_room
     }
 }
@@ -139,14 +164,20 @@ impl CellRange {
         count(0) * count(1) * count(2)
     }
 
-    #[inline]
-    fn visit(&self, [columns, rows, _]: [u32; 3], mut visit: impl FnMut(usize)) {
+    /// Visits the cells, those side by side together.
+    #[inline(always)]
+    fn lines(&self, [columns, rows, _]: [u32; 3], mut visit: impl FnMut(Range<u32>)) {
         for z in self.first[2]..self.last[2] + 1 {
             for y in self.first[1]..self.last[1] + 1 {
-                let row = columns * (rows * z + y);
-                (self.first[0]..self.last[0] + 1).for_each(|x| visit((row + x) as usize));
+                let line = columns * (rows * z + y);
+                visit(line + self.first[0]..line + self.last[0] + 1);
             }
         }
+    }
+
+    #[inline]
+    fn visit(&self, counts: [u32; 3], mut visit: impl FnMut(usize)) {
+        self.lines(counts, |cells| cells.for_each(|cell| visit(cell as usize)));
     }
 }
 

@@ -44,6 +44,13 @@ pub trait Many: Sync {
     /// Calls `then` with what answers as it does itself, and sooner where no question leads out of `bounds`: the few things there.
     /// Where there is nothing but the flat face it does not, and says so by false.
     fn near(&self, bounds: &Aabb, then: &mut dyn FnMut(&dyn Collider)) -> bool;
+
+    /// A mask of the boxes, of which there are eight at the most, that there may be more in: the first in the lowest bit, and never fewer
+    /// than `near` says so of.
+    fn are_near(&self, bounds: &[Aabb]) -> u8 {
+        let _ = bounds;
+        u8::MAX
+    }
 }
 
 /// A plane that stands still, ready for many who ask: what runs over floors and walls most of the time.

@@ -177,6 +177,11 @@ impl<C: Collider> Many for Scenery<C> {
         }
         is_anything
     }
+
+    fn are_near(&self, bounds: &[Aabb]) -> u8 {
+        // The first comes last, into the lowest bit.
+        bounds.iter().rev().fold(0, |all, one| all << 1 | u8::from(self.cells.any(&self.boxes.0, one)))
+    }
 }
 
 impl<C: Collider> Collider for Nearby<'_, C> {

@@ -7,7 +7,7 @@ use crate::force::Steady;
 use crate::index::ListMemory;
 use crate::integrate::{Drift, Dynamics};
 use crate::math::along;
-use crate::memory::{Layout, Shares};
+use crate::memory::Shares;
 use crate::observe::Observer;
 use crate::report::{Effort, Report};
 use crate::time::Time;
@@ -26,10 +26,11 @@ impl Tile<'_> {
         if let Some(leap) = self.scene.leap().filter(|_| self.old == self.position.len()) {
             return self.leap(leap, report);
         }
-        let Self { scene, now, dt, old, capacity, ref attributes, .. } = *self;
+        let Self { scene, now, dt, old, layout, ref attributes, .. } = *self;
         let len = self.position.len();
         let Shares { start: [start_x, start_v], before, marks, step: lasting, mut scratch, lists } =
-            Layout::of(scene.plan(), capacity).shares(self.work);
+            layout.shares(self.work);
+        let capacity = layout.capacity();
         if scene.needs_start() {
             start_x[..len].copy_from_slice(self.position);
             start_v[..len].copy_from_slice(self.velocity);
@@ -78,7 +79,7 @@ impl Tile<'_> {
     #[inline(never)]
     fn leap(&mut self, (steady, drift): (Steady, Drift), report: &mut Report) {
         let (len, inertia) = (self.old, self.attributes.inertia(0..self.old));
-        let Shares { start, .. } = Layout::of(self.scene.plan(), self.capacity).shares(self.work);
+        let Shares { start, .. } = self.layout.shares(self.work);
         let start = start.map(|column| first(column, len));
         let ends = [&mut *self.position, &mut *self.velocity];
         report.effort.evaluations += u64::from(len > 0);

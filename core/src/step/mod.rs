@@ -105,7 +105,7 @@ impl Workspace<'_> {
         // Tiles work in the memory of lists as well.
         self.status.listed = Listed::NONE;
         for rows in [0..old, old..self.len()] {
-            let tile = self.tile(scene, span, old, rows, capacity);
+            let mut tile = self.tile(scene, span, old, rows, capacity);
             #[cfg(feature = "rayon")]
             if observer.attention() == Attention::Nothing && rayon::current_thread_index().is_some() {
                 *report += tile.pass_side_by_side(h);

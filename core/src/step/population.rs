@@ -44,9 +44,8 @@ impl Workspace<'_> {
         m.position[row] = particle.position;
         // A particle with a number that cannot be used is taken out at the step's end, whichever number it is. Any
         // lifetime can be used: one that is no number or beyond all is for ever.
-        let is_sound = Particle { lifetime: 0.0, ..*particle }.is_sound();
         let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
-        m.velocity[row] = if is_sound { velocity } else { Vec3::NAN };
+        m.velocity[row] = if particle.is_usable() { velocity } else { Vec3::NAN };
         m.radius[row] = particle.radius;
         m.mass[row] = particle.mass;
         m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };

@@ -4,7 +4,7 @@ use super::{TILED, Workspace};
 use crate::memory::Layout;
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
-use crate::reap::{CHUNK, Cause, Judged, PendingDeath, ReaperCode};
+use crate::reap::{CHUNK, Cause, FEW, Judged, PendingDeath, ReaperCode};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
@@ -48,13 +48,18 @@ impl Workspace<'_> {
     }
 }
 
-/// The last row that has to go. Hardly any has, so whole chunks are passed over.
+/// The last row that has to go. Hardly any has, so whole chunks are passed over, and in one that has such a row a few at a time.
 fn last_doomed(pending_deaths: &[PendingDeath]) -> Option<(usize, Cause)> {
-    let has_doomed =
-        |chunk: &[PendingDeath]| chunk.iter().fold(0, |any, &pending_death| any | pending_death as u8) != 0;
-    let behind = if TILED { pending_deaths.rchunks(CHUNK).position(has_doomed)? } else { 0 };
-    let row = pending_deaths[..pending_deaths.len() - CHUNK * behind]
-        .iter()
-        .rposition(|&pending_death| pending_death != PendingDeath::Lives)?;
-    Some((row, pending_deaths[row].cause()?))
+    let upto = if TILED { upto_doomed::<FEW>(upto_doomed::<CHUNK>(pending_deaths)?)? } else { pending_deaths };
+    let row = upto.iter().rposition(|&pending_death| pending_death != PendingDeath::Lives)?;
+    Some((row, upto[row].cause()?))
+}
+
+/// The rows up to the last chunk of so many, counted from the end, in which somebody has to go.
+#[inline(always)]
+fn upto_doomed<const ROWS: usize>(pending_deaths: &[PendingDeath]) -> Option<&[PendingDeath]> {
+    let (rest, chunks) = pending_deaths.as_rchunks::<ROWS>();
+    let doomed = chunks.iter().rposition(|chunk| chunk.iter().fold(0, |any, &death| any | death as u8) != 0);
+    let ahead = doomed.map_or(0, |chunk| ROWS * (chunk + 1));
+    if doomed.is_none() && rest.is_empty() { None } else { Some(&pending_deaths[..rest.len() + ahead]) }
 }

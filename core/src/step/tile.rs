@@ -8,9 +8,7 @@ use crate::custom::CustomColumns;
 use crate::force::{Springs, State, Steady};
 use crate::index::{Listed, Neighbours};
 use crate::integrate::Drift;
-#[cfg(feature = "rayon")]
-use crate::memory::Layout;
-use crate::memory::Storage;
+use crate::memory::{Layout, Storage};
 use crate::observe::Observer;
 use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
 use crate::report::Report;
@@ -45,9 +43,9 @@ pub(crate) struct Tile<'a> {
     pub(crate) velocity: &'a mut [Vec3],
     pub(crate) pending_death: &'a mut [PendingDeath],
     pub(crate) attributes: Attributes<'a>,
-    /// Memory to work with, and for how many rows it is laid out.
+    /// Memory to work with, and how that is laid out.
     pub(crate) work: &'a mut [Vec3],
-    pub(crate) capacity: usize,
+    pub(crate) layout: Layout,
     /// True if any of them may come to the end of its life in the step.
     pub(crate) may_end: bool,
     /// How far the step has taken them, where that is known.
@@ -166,7 +164,7 @@ impl Workspace<'_> {
             pending_death: &mut m.pending_death[rows.clone()],
             attributes: attributes.rows(rows),
             work: m.work,
-            capacity,
+            layout: Layout::of(scene.plan(), capacity),
             may_end: !TILED || self.status.next_end() <= now + dt,
             reached: None,
         }
@@ -174,9 +172,53 @@ impl Workspace<'_> {
 }
 
 impl<'a> Tile<'a> {
+    /// Some of the rows, with memory to work with.
+    fn part<'s>(&'s mut self, rows: Range<usize>, work: &'s mut [Vec3]) -> Tile<'s> {
+        Tile {
+            scene: self.scene,
+            now: self.now,
+            dt: self.dt,
+            first: self.first + rows.start,
+            old: self.old.clamp(rows.start, rows.end) - rows.start,
+            position: &mut self.position[rows.clone()],
+            velocity: &mut self.velocity[rows.clone()],
+            pending_death: &mut self.pending_death[rows.clone()],
+            attributes: self.attributes.rows(rows),
+            work,
+            layout: self.layout,
+            may_end: self.may_end,
+            reached: None,
+        }
+    }
+
+    /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
+    /// after the other are evaluated once.
+    pub(super) fn pass(&mut self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
+        let (mut hint, mut listed) = (Time::ZERO, Listed::NONE);
+        let (is_swept, most, len) = (self.scene.is_swept(), self.scene.tile_rows(), self.position.len());
+        let before = report.effort.evaluations;
+        let mut evaluations = 0;
+        // Memory that is in the cache goes from tile to tile.
+        let work = core::mem::take(&mut self.work);
+        for first in (0..len).step_by(most) {
+            report.effort.evaluations = before;
+            let mut tile = self.part(first..len.min(first + most), work);
+            let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
+            tile.advance(carried, report, observer);
+            evaluations = report.effort.evaluations - before;
+            if is_swept {
+                each_by_itself(&mut tile, report, observer);
+            }
+            report.caps.stalled += tile.judge(h);
+        }
+        self.work = work;
+        report.effort.evaluations = before + evaluations;
+    }
+
     /// The first so many rows, and the others, each with its memory.
+    #[cfg(feature = "rayon")]
     fn split_at(self, rows: usize, work: [&'a mut [Vec3]; 2]) -> [Self; 2] {
-        let Self { scene, now, dt, first, old, attributes, capacity, may_end, .. } = self;
+        let Self { scene, now, dt, first, old, attributes, layout, may_end, .. } = self;
         let len = self.position.len();
         let (position, velocity) = (self.position.split_at_mut(rows), self.velocity.split_at_mut(rows));
         let (pending_death, [front, back]) = (self.pending_death.split_at_mut(rows), work);
@@ -191,7 +233,7 @@ impl<'a> Tile<'a> {
             pending_death,
             attributes: attributes.rows(rows),
             work,
-            capacity,
+            layout,
             may_end,
             reached: None,
         };
@@ -199,31 +241,6 @@ impl<'a> Tile<'a> {
             part(position.0, velocity.0, pending_death.0, front, 0..rows),
             part(position.1, velocity.1, pending_death.1, back, rows..len),
         ]
-    }
-
-    /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
-    /// after the other are evaluated once.
-    pub(super) fn pass(self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
-        let (mut rest, mut hint, mut listed) = (self, Time::ZERO, Listed::NONE);
-        let (is_swept, most) = (rest.scene.is_swept(), rest.scene.tile_rows());
-        let before = report.effort.evaluations;
-        let mut evaluations = 0;
-        while !rest.position.is_empty() {
-            report.effort.evaluations = before;
-            let rows = rest.position.len().min(most);
-            // Memory that is in the cache goes from tile to tile.
-            let work = core::mem::take(&mut rest.work);
-            let [mut tile, others] = rest.split_at(rows, [work, &mut []]);
-            let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
-            tile.advance(carried, report, observer);
-            evaluations = report.effort.evaluations - before;
-            if is_swept {
-                each_by_itself(&mut tile, report, observer);
-            }
-            report.caps.stalled += tile.judge(h);
-            rest = Self { work: tile.work, ..others };
-        }
-        report.effort.evaluations = before + evaluations;
     }
 
     /// The same on all threads of the pool that this one belongs to, each with its share of the rows and of the memory.

@@ -38,9 +38,9 @@ impl<F: Eight> Segments<F> {
         self.from + (self.to - self.from) * time
     }
 
-    /// Where balls that go along them first meet a face.
+    /// Where balls that go along them first meet a face; if all are `POINTS`, their radius is nothing.
     #[inline(always)]
-    pub(super) fn first_hits(&self, face: &Face, radius: F) -> Hits<F> {
+    pub(super) fn first_hits<const POINTS: bool>(&self, face: &Face, radius: F) -> Hits<F> {
         let Self { from, to } = *self;
         let (like, [point, normal, unit]) = (radius, face.vectors());
         let (zero, one) = (like.all(0.0), like.all(1.0));
@@ -49,12 +49,11 @@ impl<F: Eight> Segments<F> {
         let size = like.all(face.size());
         let slack = like.all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + radius + size);
         let (before, after) = (normal.dot(from - point), normal.dot(to - point));
-        let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
-        let rises = before.simd_lt(zero) & after.simd_ge(zero);
+        let [falls, rises] = crossed(before, after);
         let time = min(max(before / (before - after), zero), one);
         let center = Hits { are: falls | rises, time, normal: Vectors::select(falls, unit, -unit), slack };
         let wide = radius.simd_gt(slack);
-        if !wide.any() {
+        if POINTS || !wide.any() {
             return center;
         }
         let start = unit.dot(from - point);
@@ -67,6 +66,14 @@ impl<F: Eight> Segments<F> {
         hits.take(is_first, Hits { are: touched, time, normal, slack });
         hits
     }
+}
+
+/// Those whose centers come from one height to another past a plane: from above, and from below.
+#[inline(always)]
+fn crossed<F: Eight>(before: F, after: F) -> [F; 2] {
+    let zero = before.all(0.0);
+    let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
+    [falls, before.simd_lt(zero) & after.simd_ge(zero)]
 }
 
 impl<F: Eight> Hits<F> {
@@ -89,7 +96,14 @@ impl<F: Eight> Meetings<F> {
 
     /// Takes those that chords have found before `end` to their instants on the paths.
     #[inline(always)]
-    fn put_on_path(&mut self, paths: &Paths<F>, cubics: &Cubics<F>, face: &Face, radius: F, end: F) {
+    fn put_on_path<const POINTS: bool>(
+        &mut self,
+        paths: &Paths<F>,
+        cubics: &Cubics<F>,
+        face: &Face,
+        radius: F,
+        end: F,
+    ) {
         let all = |x| radius.all(x);
         let found = self.place;
         let time = cubics.crossings(&self.hits, found, [self.begun, end]);
@@ -105,7 +119,7 @@ impl<F: Eight> Meetings<F> {
         let [from, to] = [max(time - reach, self.begun), min(time + reach, end)];
         let begin = Vectors::select(from.simd_eq(all(0.0)), paths.x0, cubics.at(from));
         let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(all(1.0)), paths.x1, cubics.at(to)) };
-        let near = piece.first_hits(face, radius);
+        let near = piece.first_hits::<POINTS>(face, radius);
         let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(all(0.0));
         let nearby = piece.at(near.time);
         let height = (nearby - found).dot(self.hits.normal).abs();
@@ -123,7 +137,59 @@ impl<F: Eight> Meetings<F> {
 impl<F: Eight> Paths<F> {
     /// Where those who are asked for first meet a face.
     #[inline(always)]
-    pub(super) fn first_meetings(&self, cubics: &Cubics<F>, face: &Face, radius: F, asked: F) -> Meetings<F> {
+    pub(super) fn first_meetings<const POINTS: bool>(
+        &self,
+        cubics: &Cubics<F>,
+        face: &Face,
+        radius: F,
+        asked: F,
+    ) -> Meetings<F> {
+        if POINTS {
+            return self.meetings_of_points(cubics, face, asked);
+        }
+        self.meetings_of_balls(cubics, face, radius, asked)
+    }
+
+    /// The same of points, of which it is enough to know on which side of the face each chord ends.
+    #[inline(always)]
+    fn meetings_of_points(&self, cubics: &Cubics<F>, face: &Face, asked: F) -> Meetings<F> {
+        let (all, zero) = (|x| asked.all(x), asked.all(0.0));
+        let chords = asked.select(cubics.chords(), all(1.0));
+        let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
+        let [point, normal, _] = face.vectors();
+        let (point, normal) = (Vectors::splat(asked, point), Vectors::splat(asked, normal));
+        let most = chords.to_array().into_iter().fold(1.0, crate::math::max);
+        let (mut before, mut are, mut begun) = (normal.dot(self.x0 - point), zero, zero);
+        for i in 0..(most as u8).min(MAX_CHORDS as u8) {
+            let [begins, ends] = [all(f32::from(i)), all(f32::from(i + 1))];
+            let after = normal.dot(self.end_of(cubics, ends, chords) - point);
+            let [falls, rises] = crossed(before, after);
+            let crossed = (falls | rises) & asked & begins.simd_lt(chords) & not(are | unclear);
+            (are, begun, before) = (are | crossed, crossed.select(begins, begun), after);
+        }
+        if !are.any() {
+            return Meetings::none(self.x0, unclear);
+        }
+        let ends = begun + all(1.0);
+        let from = Vectors::select(begun.simd_eq(zero), self.x0, self.end_of(cubics, begun, chords));
+        let piece = Segments { from, to: self.end_of(cubics, ends, chords) };
+        let hits = piece.first_hits::<true>(face, zero);
+        let (time, normal) = ((begun + hits.time) / chords, hits.normal.masked(are));
+        let place = piece.at(hits.time);
+        let hits = Hits { are, time, normal, ..hits };
+        let mut found = Meetings { hits, unclear, place, begun: begun / chords, chord_from: from };
+        found.put_on_path::<true>(self, cubics, face, zero, (ends / chords) & are);
+        found
+    }
+
+    /// The ends of chords with these numbers, from one to as many as there are.
+    #[inline(always)]
+    fn end_of(&self, cubics: &Cubics<F>, number: F, chords: F) -> Vectors<F> {
+        Vectors::select(number.simd_eq(chords), self.x1, cubics.at(number / chords))
+    }
+
+    #[inline(always)]
+    fn meetings_of_balls(&self, cubics: &Cubics<F>, face: &Face, radius: F, asked: F) -> Meetings<F> {
         let all = |x| radius.all(x);
         let chords = asked.select(cubics.chords(), all(1.0));
         let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
@@ -136,7 +202,7 @@ impl<F: Eight> Paths<F> {
             let to = Vectors::select(ends.simd_eq(chords), self.x1, cubics.at(share));
             let piece = Segments { from, to };
             let open = asked & begun.simd_lt(chords) & not(found.hits.are | unclear);
-            let hits = piece.first_hits(face, radius);
+            let hits = piece.first_hits::<false>(face, radius);
             let are = hits.are & open;
             if are.any() {
                 found.chord_from = Vectors::select(are, from, found.chord_from);
@@ -149,7 +215,7 @@ impl<F: Eight> Paths<F> {
             from = to;
         }
         if found.hits.are.any() {
-            found.put_on_path(self, cubics, face, radius, end);
+            found.put_on_path::<false>(self, cubics, face, radius, end);
         }
         found
     }

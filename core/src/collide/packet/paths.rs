@@ -1,7 +1,7 @@
 //! Paths of eight particles side by side, and the polynomials that they are.
 
 use crate::collide::path::CHORD_ERROR;
-use crate::lanes::{Eight, LANES, Vectors, max, not};
+use crate::lanes::{Eight, Vectors, max, not};
 
 /// Eight cubics, as `Path`.
 #[derive(Clone, Copy)]
@@ -24,6 +24,10 @@ pub(super) struct Cubics<F> {
 }
 
 impl<F: Eight> Paths<F> {
+    /// How far from the origin places may be together with a hundred times as far as anybody gets in a step \[m\]: their rounding, and
+    /// eight times that of the ways, are 20 µm then.
+    pub(in crate::collide) const CLOSE: f32 = 200.0;
+
     /// The first of two where a mask says so, else the second.
     #[inline(always)]
     pub(super) fn select(mask: F, a: Self, b: Self) -> Self {
@@ -36,12 +40,6 @@ impl<F: Eight> Paths<F> {
         }
     }
 
-    /// Where they lead, and the velocities there.
-    #[inline(always)]
-    pub(super) fn ends(&self) -> [[[f32; 4]; LANES]; 2] {
-        [self.x1.rows(), self.v1.rows()]
-    }
-
     #[inline(always)]
     pub(super) fn acceleration(&self) -> Vectors<F> {
         (self.v1 - self.v0) / self.time
@@ -49,7 +47,7 @@ impl<F: Eight> Paths<F> {
 
     /// Those of which all numbers are finite, and their sums.
     #[inline(always)]
-    pub(super) fn are_finite(&self) -> F {
+    pub(in crate::collide) fn are_finite(&self) -> F {
         let zero = self.time.all(0.0);
         let nought = (self.x0 + self.v0 + self.x1 + self.v1) * zero;
         let [x, y, z] = nought.0;
@@ -62,6 +60,15 @@ impl<F: Eight> Paths<F> {
         let zero = self.time.all(0.0);
         let [x, y, z] = ((self.x1 + self.v1) * zero).0;
         (x + y + z).simd_eq(zero)
+    }
+
+    /// Those that one chord is near enough to for sure, if the cubic leads to their end but for rounding, and all is within
+    /// [`Self::CLOSE`]: what rounding adds to the bend is less than as much again.
+    #[inline(always)]
+    pub(super) fn hardly_bend(&self) -> F {
+        const HALF: f32 = 2.0 * CHORD_ERROR;
+        let bend = (self.v1 - self.v0) * (self.time.all(0.5) * self.time);
+        bend.dot(bend).simd_le(bend.0[0].all(HALF * HALF))
     }
 
     #[inline(always)]
