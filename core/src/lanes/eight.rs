@@ -64,6 +64,13 @@ pub(crate) trait Eight:
         let ([a, e], [b, f], [c, g]) = (halves(x), halves(y), halves(z));
         bytemuck::cast([f32x4::transpose([a, b, c, c]), f32x4::transpose([e, f, g, g])])
     }
+    /// Four columns turned round: eight rows of four numbers.
+    #[inline(always)]
+    fn rows_of([x, y, z, w]: [Self; 4]) -> [[f32; 4]; LANES] {
+        let halves = |lanes: Self| bytemuck::cast::<[f32; LANES], [f32x4; 2]>(lanes.to_array());
+        let ([a, e], [b, f], [c, g], [d, h]) = (halves(x), halves(y), halves(z), halves(w));
+        bytemuck::cast([f32x4::transpose([a, b, c, d]), f32x4::transpose([e, f, g, h])])
+    }
     /// The largest of numbers none of which is below zero; anything, where one is no number.
     #[inline(always)]
     fn largest_lane(self) -> f32 {
@@ -384,6 +391,14 @@ mod avx2 {
             [a, b, c, d, e, f, g, h]
         }
         #[inline(always)]
+        fn rows_of([x, y, z, w]: [Self; 4]) -> [[f32; 4]; LANES] {
+            let avx2 = x.0.token();
+            let [ae, bf, cg, dh] = turned(avx2, x.0.into(), y.0.into(), z.0.into(), w.0.into());
+            let [[a, e], [b, f], [c, g], [d, h]] =
+                [halves(avx2, ae), halves(avx2, bf), halves(avx2, cg), halves(avx2, dh)];
+            [a, b, c, d, e, f, g, h]
+        }
+        #[inline(always)]
         fn to_bitmask(self) -> u32 {
             self.mask().to_bitmask() as u32
         }
@@ -400,7 +415,7 @@ mod tests {
     struct Everything([[f32; LANES]; 2]);
 
     impl Kernel for Everything {
-        type Output = ([[f32; LANES]; 27], u32);
+        type Output = ([[f32; LANES]; 31], u32);
         #[inline(always)]
         fn run<F: Eight>(self, like: F) -> Self::Output {
             let [a, b] = self.0.map(|lanes| like.of(lanes));
@@ -409,6 +424,7 @@ mod tests {
             let [x, y, z] = like.columns_of(rows.map(|[x, y, z, _]| [z, x, y, 0.0]));
             let row = |axis: usize| like.of(rows.map(|row| row[axis]));
             let [.., w] = like.quads_of(rows.map(|[x, y, z, _]| [x, y, x, z]));
+            let [p, q, r, s] = like.quads_of(F::rows_of([a, b, c, d]));
             let made = [
                 a + b,
                 a - b,
@@ -437,6 +453,10 @@ mod tests {
                 row(1),
                 row(2),
                 w,
+                p,
+                q,
+                r,
+                s,
             ];
             (made.map(Eight::to_array), mask.to_bitmask())
         }
@@ -457,6 +477,8 @@ mod tests {
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");
             }
             assert!(same(one.0[26], one.0[25]) && same(one.0[23], lanes[0]) && same(one.0[24], lanes[1]));
+            assert!(same(one.0[27], lanes[0]) && same(one.0[28], lanes[1]));
+            assert!(same(one.0[29], one.0[15]) && same(one.0[30], one.0[16]));
             assert_eq!(one.1, other.1);
             for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");

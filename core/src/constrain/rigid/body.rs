@@ -3,7 +3,7 @@
 use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
-use crate::math::{dot, length, max, min, sqrt};
+use crate::math::{length, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
 /// It is not there: its particles are dead or nowhere.
@@ -22,7 +22,8 @@ pub(super) struct Body {
     state: u32,
     /// The tick of the clock of passes at which it was changed last.
     pub(super) changed: u32,
-    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go.
+    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go, and at a sub-step's beginning
+    /// all up to how it moved before.
     pub(super) inverse_mass: f32,
     /// Its velocity \[m/s\].
     pub(super) velocity: Vec3,
@@ -34,16 +35,16 @@ pub(super) struct Body {
     pub(super) inverse: Mat3,
     /// Its centre of mass \[m\].
     pub(super) center: Vec3,
-    pub(super) turn: [f32; 4],
     /// Its centre of mass in the box's frame \[m\].
     pub(super) rest: Vec3,
-    /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
-    spread: Mat3,
-    inverse_inertia: Mat3,
     /// Its rotation.
     pub(super) rotation: Mat3,
     /// Its velocity and rate of turning when the sub-step began.
     pub(super) before: [Vec3; 2],
+    pub(super) turn: [f32; 4],
+    /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
+    spread: Mat3,
+    inverse_inertia: Mat3,
     /// How much farther the method has moved it than its velocity says \[m\].
     pub(super) drift: Vec3,
     /// The rates at which forces changed its velocity and spin when it was awake last \[m/s², m²/s²\].
@@ -152,24 +153,6 @@ impl Body {
         velocity + omega.cross(arm)
     }
 
-    /// How an impulse there along one of three directions u, v, n, which are square to each other, changes the velocity there along another
-    /// \[1/kg\]: uu, vv, nn, uv, un, vn.
-    pub(super) fn yields(&self, arm: Vec3, directions: [Vec3; 3]) -> [f32; 6] {
-        let [u, v, n] = directions.map(|direction| arm.cross(direction));
-        let [iu, iv, i_n] = [u, v, n].map(|lever| self.inverse * lever);
-        let [uu, vv, nn] = [1.0 + dot(u, iu), 1.0 + dot(v, iv), 1.0 + dot(n, i_n)];
-        [uu, vv, nn, dot(v, iu), dot(n, iu), dot(n, iv)].map(|yields| yields * self.inverse_mass)
-    }
-
-    /// Gives it an impulse \[N s\] there.
-    pub(super) fn push(&mut self, arm: Vec3, impulse: Vec3) {
-        let change = impulse * self.inverse_mass;
-        let torque = arm.cross(change);
-        self.velocity += change;
-        self.spin += torque;
-        self.omega += self.inverse * torque;
-    }
-
     /// Takes a ball as it is at the beginning of a sub-step: the particle in a row.
     pub(super) fn follow(&mut self, bodies: &Bodies<'_>, row: usize) {
         let Turn(turn) = Turn::NONE;
@@ -207,7 +190,7 @@ impl Body {
         self.pressed = 0;
         let (to, velocity) = (bodies.position[row], bodies.velocity[row]);
         if self.moves() && (to + velocity).is_finite() {
-            self.velocity = velocity;
+            self.velocity = velocity + Vec3::ZERO;
             self.drift = to - self.center - velocity * bodies.substep.seconds();
         }
     }
@@ -316,7 +299,7 @@ impl Body {
         if !self.moves() {
             self.inverse = Mat3::ZERO;
         }
-        self.omega = self.inverse * self.spin;
+        self.omega = self.inverse * self.spin + Vec3::ZERO;
     }
 
     /// Takes in what has been done to its particles since they were last told where to be: what the method did by the forces, and others.
@@ -344,9 +327,10 @@ impl Body {
         }
         let seconds = bodies.substep.seconds();
         self.drive = [push, torque].map(|change| change * (1.0 / seconds));
-        self.velocity += push;
-        self.spin += torque;
-        self.omega = self.inverse * self.spin;
+        // What is −0 becomes 0, here and where a body has turned: impulses of zero change nothing then.
+        self.velocity = self.velocity + push + Vec3::ZERO;
+        self.spin = self.spin + torque + Vec3::ZERO;
+        self.omega = self.inverse * self.spin + Vec3::ZERO;
         self.drift = way - self.velocity * seconds;
     }
 

@@ -5,6 +5,8 @@ use super::balls::{self, Around, Ball, NEAR};
 use super::body::Body;
 use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
+use super::order::packs_of;
+use super::pack::Pack;
 use super::scenery::{DIRECTIONS, leash};
 use super::sleep;
 use crate::material::of_two;
@@ -77,9 +79,12 @@ impl Sizes {
             .saturating_add(each(all, DIRECTIONS * words::<Manifold>()))
             .saturating_add(each(self.balls, words::<Ball>()))
             .saturating_add(each(self.particles, 3));
-        let scratch = each(self.pairs(), words::<Manifold>())
+        let listing = each(self.pairs(), words::<Manifold>())
             .saturating_add(each(self.bodies, 3))
             .saturating_add(each(self.candidates(), 2));
+        let touching = self.pairs().saturating_add(each(all, DIRECTIONS));
+        let solving = each(packs_of(touching), words::<Pack>()).saturating_add(touching);
+        let scratch = listing.max(solving);
         let per_row = usize::from(self.balls > 0);
         [Words { per_row: 0, fixed: kept }, Words { per_row, fixed: scratch }]
     }

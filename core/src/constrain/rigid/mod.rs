@@ -11,11 +11,14 @@ mod hull_buf;
 mod lists;
 mod manifold;
 mod order;
+mod pack;
 mod pass;
 mod scenery;
 mod sleep;
 mod solver;
+mod stand;
 mod tell;
+mod touch;
 
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share};
@@ -32,7 +35,7 @@ pub use hull::{Hull, HullEdge, HullFace, HullList};
 pub use hull_buf::{HullBuf, HullError};
 use lists::{Kept, Sizes};
 use manifold::Manifold;
-use order::Numbers;
+use order::{Manifolds, Order};
 use scenery::DIRECTIONS;
 use solver::Span;
 
@@ -226,15 +229,11 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         each_ball(bodies, kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
         let len = kept.lists.pairs as usize;
         let Kept { bodies: all, pairs, scenery, .. } = kept;
-        let numbers = Numbers::of(all, [&mut pairs[..len], scenery], memory);
-        let mut order = numbers.with([&mut pairs[..len], scenery]);
-        solver::begin(all, &mut order, span);
-        solver::hold_on(all, &mut order);
-        solver::keep_apart(all, &mut order);
-        solver::mark_pressed(all, &order);
+        let mut manifolds = Manifolds { pairs: &mut pairs[..len], scenery };
+        let mut order = Order::of(all, &mut manifolds, memory);
+        solver::keep_apart(all, &manifolds, &mut order, span);
         all.iter_mut().for_each(|body| body.go(span.h));
-        solver::part(all, &mut order, span);
-        solver::remember(&mut order);
+        solver::part(all, &mut manifolds, &mut order, span);
         sleep::feel(all, &pairs[..len], span);
         if bodies.substep.is_last() {
             sleep::settle(bodies, kept);
