@@ -4,6 +4,7 @@ use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
 use crate::math::{length, max, min, sqrt};
+use core::ops::Range;
 use glam::{Mat3, Vec3};
 
 /// It is not there: its particles are dead or nowhere.
@@ -89,12 +90,23 @@ pub(super) struct Made<'a> {
 }
 
 impl Made<'_> {
+    /// The rows of its particles, where all live, one behind the other.
+    pub(super) fn run(&self, bodies: &Bodies<'_>) -> Option<Range<usize>> {
+        let (first, count) = (self.of.first as usize, self.of.count as usize);
+        let end = first.checked_add(count).filter(|&end| end <= bodies.start as usize)?;
+        let rows = bodies.row_of.get(first..end)?;
+        let row = *rows.first()? as usize;
+        let serials = bodies.serial.get(row..row.checked_add(count)?)?;
+        let follows = |i: usize, at: u32, serial: u32| (at as usize == row + i) & (serial as usize == first + i);
+        let both = rows.iter().zip(serials).enumerate();
+        both.fold(true, |all, (i, (&at, &serial))| all & follows(i, at, serial)).then_some(row..row + count)
+    }
+
     /// Visits its living particles: row, and place in the box's frame \[m\].
     fn each(&self, bodies: &Bodies<'_>, visit: &mut dyn FnMut(usize, Vec3)) {
-        for (i, place) in self.places.chunks_exact(3).enumerate() {
+        for (i, &[x, y, z]) in self.places.as_chunks().0.iter().enumerate() {
             if let Some(row) = bodies.row_of_start(self.of.first.saturating_add(i as u32)) {
-                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
-                visit(row, Vec3::new(x, y, z));
+                visit(row, Vec3::from_array([x, y, z].map(f32::from_bits)));
             }
         }
     }

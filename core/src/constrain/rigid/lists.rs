@@ -27,6 +27,11 @@ pub(super) struct Lists {
     pub(super) pairs: u32,
     /// 1 if there is a list.
     known: u32,
+    /// 1 if any body is awake.
+    pub(super) awake: u32,
+    /// How many pairs press on each other, and how many places of the scenery on bodies; none known where the list is new.
+    pub(super) presses: [u32; 2],
+    pub(super) counted: u32,
 }
 
 /// The memory of bodies in its parts.
@@ -109,18 +114,20 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Lists all that may touch before one of them has gone as far as it may, and looks where they do.
+/// Lists all that may touch before one of them has gone as far as it may, and looks where they do; tells whether any body is awake or the list is new.
 pub(super) fn gather(
     bodies: &mut Bodies<'_>,
     kept: &mut Kept<'_>,
     forms: Forms<'_>,
     scratch: &mut [u32],
     is_news: bool,
-) {
+) -> bool {
     let (h, step) = (bodies.substep.seconds(), bodies.substep.step.seconds());
     let mut is_over = is_news || kept.lists.known == 0;
     let first = kept.first_ball();
-    for body in kept.bodies[..first].iter_mut().filter(|body| body.is_awake()) {
+    let mut is_awake = kept.bodies[1..].iter().any(Body::is_awake);
+    let awake = if is_awake { first } else { 0 };
+    for body in kept.bodies[..awake].iter_mut().filter(|body| body.is_awake()) {
         body.leash -= body.speed() * h;
         is_over |= !(body.leash >= body.speed() * h);
     }
@@ -132,10 +139,12 @@ pub(super) fn gather(
             body.leash = if body.moves() { leash(body, step) } else { 0.0 };
         }
         list(bodies, kept, forms, scratch);
+        is_awake = kept.bodies[1..].iter().any(Body::is_awake);
     }
     let Kept { lists, bodies: all, pairs, .. } = kept;
-    if !all[1..].iter().any(Body::is_awake) {
-        return;
+    lists.awake = u32::from(is_awake);
+    if !is_awake {
+        return is_over;
     }
     for pair in &mut pairs[..lists.pairs as usize] {
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
@@ -148,6 +157,7 @@ pub(super) fn gather(
         }
         pair.spare -= way;
     }
+    true
 }
 
 /// Makes the list. Those that were in the list before go on with what they have.
@@ -169,7 +179,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     before.copy_from_slice(&kept.pairs[..old]);
     let len = admit(bodies, kept, forms, candidates, before);
     sleep::miss(kept.bodies, before, &kept.pairs[..len]);
-    *kept.lists = Lists { pairs: len as u32, known: 1 };
+    *kept.lists = Lists { pairs: len as u32, known: 1, ..bytemuck::Zeroable::zeroed() };
 }
 
 /// Writes down the numbers of all two that may touch, in whatever order; returns how many that are.

@@ -208,15 +208,20 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
 
     /// Wakes who sleeps and is about to be touched, or is driven otherwise than when it fell asleep; all others who sleep stay where they are.
     fn stir(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, span: Span) {
-        if kept.bodies[1..].iter().any(Body::is_awake) {
+        if kept.lists.awake != 0 {
             sleep::look_out(kept, span);
         }
+        let mut is_stirred = false;
         self.each(kept, |body, of, places| {
             if body.sleeps() && !body.lies(bodies, Made { of, places }) {
                 body.calls |= sleep::STIRRED;
+                is_stirred = true;
             }
         });
-        sleep::rouse(kept.bodies);
+        if is_stirred {
+            sleep::rouse(kept.bodies);
+            kept.lists.awake = 1;
+        }
     }
 
     /// Moves those that are awake through a sub-step, and lets them do to each other what they do.
@@ -315,8 +320,9 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
             }
             sleep::look_around(bodies, &mut kept);
         }
-        lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news);
-        meet_scenery(bodies, &mut kept, self.forms());
+        if lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news) {
+            meet_scenery(bodies, &mut kept, self.forms());
+        }
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -327,13 +333,19 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         }
         let len = kept.lists.pairs as usize;
         self.stir(bodies, &mut kept, span);
-        if kept.bodies[1..].iter().any(Body::is_awake) {
+        if kept.lists.awake != 0 {
             self.solve(bodies, &mut kept, share.scratch, span);
             tell_balls(bodies, &kept);
             tell::all(bodies, &kept, self.forms(), span);
         }
-        bodies.report.contacts += kept.pairs[..len].iter().filter(|pair| presses(pair)).count() as u64;
-        bodies.report.hits += kept.scenery.iter().filter(|slot| presses(slot)).count() as u64;
+        if kept.lists.awake != 0 || kept.lists.counted == 0 {
+            let count = |all: &[Manifold]| all.iter().filter(|manifold| presses(manifold)).count() as u32;
+            kept.lists.presses = [count(&kept.pairs[..len]), count(kept.scenery)];
+            kept.lists.counted = 1;
+        }
+        let [contacts, hits] = kept.lists.presses.map(u64::from);
+        bodies.report.contacts += contacts;
+        bodies.report.hits += hits;
     }
 }
 
