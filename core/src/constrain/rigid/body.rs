@@ -73,6 +73,8 @@ pub(super) struct Body {
     /// The share of the normal speed it keeps in a hit, and the number of its material plus one.
     pub(super) elasticity: f32,
     pub(super) material: u32,
+    /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
+    pub(super) whirl: f32,
     /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
     pub(super) leash: f32,
     pub(super) spare: f32,
@@ -305,7 +307,7 @@ impl Body {
     }
 
     /// Follows its turn: rotation, inertia in the world, rate of turning.
-    fn face(&mut self) {
+    pub(super) fn face(&mut self) {
         self.rotation = Turn(self.turn).matrix();
         self.inverse = self.rotation * self.inverse_inertia * self.rotation.transpose();
         if !self.moves() {
@@ -322,15 +324,7 @@ impl Body {
         if !self.moves() {
             return;
         }
-        let (mut way, mut push, mut torque) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        made.each(bodies, &mut |row, place| {
-            let arm = self.rotation * (place - self.rest);
-            let share = bodies.mass[row] * self.inverse_mass;
-            let change = (bodies.velocity[row] - self.velocity_at(arm)) * share;
-            way += (bodies.position[row] - (self.center + arm)) * share;
-            push += change;
-            torque += arm.cross(change);
-        });
+        let [way, push, torque] = self.sums(bodies, made);
         if !(way + push + torque).is_finite() {
             self.state = ABSENT;
             self.inverse_mass = 0.0;
@@ -346,16 +340,53 @@ impl Body {
         self.drift = way - self.velocity * seconds;
     }
 
-    /// Moves it through the sub-step of `h` \[s\] by its velocity, and turns it so that its angular momentum stays (the discrete
-    /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)).
-    pub(super) fn go(&mut self, h: f32) {
-        if !self.moves() || self.sleeps() && self.velocity == Vec3::ZERO && self.spin == Vec3::ZERO {
-            return;
+    /// How far its particles have gone from where it says, and how their velocities and angular momenta differ, as shares of its mass.
+    fn sums(&self, bodies: &Bodies<'_>, made: Made<'_>) -> [Vec3; 3] {
+        let mut sums = [Vec3::ZERO; 3];
+        let mut add = |mass: f32, [position, velocity]: [Vec3; 2], place: Vec3| {
+            let arm = self.rotation * (place - self.rest);
+            let share = mass * self.inverse_mass;
+            let change = (velocity - self.velocity_at(arm)) * share;
+            sums[0] += (position - (self.center + arm)) * share;
+            sums[1] += change;
+            sums[2] += arm.cross(change);
+        };
+        if let Some(rows) = made.run(bodies) {
+            let (masses, velocities) = (&bodies.mass[rows.clone()], &bodies.velocity[rows.clone()]);
+            let moving = bodies.position[rows].iter().zip(velocities);
+            for ((&mass, (&position, &velocity)), &[x, y, z]) in
+                masses.iter().zip(moving).zip(made.places.as_chunks().0)
+            {
+                add(mass, [position, velocity], Vec3::from_array([x, y, z].map(f32::from_bits)));
+            }
+        } else {
+            made.each(bodies, &mut |row, place| {
+                add(bodies.mass[row], [bodies.position[row], bodies.velocity[row]], place)
+            });
         }
+        sums
+    }
+
+    /// Tells whether it goes anywhere.
+    pub(super) fn goes(&self) -> bool {
+        self.moves() && !(self.sleeps() && self.velocity == Vec3::ZERO && self.spin == Vec3::ZERO)
+    }
+
+    /// Moves its centre through the sub-step of `h` \[s\].
+    pub(super) fn advance(&mut self, h: f32) {
         self.center += self.velocity * h;
         if self.pressed == 0 {
             self.center += self.drift;
         }
+    }
+
+    /// Moves it through the sub-step of `h` \[s\] by its velocity, and turns it so that its angular momentum stays (the discrete
+    /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)).
+    pub(super) fn go(&mut self, h: f32) {
+        if !self.goes() {
+            return;
+        }
+        self.advance(h);
         let (last, torque) = (Turn(self.turn), self.spin * h);
         if torque != Vec3::ZERO {
             let turn = keeping(last, self.rotation * self.spread, torque, None);

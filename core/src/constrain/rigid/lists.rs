@@ -128,8 +128,10 @@ pub(super) fn gather(
     let mut is_awake = kept.bodies[1..].iter().any(Body::is_awake);
     let awake = if is_awake { first } else { 0 };
     for body in kept.bodies[..awake].iter_mut().filter(|body| body.is_awake()) {
-        body.leash -= body.speed() * h;
-        is_over |= !(body.leash >= body.speed() * h);
+        body.whirl = length(body.omega) * body.radius;
+        let way = (length(body.velocity) + body.whirl) * h;
+        body.leash -= way;
+        is_over |= !(body.leash >= way);
     }
     if !kept.balls.is_empty() {
         is_over |= bodies.substep.number == 0 || balls::are_far(bodies, kept, h);
@@ -151,7 +153,7 @@ pub(super) fn gather(
         if !(a.is_awake() || b.is_awake()) {
             continue;
         }
-        let way = (length(a.velocity - b.velocity) + length(a.omega) * a.radius + length(b.omega) * b.radius) * h;
+        let way = (length(a.velocity - b.velocity) + a.whirl + b.whirl) * h;
         if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
             pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);
         }
@@ -170,13 +172,13 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * sizes.candidates()));
     let found = invite(bodies, kept, forms, (middles, rows), candidates);
     let candidates = &mut candidates[..found];
-    candidates.sort_unstable();
+    candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b));
     // The old list, beside the new one.
     let old = kept.lists.pairs as usize;
     let room = rest.len() - rest.len() % words::<Manifold>();
     let before: &mut [Manifold] = bytemuck::cast_slice_mut(&mut rest[..room]);
     let Some(before) = before.get_mut(..old) else { return };
-    before.copy_from_slice(&kept.pairs[..old]);
+    before.iter_mut().zip(&*kept.pairs).for_each(|(before, pair)| before.take(pair));
     let len = admit(bodies, kept, forms, candidates, before);
     sleep::miss(kept.bodies, before, &kept.pairs[..len]);
     *kept.lists = Lists { pairs: len as u32, known: 1, ..bytemuck::Zeroable::zeroed() };
@@ -253,13 +255,13 @@ fn admit(
             continue;
         };
         len += 1;
-        *place = known.map_or_else(
-            || {
+        match known {
+            Some(known) => place.take(known),
+            None => {
                 let materials = [a.material, b.material].map(|number| (number as u16).checked_sub(1));
-                Manifold::of(key, of_two(bodies.materials, [a.elasticity, b.elasticity], materials))
-            },
-            |pair| **pair,
-        );
+                place.take(&Manifold::of(key, of_two(bodies.materials, [a.elasticity, b.elasticity], materials)));
+            }
+        }
         if ball.is_some() {
             // Whatever else has moved the ball: where it touches is looked for again.
             place.spare = 0.0;

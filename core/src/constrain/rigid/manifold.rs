@@ -6,6 +6,7 @@ use super::forms::{Form, with_apart};
 use super::solver::Span;
 use crate::material::Mixed;
 use crate::math::{dot, max, min};
+use core::mem::offset_of;
 use glam::{Mat3, Vec3};
 
 /// Where two touch. What a sub-step changes of it comes first, in fours.
@@ -73,6 +74,14 @@ impl Manifold {
         Self { bodies, elasticity, friction: [friction.static_, friction.kinetic], ..bytemuck::Zeroable::zeroed() }
     }
 
+    /// Takes what is known of another pair: the places that it has, not those beyond.
+    pub(super) fn take(&mut self, other: &Self) {
+        let words = (offset_of!(Self, points) + other.points().len() * size_of::<Point>()) / 4;
+        let to: &mut [u32] = bytemuck::cast_slice_mut(core::slice::from_mut(self));
+        let from: &[u32] = bytemuck::cast_slice(core::slice::from_ref(other));
+        to[..words].copy_from_slice(&from[..words]);
+    }
+
     /// Its points.
     pub(super) fn points(&self) -> &[Point] {
         &self.points[..(self.count as usize).min(4)]
@@ -107,8 +116,9 @@ impl Manifold {
 
     /// Looks where two bodies touch, or will when they have gone `reach` \[m\] against each other.
     pub(super) fn find(&mut self, [a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) {
-        let (before, count) = (self.points, (self.count as usize).min(4));
-        let (before, small) = (&before[..count], min(a.small(), b.small()));
+        let mut before = heapless::Vec::<Point, POINTS>::new();
+        before.extend(self.points().iter().copied());
+        let (before, small) = (&before[..], min(a.small(), b.small()));
         self.count = 0;
         let [form, other] = forms;
         if let Form::Ball = other {

@@ -4,6 +4,7 @@ mod balls;
 mod body;
 mod boxes;
 mod facets;
+mod fly;
 mod forms;
 mod hull;
 #[cfg(feature = "alloc")]
@@ -237,7 +238,7 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         let mut manifolds = Manifolds { pairs: &mut pairs[..len], scenery };
         let mut order = Order::of(all, &mut manifolds, memory);
         solver::keep_apart(all, &manifolds, &mut order, span);
-        all.iter_mut().for_each(|body| body.go(span.h));
+        fly::go(all, span.h);
         solver::part(all, &mut manifolds, &mut order, span);
         sleep::feel(all, &pairs[..len], span);
         if bodies.substep.is_last() {

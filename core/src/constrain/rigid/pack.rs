@@ -198,7 +198,7 @@ fn four<T: Pod>(of: &T, first: usize) -> [f32; 4] {
 
 /// Writes four words of a thing.
 #[inline(always)]
-fn put<T: Pod>(to: &mut T, first: usize, four: [f32; 4]) {
+pub(super) fn put<T: Pod>(to: &mut T, first: usize, four: [f32; 4]) {
     let words: &mut [f32] = bytemuck::cast_slice_mut(core::slice::from_mut(to));
     if let Some(words) = words.get_mut(first..).and_then(|words| words.first_chunk_mut()) {
         *words = four;
@@ -207,7 +207,7 @@ fn put<T: Pod>(to: &mut T, first: usize, four: [f32; 4]) {
 
 /// Four words of each, from a place on.
 #[inline(always)]
-fn fours<F: Eight, T: Pod>(like: F, all: &[&T; LANES], first: usize) -> [F; 4] {
+pub(super) fn fours<F: Eight, T: Pod>(like: F, all: &[&T; LANES], first: usize) -> [F; 4] {
     let mut rows = [[0.0; 4]; LANES];
     for (row, &of) in rows.iter_mut().zip(all) {
         *row = four(of, first);

@@ -89,7 +89,7 @@ impl Body {
     fn fall_asleep(&mut self) {
         self.asleep = DROPS;
         (self.velocity, self.spin, self.omega, self.drift) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        self.before = [Vec3::ZERO; 2];
+        (self.before, self.whirl) = ([Vec3::ZERO; 2], 0.0);
     }
 
     /// For how long it has to lie still before it sleeps \[s\]; of what nothing drives no number, or infinitely long.
