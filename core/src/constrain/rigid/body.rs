@@ -18,9 +18,11 @@ const MOVING: u32 = 2;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Body {
-    /// The number of its particles that live, plus one; zero before it is seen for the first time.
-    known: u32,
+    /// 1 if it sleeps. What is asked for of many that may touch stands here, side by side.
+    pub(super) asleep: u32,
     state: u32,
+    /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
+    pub(super) whirl: f32,
     /// The tick of the clock of passes at which it was changed last.
     pub(super) changed: u32,
     /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go, and at a sub-step's beginning
@@ -50,12 +52,15 @@ pub(super) struct Body {
     pub(super) drift: Vec3,
     /// The rates at which forces changed its velocity and spin when it was awake last \[m/s², m²/s²\].
     pub(super) drive: [Vec3; 2],
-    /// 1 if it sleeps; what is called out to it; the least number among those that sleep with it.
-    pub(super) asleep: u32,
+    /// The number of its particles that live, plus one; zero before it is seen for the first time.
+    known: u32,
+    /// What is called out to it; the least number among those that sleep with it.
     pub(super) calls: u32,
     pub(super) island: u32,
     /// One more than how many contacts away from it bodies wake by a blow to it.
     pub(super) rings: u32,
+    /// In how many directions the scenery may press on it: in the first of those that there is room for.
+    pub(super) met: u32,
     /// The number of places of the scenery that were near when it fell asleep.
     pub(super) faces: u32,
     /// For how long it has been near a place, and how it was turned there \[s, m\].
@@ -73,8 +78,6 @@ pub(super) struct Body {
     /// The share of the normal speed it keeps in a hit, and the number of its material plus one.
     pub(super) elasticity: f32,
     pub(super) material: u32,
-    /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
-    pub(super) whirl: f32,
     /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
     pub(super) leash: f32,
     pub(super) spare: f32,
@@ -176,9 +179,10 @@ impl Body {
         let velocity = if inverse_mass > 0.0 { bodies.velocity[row] } else { Vec3::ZERO };
         let (center, elasticity, material) =
             (bodies.position[row], bodies.elasticity[row], u32::from(bodies.material[row]));
-        let (known, spare, leash) = (self.known, self.spare, self.leash);
+        let (known, met, spare, leash) = (self.known, self.met, self.spare, self.leash);
         let ball = Self {
             known,
+            met,
             spare,
             leash,
             state,
@@ -400,14 +404,14 @@ impl Body {
         if !self.moves() || !(self.center + self.velocity + self.omega).is_finite() {
             return;
         }
-        for (i, place) in made.places.chunks_exact(3).enumerate() {
-            if let Some(row) = bodies.row_of_start(made.of.first.saturating_add(i as u32)) {
-                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
-                let arm = self.rotation * (Vec3::new(x, y, z) - self.rest);
-                bodies.position[row] = self.center + arm;
-                bodies.velocity[row] = self.velocity_at(arm);
-                bodies.marks[row] |= SHIFTED | CARRIED;
-            }
+        let run = made.run(bodies);
+        for (i, &[x, y, z]) in made.places.as_chunks().0.iter().enumerate() {
+            let one = || bodies.row_of_start(made.of.first.saturating_add(i as u32));
+            let Some(row) = run.as_ref().map_or_else(one, |rows| Some(rows.start + i)) else { continue };
+            let arm = self.rotation * (Vec3::from_array([x, y, z].map(f32::from_bits)) - self.rest);
+            bodies.position[row] = self.center + arm;
+            bodies.velocity[row] = self.velocity_at(arm);
+            bodies.marks[row] |= SHIFTED | CARRIED;
         }
     }
 

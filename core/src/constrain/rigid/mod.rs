@@ -292,7 +292,7 @@ fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) 
         if body.moves() && (number < first || body.pressed != 0) {
             scenery::meet(bodies, body, forms.of(number as u32), number as u32, slots);
         } else {
-            slots.iter_mut().for_each(|slot| slot.count = 0);
+            scenery::clear(body, slots);
         }
     }
 }
@@ -341,7 +341,9 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         }
         if kept.lists.awake != 0 || kept.lists.counted == 0 {
             let count = |all: &[Manifold]| all.iter().filter(|manifold| presses(manifold)).count() as u32;
-            kept.lists.presses = [count(&kept.pairs[..len]), count(kept.scenery)];
+            let slots = kept.bodies[1..].iter().zip(kept.scenery.chunks_exact(DIRECTIONS));
+            let hits = slots.filter(|(body, _)| body.met > 0).map(|(_, slots)| count(slots)).sum();
+            kept.lists.presses = [count(&kept.pairs[..len]), hits];
             kept.lists.counted = 1;
         }
         let [contacts, hits] = kept.lists.presses.map(u64::from);

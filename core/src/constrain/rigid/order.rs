@@ -65,8 +65,8 @@ impl<'a> Order<'a> {
             }
         }
         for (body, slots) in bodies[1..].iter().zip(manifolds.scenery.chunks_exact_mut(DIRECTIONS)) {
-            for (direction, slot) in slots.iter_mut().enumerate().filter(|(_, slot)| slot.count > 0 && body.is_awake())
-            {
+            let met = if body.is_awake() { body.met as usize } else { 0 };
+            for (direction, slot) in slots.iter_mut().enumerate().take(met) {
                 slot.colour = shelf(COLOURS + direction, slot);
                 starts[slot.colour as usize + 1] += 1;
             }
@@ -138,10 +138,9 @@ fn put_all(bodies: &[Body], manifolds: &Manifolds<'_>, mut next: [u32; SHELVES +
     };
     let Manifolds { pairs, scenery } = manifolds;
     pairs.iter().enumerate().for_each(|(number, manifold)| put(number, manifold));
-    let awake = bodies[1..].iter().enumerate().filter(|(_, body)| body.is_awake());
-    for number in awake.flat_map(|(body, _)| DIRECTIONS * body..DIRECTIONS * (body + 1)) {
-        if let Some(slot) = scenery.get(number).filter(|slot| slot.count > 0) {
-            put(pairs.len() + number, slot);
+    for (number, body) in bodies[1..].iter().enumerate().filter(|(_, body)| body.is_awake()) {
+        for number in (DIRECTIONS * number..).take(body.met as usize) {
+            scenery.get(number).into_iter().for_each(|slot| put(pairs.len() + number, slot));
         }
     }
 }

@@ -224,10 +224,11 @@ pub(super) fn wake_all(all: &mut [Body]) {
 
 /// Wakes those who have touched one that is no longer listed beside them, and all who sleep with them.
 pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
-    let mut is_any = false;
+    let (mut is_any, mut pairs) = (false, pairs.iter().peekable());
     for gone in before.iter().filter(|pair| pair.count > 0) {
-        let place = pairs.binary_search_by_key(&gone.bodies, |pair| pair.bodies);
-        if place.is_ok_and(|place| pairs[place].count > 0) {
+        // Both lists are in the same order.
+        while pairs.next_if(|pair| pair.bodies < gone.bodies).is_some() {}
+        if pairs.peek().is_some_and(|pair| pair.bodies == gone.bodies && pair.count > 0) {
             continue;
         }
         gone.bodies.iter().for_each(|&number| call(all, number as usize));
@@ -241,7 +242,8 @@ pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
 /// Wakes those around whom the scenery is not as it was.
 pub(super) fn look_around(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     for number in 1..kept.first_ball() {
-        let (body, slots) = (&kept.bodies[number], &kept.scenery[DIRECTIONS * (number - 1)..][..DIRECTIONS]);
+        let body = &kept.bodies[number];
+        let slots = &kept.scenery[DIRECTIONS * (number - 1)..][..(body.met as usize).min(DIRECTIONS)];
         let is_as_before = || scenery::faces(bodies, body, slots) == Some(body.faces);
         if body.sleeps() && !(is_as_before() && scenery::holds(bodies, body, slots)) {
             call(kept.bodies, number);
