@@ -3,6 +3,8 @@
 //! The number of lanes and the order in which they are added are part of every sum's definition: they decide how it
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+mod avx2;
 mod eight;
 #[cfg(any(test, target_os = "none"))]
 mod one;

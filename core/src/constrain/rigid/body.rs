@@ -365,7 +365,7 @@ impl Body {
             }
         } else {
             made.each(bodies, &mut |row, place| {
-                add(bodies.mass[row], [bodies.position[row], bodies.velocity[row]], place)
+                add(bodies.mass[row], [bodies.position[row], bodies.velocity[row]], place);
             });
         }
         sums

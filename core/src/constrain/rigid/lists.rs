@@ -88,7 +88,7 @@ impl Sizes {
             .saturating_add(each(self.bodies, 3))
             .saturating_add(each(self.candidates(), 2));
         let touching = self.pairs().saturating_add(each(all, DIRECTIONS));
-        let solving = each(packs_of(touching), words::<Pack>()).saturating_add(touching);
+        let solving = each(packs_of(self.pairs(), all), words::<Pack>()).saturating_add(touching);
         let scratch = listing.max(solving);
         let per_row = usize::from(self.balls > 0);
         [Words { per_row: 0, fixed: kept }, Words { per_row, fixed: scratch }]

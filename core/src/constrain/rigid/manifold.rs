@@ -76,7 +76,7 @@ impl Manifold {
 
     /// Takes what is known of another pair: the places that it has, not those beyond.
     pub(super) fn take(&mut self, other: &Self) {
-        let words = (offset_of!(Self, points) + other.points().len() * size_of::<Point>()) / 4;
+        let words = (offset_of!(Self, points) + size_of_val(other.points())) / 4;
         let to: &mut [u32] = bytemuck::cast_slice_mut(core::slice::from_mut(self));
         let from: &[u32] = bytemuck::cast_slice(core::slice::from_ref(other));
         to[..words].copy_from_slice(&from[..words]);

@@ -44,10 +44,11 @@ pub(super) struct Order<'a> {
     starts: [u32; ALL + 1],
 }
 
-/// The packs that so many fill at the most: each colour may leave one that is not full.
-pub(super) const fn packs_of(manifolds: usize) -> usize {
-    let full = manifolds / ABREAST + ALL;
-    if full < manifolds { full } else { manifolds }
+/// The packs that so many pairs of so many bodies fill at the most, with what of the scenery presses on these: each colour may leave one that is not
+/// full, and pairs need fewer colours than two bodies have neighbours together.
+pub(super) fn packs_of(pairs: usize, bodies: usize) -> usize {
+    let colours = COLOURS.min(bodies.saturating_mul(2));
+    pairs.min((pairs / ABREAST).saturating_add(colours)).saturating_add(DIRECTIONS * bodies.div_ceil(ABREAST))
 }
 
 impl<'a> Order<'a> {

@@ -176,9 +176,9 @@ impl Pack {
                 }
             }
         }
-        for lane in 0..self.len() {
+        for (lane, &axis) in axes.iter().enumerate().take(self.len()) {
             let Some(manifold) = manifolds.get_mut(self.manifolds[lane]) else { continue };
-            manifold.axis = vector(axes[lane]);
+            manifold.axis = vector(axis);
             manifold.presses = presses >> lane & 1;
         }
     }

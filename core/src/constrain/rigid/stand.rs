@@ -263,7 +263,7 @@ impl<F: Eight> Pair<F> {
         let before = negated(self.parting_before(arms, kept.surface, normal));
         let now = negated(self.parting(arms, kept.surface, normal));
         let meets = max(before * before + two * (now - before) / h * gap, zero).sqrt();
-        let bounce = elasticity * meets & now.simd_gt(zero);
+        let bounce = (elasticity * meets) & now.simd_gt(zero);
         let rests = (two * bounce * h).simd_lt(gap.all(RESTING * span.step) * driven);
         let recovery = gap.simd_gt(zero).select(gap.all(1.0), gap.all(RECOVERY));
         let wanted = negated(gap) * recovery / h;
@@ -325,10 +325,9 @@ impl<F: Eight> Pair<F> {
 fn yields<F: Eight>(of: &Motion<F>, gives: F, arm: Vectors<F>, [u, v, n]: [Vectors<F>; 3]) -> [F; 6] {
     let [u, v, n] = [arm.cross(u), arm.cross(v), arm.cross(n)];
     let [iu, iv, i_n] = [of.turned_by(u), of.turned_by(v), of.turned_by(n)];
-    let (one, mass) = (gives.all(1.0), of.inverse_mass);
-    let own = [(one + u.dot(iu)) * mass & gives, (one + v.dot(iv)) * mass & gives, (one + n.dot(i_n)) * mass & gives];
-    let [uv, un, vn] = [v.dot(iu) * mass & gives, n.dot(iu) * mass & gives, n.dot(iv) * mass & gives];
-    [own[0], own[1], own[2], uv, un, vn]
+    let (one, mass) = (gives.all(1.0), of.inverse_mass & gives);
+    let [uu, vv, nn] = [one + u.dot(iu), one + v.dot(iv), one + n.dot(i_n)];
+    [uu * mass, vv * mass, nn * mass, v.dot(iu) * mass, n.dot(iu) * mass, n.dot(iv) * mass]
 }
 
 /// The part of vectors that lies along a surface.
