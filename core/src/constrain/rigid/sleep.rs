@@ -124,8 +124,15 @@ impl Body {
         self.lull != 0
     }
 
-    /// The same where forces do the same to all of its particles, which lie one behind the other, after the first sub-step of a step: they are put
-    /// back to where they were.
+    /// Tells whether its particles, in these rows, began the sub-step where it says.
+    fn is_where_told(&self, bodies: &Bodies<'_>, made: Made<'_>, rows: &Range<usize>) -> bool {
+        let before = bodies.before[0].get(rows.clone()).unwrap_or_default();
+        let places = made.places.as_chunks().0.iter().map(|&[x, y, z]| Vec3::from_array([x, y, z].map(f32::from_bits)));
+        places.zip(before).fold(true, |all, (place, &from)| all & (self.point(place) == from))
+    }
+
+    /// Lets its particles lie where they are, in these rows, if forces do the same to all of them as when it fell asleep: they are put back to where
+    /// they began the sub-step. Tells whether that is so.
     fn lies_evenly(&self, bodies: &mut Bodies<'_>, rows: Range<usize>) -> bool {
         let (h, size) = (bodies.substep.seconds(), length(self.drive[0]));
         let [from, still] = bodies.before.map(|column| &column[rows.clone()]);
@@ -149,7 +156,8 @@ impl Body {
 
     /// Lets its particles lie where they are while it sleeps; tells whether that is so. What does otherwise to them than when it fell asleep wakes it.
     pub(super) fn lies(&mut self, bodies: &mut Bodies<'_>, made: Made<'_>) -> bool {
-        let rows = made.run(bodies).filter(|_| bodies.substep.number > 0);
+        // Between steps others may have moved them.
+        let rows = made.run(bodies).filter(|rows| bodies.substep.number > 0 || self.is_where_told(bodies, made, rows));
         if rows.is_some_and(|rows| self.lies_evenly(bodies, rows)) {
             return true;
         }
