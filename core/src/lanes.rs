@@ -3,9 +3,12 @@
 //! The number of lanes and the order in which they are added are part of every sum's definition: they decide how it
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+mod avx2;
 mod eight;
 #[cfg(any(test, target_os = "none"))]
 mod one;
+mod row;
 #[cfg(any(test, target_feature = "simd128"))]
 mod thrice;
 mod vectors;
@@ -14,6 +17,7 @@ pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
 use glam::Vec3;
 #[cfg(any(test, target_os = "none"))]
 pub(crate) use one::One;
+pub(crate) use row::{Row, load, mask_of, saved};
 pub(crate) use vectors::Vectors;
 use wide::{f32x4, f32x8};
 

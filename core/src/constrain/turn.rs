@@ -4,9 +4,12 @@ use crate::math::{dot, sqrt};
 use glam::{Mat3, Vec3};
 
 /// Rounds of Newton's method, and of the search for the nearest rotation, at the most.
-const ROUNDS: [u32; 2] = [8, 40];
+pub(super) const ROUNDS: [u32; 2] = [8, 40];
 /// An angle \[rad\] that is rounding.
-const ROUNDING: f32 = 5e-7;
+pub(super) const ROUNDING: f32 = 5e-7;
+
+/// The square of an angle \[rad\] below which Newton's method has got there, though it gets no nearer.
+pub(super) const EVEN: f32 = 1e-8;
 
 /// A rotation: a unit quaternion x, y, z, w.
 #[derive(Clone, Copy)]
@@ -80,14 +83,14 @@ pub(super) fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) 
         let size = dot(angle, angle);
         if !(size < before && size < 4.0) {
             // Rounding goes to and fro.
-            return (before < 1e-8).then_some(turn);
+            return (before < EVEN).then_some(turn);
         }
         (turn, before) = (turn.on(angle), size);
         if size < ROUNDING * ROUNDING {
             return Some(turn);
         }
     }
-    (before < 1e-8).then_some(turn)
+    (before < EVEN).then_some(turn)
 }
 
 /// The rotation nearest to Σ m x qᵀ, found from the last one on: one column pulls another round by r × a / |Σ r · a|.
@@ -161,4 +164,4 @@ pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
 }
 
 /// The share of a cluster's largest moment of inertia below which the least is rounding.
-const THIN: f32 = 1e-6;
+pub(super) const THIN: f32 = 1e-6;

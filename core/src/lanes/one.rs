@@ -84,6 +84,9 @@ impl Eight for One {
     fn vectors_of([x, y, z]: [Self; 3]) -> [[f32; 4]; LANES] {
         [[x.0, y.0, z.0, z.0]; LANES]
     }
+    fn rows_of([x, y, z, w]: [Self; 4]) -> [[f32; 4]; LANES] {
+        [[x.0, y.0, z.0, w.0]; LANES]
+    }
     fn to_bitmask(self) -> u32 {
         u32::from(self.0.to_bits() != 0)
     }

@@ -117,7 +117,9 @@ pub(super) fn invite(
         if let Some(row) = ball.row(bodies) {
             body.follow(bodies, row);
         } else {
+            let met = body.met;
             *body = Body::world();
+            body.met = met;
         }
     }
 }

@@ -3,7 +3,8 @@
 use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
-use crate::math::{dot, length, max, min, sqrt};
+use crate::math::{length, max, min, sqrt};
+use core::ops::Range;
 use glam::{Mat3, Vec3};
 
 /// It is not there: its particles are dead or nowhere.
@@ -17,12 +18,15 @@ const MOVING: u32 = 2;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Body {
-    /// The number of its particles that live, plus one; zero before it is seen for the first time.
-    known: u32,
+    /// 1 if it sleeps. What is asked for of many that may touch stands here, side by side.
+    pub(super) asleep: u32,
     state: u32,
+    /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
+    pub(super) whirl: f32,
     /// The tick of the clock of passes at which it was changed last.
     pub(super) changed: u32,
-    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go.
+    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go, and at a sub-step's beginning
+    /// all up to how it moved before.
     pub(super) inverse_mass: f32,
     /// Its velocity \[m/s\].
     pub(super) velocity: Vec3,
@@ -34,26 +38,29 @@ pub(super) struct Body {
     pub(super) inverse: Mat3,
     /// Its centre of mass \[m\].
     pub(super) center: Vec3,
-    pub(super) turn: [f32; 4],
     /// Its centre of mass in the box's frame \[m\].
     pub(super) rest: Vec3,
-    /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
-    spread: Mat3,
-    inverse_inertia: Mat3,
     /// Its rotation.
     pub(super) rotation: Mat3,
     /// Its velocity and rate of turning when the sub-step began.
     pub(super) before: [Vec3; 2],
+    pub(super) turn: [f32; 4],
+    /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
+    spread: Mat3,
+    inverse_inertia: Mat3,
     /// How much farther the method has moved it than its velocity says \[m\].
     pub(super) drift: Vec3,
     /// The rates at which forces changed its velocity and spin when it was awake last \[m/s², m²/s²\].
     pub(super) drive: [Vec3; 2],
-    /// 1 if it sleeps; what is called out to it; the least number among those that sleep with it.
-    pub(super) asleep: u32,
+    /// The number of its particles that live, plus one; zero before it is seen for the first time.
+    known: u32,
+    /// What is called out to it; the least number among those that sleep with it.
     pub(super) calls: u32,
     pub(super) island: u32,
     /// One more than how many contacts away from it bodies wake by a blow to it.
     pub(super) rings: u32,
+    /// In how many directions the scenery may press on it: in the first of those that there is room for.
+    pub(super) met: u32,
     /// The number of places of the scenery that were near when it fell asleep.
     pub(super) faces: u32,
     /// For how long it has been near a place, and how it was turned there \[s, m\].
@@ -88,12 +95,23 @@ pub(super) struct Made<'a> {
 }
 
 impl Made<'_> {
+    /// The rows of its particles, where all live, one behind the other.
+    pub(super) fn run(&self, bodies: &Bodies<'_>) -> Option<Range<usize>> {
+        let (first, count) = (self.of.first as usize, self.of.count as usize);
+        let end = first.checked_add(count).filter(|&end| end <= bodies.start as usize)?;
+        let rows = bodies.row_of.get(first..end)?;
+        let row = *rows.first()? as usize;
+        let serials = bodies.serial.get(row..row.checked_add(count)?)?;
+        let follows = |i: usize, at: u32, serial: u32| (at as usize == row + i) & (serial as usize == first + i);
+        let both = rows.iter().zip(serials).enumerate();
+        both.fold(true, |all, (i, (&at, &serial))| all & follows(i, at, serial)).then_some(row..row + count)
+    }
+
     /// Visits its living particles: row, and place in the box's frame \[m\].
     fn each(&self, bodies: &Bodies<'_>, visit: &mut dyn FnMut(usize, Vec3)) {
-        for (i, place) in self.places.chunks_exact(3).enumerate() {
+        for (i, &[x, y, z]) in self.places.as_chunks().0.iter().enumerate() {
             if let Some(row) = bodies.row_of_start(self.of.first.saturating_add(i as u32)) {
-                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
-                visit(row, Vec3::new(x, y, z));
+                visit(row, Vec3::from_array([x, y, z].map(f32::from_bits)));
             }
         }
     }
@@ -152,24 +170,6 @@ impl Body {
         velocity + omega.cross(arm)
     }
 
-    /// How an impulse there along one of three directions u, v, n, which are square to each other, changes the velocity there along another
-    /// \[1/kg\]: uu, vv, nn, uv, un, vn.
-    pub(super) fn yields(&self, arm: Vec3, directions: [Vec3; 3]) -> [f32; 6] {
-        let [u, v, n] = directions.map(|direction| arm.cross(direction));
-        let [iu, iv, i_n] = [u, v, n].map(|lever| self.inverse * lever);
-        let [uu, vv, nn] = [1.0 + dot(u, iu), 1.0 + dot(v, iv), 1.0 + dot(n, i_n)];
-        [uu, vv, nn, dot(v, iu), dot(n, iu), dot(n, iv)].map(|yields| yields * self.inverse_mass)
-    }
-
-    /// Gives it an impulse \[N s\] there.
-    pub(super) fn push(&mut self, arm: Vec3, impulse: Vec3) {
-        let change = impulse * self.inverse_mass;
-        let torque = arm.cross(change);
-        self.velocity += change;
-        self.spin += torque;
-        self.omega += self.inverse * torque;
-    }
-
     /// Takes a ball as it is at the beginning of a sub-step: the particle in a row.
     pub(super) fn follow(&mut self, bodies: &Bodies<'_>, row: usize) {
         let Turn(turn) = Turn::NONE;
@@ -179,9 +179,10 @@ impl Body {
         let velocity = if inverse_mass > 0.0 { bodies.velocity[row] } else { Vec3::ZERO };
         let (center, elasticity, material) =
             (bodies.position[row], bodies.elasticity[row], u32::from(bodies.material[row]));
-        let (known, spare, leash) = (self.known, self.spare, self.leash);
+        let (known, met, spare, leash) = (self.known, self.met, self.spare, self.leash);
         let ball = Self {
             known,
+            met,
             spare,
             leash,
             state,
@@ -207,7 +208,7 @@ impl Body {
         self.pressed = 0;
         let (to, velocity) = (bodies.position[row], bodies.velocity[row]);
         if self.moves() && (to + velocity).is_finite() {
-            self.velocity = velocity;
+            self.velocity = velocity + Vec3::ZERO;
             self.drift = to - self.center - velocity * bodies.substep.seconds();
         }
     }
@@ -310,13 +311,13 @@ impl Body {
     }
 
     /// Follows its turn: rotation, inertia in the world, rate of turning.
-    fn face(&mut self) {
+    pub(super) fn face(&mut self) {
         self.rotation = Turn(self.turn).matrix();
         self.inverse = self.rotation * self.inverse_inertia * self.rotation.transpose();
         if !self.moves() {
             self.inverse = Mat3::ZERO;
         }
-        self.omega = self.inverse * self.spin;
+        self.omega = self.inverse * self.spin + Vec3::ZERO;
     }
 
     /// Takes in what has been done to its particles since they were last told where to be: what the method did by the forces, and others.
@@ -327,15 +328,7 @@ impl Body {
         if !self.moves() {
             return;
         }
-        let (mut way, mut push, mut torque) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        made.each(bodies, &mut |row, place| {
-            let arm = self.rotation * (place - self.rest);
-            let share = bodies.mass[row] * self.inverse_mass;
-            let change = (bodies.velocity[row] - self.velocity_at(arm)) * share;
-            way += (bodies.position[row] - (self.center + arm)) * share;
-            push += change;
-            torque += arm.cross(change);
-        });
+        let [way, push, torque] = self.sums(bodies, made);
         if !(way + push + torque).is_finite() {
             self.state = ABSENT;
             self.inverse_mass = 0.0;
@@ -344,22 +337,60 @@ impl Body {
         }
         let seconds = bodies.substep.seconds();
         self.drive = [push, torque].map(|change| change * (1.0 / seconds));
-        self.velocity += push;
-        self.spin += torque;
-        self.omega = self.inverse * self.spin;
+        // What is −0 becomes 0, here and where a body has turned: impulses of zero change nothing then.
+        self.velocity = self.velocity + push + Vec3::ZERO;
+        self.spin = self.spin + torque + Vec3::ZERO;
+        self.omega = self.inverse * self.spin + Vec3::ZERO;
         self.drift = way - self.velocity * seconds;
+    }
+
+    /// How far its particles have gone from where it says, and how their velocities and angular momenta differ, as shares of its mass.
+    fn sums(&self, bodies: &Bodies<'_>, made: Made<'_>) -> [Vec3; 3] {
+        let mut sums = [Vec3::ZERO; 3];
+        let mut add = |mass: f32, [position, velocity]: [Vec3; 2], place: Vec3| {
+            let arm = self.rotation * (place - self.rest);
+            let share = mass * self.inverse_mass;
+            let change = (velocity - self.velocity_at(arm)) * share;
+            sums[0] += (position - (self.center + arm)) * share;
+            sums[1] += change;
+            sums[2] += arm.cross(change);
+        };
+        if let Some(rows) = made.run(bodies) {
+            let (masses, velocities) = (&bodies.mass[rows.clone()], &bodies.velocity[rows.clone()]);
+            let moving = bodies.position[rows].iter().zip(velocities);
+            for ((&mass, (&position, &velocity)), &[x, y, z]) in
+                masses.iter().zip(moving).zip(made.places.as_chunks().0)
+            {
+                add(mass, [position, velocity], Vec3::from_array([x, y, z].map(f32::from_bits)));
+            }
+        } else {
+            made.each(bodies, &mut |row, place| {
+                add(bodies.mass[row], [bodies.position[row], bodies.velocity[row]], place);
+            });
+        }
+        sums
+    }
+
+    /// Tells whether it goes anywhere.
+    pub(super) fn goes(&self) -> bool {
+        self.moves() && !(self.sleeps() && self.velocity == Vec3::ZERO && self.spin == Vec3::ZERO)
+    }
+
+    /// Moves its centre through the sub-step of `h` \[s\].
+    pub(super) fn advance(&mut self, h: f32) {
+        self.center += self.velocity * h;
+        if self.pressed == 0 {
+            self.center += self.drift;
+        }
     }
 
     /// Moves it through the sub-step of `h` \[s\] by its velocity, and turns it so that its angular momentum stays (the discrete
     /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)).
     pub(super) fn go(&mut self, h: f32) {
-        if !self.moves() || self.sleeps() && self.velocity == Vec3::ZERO && self.spin == Vec3::ZERO {
+        if !self.goes() {
             return;
         }
-        self.center += self.velocity * h;
-        if self.pressed == 0 {
-            self.center += self.drift;
-        }
+        self.advance(h);
         let (last, torque) = (Turn(self.turn), self.spin * h);
         if torque != Vec3::ZERO {
             let turn = keeping(last, self.rotation * self.spread, torque, None);
@@ -373,14 +404,14 @@ impl Body {
         if !self.moves() || !(self.center + self.velocity + self.omega).is_finite() {
             return;
         }
-        for (i, place) in made.places.chunks_exact(3).enumerate() {
-            if let Some(row) = bodies.row_of_start(made.of.first.saturating_add(i as u32)) {
-                let [x, y, z] = [place[0], place[1], place[2]].map(f32::from_bits);
-                let arm = self.rotation * (Vec3::new(x, y, z) - self.rest);
-                bodies.position[row] = self.center + arm;
-                bodies.velocity[row] = self.velocity_at(arm);
-                bodies.marks[row] |= SHIFTED | CARRIED;
-            }
+        let run = made.run(bodies);
+        for (i, &[x, y, z]) in made.places.as_chunks().0.iter().enumerate() {
+            let one = || bodies.row_of_start(made.of.first.saturating_add(i as u32));
+            let Some(row) = run.as_ref().map_or_else(one, |rows| Some(rows.start + i)) else { continue };
+            let arm = self.rotation * (Vec3::from_array([x, y, z].map(f32::from_bits)) - self.rest);
+            bodies.position[row] = self.center + arm;
+            bodies.velocity[row] = self.velocity_at(arm);
+            bodies.marks[row] |= SHIFTED | CARRIED;
         }
     }
 

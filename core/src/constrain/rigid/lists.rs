@@ -5,6 +5,8 @@ use super::balls::{self, Around, Ball, NEAR};
 use super::body::Body;
 use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
+use super::order::packs_of;
+use super::pack::Pack;
 use super::scenery::{DIRECTIONS, leash};
 use super::sleep;
 use crate::material::of_two;
@@ -25,6 +27,11 @@ pub(super) struct Lists {
     pub(super) pairs: u32,
     /// 1 if there is a list.
     known: u32,
+    /// 1 if any body is awake.
+    pub(super) awake: u32,
+    /// How many pairs press on each other, and how many places of the scenery on bodies; none known where the list is new.
+    pub(super) presses: [u32; 2],
+    pub(super) counted: u32,
 }
 
 /// The memory of bodies in its parts.
@@ -77,9 +84,12 @@ impl Sizes {
             .saturating_add(each(all, DIRECTIONS * words::<Manifold>()))
             .saturating_add(each(self.balls, words::<Ball>()))
             .saturating_add(each(self.particles, 3));
-        let scratch = each(self.pairs(), words::<Manifold>())
+        let listing = each(self.pairs(), words::<Manifold>())
             .saturating_add(each(self.bodies, 3))
             .saturating_add(each(self.candidates(), 2));
+        let touching = self.pairs().saturating_add(each(all, DIRECTIONS));
+        let solving = each(packs_of(self.pairs(), all), words::<Pack>()).saturating_add(touching);
+        let scratch = listing.max(solving);
         let per_row = usize::from(self.balls > 0);
         [Words { per_row: 0, fixed: kept }, Words { per_row, fixed: scratch }]
     }
@@ -104,20 +114,24 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Lists all that may touch before one of them has gone as far as it may, and looks where they do.
+/// Lists all that may touch before one of them has gone as far as it may, and looks where they do; tells whether any body is awake or the list is new.
 pub(super) fn gather(
     bodies: &mut Bodies<'_>,
     kept: &mut Kept<'_>,
     forms: Forms<'_>,
     scratch: &mut [u32],
     is_news: bool,
-) {
+) -> bool {
     let (h, step) = (bodies.substep.seconds(), bodies.substep.step.seconds());
     let mut is_over = is_news || kept.lists.known == 0;
     let first = kept.first_ball();
-    for body in kept.bodies[..first].iter_mut().filter(|body| body.is_awake()) {
-        body.leash -= body.speed() * h;
-        is_over |= !(body.leash >= body.speed() * h);
+    let mut is_awake = kept.bodies[1..].iter().any(Body::is_awake);
+    let awake = if is_awake { first } else { 0 };
+    for body in kept.bodies[..awake].iter_mut().filter(|body| body.is_awake()) {
+        body.whirl = length(body.omega) * body.radius;
+        let way = (length(body.velocity) + body.whirl) * h;
+        body.leash -= way;
+        is_over |= !(body.leash >= way);
     }
     if !kept.balls.is_empty() {
         is_over |= bodies.substep.number == 0 || balls::are_far(bodies, kept, h);
@@ -127,22 +141,25 @@ pub(super) fn gather(
             body.leash = if body.moves() { leash(body, step) } else { 0.0 };
         }
         list(bodies, kept, forms, scratch);
+        is_awake = kept.bodies[1..].iter().any(Body::is_awake);
     }
     let Kept { lists, bodies: all, pairs, .. } = kept;
-    if !all[1..].iter().any(Body::is_awake) {
-        return;
+    lists.awake = u32::from(is_awake);
+    if !is_awake {
+        return is_over;
     }
     for pair in &mut pairs[..lists.pairs as usize] {
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
         if !(a.is_awake() || b.is_awake()) {
             continue;
         }
-        let way = (length(a.velocity - b.velocity) + length(a.omega) * a.radius + length(b.omega) * b.radius) * h;
+        let way = (length(a.velocity - b.velocity) + a.whirl + b.whirl) * h;
         if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
             pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);
         }
         pair.spare -= way;
     }
+    true
 }
 
 /// Makes the list. Those that were in the list before go on with what they have.
@@ -155,16 +172,16 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * sizes.candidates()));
     let found = invite(bodies, kept, forms, (middles, rows), candidates);
     let candidates = &mut candidates[..found];
-    candidates.sort_unstable();
+    candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b));
     // The old list, beside the new one.
     let old = kept.lists.pairs as usize;
     let room = rest.len() - rest.len() % words::<Manifold>();
     let before: &mut [Manifold] = bytemuck::cast_slice_mut(&mut rest[..room]);
     let Some(before) = before.get_mut(..old) else { return };
-    before.copy_from_slice(&kept.pairs[..old]);
+    before.iter_mut().zip(&*kept.pairs).for_each(|(before, pair)| before.take(pair));
     let len = admit(bodies, kept, forms, candidates, before);
     sleep::miss(kept.bodies, before, &kept.pairs[..len]);
-    *kept.lists = Lists { pairs: len as u32, known: 1 };
+    *kept.lists = Lists { pairs: len as u32, known: 1, ..bytemuck::Zeroable::zeroed() };
 }
 
 /// Writes down the numbers of all two that may touch, in whatever order; returns how many that are.
@@ -238,13 +255,13 @@ fn admit(
             continue;
         };
         len += 1;
-        *place = known.map_or_else(
-            || {
+        match known {
+            Some(known) => place.take(known),
+            None => {
                 let materials = [a.material, b.material].map(|number| (number as u16).checked_sub(1));
-                Manifold::of(key, of_two(bodies.materials, [a.elasticity, b.elasticity], materials))
-            },
-            |pair| **pair,
-        );
+                place.take(&Manifold::of(key, of_two(bodies.materials, [a.elasticity, b.elasticity], materials)));
+            }
+        }
         if ball.is_some() {
             // Whatever else has moved the ball: where it touches is looked for again.
             place.spare = 0.0;

@@ -6,41 +6,27 @@ use super::forms::{Form, with_apart};
 use super::solver::Span;
 use crate::material::Mixed;
 use crate::math::{dot, max, min};
+use core::mem::offset_of;
 use glam::{Mat3, Vec3};
 
-/// Where two touch.
+/// Where two touch. What a sub-step changes of it comes first, in fours.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Point {
-    /// The place on each, in its box's frame \[m\].
-    pub(super) places: [Vec3; 2],
-    /// From the centre of each to the middle between them \[m\]. Passes read this and what follows up to the lift in one go.
-    pub(super) arms: [Vec3; 2],
-    /// How fast they shall part in the passes under way \[m/s\].
-    pub(super) wanted: f32,
-    /// The impulse that makes them part by 1 m/s \[kg\], and how the slip along the surface changes by one along the normal \[1/kg\].
-    pub(super) mass: f32,
-    pub(super) answer: [f32; 2],
-    /// How fast what has crept shall be taken back, less how fast the scenery moves, along the two directions across the normal \[m/s\].
-    pub(super) lag: [f32; 2],
-    /// How much the slip (u, v) along the surface changes by an impulse along itself \[1/kg\]: the factors of u², uv and v².
-    pub(super) rub: [f32; 3],
+    /// The impulse that keeps them apart, and that of friction on the second, in the world \[N s\].
+    pub(super) pressed: f32,
+    pub(super) held: Vec3,
     /// The change that forces make to the speed of either in a sub-step \[m/s\].
     pub(super) driven: f32,
-    /// The impulse that keeps them apart, and that of friction on the second along these directions \[N s\].
-    pub(super) pressed: f32,
-    pub(super) held_along: [f32; 2],
-    /// How fast the scenery moves there along the normal \[m/s\].
-    pub(super) lift: f32,
-    /// How the scenery moves there, in the mean over the sub-step \[m/s\].
-    pub(super) surface: Vec3,
-    /// How far apart they are \[m\].
-    pub(super) gap: f32,
-    /// The impulse of friction, and how far the second has crept along the first since that has held them there, in the world \[N s, m\].
-    pub(super) held: Vec3,
+    /// How far the second has crept along the first since friction has held them there, in the world \[m\].
     pub(super) crept: Vec3,
-    /// How fast they shall part \[m/s\].
-    pub(super) bounce: f32,
+    /// From the centre of each to the middle between them \[m\].
+    pub(super) arms: [Vec3; 2],
+    /// The place on each, in its box's frame \[m\].
+    pub(super) places: [Vec3; 2],
+    /// How the scenery moves there, in the mean over the sub-step, and how fast along the normal \[m/s\].
+    pub(super) surface: Vec3,
+    pub(super) lift: f32,
 }
 
 impl Point {
@@ -65,23 +51,18 @@ pub(super) struct Manifold {
     pub(super) count: u32,
     /// Its place in the order.
     pub(super) colour: u32,
-    /// The tick of the clock of passes at which it was gone over last.
-    pub(super) seen: u32,
     /// 1 if they have touched since before one of them fell asleep, which is fixed for the other now.
     pub(super) rested: u32,
     /// 1 if one presses on the other.
     pub(super) presses: u32,
     /// The force of the first on the second, and its torque about the first's centre, when one of them fell asleep \[N, N m\].
     pub(super) loads: [Vec3; 2],
-    /// From the first to the second, in the first's frame.
-    pub(super) normal: Vec3,
-    /// The normal, and two directions across it, in the world. Passes read this and what follows up to the friction in one go.
+    /// The normal in the world.
     pub(super) axis: Vec3,
-    pub(super) along: [Vec3; 2],
-    pub(super) friction: [f32; 2],
+    /// From the first to the second, in the first's frame. What follows up to the friction is read in one go.
+    pub(super) normal: Vec3,
     pub(super) elasticity: f32,
-    /// 1 if they are gone over until blows are shared.
-    pub(super) lasts: u32,
+    pub(super) friction: [f32; 2],
     pub(super) points: [Point; POINTS],
 }
 
@@ -91,6 +72,14 @@ impl Manifold {
         let Mixed { elasticity, friction } = mixed;
         let elasticity = min(max(elasticity, 0.0), 1.0);
         Self { bodies, elasticity, friction: [friction.static_, friction.kinetic], ..bytemuck::Zeroable::zeroed() }
+    }
+
+    /// Takes what is known of another pair: the places that it has, not those beyond.
+    pub(super) fn take(&mut self, other: &Self) {
+        let words = (offset_of!(Self, points) + size_of_val(other.points())) / 4;
+        let to: &mut [u32] = bytemuck::cast_slice_mut(core::slice::from_mut(self));
+        let from: &[u32] = bytemuck::cast_slice(core::slice::from_ref(other));
+        to[..words].copy_from_slice(&from[..words]);
     }
 
     /// Its points.
@@ -127,8 +116,9 @@ impl Manifold {
 
     /// Looks where two bodies touch, or will when they have gone `reach` \[m\] against each other.
     pub(super) fn find(&mut self, [a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) {
-        let (before, count) = (self.points, (self.count as usize).min(4));
-        let (before, small) = (&before[..count], min(a.small(), b.small()));
+        let mut before = heapless::Vec::<Point, POINTS>::new();
+        before.extend(self.points().iter().copied());
+        let (before, small) = (&before[..], min(a.small(), b.small()));
         self.count = 0;
         let [form, other] = forms;
         if let Form::Ball = other {

@@ -4,6 +4,7 @@ mod balls;
 mod body;
 mod boxes;
 mod facets;
+mod fly;
 mod forms;
 mod hull;
 #[cfg(feature = "alloc")]
@@ -11,11 +12,14 @@ mod hull_buf;
 mod lists;
 mod manifold;
 mod order;
+mod pack;
 mod pass;
 mod scenery;
 mod sleep;
 mod solver;
+mod stand;
 mod tell;
+mod touch;
 
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share};
@@ -32,7 +36,7 @@ pub use hull::{Hull, HullEdge, HullFace, HullList};
 pub use hull_buf::{HullBuf, HullError};
 use lists::{Kept, Sizes};
 use manifold::Manifold;
-use order::Numbers;
+use order::{Manifolds, Order};
 use scenery::DIRECTIONS;
 use solver::Span;
 
@@ -205,15 +209,20 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
 
     /// Wakes who sleeps and is about to be touched, or is driven otherwise than when it fell asleep; all others who sleep stay where they are.
     fn stir(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, span: Span) {
-        if kept.bodies[1..].iter().any(Body::is_awake) {
+        if kept.lists.awake != 0 {
             sleep::look_out(kept, span);
         }
+        let mut is_stirred = false;
         self.each(kept, |body, of, places| {
             if body.sleeps() && !body.lies(bodies, Made { of, places }) {
                 body.calls |= sleep::STIRRED;
+                is_stirred = true;
             }
         });
-        sleep::rouse(kept.bodies);
+        if is_stirred {
+            sleep::rouse(kept.bodies);
+            kept.lists.awake = 1;
+        }
     }
 
     /// Moves those that are awake through a sub-step, and lets them do to each other what they do.
@@ -226,15 +235,11 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         each_ball(bodies, kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
         let len = kept.lists.pairs as usize;
         let Kept { bodies: all, pairs, scenery, .. } = kept;
-        let numbers = Numbers::of(all, [&mut pairs[..len], scenery], memory);
-        let mut order = numbers.with([&mut pairs[..len], scenery]);
-        solver::begin(all, &mut order, span);
-        solver::hold_on(all, &mut order);
-        solver::keep_apart(all, &mut order);
-        solver::mark_pressed(all, &order);
-        all.iter_mut().for_each(|body| body.go(span.h));
-        solver::part(all, &mut order, span);
-        solver::remember(&mut order);
+        let mut manifolds = Manifolds { pairs: &mut pairs[..len], scenery };
+        let mut order = Order::of(all, &mut manifolds, memory);
+        solver::keep_apart(all, &manifolds, &mut order, span);
+        fly::go(all, span.h);
+        solver::part(all, &mut manifolds, &mut order, span);
         sleep::feel(all, &pairs[..len], span);
         if bodies.substep.is_last() {
             sleep::settle(bodies, kept);
@@ -287,7 +292,7 @@ fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) 
         if body.moves() && (number < first || body.pressed != 0) {
             scenery::meet(bodies, body, forms.of(number as u32), number as u32, slots);
         } else {
-            slots.iter_mut().for_each(|slot| slot.count = 0);
+            scenery::clear(body, slots);
         }
     }
 }
@@ -316,8 +321,9 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
             }
             sleep::look_around(bodies, &mut kept);
         }
-        lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news);
-        meet_scenery(bodies, &mut kept, self.forms());
+        if lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news) {
+            meet_scenery(bodies, &mut kept, self.forms());
+        }
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -328,13 +334,21 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
         }
         let len = kept.lists.pairs as usize;
         self.stir(bodies, &mut kept, span);
-        if kept.bodies[1..].iter().any(Body::is_awake) {
+        if kept.lists.awake != 0 {
             self.solve(bodies, &mut kept, share.scratch, span);
             tell_balls(bodies, &kept);
             tell::all(bodies, &kept, self.forms(), span);
         }
-        bodies.report.contacts += kept.pairs[..len].iter().filter(|pair| presses(pair)).count() as u64;
-        bodies.report.hits += kept.scenery.iter().filter(|slot| presses(slot)).count() as u64;
+        if kept.lists.awake != 0 || kept.lists.counted == 0 {
+            let count = |all: &[Manifold]| all.iter().filter(|manifold| presses(manifold)).count() as u32;
+            let slots = kept.bodies[1..].iter().zip(kept.scenery.chunks_exact(DIRECTIONS));
+            let hits = slots.filter(|(body, _)| body.met > 0).map(|(_, slots)| count(slots)).sum();
+            kept.lists.presses = [count(&kept.pairs[..len]), hits];
+            kept.lists.counted = 1;
+        }
+        let [contacts, hits] = kept.lists.presses.map(u64::from);
+        bodies.report.contacts += contacts;
+        bodies.report.hits += hits;
     }
 }
 

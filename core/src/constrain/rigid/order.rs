@@ -1,7 +1,8 @@
 //! The order in which all that touch are gone over: those that share no moving body side by side.
 
 use super::body::Body;
-use super::manifold::Manifold;
+use super::manifold::{Manifold, POINTS};
+use super::pack::Pack;
 use super::scenery::DIRECTIONS;
 use crate::lanes::ABREAST;
 use core::ops::Range;
@@ -12,68 +13,136 @@ const COLOURS: usize = 24;
 /// All of some colours: first pairs, then the scenery.
 const ALL: usize = COLOURS + DIRECTIONS;
 
-/// The points of all that touch and are not asleep, colour by colour.
-pub(super) struct Order<'a> {
-    pairs: &'a mut [Manifold],
-    scenery: &'a mut [Manifold],
-    /// Their numbers: the pairs, then those of the scenery.
-    numbers: &'a [u32],
-    /// Where the colours begin.
-    starts: &'a [u32; ALL + 1],
+/// Those of a colour by how many points they have, most first: who go side by side then have about as many.
+const SHELVES: usize = ALL * POINTS;
+
+/// Pairs, and what touches the scenery: so many for each body as it can be pressed in directions.
+pub(super) struct Manifolds<'a> {
+    pub(super) pairs: &'a mut [Manifold],
+    pub(super) scenery: &'a mut [Manifold],
 }
 
-/// The order alone.
-pub(super) struct Numbers<'a> {
-    numbers: &'a mut [u32],
+impl Manifolds<'_> {
+    /// Those of the scenery are numbered after the pairs.
+    #[inline(always)]
+    pub(super) fn get(&self, number: u32) -> Option<&Manifold> {
+        let number = number as usize;
+        self.pairs.get(number).or_else(|| self.scenery.get(number.wrapping_sub(self.pairs.len())))
+    }
+
+    #[inline(always)]
+    pub(super) fn get_mut(&mut self, number: u32) -> Option<&mut Manifold> {
+        let (number, pairs) = (number as usize, self.pairs.len());
+        self.pairs.get_mut(number).or_else(|| self.scenery.get_mut(number.wrapping_sub(pairs)))
+    }
+}
+
+/// All that touch and are not asleep, packed colour by colour.
+pub(super) struct Order<'a> {
+    pub(super) packs: &'a mut [Pack],
+    /// Where the colours begin.
     starts: [u32; ALL + 1],
 }
 
-impl<'a> Numbers<'a> {
-    /// Colours pairs and scenery one after the other: each gets the first colour that neither of its bodies has yet. `memory` is a word for each.
-    pub(super) fn of(bodies: &mut [Body], [pairs, scenery]: [&mut [Manifold]; 2], memory: &'a mut [u32]) -> Self {
+/// The packs that so many pairs of so many bodies fill at the most, with what of the scenery presses on these: each colour may leave one that is not
+/// full, and pairs need fewer colours than two bodies have neighbours together.
+pub(super) fn packs_of(pairs: usize, bodies: usize) -> usize {
+    let colours = COLOURS.min(bodies.saturating_mul(2));
+    pairs.min((pairs / ABREAST).saturating_add(colours)).saturating_add(DIRECTIONS * bodies.div_ceil(ABREAST))
+}
+
+impl<'a> Order<'a> {
+    /// Colours pairs and scenery one after the other: each gets the first colour that neither of its bodies has yet. `memory` is a word for each,
+    /// and the packs.
+    pub(super) fn of(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, memory: &'a mut [u32]) -> Self {
         bodies.iter_mut().for_each(|body| body.colours = 0);
-        let mut starts = [0u32; ALL + 1];
-        for manifold in pairs.iter_mut() {
+        let mut starts = [0u32; SHELVES + 1];
+        for manifold in manifolds.pairs.iter_mut() {
             manifold.colour = u32::MAX;
             if is_active(bodies, manifold) {
                 let colour = free(bodies, manifold.bodies);
-                manifold.colour = colour as u32;
-                starts[colour + 1] += 1;
+                manifold.colour = shelf(colour, manifold);
+                starts[manifold.colour as usize + 1] += 1;
             }
         }
-        for (body, slots) in bodies[1..].iter().zip(scenery.chunks_exact_mut(DIRECTIONS)) {
-            for (direction, slot) in slots.iter_mut().enumerate().filter(|(_, slot)| slot.count > 0 && body.is_awake())
-            {
-                let colour = COLOURS + direction;
-                slot.colour = colour as u32;
-                starts[colour + 1] += 1;
+        for (body, slots) in bodies[1..].iter().zip(manifolds.scenery.chunks_exact_mut(DIRECTIONS)) {
+            let met = if body.is_awake() { body.met as usize } else { 0 };
+            for (direction, slot) in slots.iter_mut().enumerate().take(met) {
+                slot.colour = shelf(COLOURS + direction, slot);
+                starts[slot.colour as usize + 1] += 1;
             }
         }
-        for colour in 0..ALL {
-            starts[colour + 1] += starts[colour];
+        for shelf in 0..SHELVES {
+            starts[shelf + 1] += starts[shelf];
         }
-        let mut next = starts;
-        let mut put = |number: usize, manifold: &Manifold| {
-            let Some(next) = next.get_mut(manifold.colour as usize) else { return };
-            if let Some(place) = memory.get_mut(*next as usize) {
-                *place = number as u32;
-            }
-            *next += 1;
-        };
-        pairs.iter().enumerate().for_each(|(number, manifold)| put(number, manifold));
-        let awake = bodies[1..].iter().enumerate().filter(|(_, body)| body.is_awake());
-        for number in awake.flat_map(|(body, _)| DIRECTIONS * body..DIRECTIONS * (body + 1)) {
-            if let Some(slot) = scenery.get(number).filter(|slot| slot.count > 0) {
-                put(pairs.len() + number, slot);
-            }
-        }
-        Self { numbers: memory, starts }
+        let count = (starts[SHELVES] as usize).min(memory.len());
+        let (numbers, rest) = memory.split_at_mut(count);
+        put_all(bodies, manifolds, starts, numbers);
+        let room = rest.len() - rest.len() % (size_of::<Pack>() / 4);
+        Self::packed(bodies, manifolds, (&starts, numbers), bytemuck::cast_slice_mut(&mut rest[..room]))
     }
 
-    /// The same with what it is the order of.
-    pub(super) fn with<'b>(&'b self, [pairs, scenery]: [&'b mut [Manifold]; 2]) -> Order<'b> {
-        let count = (self.starts[ALL] as usize).min(self.numbers.len());
-        Order { pairs, scenery, numbers: &self.numbers[..count], starts: &self.starts }
+    /// Puts them into packs, those of each colour into its own.
+    fn packed(
+        bodies: &[Body],
+        manifolds: &Manifolds<'_>,
+        (shelves, numbers): (&[u32; SHELVES + 1], &[u32]),
+        packs: &'a mut [Pack],
+    ) -> Self {
+        let (mut starts, mut len) = ([0u32; ALL + 1], 0);
+        for colour in 0..ALL {
+            let range = shelves[colour * POINTS] as usize..shelves[(colour + 1) * POINTS] as usize;
+            for numbers in numbers.get(range).unwrap_or_default().chunks(ABREAST) {
+                let Some(pack) = packs.get_mut(len) else { continue };
+                pack.fill(bodies, manifolds, numbers);
+                len += 1;
+            }
+            starts[colour + 1] = len as u32;
+        }
+        Self { packs: &mut packs[..len], starts }
+    }
+
+    pub(super) fn colours(&self) -> Range<usize> {
+        0..ALL
+    }
+
+    /// The packs of a colour.
+    pub(super) fn range(&self, colour: usize) -> Range<usize> {
+        self.starts[colour] as usize..self.starts[colour + 1] as usize
+    }
+}
+
+/// Tells whether those of a colour touch the scenery.
+pub(super) fn is_scenery(colour: usize) -> bool {
+    colour >= COLOURS
+}
+
+/// Tells whether those of a colour go one after the other, for they may share bodies.
+pub(super) fn is_in_turn(colour: usize) -> bool {
+    colour + 1 == COLOURS
+}
+
+/// Where one of a colour stands among all.
+fn shelf(colour: usize, manifold: &Manifold) -> u32 {
+    let missing = if is_in_turn(colour) { 0 } else { POINTS - manifold.points().len() };
+    (colour * POINTS + missing) as u32
+}
+
+/// Writes the numbers of all that have a colour in the order of these.
+fn put_all(bodies: &[Body], manifolds: &Manifolds<'_>, mut next: [u32; SHELVES + 1], numbers: &mut [u32]) {
+    let mut put = |number: usize, manifold: &Manifold| {
+        let Some(next) = next.get_mut(manifold.colour as usize) else { return };
+        if let Some(place) = numbers.get_mut(*next as usize) {
+            *place = number as u32;
+        }
+        *next += 1;
+    };
+    let Manifolds { pairs, scenery } = manifolds;
+    pairs.iter().enumerate().for_each(|(number, manifold)| put(number, manifold));
+    for (number, body) in bodies[1..].iter().enumerate().filter(|(_, body)| body.is_awake()) {
+        for number in (DIRECTIONS * number..).take(body.met as usize) {
+            scenery.get(number).into_iter().for_each(|slot| put(pairs.len() + number, slot));
+        }
     }
 }
 
@@ -94,39 +163,4 @@ fn free(bodies: &mut [Body], numbers: [u32; 2]) -> usize {
         }
     }
     colour
-}
-
-impl Order<'_> {
-    /// The number of those in it.
-    pub(super) fn len(&self) -> usize {
-        self.numbers.len()
-    }
-
-    pub(super) fn colours(&self) -> usize {
-        ALL
-    }
-
-    /// Those of a colour, by their numbers in the order.
-    pub(super) fn range(&self, colour: usize) -> Range<usize> {
-        let at = |colour: usize| self.starts.get(colour).map_or(0, |&start| start as usize);
-        at(colour)..at(colour + 1)
-    }
-
-    /// The number of those of a colour that may go side by side.
-    pub(super) fn side_by_side(&self, colour: usize) -> usize {
-        if colour + 1 == COLOURS { 1 } else { ABREAST }
-    }
-
-    #[inline(always)]
-    pub(super) fn get(&self, number: usize) -> Option<&Manifold> {
-        let number = *self.numbers.get(number)? as usize;
-        self.pairs.get(number).or_else(|| self.scenery.get(number - self.pairs.len()))
-    }
-
-    #[inline(always)]
-    pub(super) fn get_mut(&mut self, number: usize) -> Option<&mut Manifold> {
-        let number = *self.numbers.get(number)? as usize;
-        let pairs = self.pairs.len();
-        self.pairs.get_mut(number).or_else(|| self.scenery.get_mut(number.wrapping_sub(pairs)))
-    }
 }

@@ -44,22 +44,31 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
     };
     let free = 0.5 * body.radius;
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around(free)) {
-        slots.iter_mut().for_each(|slot| slot.count = 0);
+        clear(body, slots);
         body.spare = free - way;
         return;
     }
     let reach = 2.0 * (small + way);
     if !bodies.colliders.may_touch(&around(reach)) {
-        slots.iter_mut().for_each(|slot| slot.count = 0);
+        clear(body, slots);
         body.spare = small;
         return;
     }
     let Ok(&before) = <&[Manifold; DIRECTIONS]>::try_from(&*slots) else { return };
-    slots.iter_mut().for_each(|slot| slot.count = 0);
+    clear(body, slots);
     let mut visit = Visit { body, form, number, slots, before, reach };
     (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
     visit.scenery(bodies);
+    // Slots are taken one after the other.
+    let met = visit.slots.iter().filter(|slot| slot.count > 0).count() as u32;
     body.spare = if is_carried(visit.slots) { 0.0 } else { small };
+    body.met = met;
+}
+
+/// Forgets what pressed on a body.
+pub(super) fn clear(body: &mut Body, slots: &mut [Manifold]) {
+    slots.iter_mut().take(body.met as usize).for_each(|slot| slot.count = 0);
+    body.met = 0;
 }
 
 /// Tells whether the scenery moves at any place where a body touches it: what turns stands still on its axis.

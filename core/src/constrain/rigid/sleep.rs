@@ -8,13 +8,13 @@
 
 use super::super::Bodies;
 use super::super::union::{Bound, root, unite};
-use super::RigidBox;
 use super::body::{Body, Made};
 use super::lists::Kept;
 use super::manifold::Manifold;
 use super::scenery::{self, DIRECTIONS};
 use super::solver::{self, Span};
-use crate::math::{dot, length, max, sqrt};
+use crate::math::{length, max, sqrt};
+use core::ops::Range;
 use glam::Vec3;
 
 /// How long bodies lie still before they sleep: in units of the time √(r/a) in which one falls half its size r.
@@ -89,7 +89,7 @@ impl Body {
     fn fall_asleep(&mut self) {
         self.asleep = DROPS;
         (self.velocity, self.spin, self.omega, self.drift) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        self.before = [Vec3::ZERO; 2];
+        (self.before, self.whirl) = ([Vec3::ZERO; 2], 0.0);
     }
 
     /// For how long it has to lie still before it sleeps \[s\]; of what nothing drives no number, or infinitely long.
@@ -124,37 +124,41 @@ impl Body {
         self.lull != 0
     }
 
-    /// The same where forces do the same to all of its particles, after the first sub-step of a step: they are put back to where they were.
-    fn lies_evenly(&self, bodies: &mut Bodies<'_>, of: &RigidBox) -> bool {
-        let (numbers, h) = (of.first..of.first.saturating_add(of.count), bodies.substep.seconds());
-        let size = length(self.drive[0]);
-        let (far, mut change) = (2.0 * size * h * h, None);
-        for row in numbers.clone().filter_map(|number| bodies.row_of_start(number)) {
-            let (now, way) = (bodies.velocity[row], bodies.position[row] - bodies.before[0][row]);
-            let drift = way - now * h;
-            let was_still = bodies.before[1][row] == Vec3::ZERO;
-            if !(was_still && *change.get_or_insert(now) == now && dot(drift, drift) <= far * far) {
-                return false;
-            }
-        }
-        let Some(change) = change else { return false };
+    /// Tells whether its particles, in these rows, began the sub-step where it says.
+    fn is_where_told(&self, bodies: &Bodies<'_>, made: Made<'_>, rows: &Range<usize>) -> bool {
+        let before = bodies.before[0].get(rows.clone()).unwrap_or_default();
+        let places = made.places.as_chunks().0.iter().map(|&[x, y, z]| Vec3::from_array([x, y, z].map(f32::from_bits)));
+        places.zip(before).fold(true, |all, (place, &from)| all & (self.point(place) == from))
+    }
+
+    /// Lets its particles lie where they are, in these rows, if forces do the same to all of them as when it fell asleep: they are put back to where
+    /// they began the sub-step. Tells whether that is so.
+    fn lies_evenly(&self, bodies: &mut Bodies<'_>, rows: Range<usize>) -> bool {
+        let (h, size) = (bodies.substep.seconds(), length(self.drive[0]));
+        let [from, still] = bodies.before.map(|column| &column[rows.clone()]);
+        let (to, velocities) = (&bodies.position[rows.clone()], &bodies.velocity[rows.clone()]);
+        let Some(&change) = velocities.first() else { return false };
         if !(length(change * (1.0 / h) - self.drive[0]) <= ALIKE * size
             && length(self.drive[1]) <= ALIKE * size * self.radius)
         {
             return false;
         }
-        for number in numbers {
-            let Some(row) = bodies.row_of_start(number) else { continue };
-            bodies.position[row] = bodies.before[0][row];
-            bodies.velocity[row] = Vec3::ZERO;
-            bodies.mark_followed(row);
+        // Half of how far the method may move them beyond that along each axis, so that the whole of it is no farther.
+        let all = [from, still, to, velocities].map(bytemuck::cast_slice);
+        if !falls_evenly(all, change, h, size * h * h) {
+            return false;
         }
+        bodies.position[rows.clone()].copy_from_slice(from);
+        bodies.velocity[rows.clone()].fill(Vec3::ZERO);
+        rows.for_each(|row| bodies.mark_followed(row));
         true
     }
 
     /// Lets its particles lie where they are while it sleeps; tells whether that is so. What does otherwise to them than when it fell asleep wakes it.
     pub(super) fn lies(&mut self, bodies: &mut Bodies<'_>, made: Made<'_>) -> bool {
-        if bodies.substep.number > 0 && self.lies_evenly(bodies, made.of) {
+        // Between steps others may have moved them.
+        let rows = made.run(bodies).filter(|rows| bodies.substep.number > 0 || self.is_where_told(bodies, made, rows));
+        if rows.is_some_and(|rows| self.lies_evenly(bodies, rows)) {
             return true;
         }
         let mut probe = *self;
@@ -168,6 +172,27 @@ impl Body {
         }
         false
     }
+}
+
+/// Tells whether all particles have begun a sub-step of `h` \[s\] at rest, have the same velocity now, and have not gone so far from where that leads
+/// along any axis. The columns' numbers go through it one like the other, four particles at a time.
+fn falls_evenly([from, still, to, velocities]: [&[f32]; 4], velocity: Vec3, h: f32, far: f32) -> bool {
+    let [x, y, z] = velocity.to_array();
+    let velocity = [x, y, z, x, y, z, x, y, z, x, y, z];
+    let wrong = |k: usize, [from, still, to, now]: [f32; 4]| {
+        let (other, drift) = (now.to_bits() ^ velocity[k].to_bits(), to - from - now * h);
+        other | still.to_bits() << 1 | u32::from(!(drift.abs() <= far))
+    };
+    let mut wrongs = [0; 12];
+    let [from, still, to, now] = [from, still, to, velocities].map(<[f32]>::as_chunks::<12>);
+    for ((from, still), (to, now)) in from.0.iter().zip(still.0).zip(to.0.iter().zip(now.0)) {
+        for k in 0..12 {
+            wrongs[k] |= wrong(k, [from[k], still[k], to[k], now[k]]);
+        }
+    }
+    let rest = from.1.iter().zip(still.1).zip(to.1.iter().zip(now.1)).enumerate();
+    let wrong = rest.fold(0, |all, (k, ((&from, &still), (&to, &now)))| all | wrong(k, [from, still, to, now]));
+    wrongs.iter().fold(wrong, |all, wrong| all | wrong) == 0
 }
 
 /// Says that all wake who sleep with a body.
@@ -207,10 +232,11 @@ pub(super) fn wake_all(all: &mut [Body]) {
 
 /// Wakes those who have touched one that is no longer listed beside them, and all who sleep with them.
 pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
-    let mut is_any = false;
+    let (mut is_any, mut pairs) = (false, pairs.iter().peekable());
     for gone in before.iter().filter(|pair| pair.count > 0) {
-        let place = pairs.binary_search_by_key(&gone.bodies, |pair| pair.bodies);
-        if place.is_ok_and(|place| pairs[place].count > 0) {
+        // Both lists are in the same order.
+        while pairs.next_if(|pair| pair.bodies < gone.bodies).is_some() {}
+        if pairs.peek().is_some_and(|pair| pair.bodies == gone.bodies && pair.count > 0) {
             continue;
         }
         gone.bodies.iter().for_each(|&number| call(all, number as usize));
@@ -224,7 +250,8 @@ pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
 /// Wakes those around whom the scenery is not as it was.
 pub(super) fn look_around(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
     for number in 1..kept.first_ball() {
-        let (body, slots) = (&kept.bodies[number], &kept.scenery[DIRECTIONS * (number - 1)..][..DIRECTIONS]);
+        let body = &kept.bodies[number];
+        let slots = &kept.scenery[DIRECTIONS * (number - 1)..][..(body.met as usize).min(DIRECTIONS)];
         let is_as_before = || scenery::faces(bodies, body, slots) == Some(body.faces);
         if body.sleeps() && !(is_as_before() && scenery::holds(bodies, body, slots)) {
             call(kept.bodies, number);

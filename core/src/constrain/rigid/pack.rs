@@ -1,0 +1,387 @@
+//! Eight times two that touch, side by side in memory through a sub-step: what passes go over again and again.
+
+use super::body::Body;
+use super::manifold::{Manifold, POINTS, Point};
+use super::order::Manifolds;
+use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors, load, saved};
+use bytemuck::Pod;
+use core::mem::offset_of;
+use glam::Vec3;
+
+/// A point of each two, as passes want it.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Spots {
+    /// From the centre of each to the middle between them \[m\].
+    pub(super) arms: [[Row; 3]; 2],
+    /// How fast they shall part \[m/s\], the scenery's own speed included.
+    pub(super) wanted: Row,
+    /// The impulse that makes them part by 1 m/s \[kg\], and how the slip along the surface changes by one along the normal \[1/kg\].
+    pub(super) mass: Row,
+    pub(super) answer: [Row; 2],
+    /// How fast what has crept shall be taken back, less how fast the scenery moves, along the two directions across the normal \[m/s\].
+    pub(super) lag: [Row; 2],
+    /// How much the slip (u, v) along the surface changes by an impulse along itself \[1/kg\]: the factors of u², uv and v².
+    pub(super) rub: [Row; 3],
+    /// The change of speed that is too small to go over their neighbours for \[m/s\].
+    pub(super) little: Row,
+    /// The impulse that keeps them apart, and that of friction on the second along these directions \[N s\].
+    pub(super) pressed: Row,
+    pub(super) held: [Row; 2],
+}
+
+/// The same before passes and between them.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Places {
+    /// The place on each, in its box's frame \[m\].
+    pub(super) places: [[Row; 3]; 2],
+    /// How the scenery moves there, and how fast along the normal \[m/s\].
+    pub(super) surface: [Row; 3],
+    pub(super) lift: Row,
+    /// The change that forces make to the speed of either in a sub-step, and how fast they shall part in the end \[m/s\].
+    pub(super) driven: Row,
+    pub(super) bounce: Row,
+    /// The impulse of friction that the sub-step begins with, in the world \[N s\]; in the end how far they have crept \[m\].
+    pub(super) aside: [Row; 3],
+}
+
+/// So many times two that touch as go side by side.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Pack {
+    /// How many they are, and the most points that any of them has.
+    pub(super) count: u32,
+    pub(super) most: u32,
+    /// A bit for each whose first, and whose second, is pushed.
+    pub(super) gives: [u32; 2],
+    /// Their numbers, and those of their bodies.
+    pub(super) manifolds: [u32; ABREAST],
+    pub(super) bodies: [[u32; ABREAST]; 2],
+    /// The tick of the clock of passes at which each was gone over last.
+    pub(super) seen: [u32; ABREAST],
+    /// How many points each has.
+    pub(super) points: Row,
+    /// The normal, and two directions across it, in the world.
+    pub(super) normal: [Row; 3],
+    pub(super) along: [[Row; 3]; 2],
+    pub(super) friction: [Row; 2],
+    /// The normal in the first's frame.
+    pub(super) within: [Row; 3],
+    pub(super) spots: [Spots; POINTS],
+    pub(super) places: [Places; POINTS],
+}
+
+impl Pack {
+    /// Takes those with some numbers, and nothing of what they do yet.
+    pub(super) fn fill(&mut self, bodies: &[Body], manifolds: &Manifolds<'_>, numbers: &[u32]) {
+        (self.count, self.most, self.gives, self.points) = (0, 0, [0; 2], [0.0; ABREAST]);
+        for (lane, &number) in numbers.iter().enumerate().take(ABREAST) {
+            let Some(manifold) = manifolds.get(number) else { continue };
+            self.count = lane as u32 + 1;
+            self.most = self.most.max(manifold.points().len() as u32);
+            self.manifolds[lane] = number;
+            self.points[lane] = manifold.points().len() as f32;
+            for side in 0..2 {
+                let body = manifold.bodies[side];
+                self.bodies[side][lane] = body;
+                let gives = bodies.get(body as usize).is_some_and(|body| body.gives(manifold.rested));
+                self.gives[side] |= u32::from(gives) << lane;
+            }
+        }
+    }
+
+    /// How many they are.
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        (self.count as usize).min(ABREAST)
+    }
+
+    /// The numbers of the points that any of them has.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> core::ops::Range<usize> {
+        0..(self.most as usize).min(POINTS)
+    }
+
+    /// Where there is a point with a number.
+    #[inline(always)]
+    pub(super) fn is_there<F: Eight>(&self, like: F, number: usize) -> F {
+        load(like, &self.points).simd_gt(like.all(number as f32))
+    }
+
+    /// A bit for each of them.
+    #[inline(always)]
+    pub(super) fn everyone(&self) -> u32 {
+        (1 << self.len()) - 1
+    }
+
+    /// A bit for each that presses at some point.
+    pub(super) fn pressed(&self) -> u32 {
+        let mut pressed = 0;
+        for i in self.numbers() {
+            for lane in (0..self.len()).filter(|&lane| self.points[lane] > i as f32) {
+                pressed |= u32::from(self.spots[i].pressed[lane] > 0.0) << lane;
+            }
+        }
+        pressed
+    }
+
+    /// Those of which a bit is set among `which`, on one side; `nobody` for the others.
+    #[inline(always)]
+    pub(super) fn side<'a>(&self, side: usize, bodies: &'a [Body], which: u32, nobody: &'a Body) -> [&'a Body; LANES] {
+        let mut all = [nobody; LANES];
+        for lane in (0..self.len()).filter(|lane| which >> lane & 1 != 0) {
+            all[lane] = bodies.get(self.bodies[side][lane] as usize).unwrap_or(nobody);
+        }
+        all
+    }
+
+    /// All of them; `nothing` in lanes that stand for nobody.
+    #[inline(always)]
+    pub(super) fn all<'a>(&self, manifolds: &'a Manifolds<'_>, nothing: &'a Manifold) -> [&'a Manifold; LANES] {
+        let mut all = [nothing; LANES];
+        for (place, &number) in all.iter_mut().zip(&self.manifolds).take(self.len()) {
+            *place = manifolds.get(number).unwrap_or(nothing);
+        }
+        all
+    }
+
+    /// Writes down what they have done to each other, for the next sub-step and for those who look on.
+    #[inline(always)]
+    pub(super) fn tell<F: Eight>(&self, like: F, manifolds: &mut Manifolds<'_>) {
+        let axes = Vectors::load(like, &self.normal).rows();
+        let mut presses = 0;
+        for (i, (spots, places)) in self.spots.iter().zip(&self.places).enumerate().take(self.numbers().end) {
+            let [u, v] = [Vectors::load(like, &self.along[0]), Vectors::load(like, &self.along[1])];
+            let [x, y] = [load(like, &spots.held[0]), load(like, &spots.held[1])];
+            let (pressed, Vectors(held)) = (load(like, &spots.pressed), u * x + v * y);
+            let (driven, Vectors(crept)) = (load(like, &places.driven), Vectors::load(like, &places.aside));
+            let [Vectors(a), Vectors(b)] = [Vectors::load(like, &spots.arms[0]), Vectors::load(like, &spots.arms[1])];
+            let Vectors(p) = Vectors::load(like, &places.places[0]);
+            let Vectors(q) = Vectors::load(like, &places.places[1]);
+            let is_there = self.is_there(like, i);
+            presses |= (is_there & pressed.simd_gt(like.all(0.0))).to_bitmask();
+            let is_there = is_there.to_bitmask();
+            let fours = [
+                F::rows_of([pressed, held[0], held[1], held[2]]),
+                F::rows_of([driven, crept[0], crept[1], crept[2]]),
+                F::rows_of([a[0], a[1], a[2], b[0]]),
+                F::rows_of([b[1], b[2], p[0], p[1]]),
+                F::rows_of([p[2], q[0], q[1], q[2]]),
+            ];
+            for lane in (0..self.len()).filter(|lane| is_there >> lane & 1 != 0) {
+                let Some(manifold) = manifolds.get_mut(self.manifolds[lane]) else { continue };
+                for (k, rows) in fours.iter().enumerate() {
+                    put(&mut manifold.points[i], 4 * k, rows[lane]);
+                }
+            }
+        }
+        for (lane, &axis) in axes.iter().enumerate().take(self.len()) {
+            let Some(manifold) = manifolds.get_mut(self.manifolds[lane]) else { continue };
+            manifold.axis = vector(axis);
+            manifold.presses = presses >> lane & 1;
+        }
+    }
+}
+
+#[inline(always)]
+fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+/// Four words of a thing, as numbers.
+#[inline(always)]
+fn four<T: Pod>(of: &T, first: usize) -> [f32; 4] {
+    let words: &[f32] = bytemuck::cast_slice(core::slice::from_ref(of));
+    words.get(first..).and_then(|words| words.first_chunk()).copied().unwrap_or([0.0; 4])
+}
+
+/// Writes four words of a thing.
+#[inline(always)]
+pub(super) fn put<T: Pod>(to: &mut T, first: usize, four: [f32; 4]) {
+    let words: &mut [f32] = bytemuck::cast_slice_mut(core::slice::from_mut(to));
+    if let Some(words) = words.get_mut(first..).and_then(|words| words.first_chunk_mut()) {
+        *words = four;
+    }
+}
+
+/// Four words of each, from a place on.
+#[inline(always)]
+pub(super) fn fours<F: Eight, T: Pod>(like: F, all: &[&T; LANES], first: usize) -> [F; 4] {
+    let mut rows = [[0.0; 4]; LANES];
+    for (row, &of) in rows.iter_mut().zip(all) {
+        *row = four(of, first);
+    }
+    like.quads_of(rows)
+}
+
+/// How bodies move, while impulses change that.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<F> {
+    pub(super) inverse_mass: F,
+    pub(super) velocity: Vectors<F>,
+    pub(super) spin: Vectors<F>,
+    pub(super) omega: Vectors<F>,
+    pub(super) inverse: [Vectors<F>; 3],
+}
+
+/// Where the words of a body are that are read in one go.
+const MOTION: usize = offset_of!(Body, inverse_mass) / 4;
+
+impl<F: Eight> Motion<F> {
+    #[inline(always)]
+    pub(super) fn of(like: F, bodies: &[&Body; LANES]) -> Self {
+        let [inverse_mass, x, y, z] = fours(like, bodies, MOTION);
+        let [l, m, n, p] = fours(like, bodies, MOTION + 4);
+        let [q, r, xx, xy] = fours(like, bodies, MOTION + 8);
+        let [xz, yx, yy, yz] = fours(like, bodies, MOTION + 12);
+        let [zx, zy, zz, _] = fours(like, bodies, MOTION + 16);
+        Self {
+            inverse_mass,
+            velocity: Vectors([x, y, z]),
+            spin: Vectors([l, m, n]),
+            omega: Vectors([p, q, r]),
+            inverse: [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])],
+        }
+    }
+
+    /// Writes down how those of which a bit is set move now.
+    #[inline(always)]
+    pub(super) fn tell(&self, bodies: &mut [Body], numbers: &[u32; ABREAST], which: u32) {
+        let ([x, y, z], [l, m, n], [p, q, r]) = (self.velocity.0, self.spin.0, self.omega.0);
+        let Vectors([xx, xy, _]) = self.inverse[0];
+        let fours = [F::rows_of([self.inverse_mass, x, y, z]), F::rows_of([l, m, n, p]), F::rows_of([q, r, xx, xy])];
+        for (lane, &number) in numbers.iter().enumerate().filter(|(lane, _)| which >> lane & 1 != 0) {
+            let Some(body) = bodies.get_mut(number as usize) else { continue };
+            for (k, rows) in fours.iter().enumerate() {
+                put(body, MOTION + 4 * k, rows[lane]);
+            }
+        }
+    }
+
+    /// The change of their spins by an angular impulse over the mass.
+    #[inline(always)]
+    pub(super) fn turned_by(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
+        let [a, b, c] = self.inverse;
+        a * x + b * y + c * z
+    }
+
+    /// Gives them impulses \[N s\] there.
+    #[inline(always)]
+    pub(super) fn push(&mut self, arm: Vectors<F>, impulse: Vectors<F>) {
+        let change = impulse * self.inverse_mass;
+        let torque = arm.cross(change);
+        self.velocity = self.velocity + change;
+        self.spin = self.spin + torque;
+        self.omega = self.omega + self.turned_by(torque);
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, arm: Vectors<F>) -> Vectors<F> {
+        self.velocity + self.omega.cross(arm)
+    }
+
+    #[inline(always)]
+    pub(super) fn yielding(&self, arm: Vectors<F>, direction: Vectors<F>) -> F {
+        let lever = arm.cross(direction);
+        self.inverse_mass * (self.inverse_mass.all(1.0) + lever.dot(self.turned_by(lever)))
+    }
+}
+
+/// Where bodies are, and how they move.
+#[derive(Clone, Copy)]
+pub(super) struct Pose<F> {
+    pub(super) motion: Motion<F>,
+    pub(super) center: Vectors<F>,
+    rest: Vectors<F>,
+    rotation: [Vectors<F>; 3],
+    /// How they moved when the sub-step began.
+    before: [Vectors<F>; 2],
+}
+
+impl<F: Eight> Pose<F> {
+    #[inline(always)]
+    pub(super) fn of(like: F, bodies: &[&Body; LANES]) -> Self {
+        let [_, _, _, a] = fours(like, bodies, MOTION + 16);
+        let [b, c, i, j] = fours(like, bodies, MOTION + 20);
+        let [k, xx, xy, xz] = fours(like, bodies, MOTION + 24);
+        let [yx, yy, yz, zx] = fours(like, bodies, MOTION + 28);
+        let [zy, zz, x, y] = fours(like, bodies, MOTION + 32);
+        let [z, p, q, r] = fours(like, bodies, MOTION + 36);
+        Self {
+            motion: Motion::of(like, bodies),
+            center: Vectors([a, b, c]),
+            rest: Vectors([i, j, k]),
+            rotation: [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])],
+            before: [Vectors([x, y, z]), Vectors([p, q, r])],
+        }
+    }
+
+    /// What of their frames is in the world.
+    #[inline(always)]
+    pub(super) fn turned(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
+        let [a, b, c] = self.rotation;
+        a * x + b * y + c * z
+    }
+
+    /// What of the world is in their frames.
+    #[inline(always)]
+    pub(super) fn turned_back(&self, v: Vectors<F>) -> Vectors<F> {
+        let [a, b, c] = self.rotation;
+        Vectors([a.dot(v), b.dot(v), c.dot(v)])
+    }
+
+    /// The place in the world of a place in their frames.
+    #[inline(always)]
+    pub(super) fn point(&self, place: Vectors<F>) -> Vectors<F> {
+        self.center + self.turned(place - self.rest)
+    }
+
+    #[inline(always)]
+    pub(super) fn at_before(&self, arm: Vectors<F>) -> Vectors<F> {
+        let [velocity, omega] = self.before;
+        velocity + omega.cross(arm)
+    }
+
+    /// How much faster they have become since.
+    #[inline(always)]
+    pub(super) fn gained(&self) -> F {
+        (self.motion.velocity - self.before[0]).length()
+    }
+}
+
+/// A point of each, as it is kept.
+pub(super) struct Kept<F> {
+    pub(super) pressed: F,
+    pub(super) held: Vectors<F>,
+    pub(super) places: [Vectors<F>; 2],
+    pub(super) surface: Vectors<F>,
+    pub(super) lift: F,
+}
+
+impl<F: Eight> Kept<F> {
+    #[inline(always)]
+    pub(super) fn of(like: F, all: &[&Manifold; LANES], number: usize) -> Self {
+        let first = (offset_of!(Manifold, points) + number * size_of::<Point>()) / 4;
+        let [pressed, u, v, w] = fours(like, all, first);
+        let [_, _, a, b] = fours(like, all, first + 12);
+        let [c, x, y, z] = fours(like, all, first + 16);
+        let [p, q, r, lift] = fours(like, all, first + 20);
+        let (held, places) = (Vectors([u, v, w]), [Vectors([a, b, c]), Vectors([x, y, z])]);
+        Self { pressed, held, places, surface: Vectors([p, q, r]), lift }
+    }
+}
+
+/// The normals of all in the first's frame, their elasticities, and their two coefficients of friction.
+#[inline(always)]
+pub(super) fn surfaces<F: Eight>(like: F, all: &[&Manifold; LANES]) -> (Vectors<F>, F, [F; 2]) {
+    let first = offset_of!(Manifold, normal) / 4;
+    let ([x, y, z, elasticity], [sticks, slides, _, _]) = (fours(like, all, first), fours(like, all, first + 4));
+    (Vectors([x, y, z]), elasticity, [sticks, slides])
+}
+
+/// Writes numbers where a mask holds.
+#[inline(always)]
+pub(super) fn save_where<F: Eight>(mask: F, lanes: F, row: &mut Row) {
+    *row = saved(mask.select(lanes, load(mask, row)));
+}

@@ -1,0 +1,184 @@
+//! Eight times two bodies that touch, while impulses between them are sought.
+
+use super::manifold::POINTS;
+use super::pack::{Motion, Pack, Spots, save_where};
+use crate::lanes::{Eight, Vectors, load, max, min, negated, not};
+
+/// One point of each two.
+#[derive(Clone, Copy)]
+struct Spot<F> {
+    /// Where there is such a point.
+    is_there: F,
+    arms: [Vectors<F>; 2],
+    /// How fast they shall part, the scenery's own speed included.
+    wanted: F,
+    mass: F,
+    answer: [F; 2],
+    lag: [F; 2],
+    rub: [F; 3],
+    /// The change of speed that is too small to go over their neighbours for.
+    little: F,
+    pressed: F,
+    held: [F; 2],
+}
+
+impl<F: Eight> Spot<F> {
+    #[inline(always)]
+    fn of(like: F, pack: &Pack, number: usize) -> Self {
+        let Spots { arms, wanted, mass, answer, lag, rub, little, pressed, held } = &pack.spots[number];
+        Self {
+            is_there: pack.is_there(like, number),
+            arms: [Vectors::load(like, &arms[0]), Vectors::load(like, &arms[1])],
+            wanted: load(like, wanted),
+            mass: load(like, mass),
+            answer: [load(like, &answer[0]), load(like, &answer[1])],
+            lag: [load(like, &lag[0]), load(like, &lag[1])],
+            rub: [load(like, &rub[0]), load(like, &rub[1]), load(like, &rub[2])],
+            little: load(like, little),
+            pressed: load(like, pressed),
+            held: [load(like, &held[0]), load(like, &held[1])],
+        }
+    }
+}
+
+/// Those of a pack, and how their bodies move.
+pub(super) struct Touch<F> {
+    /// How the bodies move; the first is the world where that is so of all.
+    pub(super) motions: [Motion<F>; 2],
+    on_scenery: bool,
+    normal: Vectors<F>,
+    along: [Vectors<F>; 2],
+    friction: [F; 2],
+    /// The impulses at all points.
+    pressed: [F; POINTS],
+    held: [[F; 2]; POINTS],
+    /// Where some change was large enough to go over their neighbours again.
+    pub(super) is_changed: F,
+}
+
+impl<F: Eight> Touch<F> {
+    #[inline(always)]
+    pub(super) fn of(like: F, pack: &Pack, motions: [Motion<F>; 2], on_scenery: bool) -> Self {
+        let zero = like.all(0.0);
+        Self {
+            motions,
+            on_scenery,
+            normal: Vectors::load(like, &pack.normal),
+            along: [Vectors::load(like, &pack.along[0]), Vectors::load(like, &pack.along[1])],
+            friction: [load(like, &pack.friction[0]), load(like, &pack.friction[1])],
+            pressed: [zero; POINTS],
+            held: [[zero; 2]; POINTS],
+            is_changed: zero,
+        }
+    }
+
+    /// Goes over all points of a pack once; `which` says who of them takes part.
+    #[inline(always)]
+    pub(super) fn go(&mut self, pack: &mut Pack, which: F) {
+        self.press_evenly(pack);
+        for i in pack.numbers() {
+            self.press(pack, i);
+        }
+        for i in pack.numbers() {
+            let spots = &mut pack.spots[i];
+            save_where(which, self.pressed[i], &mut spots.pressed);
+            save_where(which, self.held[i][0], &mut spots.held[0]);
+            save_where(which, self.held[i][1], &mut spots.held[1]);
+        }
+    }
+
+    /// How the second moves there as seen from the first \[m/s\].
+    #[inline(always)]
+    fn slip(&self, [one, other]: [Vectors<F>; 2]) -> Vectors<F> {
+        let [a, b] = &self.motions;
+        if self.on_scenery { b.at(other) } else { b.at(other) - a.at(one) }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, [one, other]: [Vectors<F>; 2], impulse: Vectors<F>) {
+        let [a, b] = &mut self.motions;
+        if !self.on_scenery {
+            a.push(one, -impulse);
+        }
+        b.push(other, impulse);
+    }
+
+    /// Changes the impulses of all points that press, or should, by the same: what presses evenly, as a box that lies flat, is done with at
+    /// once, whatever the order of points.
+    #[inline(always)]
+    fn press_evenly(&mut self, pack: &Pack) {
+        let like = self.friction[0];
+        let (zero, one) = (like.all(0.0), like.all(1.0));
+        let (mut lack, mut least, mut number, mut little) = (zero, like.all(f32::INFINITY), zero, zero);
+        let mut levers = [Vectors([zero; 3]); 2];
+        let mut all = [zero; POINTS];
+        for i in pack.numbers() {
+            let spot = Spot::of(like, pack, i);
+            let missing = spot.wanted - self.slip(spot.arms).dot(self.normal);
+            let counts = spot.is_there & (missing.simd_gt(zero) | spot.pressed.simd_gt(zero));
+            all[i] = counts;
+            self.pressed[i] = spot.pressed;
+            lack = lack + (missing & counts);
+            least = counts.select(min(least, spot.pressed), least);
+            number = number + (one & counts);
+            little = little + (spot.little & counts);
+            levers[0] = levers[0] + spot.arms[0].masked(counts);
+            levers[1] = levers[1] + spot.arms[1].masked(counts);
+        }
+        let counts = number.simd_gt(one);
+        if !counts.any() {
+            return;
+        }
+        let share = one / number;
+        let mean = [levers[0] * share, levers[1] * share];
+        let [a, b] = &self.motions;
+        let other = b.yielding(mean[1], self.normal);
+        let yielding = if self.on_scenery { other } else { a.yielding(mean[0], self.normal) + other };
+        let each = max(lack / (number * number * yielding), negated(least));
+        let counts = counts & each.abs().simd_lt(like.all(f32::INFINITY)) & not_zero(each);
+        for i in pack.numbers() {
+            self.pressed[i] = self.pressed[i] + (each & counts & all[i]);
+        }
+        self.push([mean[0].masked(counts), mean[1].masked(counts)], (self.normal * (each * number)).masked(counts));
+        // The lack without its sign: what is not a number counts.
+        let is_small = (lack * lack).simd_le(little * little);
+        self.is_changed = self.is_changed | (counts & not(is_small));
+    }
+
+    /// Brings the speed at which they part at a point to what is wanted, as far as pushing alone does it; then takes from their slip, and from
+    /// what they lag behind the scenery and where they were held, what Coulomb's friction can.
+    #[inline(always)]
+    fn press(&mut self, pack: &Pack, i: usize) {
+        let like = self.friction[0];
+        let (zero, one) = (like.all(0.0), like.all(1.0));
+        let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, held, .. } = Spot::of(like, pack, i);
+        let (pressed, slip) = (self.pressed[i], self.slip(arms));
+        let new = max(pressed + (wanted - slip.dot(self.normal)) * mass, zero);
+        let impulse = new - pressed;
+        let u = slip.dot(self.along[0]) + answer[0] * impulse + lag[0];
+        let v = slip.dot(self.along[1]) + answer[1] * impulse + lag[1];
+        let (square, yields) = (u * u + v * v, rub[0] * (u * u) + rub[1] * (u * v) + rub[2] * (v * v));
+        let rubs = (square / yields) & square.simd_gt(zero);
+        let [x, y] = [held[0] - u * rubs, held[1] - v * rubs];
+        let (square, sticks) = (x * x + y * y, self.friction[0] * new);
+        let is_held = square.simd_le(sticks * sticks);
+        let size = is_held.select(one, square.sqrt());
+        let share = is_held.select(one, min(self.friction[1] * new, size) / size);
+        let (x, y) = (x * share, y * share);
+        let change = self.normal * impulse + self.along[0] * (x - held[0]) + self.along[1] * (y - held[1]);
+        // What is no number is left out.
+        let far = change.dot(change);
+        let counts = is_there & far.simd_lt(like.all(f32::INFINITY)) & not_zero(far);
+        self.pressed[i] = counts.select(new, pressed);
+        self.held[i] = [counts.select(x, held[0]), counts.select(y, held[1])];
+        self.push(arms, change.masked(counts));
+        let little = little * mass;
+        self.is_changed = self.is_changed | (counts & far.simd_gt(little * little));
+    }
+}
+
+/// Where a number is not zero.
+#[inline(always)]
+fn not_zero<F: Eight>(x: F) -> F {
+    x.abs().simd_gt(x.all(0.0))
+}
