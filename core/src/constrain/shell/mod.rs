@@ -4,6 +4,7 @@ mod assemble;
 mod cycle;
 mod eights;
 mod fold;
+mod linear;
 mod membrane;
 mod mesh;
 mod resist;

@@ -136,8 +136,8 @@ impl Resist<'_> {
             return false;
         };
         let Some(corners) = gathered(like, self.p, &all_corners(hinges)) else { return false };
-        let [f, g] = ways(corners, feet(like, folds), like.all(1.0));
-        let slope = slopes(like, folds);
+        let (foot, slope) = columns(like, folds);
+        let [f, g] = ways(corners, foot, like.all(1.0));
         let change = (slope[0].dot(f) + slope[1].dot(g)).to_array();
         for i in 0..LANES {
             curve(self.strains, &hinges[i], &bends[i], change[i]);
@@ -153,7 +153,7 @@ impl Resist<'_> {
             return false;
         };
         let rows = all_corners(hinges);
-        let (foot, slope, one) = (feet(like, folds), slopes(like, folds), like.all(1.0));
+        let ((foot, slope), one) = (columns(like, folds), like.all(1.0));
         let mut moments = [0.0; LANES];
         for (i, sum) in moments.iter_mut().enumerate() {
             *sum = moment(self.strains, self.cells, &hinges[i], &bends[i], self.bending);
@@ -177,14 +177,17 @@ impl Resist<'_> {
     }
 }
 
+/// The feet of eight folds, and their slopes.
 #[inline(always)]
-fn feet<F: Eight>(like: F, folds: &[Fold; LANES]) -> [F; 2] {
-    [column!(like, folds, |fold| fold.foot[0]), column!(like, folds, |fold| fold.foot[1])]
-}
-
-#[inline(always)]
-fn slopes<F: Eight>(like: F, folds: &[Fold; LANES]) -> [Vectors<F>; 2] {
-    [vectors!(like, folds, |fold| fold.slope[0]), vectors!(like, folds, |fold| fold.slope[1])]
+pub(super) fn columns<F: Eight>(like: F, folds: &[Fold; LANES]) -> ([F; 2], [Vectors<F>; 2]) {
+    let mut quads = [[[0.0; 4]; LANES]; 2];
+    for (i, fold) in folds.iter().enumerate() {
+        // The slopes, the feet, and the moment.
+        let [a, b, c, d, e, f, g, h, _]: [f32; 9] = bytemuck::cast(*fold);
+        (quads[0][i], quads[1][i]) = ([a, b, c, d], [e, f, g, h]);
+    }
+    let ([a, b, c, d], [e, f, g, h]) = (like.quads_of(quads[0]), like.quads_of(quads[1]));
+    ([g, h], [Vectors([a, b, c]), Vectors([d, e, f])])
 }
 
 /// As [`Fold::ways`].
@@ -195,6 +198,6 @@ fn ways<F: Eight>([a, b, c, d]: [Vectors<F>; 4], [x, y]: [F; 2], one: F) -> [Vec
 
 /// As [`Fold::spread`].
 #[inline(always)]
-fn spread<F: Eight>([c, d]: [Vectors<F>; 2], [x, y]: [F; 2], one: F) -> [Vectors<F>; 4] {
+pub(super) fn spread<F: Eight>([c, d]: [Vectors<F>; 2], [x, y]: [F; 2], one: F) -> [Vectors<F>; 4] {
     [-(c * (one - x) + d * (one - y)), -(c * x + d * y), c, d]
 }

@@ -53,7 +53,7 @@ pub(super) struct Vectors<'m> {
     /// How far they are moved \[m\].
     pub(super) shift: &'m mut [Vec3],
     /// Residuals, directions, and what the system makes of these.
-    r: &'m mut [Vec3],
+    pub(super) r: &'m mut [Vec3],
     pub(super) p: &'m mut [Vec3],
     q: &'m mut [Vec3],
 }
@@ -80,7 +80,7 @@ impl<'m> Vectors<'m> {
     }
 
     /// The rows of some particles, if all are there.
-    fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
+    pub(super) fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
         let rows = corners.map(|corner| self.rows.get(corner as usize).copied().unwrap_or(NOBODY) as usize);
         rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
     }
@@ -129,47 +129,6 @@ pub(super) struct Solver<'m> {
 }
 
 impl Solver<'_> {
-    /// The forces where all are, and the directions in which they act.
-    pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
-        lanes::widest(
-            #[inline(always)]
-            || self.linearise_here(bodies),
-        );
-    }
-
-    #[inline(always)]
-    fn linearise_here(&mut self, bodies: &Bodies<'_>) {
-        let (x, v, x0) = (&*bodies.position, &*bodies.velocity, bodies.before[0]);
-        let h = self.step.h;
-        // From one particle to another: now, along what forces act, and as it was.
-        let ways = |a: usize, b: usize| [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]];
-        for ((&corners, cell), strain) in self.triangles.iter().zip(self.cells).zip(&mut *self.strains) {
-            *strain = Strain::NONE;
-            let Some([a, b, c]) = self.vectors.living(corners) else { continue };
-            let (e, f) = (ways(a, b), ways(a, c));
-            let (now, push) = Strain::of(cell, self.params, &self.step, [0, 1, 2].map(|i| [e[i], f[i]]));
-            *strain = now;
-            add_pair(self.vectors.r, corners, push);
-        }
-        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&mut *self.folds) {
-            *fold = Fold::NONE;
-            let Some([a, b, c, d]) = self.vectors.living(hinge.corners()) else { continue };
-            let (e, f, g) = (ways(a, b), ways(a, c), ways(a, d));
-            let (now, open) = Fold::of(bend, &self.step, [0, 1, 2].map(|i| [e[i], f[i], g[i]]));
-            *fold = now;
-            curve(self.strains, hinge, bend, open);
-        }
-        let bending = self.bending();
-        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&mut *self.folds) {
-            let moment = moment(self.strains, self.cells, hinge, bend, bending);
-            *fold = fold.with_moment(moment);
-            add_all(self.vectors.r, hinge.corners(), fold.forces(-moment));
-        }
-        for (r, &weight) in self.vectors.r.iter_mut().zip(&*self.vectors.weight) {
-            *r = if weight > 0.0 { *r } else { Vec3::ZERO };
-        }
-    }
-
     /// Bending stiffness × h².
     pub(super) fn bending(&self) -> f32 {
         self.params.bending * (self.step.h * self.step.h)
