@@ -14,7 +14,7 @@ impl Solver<'_> {
         }
         let [finest, ..] = &mut levels.all;
         finest.blocks.fill(0.0);
-        finest.diagonal.fill(0.0);
+        finest.whole.fill(0.0);
         lanes::widest(
             #[inline(always)]
             || {
@@ -27,7 +27,7 @@ impl Solver<'_> {
                 self.settle_rows(finest);
             },
         );
-        levels.fold();
+        levels.fold(self.walls);
     }
 
     /// Adds the blocks of a triangle's edges: of the link from the lesser number to the greater.
@@ -62,7 +62,7 @@ impl Solver<'_> {
         stiffness *= self.bending() * self.step.rate;
         for (corner, force) in hinge.corners().into_iter().zip(fold.forces(1.0)) {
             let [x, y, z] = force.to_array().map(|part| force * (stiffness * part));
-            add(finest.diagonal, corner as usize, &Mat3::from_cols(x, y, z));
+            add(finest.whole, corner as usize, &Mat3::from_cols(x, y, z));
         }
         for (side, face) in hinge.faces.into_iter().enumerate() {
             let corners = self.triangles.get(face as usize).copied().unwrap_or_default();
@@ -99,18 +99,13 @@ impl Solver<'_> {
                 }
             }
             let at = BLOCK * row..BLOCK * (row + 1);
-            let (Some(all), Some(without)) = (finest.diagonal.get_mut(at.clone()), finest.own.get_mut(at)) else {
+            let (Some(all), Some(without)) = (finest.whole.get_mut(at.clone()), finest.own.get_mut(at)) else {
                 continue;
             };
             if own > 0.0 {
                 [0, 4, 8].into_iter().for_each(|i| sum[i] += 1.0 / own);
                 without.copy_from_slice(&sum);
                 all.iter_mut().zip(sum).for_each(|(number, sum)| *number += sum);
-                // What a wall presses hardly gives way, in the cycle too; conjugate gradients know that it does not at all.
-                if let Some(wall) = self.walls.get(row).filter(|wall| wall.presses()) {
-                    let stiff = wall.stiffness(all[0] + all[4] + all[8]).to_cols_array();
-                    all.iter_mut().zip(stiff).for_each(|(number, stiff)| *number += stiff);
-                }
             } else {
                 without.fill(0.0);
                 all.fill(0.0);

@@ -11,10 +11,10 @@ use glam::Vec3;
 #[repr(C)]
 pub(super) struct Bend {
     /// The angle at rest \[rad\]; zero is flat.
-    angle: f32,
+    pub(super) angle: f32,
     /// The curvature of the triangle on each side for each radian of the angle: along warp, weft, and √2 times that between
     /// them \[1/m\]. Zero where the fold is degenerate.
-    curvature: [[f32; 3]; 2],
+    pub(super) curvature: [[f32; 3]; 2],
 }
 
 /// A fold in a sub-step: how its angle changes as its corners move.

@@ -140,16 +140,19 @@ impl Strain {
         let [warp, weft, shear] = cell.stress(params, step.h, [step.rate; 3]);
         let taut = 0.25 * self.tension * cell.area * (step.h * step.h);
         let [u, v] = self.along;
-        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+        let mut blocks = [Mat3::ZERO; 3];
+        for (i, block) in blocks.iter_mut().enumerate() {
+            let j = (i + 1) % 3;
             let ([p, q], [r, s]) = (gain[i], gain[j]);
             let (uu, vv) = (warp * p * r + shear * q * s, weft * q * s + shear * p * r);
             // The block's rows are those of the first corner.
             let (uv, vu) = (shear * q * r, shear * p * s);
             let (first, second) = (u * uu + v * vu, u * uv + v * vv);
-            let column = |x: f32, y: f32| first * x + second * y;
             let own = Mat3::from_diagonal(Vec3::splat(taut * (p * r + q * s) + self.held[i]));
-            Mat3::from_cols(column(u.x, v.x), column(u.y, v.y), column(u.z, v.z)) + own
-        })
+            let [x, y, z] = [first * u.x + second * v.x, first * u.y + second * v.y, first * u.z + second * v.z];
+            *block = Mat3::from_cols(x, y, z) + own;
+        }
+        blocks
     }
 }
 

@@ -2,7 +2,9 @@
 
 mod assemble;
 mod cycle;
+mod eights;
 mod fold;
+mod linear;
 mod membrane;
 mod mesh;
 mod resist;
@@ -168,12 +170,14 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let known = take(&mut rest, 1);
         let cells = whole(take(&mut rest, triangles.saturating_mul(KEPT[0])));
         let bends = whole(take(&mut rest, hinges.saturating_mul(KEPT[1])));
-        Rest { known, cells, bends, graphs: take(&mut rest, Room::of(self.counts()).words()) }
+        let room = Room::of(self.counts());
+        let graphs = take(&mut rest, room.words());
+        Rest { known, cells, bends, graphs, last: whole(take(&mut rest, 3 * room.rows[0])) }
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
-        let Rest { known, cells, bends, graphs } = self.rest(kept);
+        let Rest { known, cells, bends, graphs, .. } = self.rest(kept);
         let [0] = *known else { return };
         known[0] = 1;
         mesh::make(&Room::of(self.counts()), self.triangles.as_ref(), graphs, work);
@@ -203,6 +207,7 @@ struct Rest<'m> {
     cells: &'m mut [Cell],
     bends: &'m mut [Bend],
     graphs: &'m mut [u32],
+    last: &'m mut [Vec3],
 }
 
 /// As many whole structs as there are in so many words.
@@ -222,7 +227,11 @@ where
         let [particles, triangles, hinges] = self.counts();
         let sum = |parts: [usize; 3]| parts.into_iter().fold(0, usize::saturating_add);
         let room = Room::of(self.counts());
-        let kept = sum([1 + room.words(), triangles.saturating_mul(KEPT[0]), hinges.saturating_mul(KEPT[1])]);
+        let kept = sum([
+            1 + room.words() + 3 * room.rows[0],
+            triangles.saturating_mul(KEPT[0]),
+            hinges.saturating_mul(KEPT[1]),
+        ]);
         let work =
             sum([triangles.saturating_mul(WORK[0]), hinges.saturating_mul(WORK[1]), particles.saturating_mul(WORK[2])]);
         let work = work.saturating_add(cycle::words(&room));
@@ -245,7 +254,7 @@ where
             return;
         }
         let [particles, triangles, hinges] = self.counts();
-        let Rest { cells, bends, graphs, .. } = self.rest(share.kept.fixed);
+        let Rest { cells, bends, graphs, last, .. } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = whole(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = whole(take(&mut rest, hinges.saturating_mul(WORK[1])));
@@ -262,6 +271,7 @@ where
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
             walls: &mut [],
+            last,
         };
         solver.linearise(bodies);
         let walls = walls::of(share.step, particles);

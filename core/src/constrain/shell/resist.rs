@@ -1,15 +1,13 @@
 //! How shells resist small shifts, eight triangles or folds side by side: by the operations of one, in their order, so that the bits are the same.
 
 use super::ShellParams;
+use super::eights::{WIDE, all_corners, column, eight, eight_mut, gathered, vector, vectors};
 use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
 use super::solver::{Step, add_all, add_pair, all_at, curve, moment};
 use crate::cloth::Hinge;
 use crate::lanes::{Eight, Kernel, LANES, Vectors};
 use glam::Vec3;
-
-/// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
-const WIDE: bool = cfg!(not(target_os = "none"));
 
 /// Adds h² K p to q.
 pub(super) struct Resist<'s> {
@@ -54,38 +52,6 @@ impl Kernel for Resist<'_> {
             }
         }
     }
-}
-
-/// One number of each of eight structs, side by side.
-macro_rules! column {
-    ($like:ident, $all:ident, |$one:ident| $number:expr) => {{
-        let [a, b, c, d, e, f, g, h] = $all;
-        $like.of([
-            column!(@of a, $one, $number),
-            column!(@of b, $one, $number),
-            column!(@of c, $one, $number),
-            column!(@of d, $one, $number),
-            column!(@of e, $one, $number),
-            column!(@of f, $one, $number),
-            column!(@of g, $one, $number),
-            column!(@of h, $one, $number),
-        ])
-    }};
-    (@of $this:ident, $one:ident, $number:expr) => {{
-        let $one = $this;
-        $number
-    }};
-}
-
-/// One vector of each of eight structs, side by side.
-macro_rules! vectors {
-    ($like:ident, $all:ident, |$one:ident| $vector:expr) => {
-        Vectors([
-            column!($like, $all, |$one| $vector.x),
-            column!($like, $all, |$one| $vector.y),
-            column!($like, $all, |$one| $vector.z),
-        ])
-    };
 }
 
 impl Resist<'_> {
@@ -170,8 +136,8 @@ impl Resist<'_> {
             return false;
         };
         let Some(corners) = gathered(like, self.p, &all_corners(hinges)) else { return false };
-        let [f, g] = ways(corners, feet(like, folds), like.all(1.0));
-        let slope = slopes(like, folds);
+        let (foot, slope) = columns(like, folds);
+        let [f, g] = ways(corners, foot, like.all(1.0));
         let change = (slope[0].dot(f) + slope[1].dot(g)).to_array();
         for i in 0..LANES {
             curve(self.strains, &hinges[i], &bends[i], change[i]);
@@ -187,7 +153,7 @@ impl Resist<'_> {
             return false;
         };
         let rows = all_corners(hinges);
-        let (foot, slope, one) = (feet(like, folds), slopes(like, folds), like.all(1.0));
+        let ((foot, slope), one) = (columns(like, folds), like.all(1.0));
         let mut moments = [0.0; LANES];
         for (i, sum) in moments.iter_mut().enumerate() {
             *sum = moment(self.strains, self.cells, &hinges[i], &bends[i], self.bending);
@@ -211,64 +177,17 @@ impl Resist<'_> {
     }
 }
 
-/// Eight of them, if there are as many from there on.
+/// The feet of eight folds, and their slopes.
 #[inline(always)]
-fn eight<T>(all: &[T], first: usize) -> Option<&[T; LANES]> {
-    all.get(first..first + LANES)?.try_into().ok()
-}
-
-#[inline(always)]
-fn eight_mut<T>(all: &mut [T], first: usize) -> Option<&mut [T; LANES]> {
-    all.get_mut(first..first + LANES)?.try_into().ok()
-}
-
-#[inline(always)]
-fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
-    Vec3::new(x, y, z)
-}
-
-#[inline(always)]
-fn all_corners(hinges: &[Hinge; LANES]) -> [[u32; 4]; LANES] {
-    let [a, b, c, d, e, f, g, h] = hinges;
-    [a.corners(), b.corners(), c.corners(), d.corners(), e.corners(), f.corners(), g.corners(), h.corners()]
-}
-
-/// The vectors of corners; none, if one is missing or the last.
-#[inline(always)]
-fn gathered<F: Eight, const N: usize>(
-    like: F,
-    column: &[Vec3],
-    corners: &[[u32; N]; LANES],
-) -> Option<[Vectors<F>; N]> {
-    let last = column.len().checked_sub(1)?;
-    let mut most = 0;
-    for of in corners {
-        for &corner in of {
-            most = most.max(corner);
-        }
+pub(super) fn columns<F: Eight>(like: F, folds: &[Fold; LANES]) -> ([F; 2], [Vectors<F>; 2]) {
+    let mut quads = [[[0.0; 4]; LANES]; 2];
+    for (i, fold) in folds.iter().enumerate() {
+        // The slopes, the feet, and the moment.
+        let [a, b, c, d, e, f, g, h, _]: [f32; 9] = bytemuck::cast(*fold);
+        (quads[0][i], quads[1][i]) = ([a, b, c, d], [e, f, g, h]);
     }
-    if most as usize >= last {
-        return None;
-    }
-    let mut all = [Vectors([like.all(0.0); 3]); N];
-    for (i, vectors) in all.iter_mut().enumerate() {
-        let mut rows = [0; LANES];
-        for (row, of) in rows.iter_mut().zip(corners) {
-            *row = of[i] as usize;
-        }
-        *vectors = Vectors::gather(like, column, last, &rows);
-    }
-    Some(all)
-}
-
-#[inline(always)]
-fn feet<F: Eight>(like: F, folds: &[Fold; LANES]) -> [F; 2] {
-    [column!(like, folds, |fold| fold.foot[0]), column!(like, folds, |fold| fold.foot[1])]
-}
-
-#[inline(always)]
-fn slopes<F: Eight>(like: F, folds: &[Fold; LANES]) -> [Vectors<F>; 2] {
-    [vectors!(like, folds, |fold| fold.slope[0]), vectors!(like, folds, |fold| fold.slope[1])]
+    let ([a, b, c, d], [e, f, g, h]) = (like.quads_of(quads[0]), like.quads_of(quads[1]));
+    ([g, h], [Vectors([a, b, c]), Vectors([d, e, f])])
 }
 
 /// As [`Fold::ways`].
@@ -279,6 +198,6 @@ fn ways<F: Eight>([a, b, c, d]: [Vectors<F>; 4], [x, y]: [F; 2], one: F) -> [Vec
 
 /// As [`Fold::spread`].
 #[inline(always)]
-fn spread<F: Eight>([c, d]: [Vectors<F>; 2], [x, y]: [F; 2], one: F) -> [Vectors<F>; 4] {
+pub(super) fn spread<F: Eight>([c, d]: [Vectors<F>; 2], [x, y]: [F; 2], one: F) -> [Vectors<F>; 4] {
     [-(c * (one - x) + d * (one - y)), -(c * x + d * y), c, d]
 }

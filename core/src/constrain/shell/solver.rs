@@ -19,6 +19,8 @@ use glam::{Mat3, Vec3};
 const ITERATIONS: u32 = 400;
 /// Solutions in turn with the question which walls press, at the most.
 const PASSES: u32 = 8;
+/// As many of them at the most are good to ten times what a solution is to be good to: it takes no more to see which walls press.
+const ROUGHLY: u32 = 4;
 /// The residual that a solution may have, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses; and where
 /// walls press that are rough, as friction goes by what these bear.
 const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
@@ -51,7 +53,7 @@ pub(super) struct Vectors<'m> {
     /// How far they are moved \[m\].
     pub(super) shift: &'m mut [Vec3],
     /// Residuals, directions, and what the system makes of these.
-    r: &'m mut [Vec3],
+    pub(super) r: &'m mut [Vec3],
     pub(super) p: &'m mut [Vec3],
     q: &'m mut [Vec3],
 }
@@ -78,7 +80,7 @@ impl<'m> Vectors<'m> {
     }
 
     /// The rows of some particles, if all are there.
-    fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
+    pub(super) fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
         let rows = corners.map(|corner| self.rows.get(corner as usize).copied().unwrap_or(NOBODY) as usize);
         rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
     }
@@ -122,50 +124,11 @@ pub(super) struct Solver<'m> {
     pub(super) vectors: Vectors<'m>,
     /// The scenery that particles are pressed by.
     pub(super) walls: &'m mut [Wall],
+    /// How far the particles were moved in the sub-step before; none, where there are no graphs.
+    pub(super) last: &'m mut [Vec3],
 }
 
 impl Solver<'_> {
-    /// The forces where all are, and the directions in which they act.
-    pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
-        lanes::widest(
-            #[inline(always)]
-            || self.linearise_here(bodies),
-        );
-    }
-
-    #[inline(always)]
-    fn linearise_here(&mut self, bodies: &Bodies<'_>) {
-        let (x, v, x0) = (&*bodies.position, &*bodies.velocity, bodies.before[0]);
-        let h = self.step.h;
-        // From one particle to another: now, along what forces act, and as it was.
-        let ways = |a: usize, b: usize| [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]];
-        for ((&corners, cell), strain) in self.triangles.iter().zip(self.cells).zip(&mut *self.strains) {
-            *strain = Strain::NONE;
-            let Some([a, b, c]) = self.vectors.living(corners) else { continue };
-            let (e, f) = (ways(a, b), ways(a, c));
-            let (now, push) = Strain::of(cell, self.params, &self.step, [0, 1, 2].map(|i| [e[i], f[i]]));
-            *strain = now;
-            add_pair(self.vectors.r, corners, push);
-        }
-        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&mut *self.folds) {
-            *fold = Fold::NONE;
-            let Some([a, b, c, d]) = self.vectors.living(hinge.corners()) else { continue };
-            let (e, f, g) = (ways(a, b), ways(a, c), ways(a, d));
-            let (now, open) = Fold::of(bend, &self.step, [0, 1, 2].map(|i| [e[i], f[i], g[i]]));
-            *fold = now;
-            curve(self.strains, hinge, bend, open);
-        }
-        let bending = self.bending();
-        for ((hinge, bend), fold) in self.hinges.iter().zip(self.bends).zip(&mut *self.folds) {
-            let moment = moment(self.strains, self.cells, hinge, bend, bending);
-            *fold = fold.with_moment(moment);
-            add_all(self.vectors.r, hinge.corners(), fold.forces(-moment));
-        }
-        for (r, &weight) in self.vectors.r.iter_mut().zip(&*self.vectors.weight) {
-            *r = if weight > 0.0 { *r } else { Vec3::ZERO };
-        }
-    }
-
     /// Bending stiffness × h².
     pub(super) fn bending(&self) -> f32 {
         self.params.bending * (self.step.h * self.step.h)
@@ -199,6 +162,7 @@ impl Solver<'_> {
     /// Solves it, and that anew for as long as other walls press than before.
     pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>) {
         let mut enough = [0.0; 2];
+        let mut roughly = self.walls.iter().any(Wall::is_near);
         for pass in 0..PASSES {
             let Vectors { shift, p, .. } = &mut self.vectors;
             if walls::impose(self.walls, bodies, shift, p) {
@@ -207,12 +171,20 @@ impl Solver<'_> {
                 add_scaled(shift, 1.0, p);
                 add_scaled(r, -1.0, q);
             }
-            self.descend(levels, &mut enough, bodies.report);
+            let energy = if pass == 0 { self.go_on(levels) } else { 0.0 };
+            roughly &= pass < ROUGHLY;
+            self.descend(levels, energy, &mut enough, roughly, bodies.report);
+            if pass + 1 == PASSES {
+                break;
+            }
             let Vectors { shift, r, .. } = &mut self.vectors;
-            if pass + 1 == PASSES || !walls::judge(self.walls, bodies, shift, r) {
+            if walls::judge(self.walls, bodies, shift, r) {
+                levels.fold(self.walls);
+            } else if !core::mem::take(&mut roughly) {
                 break;
             }
         }
+        self.last.copy_from_slice(self.vectors.shift.get(..self.last.len()).unwrap_or(&[]));
         if !self.walls.iter().any(Wall::presses) {
             let Vectors { rows, weight, shift, .. } = &mut self.vectors;
             levels.rid_of_drift(
@@ -224,16 +196,48 @@ impl Solver<'_> {
         walls::finish(self.walls, bodies, weight, shift);
     }
 
+    /// Begins with as much of the last sub-step's shifts as is best in the norm of energy, and tells the energy of that.
+    fn go_on(&mut self, levels: &Levels<'_>) -> f32 {
+        if self.last.is_empty() {
+            return 0.0;
+        }
+        let Vectors { r, p, weight, .. } = &mut self.vectors;
+        for ((p, &last), &weight) in p.iter_mut().zip(&*self.last).zip(&**weight) {
+            *p = if weight > 0.0 && last.is_finite() { last } else { Vec3::ZERO };
+        }
+        walls::hold(self.walls, r);
+        walls::filter(self.walls, p);
+        self.apply(levels);
+        let Vectors { shift, r, p, q, .. } = &mut self.vectors;
+        let (along, curvature) = (lanes::dot(p, r), lanes::dot(p, q));
+        let far = along / curvature;
+        if !(curvature > 0.0 && far.abs() < f32::INFINITY) {
+            return 0.0;
+        }
+        add_scaled(shift, far, p);
+        add_scaled(r, -far, q);
+        far * along
+    }
+
     /// Conjugate gradients on from what has been found, by a cycle through coarser graphs where there are any, else by masses: to what is
     /// good enough of what they begin with, or have begun with before.
-    fn descend(&mut self, levels: &mut Levels<'_>, enough: &mut [f32; 2], report: &mut Report) {
+    fn descend(
+        &mut self,
+        levels: &mut Levels<'_>,
+        energy: f32,
+        enough: &mut [f32; 2],
+        roughly: bool,
+        report: &mut Report,
+    ) {
         let mut by_masses = levels.is_empty();
         let mut first = self.vectors.begin(levels, self.walls, by_masses);
         let residual = if self.walls.iter().any(Wall::rubs) { ROUGH } else { RESIDUAL };
         let mut note = |first: f32, by_masses: bool| {
             let kind = usize::from(by_masses);
+            let first = first + if by_masses { 0.0 } else { energy };
             enough[kind] = max(first * (residual[kind] * residual[kind]), enough[kind]);
-            enough[kind]
+            // Ten times the residual is a hundred times its energy.
+            enough[kind] * if roughly { 100.0 } else { 1.0 }
         };
         let mut most = note(first, by_masses);
         let solved = |left: f32, most: f32| left >= 0.0 && left <= most;
@@ -264,7 +268,8 @@ impl Solver<'_> {
             }
             iterations += 1;
         }
-        let residual = if first > 0.0 { sqrt(left / first) } else { 0.0 };
+        let kind = usize::from(by_masses);
+        let residual = if enough[kind] > 0.0 { sqrt(left / enough[kind]) * residual[kind] } else { 0.0 };
         report.effort.solved(iterations, residual, !solved(left, most));
     }
 

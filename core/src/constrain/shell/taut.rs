@@ -1,8 +1,10 @@
 //! Edges of a shell that have come out longer than its linear system knows of.
 
+use super::eights::{WIDE, column, eight, gathered};
 use super::membrane::Cell;
 use super::solver::{NOBODY, Solver, Vectors};
 use crate::constrain::{Bodies, walls};
+use crate::lanes::{self, Eight, Kernel, LANES, Vectors as Side};
 use crate::math::{length, max, sqrt};
 use glam::Vec3;
 
@@ -18,11 +20,7 @@ impl Solver<'_> {
         let Vectors { shift, p, .. } = &mut self.vectors;
         p.copy_from_slice(shift);
         for _ in 0..PASSES {
-            let mut some = false;
-            for i in 0..self.triangles.len() {
-                some |= self.shorten(i, bodies);
-            }
-            if !some {
+            if !lanes::run(Tighten { solver: self, bodies }) {
                 return;
             }
             walls::keep(self.walls, bodies, self.vectors.shift);
@@ -69,6 +67,82 @@ impl Solver<'_> {
         shift[b] -= by * weight[b];
         true
     }
+}
+
+/// One pass over all triangles; tells whether an edge had to be shortened. Of eight side by side that have none nobody is asked.
+struct Tighten<'a, 's, 'm, 'b> {
+    solver: &'a mut Solver<'m>,
+    bodies: &'s Bodies<'b>,
+}
+
+impl Kernel for Tighten<'_, '_, '_, '_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> bool {
+        let (count, mut some) = (self.solver.triangles.len(), false);
+        for first in (0..count).step_by(LANES) {
+            if !(WIDE && self.none_of_eight(like, first)) {
+                for i in first..count.min(first + LANES) {
+                    some |= self.solver.shorten(i, self.bodies);
+                }
+            }
+        }
+        some
+    }
+}
+
+impl Tighten<'_, '_, '_, '_> {
+    /// Tells whether there are eight, all of them there, and none has an edge to be shortened: by the operations of `shorten_edge`.
+    #[inline(always)]
+    fn none_of_eight<F: Eight>(&self, like: F, first: usize) -> bool {
+        let all = self.edges(like, first);
+        let Some((cells, [now, meant])) = all else { return false };
+        let twice = like.all(2.0) * column!(like, cells, |cell| cell.area);
+        let [a, b, c, d] = [
+            column!(like, cells, |cell| cell.inverse[0]),
+            column!(like, cells, |cell| cell.inverse[1]),
+            column!(like, cells, |cell| cell.inverse[2]),
+            column!(like, cells, |cell| cell.inverse[3]),
+        ];
+        let (e, f) = ([d * twice, lanes::negated(b) * twice], [lanes::negated(c) * twice, a * twice]);
+        let sides = [e, [f[0] - e[0], f[1] - e[1]], f];
+        let slack = like.all(1.0 + SLACK);
+        let mut some = like.all(0.0);
+        for side in 0..3 {
+            let [x, y] = sides[side];
+            let most = lanes::max(meant[side], (x * x + y * y).sqrt());
+            some = some | (now[side].simd_gt(meant[side] * slack) & now[side].simd_gt(most * slack));
+        }
+        !(some & twice.simd_gt(like.all(0.0))).any()
+    }
+
+    /// How long the edges of eight are, and mean to be.
+    #[inline(always)]
+    fn edges<F: Eight>(&self, like: F, first: usize) -> Option<(&[Cell; LANES], [[F; 3]; 2])> {
+        let Solver { triangles, cells, ref vectors, .. } = *self.solver;
+        let (corners, cells) = (eight(triangles, first)?, eight(cells, first)?);
+        let mut rows = [[NOBODY; 3]; LANES];
+        for (row, corner) in rows.as_flattened_mut().iter_mut().zip(corners.as_flattened()) {
+            *row = *vectors.rows.get(*corner as usize)?;
+        }
+        let places: [Side<F>; 3] = gathered(like, self.bodies.position, &rows)?;
+        let before: [Side<F>; 3] = gathered(like, self.bodies.before[0], &rows)?;
+        let shift: [Side<F>; 3] = gathered(like, vectors.shift, corners)?;
+        let solved: [Side<F>; 3] = gathered(like, vectors.p, corners)?;
+        let [mut now, mut meant] = [[like.all(0.0); 3]; 2];
+        for side in 0..3 {
+            let (way, before) = (edge(&places, side), edge(&before, side));
+            now[side] = (way + edge(&shift, side)).length();
+            meant[side] = way.length() + before.dot(edge(&solved, side)) / before.length();
+        }
+        Some((cells, [now, meant]))
+    }
+}
+
+#[inline(always)]
+fn edge<F: Eight>(of: &[Side<F>; 3], side: usize) -> Side<F> {
+    of[(side + 1) % 3] - of[side]
 }
 
 impl Cell {

@@ -38,7 +38,7 @@ const STICKS: u32 = 3;
 pub(super) struct Wall {
     row: u32,
     state: u32,
-    /// 1 if its particle has yet to be brought to where the wall wants it.
+    /// 1 if its particle has yet to be brought to where the wall wants it; while walls are gathered, its state in the sub-step before.
     fresh: u32,
     /// 1 if its particle's way through the step may pass through the scenery.
     lost: u32,
@@ -78,6 +78,7 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
     }
     let mut around = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
     for (wall, &particle) in walls.iter_mut().zip(particles) {
+        wall.fresh = if number == 0 { NONE } else { wall.state };
         wall.state = NONE;
         wall.touch.begin(0.0);
         wall.row = find(particle, bodies);
@@ -130,6 +131,11 @@ impl Wall {
         self.state > NEAR
     }
 
+    /// Tells whether there is one that may come to press.
+    pub(super) fn is_near(&self) -> bool {
+        self.state != NONE
+    }
+
     /// Tells whether it presses its particle, and not smoothly.
     pub(super) fn rubs(&self) -> bool {
         self.presses() && self.touch.has_friction()
@@ -143,8 +149,9 @@ impl Wall {
         match self.state {
             STICKS => Mat3::from_diagonal(Vec3::splat(all)),
             SLIDES => {
-                let [x, y, z] = self.normal.to_array().map(|along| self.normal * (along * all));
-                Mat3::from_cols(x, y, z)
+                let brake = self.brake;
+                let [x, y, z] = self.normal.to_array().map(|along| self.normal * (along * (all - brake)));
+                Mat3::from_cols(x, y, z) + Mat3::from_diagonal(Vec3::splat(brake))
             }
             _ => Mat3::ZERO,
         }
@@ -161,6 +168,7 @@ impl Wall {
         let (own, elasticity) = (bodies.material[row].checked_sub(1), bodies.elasticity[row]);
         let (from, to, h) = (bodies.before[0][row], bodies.position[row], bodies.substep.seconds());
         let radius = bodies.radius[row];
+        let was = core::mem::take(&mut self.fresh);
         let mut most = f32::NEG_INFINITY;
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
             let Contact { point, normal, distance, velocity, material, slack } = *contact;
@@ -185,7 +193,8 @@ impl Wall {
         });
         if self.state == NEAR {
             self.touch.begin(0.0);
-            if most > NOTICED * self.slack {
+            // Who was pressed in the sub-step before most often still is.
+            if most > NOTICED * self.slack || was > NEAR {
                 self.press();
             }
         }

@@ -1,0 +1,91 @@
+//! Eight triangles, folds or particles taken side by side from where they lie one behind the other.
+
+use crate::cloth::Hinge;
+use crate::lanes::{Eight, LANES, Vectors};
+use glam::Vec3;
+
+/// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
+pub(super) const WIDE: bool = cfg!(not(target_os = "none"));
+
+/// One number of each of eight structs, side by side.
+macro_rules! column {
+    ($like:ident, $all:ident, |$one:ident| $number:expr) => {{
+        let [a, b, c, d, e, f, g, h] = $all;
+        $like.of([
+            column!(@of a, $one, $number),
+            column!(@of b, $one, $number),
+            column!(@of c, $one, $number),
+            column!(@of d, $one, $number),
+            column!(@of e, $one, $number),
+            column!(@of f, $one, $number),
+            column!(@of g, $one, $number),
+            column!(@of h, $one, $number),
+        ])
+    }};
+    (@of $this:ident, $one:ident, $number:expr) => {{
+        let $one = $this;
+        $number
+    }};
+}
+
+/// One vector of each of eight structs, side by side.
+macro_rules! vectors {
+    ($like:ident, $all:ident, |$one:ident| $vector:expr) => {
+        Vectors([
+            column!($like, $all, |$one| $vector.x),
+            column!($like, $all, |$one| $vector.y),
+            column!($like, $all, |$one| $vector.z),
+        ])
+    };
+}
+pub(super) use {column, vectors};
+
+/// Eight of them, if there are as many from there on.
+#[inline(always)]
+pub(super) fn eight<T>(all: &[T], first: usize) -> Option<&[T; LANES]> {
+    all.get(first..first + LANES)?.try_into().ok()
+}
+
+#[inline(always)]
+pub(super) fn eight_mut<T>(all: &mut [T], first: usize) -> Option<&mut [T; LANES]> {
+    all.get_mut(first..first + LANES)?.try_into().ok()
+}
+
+#[inline(always)]
+pub(super) fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+#[inline(always)]
+pub(super) fn all_corners(hinges: &[Hinge; LANES]) -> [[u32; 4]; LANES] {
+    let [a, b, c, d, e, f, g, h] = hinges;
+    [a.corners(), b.corners(), c.corners(), d.corners(), e.corners(), f.corners(), g.corners(), h.corners()]
+}
+
+/// The vectors of corners; none, if one is missing or the last.
+#[inline(always)]
+pub(super) fn gathered<F: Eight, const N: usize>(
+    like: F,
+    column: &[Vec3],
+    corners: &[[u32; N]; LANES],
+) -> Option<[Vectors<F>; N]> {
+    let last = column.len().checked_sub(1)?;
+    let mut most = 0;
+    for of in corners {
+        for &corner in of {
+            most = most.max(corner);
+        }
+    }
+    if most as usize >= last {
+        return None;
+    }
+    let mut all = [Vectors([like.all(0.0); 3]); N];
+    for (i, vectors) in all.iter_mut().enumerate() {
+        let mut rows = [0; LANES];
+        for (row, of) in rows.iter_mut().zip(corners) {
+            *row = of[i] as usize;
+        }
+        *vectors = Vectors::gather(like, column, last, &rows);
+    }
+    Some(all)
+}

@@ -1,0 +1,332 @@
+//! The forces of a shell where the method has moved it, and the directions in which they act, eight triangles or folds side by side: by the
+//! operations of one, in their order, so that the bits are the same.
+
+use super::eights::{WIDE, all_corners, column, eight, eight_mut, gathered, vector};
+use super::fold::Fold;
+use super::membrane::Strain;
+use super::resist::{columns, spread};
+use super::solver::{NOBODY, Solver, Step, add_all, add_pair, curve, moment};
+use super::{Bodies, ShellParams};
+use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use glam::Vec3;
+
+/// Makes all strains and folds, and adds their forces × h² to the residuals.
+pub(super) struct Linearise<'a, 's, 'm> {
+    pub(super) solver: &'a mut Solver<'m>,
+    /// Where all are, how fast they go, and where they were.
+    pub(super) columns: [&'s [Vec3]; 3],
+}
+
+impl Solver<'_> {
+    /// The forces where all are, and the directions in which they act.
+    pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
+        let columns = [&*bodies.position, &*bodies.velocity, bodies.before[0]];
+        lanes::run(Linearise { solver: self, columns });
+    }
+}
+
+impl Kernel for Linearise<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Eight>(mut self, like: F) {
+        let (triangles, hinges) = (self.solver.triangles.len(), self.solver.hinges.len());
+        for first in (0..triangles).step_by(LANES) {
+            if !(WIDE && self.strain_eight(like, first)) {
+                (first..triangles.min(first + LANES)).for_each(|i| self.strain(i));
+            }
+        }
+        for first in (0..hinges).step_by(LANES) {
+            if !(WIDE && self.fold_eight(like, first)) {
+                (first..hinges.min(first + LANES)).for_each(|i| self.fold(i));
+            }
+        }
+        for first in (0..hinges).step_by(LANES) {
+            if !(WIDE && self.open_eight(like, first)) {
+                (first..hinges.min(first + LANES)).for_each(|i| self.open(i));
+            }
+        }
+        let vectors = &mut self.solver.vectors;
+        for (r, &weight) in vectors.r.iter_mut().zip(&*vectors.weight) {
+            *r = if weight > 0.0 { *r } else { Vec3::ZERO };
+        }
+    }
+}
+
+impl Linearise<'_, '_, '_> {
+    /// From one particle to another: now, along what forces act, and as it was.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn ways(&self, a: usize, b: usize) -> [Vec3; 3] {
+        let ([x, v, x0], h) = (self.columns, self.solver.step.h);
+        [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]]
+    }
+
+    fn strain(&mut self, i: usize) {
+        let (Some(&corners), Some(cell)) = (self.solver.triangles.get(i), self.solver.cells.get(i)) else { return };
+        let mut strain = Strain::NONE;
+        if let Some([a, b, c]) = self.solver.vectors.living(corners) {
+            let (e, f) = (self.ways(a, b), self.ways(a, c));
+            let edges = [0, 1, 2].map(|i| [e[i], f[i]]);
+            let (now, push) = Strain::of(cell, self.solver.params, &self.solver.step, edges);
+            strain = now;
+            add_pair(self.solver.vectors.r, corners, push);
+        }
+        if let Some(to) = self.solver.strains.get_mut(i) {
+            *to = strain;
+        }
+    }
+
+    fn fold(&mut self, i: usize) {
+        let (Some(hinge), Some(bend)) = (self.solver.hinges.get(i), self.solver.bends.get(i)) else { return };
+        let mut fold = Fold::NONE;
+        if let Some([a, b, c, d]) = self.solver.vectors.living(hinge.corners()) {
+            let (e, f, g) = (self.ways(a, b), self.ways(a, c), self.ways(a, d));
+            let (now, open) = Fold::of(bend, &self.solver.step, [0, 1, 2].map(|i| [e[i], f[i], g[i]]));
+            fold = now;
+            curve(self.solver.strains, hinge, bend, open);
+        }
+        if let Some(to) = self.solver.folds.get_mut(i) {
+            *to = fold;
+        }
+    }
+
+    fn open(&mut self, i: usize) {
+        let Solver { hinges, bends, cells, ref strains, .. } = *self.solver;
+        let bending = self.solver.bending();
+        let (Some(hinge), Some(bend), Some(fold)) = (hinges.get(i), bends.get(i), self.solver.folds.get_mut(i)) else {
+            return;
+        };
+        let moment = moment(strains, cells, hinge, bend, bending);
+        *fold = fold.with_moment(moment);
+        add_all(self.solver.vectors.r, hinge.corners(), fold.forces(-moment));
+    }
+
+    /// The rows of the corners of eight, if all are there.
+    #[inline(always)]
+    fn rows<const N: usize>(&self, corners: &[[u32; N]; LANES]) -> Option<[[u32; N]; LANES]> {
+        let rows = &*self.solver.vectors.rows;
+        let mut all = [[NOBODY; N]; LANES];
+        for (to, of) in all.as_flattened_mut().iter_mut().zip(corners.as_flattened()) {
+            *to = *rows.get(*of as usize)?;
+        }
+        // Whoever is not there has a row beyond all, which is not gathered.
+        Some(all)
+    }
+
+    /// Ways from the first corners of eight to the others, as [`Linearise::ways`].
+    #[inline(always)]
+    fn ways_of<F: Eight, const N: usize>(&self, like: F, corners: &[[u32; N]; LANES]) -> Option<[[Vectors<F>; N]; 3]> {
+        let (rows, h) = (self.rows(corners)?, like.all(self.solver.step.h));
+        let [x, v, x0] = self.columns;
+        let (mut now, mut speed, mut before) =
+            (gathered::<F, N>(like, x, &rows)?, gathered::<F, N>(like, v, &rows)?, gathered::<F, N>(like, x0, &rows)?);
+        let mut along = now;
+        for column in [&mut now, &mut speed, &mut before] {
+            let first = column[0];
+            for to in column {
+                *to = *to - first;
+            }
+        }
+        for ((along, &now), &speed) in along.iter_mut().zip(&now).zip(&speed) {
+            *along = now - speed * h;
+        }
+        Some([now, along, before])
+    }
+
+    /// Tells whether it has done so, as all that go over eight.
+    #[inline(always)]
+    fn strain_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let (Some(corners), Some(cells)) = (eight(self.solver.triangles, first), eight(self.solver.cells, first))
+        else {
+            return false;
+        };
+        let Some(ways) = self.ways_of(like, corners) else { return false };
+        let Some(strains) = eight_mut(self.solver.strains, first) else { return false };
+        let inverse = [
+            column!(like, cells, |cell| cell.inverse[0]),
+            column!(like, cells, |cell| cell.inverse[1]),
+            column!(like, cells, |cell| cell.inverse[2]),
+            column!(like, cells, |cell| cell.inverse[3]),
+        ];
+        let area = column!(like, cells, |cell| cell.area);
+        let (along, tension, push, sound) = strain_of(like, self.solver.params, &self.solver.step, area, inverse, ways);
+        let (u, v, tension) = (along[0].rows(), along[1].rows(), tension.to_array());
+        let (f, g) = (push[0].rows(), push[1].rows());
+        for (i, strain) in strains.iter_mut().enumerate() {
+            let sound = sound & 1 << i != 0;
+            let along = [vector(u[i]), vector(v[i])];
+            *strain = if sound { Strain { along, tension: tension[i], ..Strain::NONE } } else { Strain::NONE };
+            let push = if sound { [vector(f[i]), vector(g[i])] } else { [Vec3::ZERO; 2] };
+            add_pair(self.solver.vectors.r, corners[i], push);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn fold_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let (Some(hinges), Some(bends)) = (eight(self.solver.hinges, first), eight(self.solver.bends, first)) else {
+            return false;
+        };
+        let Some(ways) = self.ways_of(like, &all_corners(hinges)) else { return false };
+        let Some(folds) = eight_mut(self.solver.folds, first) else { return false };
+        let rest = column!(like, bends, |bend| bend.angle);
+        let (slope, foot, open, sound) = fold_of(like, &self.solver.step, rest, ways);
+        let (m, n) = (slope[0].rows(), slope[1].rows());
+        let (x, y, open) = (foot[0].to_array(), foot[1].to_array(), open.to_array());
+        for i in 0..LANES {
+            let acts = bends[i].curvature[0] != [0.0; 3] && sound & 1 << i != 0;
+            let fold = Fold { slope: [vector(m[i]), vector(n[i])], foot: [x[i], y[i]], moment: 0.0 };
+            folds[i] = if acts { fold } else { Fold::NONE };
+            curve(self.solver.strains, &hinges[i], &bends[i], if acts { open[i] } else { 0.0 });
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn open_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let (Some(hinges), Some(bends)) = (eight(self.solver.hinges, first), eight(self.solver.bends, first)) else {
+            return false;
+        };
+        let (bending, cells) = (self.solver.bending(), self.solver.cells);
+        let mut moments = [0.0; LANES];
+        for (i, sum) in moments.iter_mut().enumerate() {
+            *sum = moment(self.solver.strains, cells, &hinges[i], &bends[i], bending);
+        }
+        let Some(folds) = eight_mut(self.solver.folds, first) else { return false };
+        for (fold, &moment) in folds.iter_mut().zip(&moments) {
+            *fold = fold.with_moment(moment);
+        }
+        let folds = &*folds;
+        let ((foot, slope), moments) = (columns(like, folds), lanes::negated(like.of(moments)));
+        let [a, b, c, d] = spread([slope[0] * moments, slope[1] * moments], foot, like.all(1.0));
+        let [a, b, c, d] = [a.rows(), b.rows(), c.rows(), d.rows()];
+        for (i, hinge) in hinges.iter().enumerate() {
+            add_all(self.solver.vectors.r, hinge.corners(), [vector(a[i]), vector(b[i]), vector(c[i]), vector(d[i])]);
+        }
+        true
+    }
+}
+
+/// As [`Strain::of`]: warp and weft, tension, the push, and a bit for each of eight that is sound.
+#[inline(always)]
+fn strain_of<F: Eight>(
+    like: F,
+    params: &ShellParams,
+    step: &Step,
+    area: F,
+    [a, b, c, d]: [F; 4],
+    [now, along, before]: [[Vectors<F>; 3]; 3],
+) -> ([Vectors<F>; 2], F, [Vectors<F>; 2], u32) {
+    let inverse = [a, b, c, d];
+    let (half, zero) = (like.all(0.5), like.all(0.0));
+    let (strain, earlier) = (green(like, deform(inverse, now)), green(like, deform(inverse, before)));
+    let [u, v] = deform(inverse, along);
+    let mut felt_as = strain;
+    for (felt_as, before) in felt_as.iter_mut().zip(earlier) {
+        *felt_as = felt(like, step, *felt_as, before);
+    }
+    let [warp, weft, shear] = stress(params, area * like.all(step.h * step.h), felt_as);
+    let (p, q) = (u * warp + v * shear, v * weft + u * shear);
+    let push = [-(p * a + q * c), -(p * b + q * d)];
+    let [x, y, z] = stress(params, area, strain);
+    let (differ, mean) = (half * (x - y), half * (x + y));
+    let tension = lanes::max(mean + (differ * differ + z * z).sqrt(), zero) / area;
+    let most = like.all(f32::INFINITY);
+    let sound = area.simd_gt(zero) & tension.simd_lt(most) & is_finite(push[0]) & is_finite(push[1]);
+    ([u, v], tension, push, sound.to_bitmask())
+}
+
+#[inline(always)]
+fn deform<F: Eight>([a, b, c, d]: [F; 4], [_, e, f]: [Vectors<F>; 3]) -> [Vectors<F>; 2] {
+    [e * a + f * b, e * c + f * d]
+}
+
+#[inline(always)]
+fn green<F: Eight>(like: F, [u, v]: [Vectors<F>; 2]) -> [F; 3] {
+    let (half, one) = (like.all(0.5), like.all(1.0));
+    [half * (u.dot(u) - one), half * (v.dot(v) - one), u.dot(v)]
+}
+
+/// Stresses × `scale`, an area by which they act.
+#[inline(always)]
+fn stress<F: Eight>(params: &ShellParams, scale: F, [warp, weft, shear]: [F; 3]) -> [F; 3] {
+    let [first, second] = params.stretch;
+    [scale * scale.all(first) * warp, scale * scale.all(second) * weft, scale * scale.all(params.shear) * shear]
+}
+
+/// As [`Fold::of`]: the slopes, the feet, how far open it is, and a bit for each of eight that is sound.
+#[inline(always)]
+fn fold_of<F: Eight>(
+    like: F,
+    step: &Step,
+    rest: F,
+    [now, along, before]: [[Vectors<F>; 4]; 3],
+) -> ([Vectors<F>; 2], [F; 2], F, u32) {
+    let [_, e, f, g] = along;
+    let edge = e.length();
+    let [m, n] = normals(along);
+    let slope = [m * (edge / m.dot(m)), n * (edge / n.dot(n))];
+    let foot = [f.dot(e) / (edge * edge), g.dot(e) / (edge * edge)];
+    let angle = fold_angle(like, now);
+    let mut open = turn(like, angle - rest);
+    if step.lag > 0.0 {
+        open = felt(like, step, open, open - turn(like, angle - fold_angle(like, before)));
+    }
+    let most = like.all(f32::INFINITY);
+    let feet = foot[0].abs().simd_lt(most) & foot[1].abs().simd_lt(most);
+    let sound = is_finite(slope[0]) & is_finite(slope[1]) & feet & open.abs().simd_lt(most);
+    (slope, foot, open, sound.to_bitmask())
+}
+
+/// As [`Step::felt`].
+#[inline(always)]
+fn felt<F: Eight>(like: F, step: &Step, now: F, before: F) -> F {
+    now + like.all(step.lag / step.h) * (now - before)
+}
+
+#[inline(always)]
+fn normals<F: Eight>([_, e, f, g]: [Vectors<F>; 4]) -> [Vectors<F>; 2] {
+    [e.cross(f), g.cross(e)]
+}
+
+#[inline(always)]
+fn fold_angle<F: Eight>(like: F, ways: [Vectors<F>; 4]) -> F {
+    let [m, n] = normals(ways);
+    let (m, n) = (m / m.length(), n / n.length());
+    angle(like, m.dot(n), n.cross(m).dot(ways[1]) / ways[1].length())
+}
+
+#[inline(always)]
+fn turn<F: Eight>(like: F, angle: F) -> F {
+    let (half, whole) = (like.all(PI), like.all(TAU));
+    let up = angle.simd_lt(like.all(-PI)).select(angle + whole, angle);
+    angle.simd_gt(half).select(angle - whole, up)
+}
+
+#[inline(always)]
+fn is_finite<F: Eight>(v: Vectors<F>) -> F {
+    let [x, y, z] = v.0;
+    let most = x.all(f32::INFINITY);
+    x.abs().simd_lt(most) & y.abs().simd_lt(most) & z.abs().simd_lt(most)
+}
+
+/// As [`crate::math::angle`].
+#[inline(always)]
+fn angle<F: Eight>(like: F, x: F, y: F) -> F {
+    let (one, zero) = (like.all(1.0), like.all(0.0));
+    let (wide, high) = (x.abs(), y.abs());
+    let steep = high.simd_gt(wide);
+    let (less, more) = (steep.select(wide, high), steep.select(high, wide));
+    let slope = less / more;
+    let far = slope.simd_gt(like.all(0.414_213_56));
+    let start = far.select(like.all(FRAC_PI_4), zero);
+    let t = far.select((slope - one) / (slope + one), slope);
+    let z = t * t;
+    let series = like.all(-0.138_776_86) + z * like.all(0.080_537_44);
+    let series = like.all(-0.333_329_5) + z * (like.all(0.199_777_1) + z * series);
+    let eighth = start + (t + t * z * series);
+    let quarter = steep.select(like.all(FRAC_PI_2) - eighth, eighth);
+    let half = x.simd_lt(zero).select(like.all(PI) - quarter, quarter);
+    more.simd_gt(zero).select(y.simd_lt(zero).select(lanes::negated(half), half), zero)
+}
