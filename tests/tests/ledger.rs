@@ -5,8 +5,8 @@ use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
 use pointmass::{
     Adaptive, Books, Cause, ClothSprings, ContactMaterial, Drag, Emitter, Force, Gravity, Heap, Impact, Ledger,
-    LifeEvent, Measures, Meetings, Method, MutualGravity, Observer, Particle, Phase, Rk4, Scene, Sheet, Size, Spring,
-    SpringParams, System, Time, Varied, Vec3, Verlet,
+    LifeEvent, Measures, Meetings, Method, MutualGravity, Observer, Particle, Phase, Report, Rk4, Scene, Sheet, Size,
+    Spring, SpringParams, System, Time, Varied, Vec3, Verlet,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, point};
@@ -322,7 +322,7 @@ impl Observer for Counter {
 #[test]
 fn two_may_watch_as_one() {
     busy(|scene| {
-        let watched = |by: &mut dyn FnMut(&mut System<Heap>, Time)| {
+        let watched = |by: &mut dyn FnMut(&mut System<Heap>, Time) -> Report| {
             let mut system = System::with(Heap::new(SIZE));
             system.start(scene, 3).expect("it fits");
             for i in 1..=90 {
@@ -334,10 +334,10 @@ fn two_may_watch_as_one() {
         system.start(scene, 3).expect("it fits");
         let alone = || (Ledger::new(&system, scene), Counter::default());
         let ((mut ledger, mut counter), mut both) = (alone(), alone());
-        let unseen = watched(&mut |system, instant| drop(system.step_to(scene, instant)));
-        let one = watched(&mut |system, instant| drop(system.step_to_observed(scene, instant, &mut ledger)));
-        let other = watched(&mut |system, instant| drop(system.step_to_observed(scene, instant, &mut counter)));
-        let two = watched(&mut |system, instant| drop(system.step_to_observed(scene, instant, &mut both)));
+        let unseen = watched(&mut |system, instant| system.step_to(scene, instant));
+        let one = watched(&mut |system, instant| system.step_to_observed(scene, instant, &mut ledger));
+        let other = watched(&mut |system, instant| system.step_to_observed(scene, instant, &mut counter));
+        let two = watched(&mut |system, instant| system.step_to_observed(scene, instant, &mut both));
         assert_eq!([one, other, two], [unseen; 3]);
         assert_eq!((ledger.books(), counter.0), (both.0.books(), both.1.0));
         assert!(counter.0.iter().all(|&calls| calls > 0), "{:?}", counter.0);
