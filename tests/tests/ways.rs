@@ -131,6 +131,7 @@ fn fountain(random: &mut Random, plane: &Plane, scale: f32) -> Emitter<Sphere> {
         speed: Varied { mean: 2.0 * scale, half_width: scale },
         spread: Spread::Uniform(1.0),
         elasticity: Varied { mean: 0.5, half_width: 0.5 },
+        radius: Varied::exactly(one_of(random, &[0.0, 0.0, 0.02, 0.15]) * scale),
         lifetime: Varied { mean: one_of(random, &[0.0, 0.01, 0.5]), half_width: one_of(random, &[0.0, 0.3]) },
         ..Emitter::new(form, one_of(random, &[0.0, 100.0, 2000.0]))
     }
@@ -240,4 +241,41 @@ fn no_way_leads_beyond_the_end_of_time() {
         assert_eq!(ends[0], ends[1]);
         assert!((ends[0].0.x - 0.25).abs() < 1e-6, "{}", ends[0].0);
     }
+}
+
+/// Balls are born so near to things that they touch them in the step of their birth, over a ground that has no end.
+#[test]
+fn newborn_balls_meet_things_whoever_looks_on() {
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let mut hits = 0;
+    for (number, radius) in [0.0, 0.18, 0.2, 0.21].into_iter().enumerate() {
+        for scale in [1.0, 1e-3, 40.0] {
+            let around = |i: usize| {
+                let at = Vec3::new([0.32, -0.62, 0.0][i], 0.6, [0.0, 0.0, 0.32][i]) * scale;
+                Shape::Box(Cuboid { min: at, max: at + Vec3::splat(0.3 * scale) })
+            };
+            let list = [around(0), Shape::Plane(ground), around(1), around(2)];
+            let scenery = Scenery::new(list.iter().map(|thing: &Form| (thing.clone(), thing.bounds())).collect());
+            let form = Sphere { center: Vec3::Y * 0.75 * scale, radius: 0.1 * scale };
+            let emitter = Emitter {
+                speed: Varied { mean: 2.0 * scale, half_width: scale },
+                spread: Spread::Uniform(1.5),
+                radius: Varied::exactly(radius * scale),
+                elasticity: Varied::exactly(0.5),
+                ..Emitter::new(form, 900.0)
+            };
+            let g = Gravity { acceleration: Vec3::NEG_Y * 9.8 * scale };
+            let scene = Scene { emitters: &emitter, forces: &g, colliders: &scenery, ..Scene::EMPTY };
+            let [mut unseen, mut seen] = [started(&scene, 400, 5), started(&scene, 400, 5)];
+            for step in 1..=20 {
+                let reports = [
+                    unseen.step_to(&scene, Time::frame(step, 60)),
+                    seen.step_to_observed(&scene, Time::frame(step, 60), &mut Onlooker(Attention::Phases)),
+                ];
+                assert_eq!((reports[0], unseen.hash()), (reports[1], seen.hash()), "{number}, {scale}, step {step}");
+            }
+            hits += seen.totals().hits;
+        }
+    }
+    assert!(hits > 500, "{hits}");
 }

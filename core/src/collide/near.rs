@@ -14,7 +14,7 @@ pub(super) const BLOCK: usize = 1280;
 /// A bit for each row of a block.
 pub(super) type Marks = [u8; BLOCK / LANES];
 
-/// Who may touch a face, and who of them may lie on it as well: others are too far from it when the step begins.
+/// Those who may touch a face, and those of them who may lie on it as well: others are too far from it when the step begins.
 pub(super) struct Near {
     pub(super) touching: Marks,
     pub(super) lying: Marks,
@@ -203,7 +203,8 @@ impl<const AXIS: usize, const BENT: bool> Kernel for Slab<'_, AXIS, BENT> {
                 // Who lies on a floor begins no higher than this; who is below it is held to lie until that is looked at closer.
                 let (is_near, is_low) = (most.simd_ge(low), x0.simd_le(high));
                 let rows = const { &rows_of_bits(AXIS) };
-                let (touching, lying) = (is_near & least.simd_le(high), is_near & is_low);
+                let touching = is_near & least.simd_le(high);
+                let lying = touching & is_low;
                 [rows[touching.to_bitmask() as usize % 256], rows[lying.to_bitmask() as usize % 256]]
             },
         )

@@ -43,7 +43,7 @@ impl Words {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
     /// The words that it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
-    /// the particles, and is in the system's hash.
+    /// the particles, and is in the system's hash. Parts find theirs by their order, so a scene whose constraints change in number or kind is to be started anew.
     pub kept: Words,
     /// The words that it keeps through a step; at the step's beginning they hold anything.
     pub step: Words,

@@ -95,6 +95,7 @@ impl TileSweep<'_, '_> {
             self.go_on(waiting);
         }
         let known = face.map_or(Facing::Nothing, Facing::Face);
+        self.are_points &= self.tile.attributes.lives.radius[old..len].iter().all(|&radius| radius == 0.0);
         let gains = !never_gain(&self.tile.attributes.elasticity[old..len]);
         for first in (old..len).step_by(u64::BITS as usize) {
             let rows = first..len.min(first + u64::BITS as usize);

@@ -54,8 +54,9 @@ pub(super) struct Body {
     pub(super) drive: [Vec3; 2],
     /// The number of its particles that live, plus one; zero before it is seen for the first time.
     known: u32,
-    /// What is called out to it; the least number among those that sleep with it.
+    /// Marks that others call out to it.
     pub(super) calls: u32,
+    /// The least number among those that sleep with it.
     pub(super) island: u32,
     /// One more than how many contacts away from it bodies wake by a blow to it.
     pub(super) rings: u32,

@@ -29,7 +29,7 @@ pub(super) struct Lists {
     known: u32,
     /// 1 if any body is awake.
     pub(super) awake: u32,
-    /// How many pairs press on each other, and how many places of the scenery on bodies; none known where the list is new.
+    /// The number of pairs that press on each other, and of places of the scenery on bodies; none known where the list is new.
     pub(super) presses: [u32; 2],
     pub(super) counted: u32,
 }

@@ -50,7 +50,7 @@ pub(super) struct Places {
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Pack {
-    /// How many they are, and the most points that any of them has.
+    /// The number of them, and the most points that any has.
     pub(super) count: u32,
     pub(super) most: u32,
     /// A bit for each whose first, and whose second, is pushed.
@@ -60,7 +60,7 @@ pub(super) struct Pack {
     pub(super) bodies: [[u32; ABREAST]; 2],
     /// The tick of the clock of passes at which each was gone over last.
     pub(super) seen: [u32; ABREAST],
-    /// How many points each has.
+    /// The number of points of each.
     pub(super) points: Row,
     /// The normal, and two directions across it, in the world.
     pub(super) normal: [Row; 3],
@@ -91,7 +91,7 @@ impl Pack {
         }
     }
 
-    /// How many they are.
+    /// Their number.
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
         (self.count as usize).min(ABREAST)
@@ -317,7 +317,7 @@ impl<F: Eight> Pose<F> {
         }
     }
 
-    /// What of their frames is in the world.
+    /// Those parts of their frames that are in the world.
     #[inline(always)]
     pub(super) fn turned(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
         let [a, b, c] = self.rotation;

@@ -184,7 +184,10 @@ impl Solver<'_> {
                 break;
             }
         }
-        self.last.copy_from_slice(self.vectors.shift.get(..self.last.len()).unwrap_or(&[]));
+        for (last, &shift) in self.last.iter_mut().zip(&*self.vectors.shift) {
+            // Which bits a NaN has depends on the machine, and these words are in the hash.
+            *last = if shift.is_finite() { shift } else { Vec3::ZERO };
+        }
         if !self.walls.iter().any(Wall::presses) {
             let Vectors { rows, weight, shift, .. } = &mut self.vectors;
             levels.rid_of_drift(
@@ -198,7 +201,7 @@ impl Solver<'_> {
 
     /// Begins with as much of the last sub-step's shifts as is best in the norm of energy, and tells the energy of that.
     fn go_on(&mut self, levels: &Levels<'_>) -> f32 {
-        if self.last.is_empty() {
+        if self.last.is_empty() || levels.is_empty() {
             return 0.0;
         }
         let Vectors { r, p, weight, .. } = &mut self.vectors;
