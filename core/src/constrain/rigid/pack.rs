@@ -324,7 +324,7 @@ impl<F: Eight> Pose<F> {
         a * x + b * y + c * z
     }
 
-    /// What of the world is in their frames.
+    /// Those parts of the world that are in their frames.
     #[inline(always)]
     pub(super) fn turned_back(&self, v: Vectors<F>) -> Vectors<F> {
         let [a, b, c] = self.rotation;
