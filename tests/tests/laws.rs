@@ -17,6 +17,7 @@ mod extend;
 mod faces;
 #[path = "forces/main.rs"]
 mod forces;
+mod foreign_words;
 mod goals;
 mod hulls;
 mod identity;

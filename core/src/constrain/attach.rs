@@ -20,7 +20,7 @@ pub struct Attach<P, M> {
 }
 
 impl<P: AsRef<[u32]>, M> Attach<P, M> {
-    /// The words that it keeps: each particle's place in the frame, and whether these are known.
+    /// The words that it keeps: each particle's place in the frame, and whose these are.
     fn kept(&self) -> usize {
         3 * self.particles.as_ref().len() + 1
     }
@@ -29,11 +29,7 @@ impl<P: AsRef<[u32]>, M> Attach<P, M> {
 impl<P: AsRef<[u32]>, M: Script> Attach<P, M> {
     /// Takes the places of all in the frame as it is at the sub-step's beginning, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
-        let Some((known, places)) = kept.split_first_mut() else { return };
-        if *known != 0 {
-            return;
-        }
-        *known = 1;
+        let Some((_, places)) = kept.split_first_mut() else { return };
         let frame = self.motion.frame(bodies.substep.during[0]);
         for (&number, place) in self.particles.as_ref().iter().zip(places.chunks_exact_mut(3)) {
             if let Some(row) = bodies.row_of_start(number) {
@@ -66,7 +62,9 @@ impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
 
     /// Sends them off straight to where they have to be.
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        self.learn(bodies, share.kept.fixed);
+        if share.claim(*b"atta", &[self.particles.as_ref().len()]) {
+            self.learn(bodies, share.kept.fixed);
+        }
         let (end, h) = (self.motion.frame(bodies.substep.during[1]), bodies.substep.seconds());
         if h > 0.0 {
             self.each(bodies, share.kept.fixed, |bodies, row, place| {

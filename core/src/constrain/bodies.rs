@@ -225,6 +225,12 @@ pub struct Share<'a> {
 }
 
 impl Share<'_> {
+    /// Makes the kept words those of a constraint of a kind and of such sizes; tells whether they have to be learnt anew.
+    pub(super) fn claim(&mut self, kind: [u8; 4], sizes: &[usize]) -> bool {
+        let mix = |name: u32, &size: &usize| (name ^ size as u32).wrapping_mul(0x9e37_79b1).rotate_left(13);
+        self.kept.claim(sizes.iter().fold(u32::from_le_bytes(kind), mix) | 1)
+    }
+
     /// The shares of its parts, one after the other.
     pub(super) fn parts(&mut self) -> Parts<'_> {
         let Share { kept, step, scratch, capacity } = self;

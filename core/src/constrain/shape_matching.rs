@@ -88,10 +88,6 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
     /// Takes the places of all as they are at the first sub-step's beginning.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
         let Some((head, places)) = kept.split_at_mut_checked(HEAD) else { return };
-        if head[0] != 0 {
-            return;
-        }
-        head[0] = 1;
         head[1..].copy_from_slice(&Turn::NONE.0.map(f32::to_bits));
         let mut first = None;
         for (&number, place) in self.particles.as_ref().iter().zip(places.chunks_exact_mut(3)) {
@@ -230,7 +226,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        self.learn(bodies, share.kept.fixed);
+        if share.claim(*b"shap", &[self.particles.as_ref().len()]) {
+            self.learn(bodies, share.kept.fixed);
+        }
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -43,7 +43,8 @@ impl Words {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
     /// The words that it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
-    /// the particles, and is in the system's hash. Parts find theirs by their order, so a scene whose constraints change in number or kind is to be started anew.
+    /// the particles, and is in the system's hash. Parts find theirs by their order: where constraints change in number, kind or size between
+    /// steps, those of the engine begin anew ([`Kept::claim`]).
     pub kept: Words,
     /// The words that it keeps through a step; at the step's beginning they hold anything.
     pub step: Words,
@@ -164,6 +165,28 @@ pub struct Kept<'m> {
 }
 
 impl Kept<'_> {
+    /// Makes the words those of the constraint of a `name`, which the first of the others tells; tells whether they have been somebody else's,
+    /// or nobody's: all of them but that one are zeros then. A name above zero that differs by kind and by size keeps a system that goes
+    /// on with other constraints than it was started with from reading what these have left.
+    ///
+    /// ```
+    /// use pointmass::constrain::Kept;
+    ///
+    /// let (mut rows, mut fixed) = ([7, 7], [7, 7, 7]);
+    /// let mut kept = Kept { rows: &mut rows, fixed: &mut fixed };
+    /// assert!(kept.claim(0x1234) && !kept.claim(0x1234));
+    /// assert_eq!((kept.rows, kept.fixed), (&mut [0, 0][..], &mut [0x1234, 0, 0][..]));
+    /// ```
+    pub fn claim(&mut self, name: u32) -> bool {
+        let is_new = self.fixed.first().is_some_and(|&first| first != name);
+        if is_new {
+            self.rows.fill(0);
+            self.fixed.fill(0);
+            self.fixed[0] = name;
+        }
+        is_new
+    }
+
     /// The same, lent on.
     pub(crate) fn again(&mut self) -> Kept<'_> {
         Kept { rows: self.rows, fixed: self.fixed }

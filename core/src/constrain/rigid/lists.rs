@@ -23,6 +23,8 @@ const CANDIDATES: usize = 24;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Lists {
+    /// The name of whose all that is.
+    name: u32,
     /// Pairs in the list.
     pub(super) pairs: u32,
     /// 1 if there is a list.
@@ -181,7 +183,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     before.iter_mut().zip(&*kept.pairs).for_each(|(before, pair)| before.take(pair));
     let len = admit(bodies, kept, forms, candidates, before);
     sleep::miss(kept.bodies, before, &kept.pairs[..len]);
-    *kept.lists = Lists { pairs: len as u32, known: 1, ..bytemuck::Zeroable::zeroed() };
+    *kept.lists = Lists { name: kept.lists.name, pairs: len as u32, known: 1, ..bytemuck::Zeroable::zeroed() };
 }
 
 /// Writes down the numbers of all two that may touch, in whatever order; returns how many that are.

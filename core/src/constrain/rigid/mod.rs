@@ -311,6 +311,8 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let Sizes { bodies: count, particles, balls } = self.sizes();
+        share.claim(*b"rigi", &[count, particles, balls]);
         let Some(mut kept) = Kept::of(share.kept.fixed, self.sizes()) else { return };
         let mut is_news = false;
         if bodies.substep.number == 0 {

@@ -125,6 +125,7 @@ where
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        share.claim(*b"shee", &self.counts());
         let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()) else { return };
         if !rest.is_known() && !self.is_empty() && self.fault().is_none() {
             rest.learn(self, bodies, share.scratch);

@@ -38,6 +38,8 @@ impl Face {
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Facts {
+    /// The name of whose all that is.
+    name: u32,
     /// 1 if the rest is known.
     known: u32,
     /// How far particles may be pushed before it has to be looked again who is near whom \[m\].
@@ -109,7 +111,7 @@ impl<'m> Rest<'m> {
         self.part();
         self.sort();
         let edge = self.own(scratch);
-        *self.facts = Facts { known: 1, budget: 0.25 * min(thinnest, edge) };
+        *self.facts = Facts { known: 1, name: self.facts.name, budget: 0.25 * min(thinnest, edge) };
     }
 
     /// Finds the sheets: what hangs together.

@@ -167,19 +167,17 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     fn rest<'m>(&self, kept: &'m mut [u32]) -> Rest<'m> {
         let [_, triangles, hinges] = self.counts();
         let mut rest = kept;
-        let known = take(&mut rest, 1);
+        let _name = take(&mut rest, 1);
         let cells = whole(take(&mut rest, triangles.saturating_mul(KEPT[0])));
         let bends = whole(take(&mut rest, hinges.saturating_mul(KEPT[1])));
         let room = Room::of(self.counts());
         let graphs = take(&mut rest, room.words());
-        Rest { known, cells, bends, graphs, last: whole(take(&mut rest, 3 * room.rows[0])) }
+        Rest { cells, bends, graphs, last: whole(take(&mut rest, 3 * room.rows[0])) }
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
-        let Rest { known, cells, bends, graphs, .. } = self.rest(kept);
-        let [0] = *known else { return };
-        known[0] = 1;
+        let Rest { cells, bends, graphs, .. } = self.rest(kept);
         mesh::make(&Room::of(self.counts()), self.triangles.as_ref(), graphs, work);
         let place = |corner: u32| {
             let row = bodies.row_of_start(*self.particles.as_ref().get(corner as usize)?)?;
@@ -201,9 +199,8 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 }
 
-/// All that a shell keeps: whether it is known, its triangles and folds at rest, and its graphs.
+/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, and its last shifts.
 struct Rest<'m> {
-    known: &'m mut [u32],
     cells: &'m mut [Cell],
     bends: &'m mut [Bend],
     graphs: &'m mut [u32],
@@ -245,7 +242,9 @@ where
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        self.learn(bodies, share.kept.fixed, share.scratch);
+        if share.claim(*b"shel", &self.counts()) {
+            self.learn(bodies, share.kept.fixed, share.scratch);
+        }
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -185,19 +185,16 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         [longest, if self.strands().nth(1).is_some() { WIDE } else { 1 }]
     }
 
-    /// What is kept of all joints, and whether that is known.
-    fn joints<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [u32], &'m mut [Joint]) {
-        let mut rest = kept;
-        let known = take(&mut rest, 1);
-        let whole = rest.len() - rest.len() % KEPT;
-        (known, bytemuck::cast_slice_mut(take(&mut rest, whole)))
+    /// What is kept of all joints, behind the word that tells whose it is.
+    fn joints<'m>(&self, kept: &'m mut [u32]) -> &'m mut [Joint] {
+        let joints = kept.get_mut(1..).unwrap_or_default();
+        let whole = joints.len() - joints.len() % KEPT;
+        bytemuck::cast_slice_mut(&mut joints[..whole])
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
-        let (known, joints) = self.joints(kept);
-        let [0] = *known else { return };
-        known[0] = 1;
+        let joints = self.joints(kept);
         for [first, last] in self.strands() {
             let Some(joints) = joints.get_mut(first..last) else { return };
             let place = |number: usize| {
@@ -252,7 +249,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     where
         [f32; LANES]: Pod,
     {
-        let (_, joints) = self.joints(share.kept.fixed);
+        let joints = self.joints(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let rows = take(&mut rest, longest * LANES);
         let (mut pieces, mut count) = ([Piece::default(); LANES], 0);
@@ -330,7 +327,9 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        self.learn(bodies, share.kept.fixed);
+        if share.claim(*b"stra", &[self.particles.as_ref().len(), self.points.as_ref().len()]) {
+            self.learn(bodies, share.kept.fixed);
+        }
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
