@@ -111,19 +111,14 @@ impl<'a, const N: usize> Curve<'a, N> {
         if !self.smooth {
             return Piece { from: a, powers: [way, 0.0, 0.0], share, width };
         }
-        let (rise, fall) = (self.slope(number, from) * width, self.slope(number, next) * width);
-        Piece { from: a, powers: [rise, 3.0 * way - 2.0 * rise - fall, rise + fall - 2.0 * way], share, width }
+        Piece::smooth([a, b], [self.slope(number, from), self.slope(number, next)], width, share)
     }
 
     /// Steffen's slope at a key.
     fn slope(&self, number: usize, key: usize) -> f32 {
         let before = key.checked_sub(1).and_then(|from| self.secant(number, from));
         match (before, self.secant(number, key)) {
-            (Some((s, width)), Some((t, next))) => {
-                let middle = (s * next + t * width) / (width + next);
-                let steepest = s.abs().min(t.abs()).min(0.5 * middle.abs());
-                if s * t > 0.0 { 2.0 * steepest.copysign(s) } else { 0.0 }
-            }
+            (Some(s), Some(t)) => inner_slope(s, t),
             (None, Some((s, width))) => end_slope((s, width), self.secant(number, key + 1)),
             (Some((s, width)), None) => {
                 let further = key.checked_sub(2).and_then(|from| self.secant(number, from));
@@ -156,23 +151,42 @@ impl Piece {
         Self { from: value, powers: [0.0; 3], share: 0.0, width: 1.0 }
     }
 
+    /// The cubic between two values with these slopes, and an instant at a share of the width between them.
+    #[inline]
+    pub(crate) fn smooth([from, to]: [f32; 2], slopes: [f32; 2], width: f32, share: f32) -> Self {
+        let (way, [rise, fall]) = (to - from, [slopes[0] * width, slopes[1] * width]);
+        Self { from, powers: [rise, 3.0 * way - 2.0 * rise - fall, rise + fall - 2.0 * way], share, width }
+    }
+
+    #[inline]
     pub(crate) fn value(&self) -> f32 {
         let ([rise, square, cube], share) = (self.powers, self.share);
         self.from + (rise + (square + cube * share) * share) * share
     }
 
     /// Its first derivative by the instant.
+    #[inline]
     pub(crate) fn slope(&self) -> f32 {
         let ([rise, square, cube], share) = (self.powers, self.share);
         (rise + (2.0 * square + 3.0 * cube * share) * share) / self.width
     }
 
     /// Its second derivative: here, at its first key and at its second, between which that goes straight.
+    #[inline]
     pub(crate) fn bends(&self) -> [f32; 3] {
         let [_, square, cube] = self.powers;
         let factor = 2.0 / (self.width * self.width);
-        [self.share, 0.0, 1.0].map(|share| (square + 3.0 * cube * share) * factor)
+        let at = |share: f32| (square + 3.0 * cube * share) * factor;
+        [at(self.share), at(0.0), at(1.0)]
     }
+}
+
+/// Steffen's slope at a key between two others, of the lines on both sides of it.
+#[inline]
+pub(crate) fn inner_slope((s, width): (f32, f32), (t, next): (f32, f32)) -> f32 {
+    let middle = (s * next + t * width) / (width + next);
+    let steepest = s.abs().min(t.abs()).min(0.5 * middle.abs());
+    if s * t > 0.0 { 2.0 * steepest.copysign(s) } else { 0.0 }
 }
 
 /// Steffen's slope at an end, of the line beside it and the one after.

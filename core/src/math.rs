@@ -143,6 +143,8 @@ pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
         long_division(number, by)
     } else if by == 0 {
         (0, 0)
+    } else if number >> 64 == 0 {
+        (number as u64 / by, number as u64 % by)
     } else {
         ((number / by as u128) as u64, (number % by as u128) as u64)
     }

@@ -43,10 +43,15 @@ pub trait Script: Sync {
         false
     }
 
-    /// A box around all that something within `bounds` ever reaches.
+    /// A box around all that something within `bounds` ever reaches, seen from where its drift has brought it.
     fn reach(&self, bounds: &Aabb) -> Aabb {
         let _ = bounds;
         EVERYWHERE
+    }
+
+    /// The velocity at which all of that drifts along from time zero on \[m/s\].
+    fn drift(&self) -> Vec3 {
+        Vec3::ZERO
     }
 }
 
@@ -141,6 +146,9 @@ impl<T: Script + ?Sized> Script for &T {
     fn reach(&self, bounds: &Aabb) -> Aabb {
         (**self).reach(bounds)
     }
+    fn drift(&self) -> Vec3 {
+        (**self).drift()
+    }
 }
 
 impl<T: Script> Script for Option<T> {
@@ -152,6 +160,9 @@ impl<T: Script> Script for Option<T> {
     }
     fn reach(&self, bounds: &Aabb) -> Aabb {
         self.as_ref().map_or(*bounds, |script| script.reach(bounds))
+    }
+    fn drift(&self) -> Vec3 {
+        self.as_ref().map_or(Vec3::ZERO, Script::drift)
     }
 }
 
@@ -284,6 +295,10 @@ impl<K: Keys> Script for Motion<K> {
         self.spin == 0.0 && self.swing == Vec3::ZERO && self.drift == Vec3::ZERO && self.keys.is_empty()
     }
 
+    fn drift(&self) -> Vec3 {
+        self.drift
+    }
+
     fn reach(&self, bounds: &Aabb) -> Aabb {
         let Aabb { min, max } = *bounds;
         let keys = self.keys.all();
@@ -298,14 +313,7 @@ impl<K: Keys> Script for Motion<K> {
         // What goes from key to key never goes beyond both.
         let first = keys.first().map_or(Vec3::ZERO, |key| key.place);
         let places = keys.iter().fold([first; 2], |[least, most], key| [low(least, key.place), high(most, key.place)]);
-        let (mut min, mut max) = (min - swing + places[0], max + swing + places[1]);
-        for axis in 0..3 {
-            if self.drift[axis] > 0.0 {
-                max[axis] = f32::INFINITY;
-            } else if self.drift[axis] < 0.0 {
-                min[axis] = f32::NEG_INFINITY;
-            }
-        }
+        let (min, max) = (min - swing + places[0], max + swing + places[1]);
         // Rounding turns and moves by a little; what is endless is everywhere.
         let far = high(low(max.abs(), Vec3::MAX), low(min.abs(), Vec3::MAX)) + self.pivot.abs();
         let room = (far + largest(places[0]) + largest(places[1])) * (16.0 * f32::EPSILON);

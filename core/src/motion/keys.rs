@@ -1,7 +1,7 @@
 //! Motion from key to key: smooth curves through places and rotations.
 
 use super::Frame;
-use crate::curve::{Curve, Over, Piece};
+use crate::curve::{Curve, Over, Piece, inner_slope};
 use crate::math::{divide, length, sin_cos_turns};
 use crate::time::Time;
 use core::f32::consts::TAU;
@@ -97,14 +97,14 @@ struct Led {
 
 impl Led {
     /// Three pieces of curves.
-    fn of(pieces: [Piece; 3]) -> Self {
-        let bends = pieces.map(|piece| piece.bends());
-        let [bend, first, second] = [0, 1, 2].map(|at| Vec3::from(bends.map(|bends| bends[at])));
+    fn of([x, y, z]: [Piece; 3]) -> Self {
+        let [[bend_x, from_x, to_x], [bend_y, from_y, to_y], [bend_z, from_z, to_z]] =
+            [x.bends(), y.bends(), z.bends()];
         Self {
-            value: Vec3::from(pieces.map(|piece| piece.value())),
-            slope: Vec3::from(pieces.map(|piece| piece.slope())),
-            bend,
-            most: length(first).max(length(second)),
+            value: Vec3::new(x.value(), y.value(), z.value()),
+            slope: Vec3::new(x.slope(), y.slope(), z.slope()),
+            bend: Vec3::new(bend_x, bend_y, bend_z),
+            most: length(Vec3::new(from_x, from_y, from_z)).max(length(Vec3::new(to_x, to_y, to_z))),
         }
     }
 }
@@ -119,14 +119,14 @@ pub(super) fn led(free: &Frame, keys: &[Key], period: f32, at: Time) -> Frame {
     let next = keys.partition_point(|key| Time::from_seconds(key.time) <= at);
     let since = next.checked_sub(1).map_or(0.0, |from| (at - Time::from_seconds(keys[from].time)).seconds());
     // A cubic between two keys hangs on one more on either side.
-    let numbers: [_; 4] = core::array::from_fn(|place| numbers(keys, period, next + place));
-    let curve = Curve { keys: &numbers, over: Over::Seconds, smooth: true };
-    let piece = |number| match next {
-        0 => Piece::still(numbers[2][number]),
-        _ if next == keys.len() => Piece::still(numbers[1][number]),
-        _ => curve.piece(number, 2, since),
+    let at = |place: usize| numbers(keys, period, next + place);
+    let around = [at(0), at(1), at(2), at(3)];
+    let piece = |number: usize| match next {
+        0 => Piece::still(around[2][number]),
+        _ if next == keys.len() => Piece::still(around[1][number]),
+        _ => between(&around, number, since),
     };
-    let [place, angles] = [1, 4].map(|number| Led::of([number, number + 1, number + 2].map(piece)));
+    let (place, angles) = (Led::of([piece(1), piece(2), piece(3)]), Led::of([piece(4), piece(5), piece(6)]));
     let turning = Turning::of(&angles);
     let spin = turning.turn * free.spin;
     Frame {
@@ -141,6 +141,26 @@ pub(super) fn led(free: &Frame, keys: &[Key], period: f32, at: Time) -> Frame {
     }
 }
 
+/// The way of one of the numbers from the second of four keys to the third, so long after the former.
+#[inline]
+fn between(around: &[[f32; 7]; 4], number: usize, since: f32) -> Piece {
+    let width = |from: usize| around[from + 1][0] - around[from][0];
+    let widths = [width(0), width(1), width(2)];
+    if !widths.iter().all(|&width| width > 0.0) {
+        // They are so late that a second more is lost in rounding.
+        return Curve { keys: around, over: Over::Seconds, smooth: true }.piece(number, 2, since);
+    }
+    let [from, to] = [around[1][number], around[2][number]];
+    if from == to {
+        // Slopes beside a level line are level.
+        return Piece::still(from);
+    }
+    let secant = |from: usize| ((around[from + 1][number] - around[from][number]) / widths[from], widths[from]);
+    let (before, own, after) = (secant(0), secant(1), secant(2));
+    let slopes = [inner_slope(before, own), inner_slope(own, after)];
+    Piece::smooth([from, to], slopes, widths[1], since / widths[1])
+}
+
 /// The numbers of the key two before the `number`-th, and of those that there would be beyond the ends: what stands still before the
 /// first and after the last, or what goes on as it began.
 fn numbers(keys: &[Key], period: f32, number: usize) -> [f32; 7] {
@@ -148,6 +168,9 @@ fn numbers(keys: &[Key], period: f32, number: usize) -> [f32; 7] {
         let (Vec3 { x, y, z }, turned) = (key.place, key.rotation);
         [key.time, x, y, z, turned.x, turned.y, turned.z]
     };
+    if let Some(key) = number.checked_sub(2).and_then(|number| keys.get(number)) {
+        return row(key);
+    }
     let (first, last) = (row(&keys[0]), row(&keys[keys.len() - 1]));
     let goes_on = period > 0.0 && last[0] - first[0] >= period;
     // What it gains in each round.
@@ -156,7 +179,6 @@ fn numbers(keys: &[Key], period: f32, number: usize) -> [f32; 7] {
         [numbers[0] + by, numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6]]
     };
     match number.checked_sub(2) {
-        Some(number) if number < keys.len() => row(&keys[number]),
         Some(number) if goes_on => moved(row(&keys[(number + 1) % keys.len()]), 1.0),
         Some(_) => later(last, 1.0),
         None if goes_on => moved(row(&keys[keys.len() - 2]), -1.0),
@@ -173,7 +195,9 @@ struct Turning {
 
 impl Turning {
     fn of(angles: &Led) -> Self {
-        let [(sx, cx), (sy, cy), (sz, cz)] = angles.value.to_array().map(|angle| sin_cos_turns(angle * (1.0 / TAU)));
+        let trig = |angle: f32| if angle == 0.0 { (angle, 1.0) } else { sin_cos_turns(angle * (1.0 / TAU)) };
+        let Vec3 { x, y, z } = angles.value;
+        let ((sx, cx), (sy, cy), (sz, cz)) = (trig(x), trig(y), trig(z));
         // The axes about which x and y turn what is turned about them already, as those after them have turned these.
         let y = Vec3::new(-sz, cz, 0.0);
         let x = Vec3::new(cz * cy, sz * cy, -sy);

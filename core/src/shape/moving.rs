@@ -1,7 +1,7 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
 use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Ride, Segment};
-use crate::math::{clamp, largest, length, max, sqrt};
+use crate::math::{clamp, high, largest, length, low, max, sqrt};
 use crate::motion::{EVERYWHERE, Frame, Motion, Script};
 use crate::time::Time;
 use glam::Vec3;
@@ -44,13 +44,16 @@ pub struct Moving<C, M = Motion> {
     motion: Option<M>,
     /// All that it ever reaches.
     reach: Aabb,
+    /// All that it reaches but for its drift \[m/s\].
+    around: Aabb,
+    drift: Vec3,
 }
 
 impl<C> Moving<C> {
     /// Something that stands still.
     #[must_use]
     pub const fn still(collider: C) -> Self {
-        Self { collider, motion: None, reach: EVERYWHERE }
+        Self { collider, motion: None, reach: EVERYWHERE, around: EVERYWHERE, drift: Vec3::ZERO }
     }
 }
 
@@ -59,9 +62,10 @@ impl<C, M: Script> Moving<C, M> {
     #[must_use]
     pub fn new(collider: C, bounds: &Aabb, motion: M) -> Self {
         if motion.is_still() {
-            return Self { collider, motion: None, reach: *bounds };
+            return Self { reach: *bounds, around: *bounds, drift: Vec3::ZERO, motion: None, collider };
         }
-        Self { collider, reach: motion.reach(bounds), motion: Some(motion) }
+        let (around, drift) = (motion.reach(bounds), motion.drift());
+        Self { reach: onward(around, drift), around, drift, motion: Some(motion), collider }
     }
 
     /// A box around all that it ever reaches.
@@ -69,6 +73,32 @@ impl<C, M: Script> Moving<C, M> {
     pub const fn reach(&self) -> Aabb {
         self.reach
     }
+}
+
+impl<C, M> Moving<C, M> {
+    /// Tells whether it is far from a box all the time between two instants: then nobody need ask where it is, which takes longer.
+    fn is_far(&self, bounds: &Aabb, during: [Time; 2]) -> bool {
+        let [from, to] = during.map(|instant| self.drift * instant.seconds());
+        let (least, most) = (self.around.min + low(from, to), self.around.max + high(from, to));
+        // Rounding moves by a little, and who touches by no more than that may be hit.
+        let size = largest(least) + largest(most) + largest(bounds.min) + largest(bounds.max);
+        let room = 2e-5 + 128.0 * f32::EPSILON * size;
+        let (least, most) = (least - room, most + room);
+        (bounds.min.cmpgt(most) | bounds.max.cmplt(least)).any()
+    }
+}
+
+/// A box that drifts on from where it is without end.
+fn onward(around: Aabb, drift: Vec3) -> Aabb {
+    let Aabb { mut min, mut max } = around;
+    for axis in 0..3 {
+        if drift[axis] > 0.0 {
+            max[axis] = f32::INFINITY;
+        } else if drift[axis] < 0.0 {
+            min[axis] = f32::NEG_INFINITY;
+        }
+    }
+    Aabb { min, max }
 }
 
 /// The number of pieces into which a segment has to be cut to be straight enough in a frame that moves so from one to the other: a
@@ -91,8 +121,11 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
     /// and which side an end lies on is a pure function of it and the instant.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let Some(motion) = &self.motion else { return self.collider.first_hit(segment) };
+        if self.is_far(&segment.bounds(), segment.during) {
+            return None;
+        }
         let [start, end] = segment.during;
-        let ends = [start, end].map(|instant| motion.frame(instant));
+        let ends = [motion.frame(start), motion.frame(end)];
         let count = pieces(segment, &ends);
         let mut from = (ends[0].local(segment.from), start);
         for piece in 1..=count {
@@ -131,6 +164,9 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
 
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let Some(motion) = &self.motion else { return self.collider.contacts(center, reach, at, visit) };
+        if self.is_far(&Aabb { min: center - reach, max: center + reach }, [at; 2]) {
+            return;
+        }
         let frame = motion.frame(at);
         self.collider.contacts(frame.local(center), reach, at, &mut |contact| {
             let normal = frame.turn * contact.normal;
