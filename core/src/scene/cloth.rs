@@ -31,7 +31,8 @@ pub struct Cloth {
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub shell: Option<ShellParams>,
     /// How thick it is \[m\]: it then touches itself, the other cloths that have a thickness, and the scenery, without passing through
-    /// any. Without one only its particles meet the scenery.
+    /// any; and `boxes`, which its particles meet as balls of that diameter. Without one only its particles meet the scenery, and it passes
+    /// through boxes.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub thickness: Option<f32>,
     /// How the air pushes it: that of all `wind` among the scene's forces, or still air.

@@ -64,7 +64,11 @@ impl Start {
                 Form::Sheet(_) => None,
             };
             let first = self.particles.len() as u32;
-            let (particles, springs) = cloth.make(mesh.as_deref(), first);
+            let (mut particles, springs) = cloth.make(mesh.as_deref(), first);
+            if let Some(thickness) = cloth.thickness.filter(|_| !file.boxes.is_empty()) {
+                // To bodies its particles are balls, as thick as it is.
+                particles.iter_mut().for_each(|particle| particle.radius = 0.5 * thickness);
+            }
             let refuse = |field: &str, message: String| {
                 Err(SceneError::value(format!("cloths[{i}].{field}"), message).in_file(meshes.path))
             };

@@ -5,6 +5,7 @@ mod curved;
 mod falling;
 mod friction;
 mod lists;
+mod under_bodies;
 
 use cloths::{Cloths, G, cotton, crosses, square};
 use pointmass::constrain::SheetContacts;
