@@ -3,11 +3,11 @@
 use pointmass::emit::Emit;
 use pointmass::force::Friction;
 use pointmass::motion::{Frame, Key, Motion, Script};
-use pointmass::shape::{Aabb, Cuboid, Line, Moving};
+use pointmass::shape::{Aabb, Collider, Cuboid, Line, Moving, Segment};
 use pointmass::{
     Attach, ContactMaterial, Distance, Emitter, Gravity, Method, Particle, Scene, Spread, Spring, Time, Varied, Vec3,
 };
-use pointmass_tests::{run, started};
+use pointmass_tests::{Random, run, started};
 
 const KEYS: [Key; 4] = [
     Key { time: 0.25, place: Vec3::ZERO, rotation: Vec3::ZERO },
@@ -301,4 +301,54 @@ fn a_scene_file_says_keys_for_all_three_and_reads_back_what_it_wrote() {
             file.and_then(|file| Model::load(&file, "bad.json", &mut ()).map(|_| ())).expect_err(to).to_string();
         assert!(error.contains(at), "{to}: {error}");
     }
+}
+
+/// Goes as another script does, of which nobody knows how far that leads.
+struct Anywhere<'a>(&'a Motion<[Key; 4]>);
+
+impl Script for Anywhere<'_> {
+    fn frame(&self, at: Time) -> Frame {
+        self.0.frame(at)
+    }
+}
+
+#[test]
+fn what_is_known_to_have_gone_elsewhere_is_met_as_if_it_were_not_known() {
+    let mut random = Random::new(5);
+    let (mut hits, mut near) = (0, 0);
+    for round in 0..40_u8 {
+        // Some drift fast, some are far from the origin, and some only turn.
+        let far = random.vector(1.0) * [0.0, 10.0, 1e4][usize::from(round % 3)];
+        let drift = random.vector(1.0) * [0.0, 1.0, 300.0][usize::from(round / 3 % 3)];
+        let motion = Motion {
+            pivot: far,
+            drift,
+            spin: random.between(-1.0, 1.0),
+            axis: Vec3::new(0.2, 1.0, 0.1),
+            swing: random.vector(0.5),
+            frequency: 0.7,
+            ..Motion::with_keys(KEYS, if round % 2 == 0 { 3.0 } else { 0.0 })
+        };
+        let half = Vec3::new(0.3, 0.05, 0.2);
+        let slab = Cuboid { min: far - half, max: far + half };
+        let bounds = Aabb { min: slab.min, max: slab.max };
+        let (known, unknown) = (Moving::new(slab, &bounds, &motion), Moving::new(slab, &bounds, Anywhere(&motion)));
+        for _ in 0..400 {
+            let start = Time::from_seconds(random.between(0.0, 9.0));
+            let during = [start, start + Time::from_seconds(random.between(1e-3, 0.05))];
+            let frame = motion.frame(start);
+            let from = frame.place + random.vector(1.0);
+            let to = from + random.vector(0.5) + drift * (during[1] - during[0]).seconds();
+            let segment = Segment { from, to, radius: [0.0, 0.1][usize::from(round & 1)], during };
+            assert_eq!(known.first_hit(&segment), unknown.first_hit(&segment), "{round}: {segment:?}");
+            hits += u32::from(known.first_hit(&segment).is_some());
+            let [mut those, mut others] = [Vec::new(), Vec::new()];
+            let reach = random.between(0.0, 1.0);
+            known.contacts(from, reach, start, &mut |contact| those.push(*contact));
+            unknown.contacts(from, reach, start, &mut |contact| others.push(*contact));
+            assert_eq!(those, others, "{round}: {from} {reach}");
+            near += u32::from(!those.is_empty());
+        }
+    }
+    assert!(hits > 300 && near > 3000, "{hits} {near}");
 }
