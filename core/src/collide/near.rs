@@ -56,9 +56,8 @@ impl<'a> Balls<'a> {
         let third = balls.third();
         let radius = largest_of(balls.radius);
         match reached {
-            // From where they are, they have come no faster than that, and by the velocity of one end: the control point beyond that lies
-            // on the way between the ends, and the other a third of the time by the change of velocity back from there. What rounding
-            // adds is in the room for it.
+            // Where they are, no coordinate is beyond `place`. They began no farther from there than the way at the largest speed, and
+            // a control point is a third of that way from its end.
             Some(Extents { place, speed, change }) => {
                 Block { balls, change: Some(change), fastest: speed, largest: place + (time + third) * speed, radius }
             }
