@@ -69,8 +69,9 @@ pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};
 pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
-    Aerodynamics, AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones, MutualGravity,
-    Penalty, PowerLaw, Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity, Wind,
+    Aerodynamics, AllPairs, Coulomb, CylinderDrag, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones,
+    MutualGravity, Penalty, PowerLaw, Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity,
+    Wind,
 };
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;

@@ -112,6 +112,12 @@ pub enum Form {
     Mesh(String),
 }
 
+/// The flows of all winds among a scene's forces.
+pub(super) fn winds(forces: &[ForceKind]) -> Vec<FlowKind> {
+    let winds = forces.iter().filter_map(|force| if let ForceKind::Wind(wind) = force { Some(wind) } else { None });
+    winds.flat_map(|wind| wind.field.iter().copied()).collect()
+}
+
 /// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
 const MOST: u64 = 1 << 22;
 
@@ -186,8 +192,7 @@ impl Cloth {
     pub(super) fn aerodynamics(&self, mesh: Option<&MeshBuf>, first: u32, forces: &[ForceKind]) -> Option<ForceKind> {
         let Air { density, drag, lift, friction } = self.air?;
         let triangles = self.triangles(mesh).iter().map(|corners| corners.map(|corner| first + corner)).collect();
-        let winds = forces.iter().filter_map(|force| if let ForceKind::Wind(wind) = force { Some(wind) } else { None });
-        let field: Vec<FlowKind> = winds.flat_map(|wind| wind.field.iter().copied()).collect();
+        let field = winds(forces);
         Some(ForceKind::Aerodynamics(Aerodynamics { triangles, field, density, drag, lift, friction }))
     }
 

@@ -129,6 +129,7 @@ impl Start {
                 return Err(SceneError::value(format!("strands[{i}]"), message).in_file(meshes.path));
             }
             self.particles.extend(grown.particles);
+            self.forces.extend(tuft.air_drag(&grown.lock, &file.forces));
             self.constraints.extend(grown.constraints);
             self.locks.push(grown.lock);
         }
