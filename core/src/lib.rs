@@ -61,7 +61,7 @@ pub use collide::{Impulse, Meetings};
 pub use constrain::ConstraintKind;
 pub use constrain::{
     Attach, Constraint, Contacts, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, SheetContacts, Shell,
-    ShellParams, StrandParams, Strands,
+    ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands,
 };
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;

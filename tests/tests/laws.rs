@@ -43,6 +43,7 @@ mod shell_meshes;
 mod sleep;
 mod springs;
 mod storage;
+mod strain_limits;
 mod strands;
 mod tunnelling;
 #[path = "walls/main.rs"]

@@ -55,6 +55,7 @@ pub(crate) enum Kind {
     Attach,
     Shell,
     Strands,
+    StrainLimits,
     Boxes,
 }
 
@@ -67,6 +68,7 @@ impl Kind {
             Self::Attach => "attach",
             Self::Shell => "shell",
             Self::Strands => "strands",
+            Self::StrainLimits => "strain limits",
             Self::Boxes => "boxes",
         }
     }
@@ -227,6 +229,7 @@ fn kind(constraint: &ConstraintKind) -> Kind {
         ConstraintKind::Attach(_) => Kind::Attach,
         ConstraintKind::Shell(_) => Kind::Shell,
         ConstraintKind::Strands(_) => Kind::Strands,
+        ConstraintKind::StrainLimits(_) => Kind::StrainLimits,
     }
 }
 
@@ -246,6 +249,7 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
             (cluster.compliance, 1.0 / masses.sum::<f64>())
         }
         ConstraintKind::Attach(_) => (0.0, 0.0),
+        ConstraintKind::StrainLimits(limits) => (limits.params.compliance, 4.0 * lightest()),
         ConstraintKind::Strands(strands) => {
             let at = |i: u32| model.particles[i as usize].position;
             let edges =

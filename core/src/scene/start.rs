@@ -81,6 +81,7 @@ impl Start {
                 );
             }
             self.constraints.extend(cloth.shell(mesh.as_deref(), first, particles.len() as u32));
+            self.constraints.extend(cloth.strain_limits(mesh.as_deref(), first));
             cloth.touch(mesh.as_deref(), first, particles.len() as u32, &mut self.contacts);
             self.cloths.push([self.particles.len(), self.springs.len()]);
             self.particles.extend(particles);
