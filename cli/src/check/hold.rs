@@ -128,6 +128,11 @@ impl Hold {
                 let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
                 Self { place, gives: hung(model, shell), ..this }
             }
+            ConstraintKind::StrainLimits(limits) => {
+                let at = limits.triangles.first().map(|&[first, ..]| place(model, 0, first as usize));
+                let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
+                Self { place, ..this }
+            }
             ConstraintKind::Strands(strands) => {
                 let at = strands.particles.first().map(|&first| place(model, 0, first as usize));
                 let place = at.filter(|at| at.starts_with("strands")).unwrap_or(this.place);
@@ -187,6 +192,7 @@ impl Hold {
             Kind::Cluster => format!("as one: exact at rest{}", fades()),
             Kind::Attach => "go where the script says".into(),
             Kind::Strands => format!("each as one, directly{}", fades()),
+            Kind::StrainLimits => format!("triangle by triangle, there and back, 16 times at most{}", fades()),
             Kind::Shell => format!("as one, {} iterations at most{}", self.iterations(h), fades()),
             Kind::Boxes => {
                 let half = self.half.unwrap_or(0.0);
