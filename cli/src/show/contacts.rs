@@ -1,5 +1,6 @@
 //! What touches: blows since the picture before, and what lies on scenery, on bodies and on balls now.
 
+use super::AHEAD;
 use glam::{Mat3, Vec3};
 use pointmass::constrain::{Hull, HullList};
 use pointmass::draw::{Instance, Line, arrow, body};
@@ -39,8 +40,8 @@ impl Observer for Blows {
 }
 
 impl Blows {
-    /// The lines of all contacts, and forgets the blows. Arrows of blows, that show where these have pushed, are as long as `length` says \[m\]; blows that
-    /// took away no more than a pixel's way in the time between two pictures \[s\] are rest.
+    /// The lines of all contacts, and forgets the blows. Arrows show where blows have pushed: as far as what came goes in a tenth of a second, but no
+    /// farther than `length` \[m\]. Blows that took away no more than a pixel's way in the time between two pictures \[s\] are rest.
     pub(crate) fn lines(&mut self, system: &System<Heap>, model: &Model, length: f32, between: f32) -> Vec<Line> {
         let scene = model.scene();
         let state = system.state(&scene);
@@ -58,7 +59,8 @@ impl Blows {
             let others = [Some(blow.id), blow.other];
             let is_body = others.into_iter().flatten().any(|id| bodies.has(id.serial()));
             let radius = system.row(blow.id).filter(|_| !is_body).map_or(0.0, |row| state.radius[row]);
-            lines.all.extend(arrow(blow.place - blow.normal * radius, blow.normal * length, BLOW));
+            let long = length.min(blow.closing * AHEAD);
+            lines.all.extend(arrow(blow.place - blow.normal * radius, blow.normal * long, BLOW));
         }
         lines.all
     }
