@@ -145,6 +145,11 @@ impl<'m> Cast<'m> {
         shapes && matches!(self.style, None | Some(Style::Shapes)) || self.style.is_none() && are_joined
     }
 
+    /// The length of arrows \[m\].
+    pub(crate) fn arrow(&self) -> f32 {
+        self.arrow
+    }
+
     /// Waits for the picture at an instant \[s\].
     pub(crate) fn wait_for(&mut self, instant: f64) {
         if let Some(shutter) = &mut self.shutter {

@@ -6,7 +6,7 @@ use crate::formats::{PictureFormat, pictures as format};
 use crate::outcome::{Failure, Outcome, print, tell, warn};
 use crate::parse::number;
 use crate::progress::Progress;
-use crate::show::Show;
+use crate::show::{Blows, Show};
 use crate::stage::{boxes, moves, pictures, stage, viewpoint};
 use crate::style::Style;
 use crate::viewpoint::{Crowd, Looking, Viewpoint};
@@ -104,12 +104,23 @@ impl Timing {
         self.frame_time / self.substeps as f64
     }
 
-    /// Steps from the picture before to picture `frame`, if there is one before.
-    fn step_to(&self, frame: u64, world: &mut World, progress: &mut Progress, mut look_on: impl FnMut(&World)) {
+    /// Steps from the picture before to picture `frame`, if there is one before, and notes the blows if they are to be shown.
+    fn step_to(
+        &self,
+        frame: u64,
+        world: &mut World,
+        progress: &mut Progress,
+        mut blows: Option<&mut Blows>,
+        mut look_on: impl FnMut(&World),
+    ) {
         for substep in 1..=self.substeps {
             if frame > 0 {
                 let elapsed = (frame - 1) as f64 + substep as f64 / self.substeps as f64;
-                world.step_to(Time::from_seconds_f64(elapsed * self.frame_time));
+                let end = Time::from_seconds_f64(elapsed * self.frame_time);
+                match &mut blows {
+                    Some(blows) => world.step_observed(end, *blows),
+                    None => world.step_to(end),
+                };
                 look_on(world);
                 progress.step(world.system.len());
             }
@@ -147,7 +158,7 @@ fn look(args: &Render, world: &mut World, timing: &Timing, progress: &mut Progre
     let begin = (world.system.clone(), world.pace.clone());
     let mut crowd = Crowd::new();
     for frame in 0..=timing.frames {
-        timing.step_to(frame, world, progress, |_| ());
+        timing.step_to(frame, world, progress, None, |_| ());
         crowd.meet(&world.system);
     }
     (world.system, world.pace) = begin;
@@ -168,14 +179,20 @@ fn film(
     let shutter = timing.shutter(args, world);
     let mut cast = Cast::new(&world.model, args.style, &args.show, shutter, from, &mut memory);
     let studio = Studio::new(args, world, from, &cast)?;
+    let mut blows = args.show.contains(&Show::Contacts).then(Blows::default);
     let (mut shots, mut drawn) = (Vec::new(), Vec::new());
     for frame in 0..=timing.frames {
         cast.wait_for(frame as f64 * timing.frame_time);
-        timing.step_to(frame, world, progress, |world| cast.remember(&world.system, &world.model));
+        let remember = |world: &World| cast.remember(&world.system, &world.model);
+        timing.step_to(frame, world, progress, blows.as_mut(), remember);
         let camera = from.turned(args.looking.orbit.unwrap_or(0.0) * timing.part(frame));
         cast.look(&camera);
         // Every picture remembers where things were in the one before, drawn or not.
-        let seen = cast.see(&world.system, &world.file, &world.model, args.size.0);
+        let mut seen = cast.see(&world.system, &world.file, &world.model, args.size.0);
+        if let Some(blows) = &mut blows {
+            let lines = blows.lines(&world.system, &world.model, cast.arrow(), timing.frame_time as f32);
+            seen.iter_mut().for_each(|seen| seen.segments.extend_from_slice(&lines));
+        }
         if frame < timing.frames && sink.keeps_only_last() {
             continue;
         }

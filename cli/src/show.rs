@@ -1,5 +1,9 @@
 //! Lines that pictures show on top of what is seen: how things work.
 
+mod contacts;
+
+pub(crate) use contacts::Blows;
+
 use clap::ValueEnum;
 use pointmass::draw::{Line, arrows, cells, velocities};
 use pointmass::force::State;
@@ -21,6 +25,8 @@ pub(crate) enum Show {
     Sources,
     /// Surfaces that particles vanish at, with arrows toward them
     Sinks,
+    /// Blows since the picture before, as red arrows; and lines where something lies on scenery, orange, or on balls and bodies, blue
+    Contacts,
 }
 
 /// The time that velocities are drawn for \[s\].
@@ -30,7 +36,7 @@ const AHEAD: f32 = 0.1;
 const ARROWS: u32 = 8;
 const STROKES: usize = 5;
 
-/// All lines that are to be shown of a state, but for springs; arrows as long as `length` says \[m\].
+/// All lines that are to be shown of a state, but for springs and contacts; arrows as long as `length` says \[m\].
 pub(crate) fn lines(show: &[Show], state: &State<'_>, model: &Model, index: Structure, length: f32) -> Vec<Line> {
     let mut all = Vec::new();
     // They are always drawn in one order, whatever that of the asking.
@@ -55,7 +61,7 @@ pub(crate) fn lines(show: &[Show], state: &State<'_>, model: &Model, index: Stru
                     all.extend(written(ARROWS as usize * STROKES, draw));
                 }
             }
-            Show::Springs | Show::Strain => {}
+            Show::Springs | Show::Strain | Show::Contacts => {}
         }
     }
     all

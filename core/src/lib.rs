@@ -61,7 +61,7 @@ pub use collide::{Impulse, Meetings};
 pub use constrain::ConstraintKind;
 pub use constrain::{
     Attach, Constraint, Contacts, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, SheetContacts, Shell,
-    ShellParams, StrandParams, Strands,
+    ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands,
 };
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
@@ -69,8 +69,9 @@ pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};
 pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
-    Aerodynamics, AllPairs, Coulomb, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones, MutualGravity,
-    Penalty, PowerLaw, Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity, Wind,
+    Aerodynamics, AllPairs, Coulomb, CylinderDrag, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones,
+    MutualGravity, Penalty, PowerLaw, Pressure, QuadraticDrag, Radial, Relaxation, Sink, Spring, SpringList, Viscosity,
+    Wind,
 };
 pub use glam::{Mat3, Vec3};
 pub use hash::Fnv;

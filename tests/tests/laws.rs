@@ -44,6 +44,7 @@ mod shell_meshes;
 mod sleep;
 mod springs;
 mod storage;
+mod strain_limits;
 mod strands;
 mod tunnelling;
 #[path = "walls/main.rs"]

@@ -55,6 +55,7 @@ pub(crate) enum Kind {
     Attach,
     Shell,
     Strands,
+    StrainLimits,
     Boxes,
 }
 
@@ -67,6 +68,7 @@ impl Kind {
             Self::Attach => "attach",
             Self::Shell => "shell",
             Self::Strands => "strands",
+            Self::StrainLimits => "strain limits",
             Self::Boxes => "boxes",
         }
     }
@@ -125,6 +127,11 @@ impl Hold {
                 let at = shell.particles.first().map(|&first| place(model, 0, first as usize));
                 let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
                 Self { place, gives: hung(model, shell), ..this }
+            }
+            ConstraintKind::StrainLimits(limits) => {
+                let at = limits.triangles.first().map(|&[first, ..]| place(model, 0, first as usize));
+                let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
+                Self { place, ..this }
             }
             ConstraintKind::Strands(strands) => {
                 let at = strands.particles.first().map(|&first| place(model, 0, first as usize));
@@ -185,6 +192,7 @@ impl Hold {
             Kind::Cluster => format!("as one: exact at rest{}", fades()),
             Kind::Attach => "go where the script says".into(),
             Kind::Strands => format!("each as one, directly{}", fades()),
+            Kind::StrainLimits => format!("triangle by triangle, there and back, 16 times at most{}", fades()),
             Kind::Shell => format!("as one, {} iterations at most{}", self.iterations(h), fades()),
             Kind::Boxes => {
                 let half = self.half.unwrap_or(0.0);
@@ -227,6 +235,7 @@ fn kind(constraint: &ConstraintKind) -> Kind {
         ConstraintKind::Attach(_) => Kind::Attach,
         ConstraintKind::Shell(_) => Kind::Shell,
         ConstraintKind::Strands(_) => Kind::Strands,
+        ConstraintKind::StrainLimits(_) => Kind::StrainLimits,
     }
 }
 
@@ -246,6 +255,7 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
             (cluster.compliance, 1.0 / masses.sum::<f64>())
         }
         ConstraintKind::Attach(_) => (0.0, 0.0),
+        ConstraintKind::StrainLimits(limits) => (limits.params.compliance, 4.0 * lightest()),
         ConstraintKind::Strands(strands) => {
             let at = |i: u32| model.particles[i as usize].position;
             let edges =

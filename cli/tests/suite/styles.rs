@@ -86,7 +86,59 @@ fn what_works_unseen_is_shown_where_it_is_asked_for() {
     assert!(changed(&all, &bare) > 500);
     let turned = drawn(&folder, "--style points --threads 3 --show sinks,sources,springs,velocities,index");
     assert!(turned == all, "another order of asking is another picture");
-    folder.misuse("render a.json --out a.png", &[("--show all", "index, velocities, springs, strain, sources, sinks")]);
+    folder.misuse(
+        "render a.json --out a.png",
+        &[("--show all", "index, velocities, springs, strain, sources, sinks, contacts")],
+    );
+}
+
+/// The pixels of about a colour.
+fn like(image: &RgbImage, color: [u8; 3]) -> usize {
+    image.pixels().filter(|pixel| (0..3).all(|i| pixel[i].abs_diff(color[i]) < 60)).count()
+}
+
+#[test]
+fn contacts_are_shown_where_something_lies_or_is_struck() {
+    let scene = |more: &str| {
+        format!(
+            r#"{{
+            "run": {{"duration": 0.4, "dt": 0.01, "substeps": 4}}, "background": [0, 0, 0], "ambient": [0.2, 0.2, 0.2],
+            "camera": {{"eye": [0, 0.5, 5], "towards": [0, 0, -1], "up": [0, 1, 0], "xfov": 0.4}},
+            "forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}],
+            "scenery": [{{"shape": {{"plane": {{"point": [0, 0, 0], "normal": [0, 1, 0]}}}}}}], {more}
+        }}"#
+        )
+    };
+    let [orange, blue, red] = [[250, 170, 40], [60, 200, 230], [240, 60, 60]];
+    let seen = |more: &str| {
+        let folder = Folder::with("a.json", scene(more));
+        let image = drawn(&folder, "--style points --fps 10 --show contacts");
+        let bare = drawn(&folder, "--style points --fps 10");
+        [orange, blue, red].map(|color| like(&image, color).saturating_sub(like(&bare, color)))
+    };
+    // In the air, at rest on the ground, and on another ball.
+    let ball =
+        |y: f32, elasticity: f32| format!(r#"{{"position": [0, {y}, 0], "radius": 0.3, "elasticity": {elasticity}}}"#);
+    let balls = |list: &str| format!(r#""contacts": {{"position": {{}}}}, "particles": [{list}]"#);
+    let [lies, touches, struck] = seen(&balls(&ball(1.8, 0.0)));
+    assert_eq!([lies, touches, struck], [0; 3], "a ball that falls touches nothing yet");
+    let [lies, touches, struck] = seen(&balls(&ball(0.3, 0.0)));
+    assert!(lies > 3 && touches == 0 && struck == 0, "{lies} {touches} {struck}");
+    let [lies, touches, struck] = seen(&balls(&format!("{}, {}", ball(0.3, 0.0), ball(0.9, 0.0))));
+    assert!(lies > 3 && touches > 3 && struck == 0, "{lies} {touches} {struck}");
+    // It falls 0.5 m in 0.32 s and bounces, without contacts between balls as with them.
+    for more in [balls(&ball(0.8, 1.0)), format!(r#""particles": [{}]"#, ball(0.8, 1.0))] {
+        let [_, touches, struck] = seen(&more);
+        assert!(struck > 6 && touches == 0, "{more}: {touches} {struck}");
+    }
+    // Two boxes, the upper on the lower; a sheet of cloth on the ground.
+    let boxes = r#""boxes": [{"sides": [0.6, 0.3, 0.6], "mass": 1, "position": [0, 0.15, 0]}, {"sides": [0.3, 0.3, 0.3], "mass": 1, "position": [0, 0.45, 0]}]"#;
+    let [lies, touches, struck] = seen(boxes);
+    assert!(lies > 6 && touches > 6 && struck == 0, "{lies} {touches} {struck}");
+    let cloth = r#""cloths": [{"form": {"sheet": {"corner": [-0.5, 0.0055, -0.5], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [4, 4]}}, "density": 0.2,
+        "shell": {"stretch": [1000, 1000], "shear": 100}, "thickness": 0.01}]"#;
+    let [lies, ..] = seen(cloth);
+    assert!(lies > 6, "{lies}");
 }
 
 /// A cloth that hangs from its upper edge by soft springs is red where it is stretched, and grey in the picture of its beginning.

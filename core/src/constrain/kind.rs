@@ -1,6 +1,8 @@
 //! The constraints that a scene file names.
 
-use super::{Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, Strands};
+use super::{
+    Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands,
+};
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
 
@@ -21,6 +23,8 @@ pub enum ConstraintKind {
     Shell(Shell<Vec<u32>, Vec<[u32; 3]>, Vec<Hinge>>),
     /// Hair, wires, stalks: strands that stretch, bend and twist.
     Strands(Strands<Vec<u32>, Vec<u32>>),
+    /// Triangles that stretch and shear only so far.
+    StrainLimits(StrainLimits<Vec<[u32; 3]>>),
 }
 
 impl ConstraintKind {
@@ -33,6 +37,7 @@ impl ConstraintKind {
             Self::Attach(attach) => attach,
             Self::Shell(shell) => shell,
             Self::Strands(strands) => strands,
+            Self::StrainLimits(limits) => limits,
         }
     }
 
@@ -46,6 +51,7 @@ impl ConstraintKind {
             Self::Attach(attach) => attach.motion.fault().map(|why| ("motion", why)),
             Self::Shell(shell) => shell.fault().or_else(|| twice(&shell.particles)),
             Self::Strands(strands) => strands.fault().or_else(|| twice(&strands.particles)),
+            Self::StrainLimits(limits) => limits.fault(),
         }
     }
 
@@ -54,7 +60,9 @@ impl ConstraintKind {
         let (list, closed) = match self {
             Self::Distance(distance) => (&distance.ends[..], false),
             Self::Rope(rope) => (&rope.particles[..], rope.closed),
-            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) | Self::Strands(_) => (&[][..], false),
+            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) | Self::Strands(_) | Self::StrainLimits(_) => {
+                (&[][..], false)
+            }
         };
         let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
@@ -70,6 +78,7 @@ impl ConstraintKind {
             Self::Attach(attach) => &attach.particles,
             Self::Shell(shell) => &shell.particles,
             Self::Strands(strands) => &strands.particles,
+            Self::StrainLimits(limits) => limits.triangles.as_flattened(),
         }
     }
 }

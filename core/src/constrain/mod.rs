@@ -16,6 +16,7 @@ mod rope;
 mod shape_matching;
 mod sheet_contacts;
 mod shell;
+mod strain_limits;
 mod strand;
 mod turn;
 mod union;
@@ -35,6 +36,7 @@ pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
 pub use sheet_contacts::SheetContacts;
 pub use shell::{Shell, ShellParams};
+pub use strain_limits::{StrainLimitParams, StrainLimits};
 pub use strand::{StrandParams, Strands};
 
 pub use crate::cloth::Hinge;

@@ -1,7 +1,7 @@
 //! The forces that a file can name.
 
 #[cfg(feature = "alloc")]
-use super::{Aerodynamics, FlowKind, Pressure, Relaxation, Wind};
+use super::{Aerodynamics, CylinderDrag, FlowKind, Pressure, Relaxation, Wind};
 use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
 #[cfg(feature = "alloc")]
 use alloc::string::String;
@@ -59,4 +59,6 @@ kinds! {
     Pressure = "pressure", Pressure<Vec<[u32; 3]>>, if "alloc";
     /// Lift and drag of triangles in the air.
     Aerodynamics = "aerodynamics", Aerodynamics<Vec<[u32; 3]>, Vec<FlowKind>>, if "alloc";
+    /// Drag of what is long and thin, by the segment.
+    CylinderDrag = "cylinder_drag", CylinderDrag<Vec<[u32; 2]>, Vec<FlowKind>>, if "alloc";
 }

@@ -21,16 +21,15 @@ impl SceneFile {
             }
         }
         for (i, force) in self.forces.iter().enumerate() {
-            let triangles = match force {
-                ForceKind::Pressure(pressure) => &pressure.triangles,
-                ForceKind::Aerodynamics(air) => &air.triangles,
+            let (name, size, corners) = match force {
+                ForceKind::Pressure(pressure) => ("triangles", 3, pressure.triangles.as_flattened()),
+                ForceKind::Aerodynamics(air) => ("triangles", 3, air.triangles.as_flattened()),
+                ForceKind::CylinderDrag(air) => ("segments", 2, air.segments.as_flattened()),
                 _ => continue,
             };
-            for (k, corners) in triangles.iter().enumerate() {
-                if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= count) {
-                    let message = format!("particle {corner} is out of range; there are {count}, from 0");
-                    return Err(SceneError::value(format!("forces[{i}].triangles[{k}]"), message));
-                }
+            if let Some((k, corner)) = corners.iter().enumerate().find(|&(_, &corner)| corner as usize >= count) {
+                let message = format!("particle {corner} is out of range; there are {count}, from 0");
+                return Err(SceneError::value(format!("forces[{i}].{name}[{}]", k / size), message));
             }
         }
         Ok(())
@@ -95,6 +94,12 @@ pub(super) fn check_force(at: &str, force: &ForceKind) -> Checked {
         ForceKind::Aerodynamics(air) => {
             let numbers =
                 [("density", air.density), ("drag", air.drag), ("lift", air.lift), ("friction", air.friction)];
+            numbers.into_iter().try_for_each(|(field, number)| zero_or_more(&name(field), number))?;
+            check_flows(&name, &air.field)
+        }
+        ForceKind::CylinderDrag(air) => {
+            above_zero(&name("diameter"), air.diameter)?;
+            let numbers = [("density", air.density), ("viscosity", air.viscosity), ("friction", air.friction)];
             numbers.into_iter().try_for_each(|(field, number)| zero_or_more(&name(field), number))?;
             check_flows(&name, &air.field)
         }

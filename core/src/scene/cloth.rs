@@ -3,7 +3,7 @@
 use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
 use super::{PatchBuf, SceneError, SceneFile, SheetContactsBuf};
 use crate::cloth::{ClothSprings, Sheet, mesh_hinges, mesh_springs};
-use crate::constrain::{ConstraintKind, Shell, ShellParams};
+use crate::constrain::{ConstraintKind, Shell, ShellParams, StrainLimitParams, StrainLimits};
 use crate::force::{Aerodynamics, FlowKind, ForceKind, Pressure, Spring};
 use crate::math::length;
 use crate::particles::{Color, Particle};
@@ -44,6 +44,9 @@ pub struct Cloth {
     /// Springs break where a step ends with them so many times as long as at rest.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub breaks_at: Option<f32>,
+    /// How far its triangles stretch, shrink and shear at the most, if it is made of springs: these give what softness it has within.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub limits: Option<StrainLimitParams>,
     /// Gas inside, if it is a closed mesh seen from outside anticlockwise.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub gas: Option<Gas>,
@@ -113,6 +116,12 @@ pub enum Form {
     Mesh(String),
 }
 
+/// The flows of all winds among a scene's forces.
+pub(super) fn winds(forces: &[ForceKind]) -> Vec<FlowKind> {
+    let winds = forces.iter().filter_map(|force| if let ForceKind::Wind(wind) = force { Some(wind) } else { None });
+    winds.flat_map(|wind| wind.field.iter().copied()).collect()
+}
+
 /// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
 const MOST: u64 = 1 << 22;
 
@@ -174,6 +183,14 @@ impl Cloth {
         Some(ConstraintKind::Shell(Shell { particles, triangles, hinges, warp, params }))
     }
 
+    /// What keeps its strain within limits, if it has any; its first particle is this one.
+    pub(super) fn strain_limits(&self, mesh: Option<&MeshBuf>, first: u32) -> Option<ConstraintKind> {
+        let params = self.limits?;
+        let warp = if let Form::Sheet(sheet) = &self.form { sheet.sides[0] } else { Vec3::X };
+        let triangles = self.triangles(mesh).iter().map(|corners| corners.map(|corner| first + corner)).collect();
+        Some(ConstraintKind::StrainLimits(StrainLimits { triangles, warp, params }))
+    }
+
     /// Adds it to the sheets that touch each other, if it has a thickness; its particles are those from `first` on, so many.
     pub(super) fn touch(&self, mesh: Option<&MeshBuf>, first: u32, count: u32, contacts: &mut SheetContactsBuf) {
         let Some(thickness) = self.thickness else { return };
@@ -187,8 +204,7 @@ impl Cloth {
     pub(super) fn aerodynamics(&self, mesh: Option<&MeshBuf>, first: u32, forces: &[ForceKind]) -> Option<ForceKind> {
         let Air { density, drag, lift, friction } = self.air?;
         let triangles = self.triangles(mesh).iter().map(|corners| corners.map(|corner| first + corner)).collect();
-        let winds = forces.iter().filter_map(|force| if let ForceKind::Wind(wind) = force { Some(wind) } else { None });
-        let field: Vec<FlowKind> = winds.flat_map(|wind| wind.field.iter().copied()).collect();
+        let field = winds(forces);
         Some(ForceKind::Aerodynamics(Aerodynamics { triangles, field, density, drag, lift, friction }))
     }
 
@@ -236,9 +252,31 @@ impl Cloth {
         if let Some(thickness) = self.thickness {
             above_zero(&format!("{at}.thickness"), thickness)?;
         }
+        self.check_limits(at)?;
         let Some(Air { density, drag, lift, friction }) = self.air else { return Ok(()) };
         let numbers = [("density", density), ("drag", drag), ("lift", lift), ("friction", friction)];
         numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+}
+
+impl Cloth {
+    fn check_limits(&self, at: &str) -> Result<(), SceneError> {
+        let Some(params) = self.limits else { return Ok(()) };
+        if self.shell.is_some() {
+            let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
+            return Err(SceneError::value(format!("{at}.limits"), message));
+        }
+        let Some((name, message)) = params.fault() else { return Ok(()) };
+        let value = match name {
+            "warp" => format!("{:?}", params.warp.unwrap_or_default()),
+            "weft" => format!("{:?}", params.weft.unwrap_or_default()),
+            "shear" => format!("{}", params.shear.unwrap_or_default()),
+            "compliance" => format!("{}", params.compliance),
+            _ => format!("{}", params.damping),
+        };
+        let is_empty = params.warp.is_none() && name == "warp";
+        let message = if is_empty { message.into() } else { format!("{message}, not {value}") };
+        Err(SceneError::value(format!("{at}.limits.{name}"), message))
     }
 }
 

@@ -71,7 +71,7 @@ pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 #[cfg(feature = "alloc")]
-pub use tuft::{Curl, Field, Growth, Tuft};
+pub use tuft::{Curl, Field, Growth, StrandAir, Tuft};
 #[cfg(feature = "alloc")]
 pub use write::write_scn;
 

@@ -62,6 +62,7 @@ impl SceneFile {
                 Some("a force that reaches any distance (a power_law between charges has a reach)")
             }
             ForceKind::Pressure(_) | ForceKind::Aerodynamics(_) => Some("surfaces of particles"),
+            ForceKind::CylinderDrag(_) => Some("segments between particles"),
             _ => None,
         };
         let force = self.forces.iter().enumerate().find_map(|(i, force)| Some((format!("forces[{i}]"), far(force)?)));

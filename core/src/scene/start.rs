@@ -85,6 +85,7 @@ impl Start {
                 );
             }
             self.constraints.extend(cloth.shell(mesh.as_deref(), first, particles.len() as u32));
+            self.constraints.extend(cloth.strain_limits(mesh.as_deref(), first));
             cloth.touch(mesh.as_deref(), first, particles.len() as u32, &mut self.contacts);
             self.cloths.push([self.particles.len(), self.springs.len()]);
             self.particles.extend(particles);
@@ -133,6 +134,7 @@ impl Start {
                 return Err(SceneError::value(format!("strands[{i}]"), message).in_file(meshes.path));
             }
             self.particles.extend(grown.particles);
+            self.forces.extend(tuft.air_drag(&grown.lock, &file.forces));
             self.constraints.extend(grown.constraints);
             self.locks.push(grown.lock);
         }

@@ -1,9 +1,11 @@
 //! Strands in scene files: hair and grass that grow on a surface, wires and cables along curves.
 
+use super::cloth::winds;
 use super::numbers::{Checked, above_zero, finite, zero_or_more};
 use super::{Light, SceneError, SceneFile};
 use crate::constrain::{Attach, ConstraintKind, StrandParams, Strands};
 use crate::draw::{Lock, StrandLight};
+use crate::force::{CylinderDrag, ForceKind};
 use crate::math::{frame, length, sin_cos, sqrt, unit};
 use crate::motion::{Motion, MotionBuf};
 use crate::particles::{Color, Particle};
@@ -45,7 +47,11 @@ pub struct Tuft {
     /// How the roots, and all that is fixed, move; without it they stay.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub motion: Option<MotionBuf>,
-    /// Coefficient of linear drag of each metre \[kg/(s m)\]; fine hair in air has about 1e-4.
+    /// How the air pushes it, by its thickness and the angle of attack: that of all `wind` among the scene's forces, or still air. It takes
+    /// the place of `drag`.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub air: Option<StrandAir>,
+    /// Coefficient of linear drag of each metre \[kg/(s m)\], the same across and along; fine hair in air has about 1e-4.
     #[cfg_attr(feature = "serde", serde(default))]
     pub drag: f32,
     /// The share of the normal speed that they keep when they hit something.
@@ -60,6 +66,29 @@ pub struct Tuft {
     /// How wide they are drawn \[m\]; zero: as wide as they are. One strand may stand for a lock of many.
     #[cfg_attr(feature = "serde", serde(default))]
     pub width: f32,
+}
+
+/// Air around strands: see [`CylinderDrag`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StrandAir {
+    /// How thick a strand is in the wind \[m\]; without it twice its radius. A lock of many may be thicker than one strand of it.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub diameter: Option<f32>,
+    /// Its density \[kg/m³\].
+    pub density: f32,
+    /// Its dynamic viscosity \[Pa s\].
+    pub viscosity: f32,
+    /// The coefficient of friction of fast flow along a strand.
+    pub friction: f32,
+}
+
+impl Default for StrandAir {
+    fn default() -> Self {
+        let CylinderDrag { density, viscosity, friction, .. } = CylinderDrag::still((), 0.0);
+        Self { diameter: None, density, viscosity, friction }
+    }
 }
 
 /// Where strands are.
@@ -189,6 +218,28 @@ impl Tuft {
         Grown { particles, constraints: attached.into_iter().chain([strands_of]).collect(), lock }
     }
 
+    /// The push of the air on what it is made into: on all segments but those beneath the surface on which it grows.
+    pub(super) fn air_drag(&self, lock: &Lock, forces: &[ForceKind]) -> Option<ForceKind> {
+        let StrandAir { diameter, density, viscosity, friction } = self.air?;
+        let hidden = u32::from(matches!(self.form, Growth::On(_)));
+        let strands = (0..lock.count).map(|number| lock.first + number * lock.points);
+        let segments = strands.flat_map(|root| (root + hidden..root + lock.points - 1).map(|point| [point, point + 1]));
+        let (segments, diameter) = (segments.collect(), diameter.unwrap_or(2.0 * self.radius));
+        let field = winds(forces);
+        Some(ForceKind::CylinderDrag(CylinderDrag { segments, field, diameter, density, viscosity, friction }))
+    }
+
+    /// Checks the air around it.
+    fn check_air(&self, at: &str) -> Checked {
+        let Some(StrandAir { diameter, density, viscosity, friction }) = self.air else { return Ok(()) };
+        if self.drag != 0.0 {
+            return Err(SceneError::value(format!("{at}.drag"), "say either drag or air"));
+        }
+        above_zero(&format!("{at}.air.diameter"), diameter.unwrap_or(1.0))?;
+        let numbers = [("density", density), ("viscosity", viscosity), ("friction", friction)];
+        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+
     fn check(&self, at: &str, file: &SceneFile) -> Checked {
         let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
         if !(1..=10_000).contains(&self.segments) {
@@ -203,6 +254,7 @@ impl Tuft {
         if !(0.0..=0.5).contains(&self.poisson) {
             return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
         }
+        self.check_air(at)?;
         finite(&format!("{at}.elasticity"), &[self.elasticity])?;
         if let Some(message) = self.motion.as_ref().and_then(Motion::fault) {
             return refuse("motion", message);

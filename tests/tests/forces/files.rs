@@ -19,7 +19,8 @@ const ALL: &str = r#"[
     {"lennard_jones": {"epsilon": 1, "sigma": 0.3, "cutoff": 0.75}},
     {"power_law": {"strength": -1, "exponent": 12, "softening": 0.1, "reach": 2, "weight": "charge"}},
     {"viscosity": {"coefficient": 1, "reach": 0.5}},
-    {"pressure": {"triangles": [[0, 1, 2], [0, 2, 1]], "amount": 2, "outside": 0.5}}
+    {"pressure": {"triangles": [[0, 1, 2], [0, 2, 1]], "amount": 2, "outside": 0.5}},
+    {"cylinder_drag": {"segments": [[0, 1], [1, 2]], "field": [{"uniform": {"velocity": [1, 0, 0]}}], "diameter": 0.01, "friction": 0.02}}
 ]"#;
 
 fn file(forces: &str) -> Result<SceneFile, String> {
@@ -70,6 +71,7 @@ fn what_cannot_be_is_refused_by_its_path() {
         r#"{"wind": {"field": [{"vortex": {"center": [0, 0, 0], "axis": [0, 1, 0], "speed": 1, "core": 1}}]}}"#;
     let atoms = r#"{"lennard_jones": {"epsilon": 1, "sigma": 1, "cutoff": 2}}"#;
     let gas = r#"{"pressure": {"triangles": [[0, 1, 2]], "amount": 1}}"#;
+    let rope = r#"{"cylinder_drag": {"segments": [[0, 1], [1, 2]], "field": [], "diameter": 0.01}}"#;
     let cases = [
         (r#"{"quadratic_drag": {"coefficient": -1}}"#.into(), "coefficient", "zero or more, not -1"),
         (r#"{"coulomb": {"theta": -0.5}}"#.into(), "theta", "zero or more, not -0.5"),
@@ -84,13 +86,17 @@ fn what_cannot_be_is_refused_by_its_path() {
         (r#"{"viscosity": {"coefficient": 1, "reach": 0}}"#.into(), "reach", "above zero"),
         (gas.replace("[0, 1, 2]", "[0, 1, 2], [1, 2, 3]"), "triangles[1]", "particle 3 is out of range; there are 3"),
         (gas.replace("\"amount\": 1", "\"amount\": -1"), "amount", "zero or more"),
+        (rope.replace("[1, 2]", "[1, 3]"), "segments[1]", "particle 3 is out of range; there are 3"),
+        (rope.replace("0.01", "0"), "diameter", "above zero, not 0"),
+        (rope.replace("0.01", "0.01, \"viscosity\": -1"), "viscosity", "zero or more, not -1"),
+        (rope.replace("0.01", "0.01, \"friction\": -1"), "friction", "zero or more, not -1"),
     ];
     for (force, path, message) in cases {
         let scene = file(&format!(r#"[{{"drag": {{}}}}, {force}]"#)).expect("it is well-formed");
         let error = scene.check().expect_err(&force).to_string();
         assert!(error.contains(&format!("forces[1].{path}")) && error.contains(message), "{force}: {error}");
     }
-    for force in [power, vortex, atoms, gas] {
+    for force in [power, vortex, atoms, gas, rope] {
         file(&format!("[{force}]")).expect("it is well-formed").check().expect("it is sound");
         let more = force.replacen("\": {\"", "\": {\"more\": 1, \"", 1);
         assert!(file(&format!("[{more}]")).is_err_and(|error| error.contains("more")), "{more}");

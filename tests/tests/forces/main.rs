@@ -1,6 +1,7 @@
 //! The forces against closed forms, conservation laws, and sums in double precision.
 
 mod charge;
+mod cylinders;
 mod files;
 mod laws;
 mod near;

@@ -1,0 +1,222 @@
+//! What touches: blows since the picture before, and what lies on scenery, on bodies and on balls now.
+
+use super::AHEAD;
+use glam::{Mat3, Vec3};
+use pointmass::constrain::{Hull, HullList};
+use pointmass::draw::{Instance, Line, arrow, body};
+use pointmass::force::State;
+use pointmass::index::{SpatialIndex, Structure};
+use pointmass::scene::Model;
+use pointmass::shape::Collider;
+use pointmass::{Attention, Color, Heap, Impact, Observer, RigidBodies, RigidBox, System};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// The colours of what is struck, of what lies on scenery, and of balls and bodies that lie on each other.
+const BLOW: Color = [240, 60, 60, 255];
+const SCENERY: Color = [250, 170, 40, 255];
+const EACH_OTHER: Color = [60, 200, 230, 255];
+
+/// How far apart things touch all the same, and the length of a line, in lengths of an arrow: about a pixel, and half an arrow.
+const SLACK: f32 = 0.02;
+const LONG: f32 = 0.5;
+
+/// The blows since the picture before; watches the steps between.
+#[derive(Debug, Default)]
+pub(crate) struct Blows(Vec<Impact>);
+
+impl Observer for Blows {
+    fn attention(&self) -> Attention {
+        Attention::Events
+    }
+
+    fn hit(&mut self, hit: &Impact) {
+        self.0.push(*hit);
+    }
+
+    fn touched(&mut self, touch: &Impact) {
+        self.0.push(*touch);
+    }
+}
+
+impl Blows {
+    /// The lines of all contacts, and forgets the blows. Arrows show where blows have pushed: as far as what came goes in a tenth of a second, but no
+    /// farther than `length` \[m\]. Blows that took away no more than a pixel's way in the time between two pictures \[s\] are rest.
+    pub(crate) fn lines(&mut self, system: &System<Heap>, model: &Model, length: f32, between: f32) -> Vec<Line> {
+        let scene = model.scene();
+        let state = system.state(&scene);
+        let bodies = Bodies::of(&state, model);
+        let slack = SLACK * length;
+        let mut lines = Lines { all: Vec::new(), long: LONG * length, slack };
+        let particles = system.particles();
+        lines.lean(&state, (particles.serial, particles.inverse_mass), model, &bodies);
+        lines.pile(&state, particles.serial, &bodies);
+        if model.contacts.is_some() {
+            lines.crowd(&state);
+        }
+        for blow in self.0.drain(..).filter(|blow| blow.closing * between > slack) {
+            // Of a body that is the place itself, else the middle of a ball.
+            let others = [Some(blow.id), blow.other];
+            let is_body = others.into_iter().flatten().any(|id| bodies.has(id.serial()));
+            let radius = system.row(blow.id).filter(|_| !is_body).map_or(0.0, |row| state.radius[row]);
+            let long = length.min(blow.closing * AHEAD);
+            lines.all.extend(arrow(blow.place - blow.normal * radius, blow.normal * long, BLOW));
+        }
+        lines.all
+    }
+}
+
+/// A rigid body as it stands.
+struct Standing<'m> {
+    center: Vec3,
+    rotation: Mat3,
+    half: Vec3,
+    hull: Option<Hull<'m>>,
+}
+
+/// All rigid bodies, and their particles by their place in the scene's start.
+struct Bodies<'m> {
+    standing: Vec<Standing<'m>>,
+    members: Vec<Range<u32>>,
+}
+
+impl<'m> Bodies<'m> {
+    fn of(state: &State<'_>, model: &'m Model) -> Self {
+        let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
+        let stand = |of: &RigidBox| {
+            let Instance { center, axes, .. } = body(state, of, &model.particles)?;
+            let axis = |axis: Vec3| axis.normalize_or_zero();
+            let rotation = Mat3::from_cols(axis(axes.x_axis), axis(axes.y_axis), axis(axes.z_axis));
+            let hull = of.hull.and_then(|number| hulls.hull(usize::from(number)));
+            Some(Standing { center, rotation, half: of.half, hull })
+        };
+        let mut members: Vec<_> = boxes.iter().map(|of| of.first..of.first.saturating_add(of.count)).collect();
+        members.sort_unstable_by_key(|range| range.start);
+        Self { standing: boxes.iter().filter_map(stand).collect(), members }
+    }
+
+    /// Tells whether a particle of the scene's start belongs to one.
+    fn has(&self, serial: u32) -> bool {
+        let next = self.members.partition_point(|range| range.start <= serial);
+        next.checked_sub(1).is_some_and(|last| self.members[last].contains(&serial))
+    }
+}
+
+impl Standing<'_> {
+    fn corners(&self) -> Vec<Vec3> {
+        let place = |own: Vec3| self.center + self.rotation * own;
+        match &self.hull {
+            Some(hull) => hull.corners.iter().map(|&corner| place(corner)).collect(),
+            None => (0..8u32)
+                .map(|i| place(Vec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 })) * self.half))
+                .collect(),
+        }
+    }
+
+    /// The face nearest to a place, if that is within `reach` \[m\] of it, or behind: the place on the face, and its normal.
+    fn face(&self, place: Vec3, reach: f32) -> Option<[Vec3; 2]> {
+        let way = place - self.center;
+        if way.length_squared() > (self.half.length() + reach).powi(2) {
+            return None;
+        }
+        let own = self.rotation.transpose() * way;
+        let (normal, far) = match &self.hull {
+            Some(hull) => {
+                let faces = hull.faces.iter().map(|face| (face.normal, face.normal.dot(own) - face.offset));
+                faces.max_by(|a, b| a.1.total_cmp(&b.1))?
+            }
+            None => {
+                // Beyond an edge no face is near, though its plane is.
+                let nearest = own.clamp(-self.half, self.half);
+                if (own - nearest).length() > reach {
+                    return None;
+                }
+                let faces = Vec3::AXES.into_iter().map(|axis| axis * own.dot(axis).signum());
+                let faces = faces.map(|normal| (normal, normal.dot(own) - normal.abs().dot(self.half)));
+                faces.max_by(|a, b| a.1.total_cmp(&b.1))?
+            }
+        };
+        let normal = self.rotation * normal;
+        (far <= reach).then(|| [place - normal * far, normal])
+    }
+}
+
+/// The lines of what lies.
+struct Lines {
+    all: Vec<Line>,
+    /// Their length \[m\], and how far apart things touch all the same \[m\].
+    long: f32,
+    slack: f32,
+}
+
+impl Lines {
+    fn push(&mut self, place: Vec3, normal: Vec3, color: Color) {
+        self.all.push(Line::plain([place, place + normal * self.long], color));
+    }
+
+    /// What lies on scenery: balls, cloth with its thickness, points, and the corners of bodies. Who is fixed lies on nothing.
+    fn lean(&mut self, state: &State<'_>, (serial, weights): (&[u32], &[f32]), model: &Model, bodies: &Bodies<'_>) {
+        let mut thick: HashMap<u32, f32> = HashMap::new();
+        let sheets = &model.constraints.3;
+        for (corners, thickness) in sheets.triangles.iter().zip(&sheets.thickness) {
+            for number in corners.iter().filter_map(|&corner| sheets.particles.get(corner as usize)) {
+                let half = thick.entry(*number).or_default();
+                *half = half.max(0.5 * thickness);
+            }
+        }
+        let loose = (0..serial.len()).filter(|&row| weights[row] > 0.0 && !bodies.has(serial[row]));
+        let loose = loose.map(|row| {
+            let thick = thick.get(&serial[row]).copied().unwrap_or(0.0);
+            (state.position[row], thick.max(state.radius[row]))
+        });
+        let corners = bodies.standing.iter().flat_map(Standing::corners).map(|corner| (corner, 0.0));
+        for (place, radius) in loose.chain(corners) {
+            let mut touched = Vec::new();
+            model.colliders.contacts(place, radius + self.slack, state.time, &mut |contact| touched.push(*contact));
+            touched.iter().for_each(|contact| self.push(contact.point, contact.normal, SCENERY));
+        }
+    }
+
+    /// What lies on rigid bodies: balls, and the corners of others.
+    fn pile(&mut self, state: &State<'_>, serial: &[u32], bodies: &Bodies<'_>) {
+        let balls = (0..serial.len()).filter(|&row| state.radius[row] > 0.0 && !bodies.has(serial[row]));
+        let balls = balls.map(|row| (usize::MAX, state.position[row], state.radius[row]));
+        let corners = bodies.standing.iter().enumerate();
+        let corners = corners.flat_map(|(of, body)| body.corners().into_iter().map(move |corner| (of, corner, 0.0)));
+        for (of, place, radius) in balls.chain(corners) {
+            for (number, body) in bodies.standing.iter().enumerate().filter(|&(number, _)| number != of) {
+                if let Some([on, normal]) = body.face(place, radius + self.slack).filter(|_| number != of) {
+                    self.push(on, normal, EACH_OTHER);
+                }
+            }
+        }
+    }
+
+    /// Balls that touch each other.
+    fn crowd(&mut self, state: &State<'_>) {
+        let widest = state.radius.iter().copied().fold(0.0, f32::max);
+        if !(widest > 0.0) {
+            return;
+        }
+        let reach = 2.0 * widest + self.slack;
+        let structure = Structure::Grid;
+        let mut memory = vec![0; structure.words(state.position.len())];
+        let mut index = structure.in_room(&mut memory, state.near.room());
+        if index.build(state.position, reach).is_err() {
+            return;
+        }
+        let mut pairs = Vec::new();
+        index.pairs(reach, &mut |row, others| pairs.extend(others.iter().map(|&other| [row, other])));
+        pairs.sort_unstable();
+        for [a, b] in pairs.into_iter().map(|pair| pair.map(|row| row as usize)) {
+            let (way, radii) = (state.between(a, b), [state.radius[a], state.radius[b]]);
+            let is_near = way.length() <= radii[0] + radii[1] + self.slack;
+            if is_near && radii[0] > 0.0 && radii[1] > 0.0 {
+                let normal = way.normalize_or_zero();
+                let on = state.position[a] + normal * radii[0];
+                let half = normal * (0.5 * self.long);
+                self.all.push(Line::plain([on - half, on + half], EACH_OTHER));
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Triangles: their strains, and how each is held.
+
+use super::Bodies;
+use crate::math::{dot, largest, length, max, min, sqrt};
+use glam::Vec3;
+
+/// The cosine of how far a triangle may turn: by 60°.
+const COSINE: f32 = 0.5;
+
+/// What is kept of a triangle.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Cell {
+    /// The inverse of its edges at rest in coordinates along warp and weft, by columns \[1/m\].
+    pub(super) inverse: [f32; 4],
+    /// Its area at rest \[m²\]; zero: it does nothing.
+    pub(super) area: f32,
+    /// The stress × area × h² in it along warp, weft and between them in the last sub-step, below zero where it pulls \[kg m²\].
+    pub(super) stress: [f32; 3],
+}
+
+/// A triangle before.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Past {
+    /// Warp and weft as the sub-step began.
+    pub(super) then: [Vec3; 2],
+    /// Its stress before the last round, and in which direction that has gone on.
+    pub(super) stress: [f32; 3],
+    pub(super) direction: [f32; 3],
+}
+
+impl Past {
+    pub(super) const NONE: Self = Self { then: [Vec3::ZERO; 2], stress: [0.0; 3], direction: [0.0; 3] };
+}
+
+impl Cell {
+    /// A triangle at rest with these edges from its first corner.
+    pub(super) fn at_rest([e, f]: [Vec3; 2], warp: Vec3) -> Self {
+        const NONE: Cell = Cell { inverse: [0.0; 4], area: 0.0, stress: [0.0; 3] };
+        let normal = e.cross(f);
+        let twice = length(normal);
+        // A triangle narrower than a millionth of its length has no plane.
+        if !(twice > 1e-6 * max(dot(e, e), dot(f, f)) && twice < f32::INFINITY) {
+            return NONE;
+        }
+        let normal = normal / twice;
+        let thread = warp - normal * dot(normal, warp);
+        let along = if dot(thread, thread) > 1e-6 * dot(warp, warp) { thread } else { e };
+        let u = along / length(along);
+        let v = normal.cross(u);
+        let [a, b] = [e, f].map(|edge| [dot(edge, u), dot(edge, v)]);
+        let inverse = [b[1], -a[1], -b[0], a[0]].map(|x| x / twice);
+        let is_sound = inverse.iter().all(|x| x.is_finite());
+        if is_sound { Self { inverse, area: 0.5 * twice, ..NONE } } else { NONE }
+    }
+
+    /// What warp and weft have become where the edges are these.
+    pub(super) fn deform(&self, [e, f]: [Vec3; 2]) -> [Vec3; 2] {
+        let [a, b, c, d] = self.inverse;
+        [e * a + f * b, e * c + f * d]
+    }
+
+    /// The slopes by the corners of what has these by warp and weft.
+    fn slopes(&self, [p, q]: [Vec3; 2]) -> [Vec3; 3] {
+        let [a, b, c, d] = self.inverse;
+        let [second, third] = [p * a + q * c, p * b + q * d];
+        [-(second + third), second, third]
+    }
+
+    /// The rounding of its strains, from where its corners are.
+    fn rounding(&self, far: f32) -> f32 {
+        let finest = self.inverse.iter().fold(0.0, |most, x| max(most, x.abs()));
+        4.0 * f32::EPSILON * (1.0 + far * finest)
+    }
+}
+
+/// The length of the warp or of the weft, or the sine of the angle of shear, and its slopes by warp and weft; none where it has none.
+fn strain(kind: usize, [u, v]: [Vec3; 2]) -> Option<(f32, [Vec3; 2])> {
+    let [a, b] = [length(u), length(v)];
+    let [along, across] = [u / a, v / b];
+    let (value, slopes) = match kind {
+        0 => (a, [along, Vec3::ZERO]),
+        1 => (b, [Vec3::ZERO, across]),
+        _ => {
+            let sine = dot(along, across);
+            (sine, [(across - along * sine) / a, (along - across * sine) / b])
+        }
+    };
+    slopes.iter().all(|slope| slope.is_finite()).then_some((value, slopes))
+}
+
+/// The multiplier with which a strain is within its range, pulling alone at the upper end and pushing alone at the lower; `soft` is the compliance for
+/// it, and `weight` what it moves by.
+fn held(value: f32, [low, high]: [f32; 2], before: f32, weight: f32, soft: f32) -> f32 {
+    let free = |limit: f32| before - (value - limit + soft * before) / (weight + soft);
+    if before < 0.0 || before == 0.0 && value > high {
+        min(free(high), 0.0)
+    } else if before > 0.0 || value < low {
+        max(free(low), 0.0)
+    } else {
+        0.0
+    }
+}
+
+/// A triangle in a sub-step.
+pub(super) struct Held<'m> {
+    pub(super) rows: [usize; 3],
+    pub(super) cell: &'m mut Cell,
+    /// Warp and weft as the sub-step began.
+    pub(super) then: [Vec3; 2],
+}
+
+impl Held<'_> {
+    fn edges(&self, x: &[Vec3]) -> [Vec3; 2] {
+        let [a, b, c] = self.rows;
+        [x[b] - x[a], x[c] - x[a]]
+    }
+
+    /// A strain, the slopes by the corners along which it acts, and by how much it changes for what acts along them; none where nothing moves.
+    pub(super) fn line(&self, bodies: &Bodies<'_>, kind: usize) -> Option<(f32, [Vec3; 3], f32)> {
+        let (value, slopes) = strain(kind, self.cell.deform(self.edges(bodies.position)))?;
+        let now = self.cell.slopes(slopes);
+        let by = |a: &[Vec3; 3], b: &[Vec3; 3]| {
+            let each = |i: usize| bodies.inverse_mass[self.rows[i]] * dot(a[i], b[i]);
+            each(0) + each(1) + each(2)
+        };
+        let plain = by(&now, &now);
+        let first = strain(kind, self.then).map(|(_, slopes)| self.cell.slopes(slopes));
+        let first = first.map(|first| (by(&now, &first), by(&first, &first), first));
+        let turned = first.filter(|&(mixed, other, _)| mixed > COSINE * sqrt(plain) * sqrt(other));
+        let (weight, slopes) = turned.map_or((plain, now), |(mixed, _, first)| (mixed, first));
+        (weight > 0.0 && weight < f32::INFINITY).then_some((value, slopes, weight))
+    }
+
+    /// Moves its corners by a change of a multiplier.
+    pub(super) fn act(&self, bodies: &mut Bodies<'_>, slopes: [Vec3; 3], change: f32) {
+        for (row, slope) in self.rows.into_iter().zip(slopes) {
+            let weight = bodies.inverse_mass[row];
+            if weight > 0.0 {
+                bodies.shift(row, slope * (weight * change));
+            }
+        }
+    }
+
+    /// Adds to one of its stresses.
+    pub(super) fn press(&mut self, bodies: &mut Bodies<'_>, kind: usize, change: f32) {
+        if change == 0.0 || !change.is_finite() {
+            return;
+        }
+        if let Some((_, slopes, _)) = self.line(bodies, kind) {
+            self.act(bodies, slopes, change);
+            self.cell.stress[kind] += change;
+        }
+    }
+
+    /// Holds one of its strains within its range. Tells how far it was beyond what its stress answers for.
+    pub(super) fn hold(&mut self, bodies: &mut Bodies<'_>, kind: usize, range: [f32; 2], soft: f32) -> f32 {
+        let Some((value, slopes, weight)) = self.line(bodies, kind) else { return 0.0 };
+        let before = self.cell.stress[kind];
+        let after = held(value, range, before, weight, soft / self.cell.area);
+        let change = after - before;
+        if change == 0.0 || !change.is_finite() {
+            return 0.0;
+        }
+        self.act(bodies, slopes, change);
+        self.cell.stress[kind] = after;
+        let far = self.rows.iter().fold(0.0, |most, &row| max(most, largest(bodies.position[row])));
+        max((change * weight).abs() - self.cell.rounding(far), 0.0)
+    }
+}

@@ -1,0 +1,296 @@
+//! Limits of strain: how far triangles of cloth stretch, shrink and shear at the most.
+
+mod cell;
+
+use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::math::{clamp, dot, max, sin_cos};
+use crate::memory::take;
+use cell::{Cell, Held, Past};
+use glam::Vec3;
+
+/// How far warp and weft may stretch and shrink, and turn against each other. A limit that is none does not hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StrainLimitParams {
+    /// The least and the greatest length of the warp, as shares of its length at rest: `[0.9, 1.02]` lets it shrink by 10 % and stretch by
+    /// 2 %.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub warp: Option<[f32; 2]>,
+    /// The same of the weft.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub weft: Option<[f32; 2]>,
+    /// By how much the angle between warp and weft may differ from a right one, either way \[rad\], up to π/2.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub shear: Option<f32>,
+    /// How far the limits give way \[m/N\]: a strip of that width is stretched beyond its limit by a share s of its length with a pull of
+    /// s over this for each metre of its width. Zero is rigid.
+    pub compliance: f32,
+    /// The pull for each metre of width, for the rate of strain beyond a limit \[N s/m\].
+    pub damping: f32,
+}
+
+impl StrainLimitParams {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        const RANGE: &str = "has to be the least and the greatest length as shares of that at rest, with 1 between them, such as [0.9, 1.02]";
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        let holds_rest = |range: Option<[f32; 2]>| {
+            range.is_none_or(|[low, high]| (0.0..=1.0).contains(&low) && (1.0..f32::INFINITY).contains(&high))
+        };
+        let all = self.warp.is_none() && self.weft.is_none() && self.shear.is_none();
+        let faults = [
+            (all, "warp", "has to be limited, or weft, or shear, such as {\"warp\": [0.9, 1.02]}"),
+            (!holds_rest(self.warp), "warp", RANGE),
+            (!holds_rest(self.weft), "weft", RANGE),
+            (
+                !self.shear.is_none_or(|angle| (0.0..=QUARTER).contains(&angle)),
+                "shear",
+                "has to be from 0 to π/2, in rad",
+            ),
+            (!not_negative(self.compliance), "compliance", "must not be below zero, in m/N"),
+            (!not_negative(self.damping), "damping", "must not be below zero, in N s/m"),
+        ];
+        faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))
+    }
+}
+
+/// A quarter of a turn \[rad\], and what rounds to it.
+const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
+
+/// Keeps the strain of triangles within limits, beyond which cloth hardly gives way: springs or other forces give it the softness that it has
+/// within.
+///
+/// What warp and weft have become are the columns u and v of a triangle's deformation gradient. Their lengths are held within a range
+/// each, and the sine of the angle of shear, u·v / (|u| |v|), within what the limit's is (Provot, "Deformation Constraints in a Mass-Spring
+/// Model", Graphics Interface 1995; Thomaszewski, Pabst and Straßer, "Continuum-based Strain Limiting", Computer Graphics Forum 28, 2009;
+/// Müller, Chentanez, Kim and Macklin, "Strain Based Dynamics", SCA 2014). Each is a constraint of one side of extended position-based dynamics
+/// with the compliance over the triangle's area (Macklin, Müller and Chentanez, "XPBD", MIG 2016), so that what it gives does not
+/// depend on the mesh.
+///
+/// Triangles are gone through one after the other, there and back, until all are within 0.01 % of their limits, but 16 times at the most; what is
+/// cut off then is counted as capped in [`Effort`](crate::Effort), and stretched farther for a while. From the second time on all go on as far again
+/// in the direction of the times before as is good (Silcowitz, Niebe and Erleben, "A nonsmooth nonlinear conjugate gradient method
+/// for interactive contact force problems", Visual Computer 26, 2010). Heavy loads on light cloth ask for sub-steps that resolve how fast it swings
+/// under them. Within limits nothing acts.
+///
+/// Stresses act along the directions of the sub-step's beginning, by which both momenta are kept to rounding; those of triangles that turn by more than
+/// 60° in a sub-step along those of its end, which keep linear momentum alone. A triangle that has lost a corner is gone, whoever is fixed
+/// stays, and what is degenerate does nothing. A [`Shell`](super::Shell) follows its particles past the scenery by itself: limits
+/// of the same particles go before it in a list.
+///
+/// ```
+/// use pointmass::constrain::{StrainLimitParams, StrainLimits};
+/// use pointmass::{ClothSprings, Gravity, Heap, Particle, Scene, Sheet, SpringParams, System, Time, Vec3};
+///
+/// // A soft net that hangs by its upper edge.
+/// let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X * 0.4, Vec3::NEG_Y * 0.4], cells: [4, 4] };
+/// let knot = Particle { mass: 0.02, drag: 0.05, ..Particle::REST };
+/// let mut start: Vec<Particle> = sheet.particles(knot).collect();
+/// start[..5].iter_mut().for_each(|particle| particle.fixed = true);
+/// let soft = Some(SpringParams { ks: 5.0, kd: 0.02 });
+/// let springs: Vec<_> = sheet.springs(&ClothSprings { structural: soft, ..ClothSprings::default() }, 0).collect();
+/// let limits = StrainLimits {
+///     triangles: sheet.triangles().collect::<Vec<_>>(),
+///     warp: Vec3::X,
+///     params: StrainLimitParams { weft: Some([0.0, 1.05]), ..StrainLimitParams::default() },
+/// };
+/// let forces = (Gravity::EARTH, pointmass::Drag {});
+/// let scene =
+///     Scene { start: &start, springs: &springs, forces: &forces, constraints: &limits, substeps: 4, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// for frame in 1..=120 {
+///     system.step_to(&scene, Time::frame(frame, 60));
+/// }
+/// let edge = system.particles().position[22];
+/// assert!(edge.y > -0.4 * 1.051, "springs alone would let it hang half as deep again: {edge}");
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StrainLimits<T> {
+    /// The triangles, at rest in the form in which they begin: particles by their place in the scene's start.
+    pub triangles: T,
+    /// The direction of the warp in that form; each triangle takes it in its own plane.
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub warp: Vec3,
+    /// The limits.
+    pub params: StrainLimitParams,
+}
+
+/// How often all triangles are gone through at the most.
+const ROUNDS: u32 = 16;
+/// How far a strain may be beyond its limit.
+const NEARLY: f32 = 1e-4;
+
+/// The words of a cell, and of what it was as a sub-step began.
+const KEPT: usize = size_of::<Cell>() / 4;
+const SCRATCH: usize = size_of::<Past>() / 4;
+
+impl<T: AsRef<[[u32; 3]]>> StrainLimits<T> {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let params = self.params.fault();
+        params.or_else(|| (!self.warp.is_finite()).then_some(("warp", "has to be finite, a direction")))
+    }
+
+    /// The ranges of its three strains; everything, where there is no limit.
+    fn ranges(&self) -> [[f32; 2]; 3] {
+        const ALL: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
+        let StrainLimitParams { warp, weft, shear, .. } = self.params;
+        let shear = shear.map_or(ALL, |angle| {
+            let (sine, _) = sin_cos(clamp(angle, 0.0, QUARTER));
+            [-sine, sine]
+        });
+        [warp.unwrap_or(ALL), weft.unwrap_or(ALL), shear]
+    }
+
+    /// The rows of a triangle's corners, if all live and are somewhere.
+    fn rows(&self, bodies: &Bodies<'_>, number: usize) -> Option<[usize; 3]> {
+        let corners = self.triangles.as_ref().get(number)?;
+        let [a, b, c] = corners.map(|corner| bodies.row_of_start(corner));
+        let rows = [a?, b?, c?];
+        rows.iter().all(|&row| bodies.position[row].is_finite()).then_some(rows)
+    }
+
+    /// What is kept of all triangles, and whether that is known.
+    fn cells<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [u32], &'m mut [Cell]) {
+        let mut rest = kept;
+        let known = take(&mut rest, 1);
+        let whole = rest.len() - rest.len() % KEPT;
+        (known, bytemuck::cast_slice_mut(take(&mut rest, whole)))
+    }
+
+    /// Notes what all triangles were as the sub-step began. None has any stress yet.
+    fn begin(&self, bodies: &Bodies<'_>, cells: &mut [Cell], memory: &mut [Past]) {
+        let h = bodies.substep.seconds();
+        for (number, (cell, past)) in cells.iter_mut().zip(memory).enumerate() {
+            (cell.stress, *past) = ([0.0; 3], Past::NONE);
+            if let Some([a, b, c]) = self.rows(bodies, number) {
+                let [x, y, z] = [a, b, c].map(|row| bodies.position[row] - bodies.velocity[row] * h);
+                past.then = cell.deform([y - x, z - x]);
+            }
+        }
+    }
+
+    /// Goes through all triangles, there or back, and tells how far the worst was beyond its limits.
+    fn sweep(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &[Past], back: bool) -> f32 {
+        let (ranges, h) = (self.ranges(), bodies.substep.seconds());
+        let (soft, mut worst) = (self.params.compliance / (h * h), 0.0);
+        for at in 0..cells.len() {
+            let number = if back { cells.len() - 1 - at } else { at };
+            let (Some(rows), Some(past)) = (self.rows(bodies, number), memory.get(number)) else { continue };
+            let mut held = Held { rows, cell: &mut cells[number], then: past.then };
+            if held.cell.area == 0.0 {
+                continue;
+            }
+            for (kind, range) in ranges.into_iter().enumerate() {
+                if range[1] < f32::INFINITY {
+                    worst = max(worst, held.hold(bodies, kind, range, soft));
+                }
+            }
+        }
+        worst
+    }
+
+    /// Goes on in the direction of the last rounds (nonsmooth nonlinear conjugate gradients), `last` being the square of the last one's change;
+    /// returns that of this one.
+    fn accelerate(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &mut [Past], last: f32) -> f32 {
+        let mut square = 0.0;
+        for (cell, past) in cells.iter().zip(&*memory) {
+            for (now, before) in cell.stress.iter().zip(past.stress) {
+                square += (now - before) * (now - before);
+            }
+        }
+        let share = square / last;
+        // Farther than the last time: it begins anew.
+        let share = if share <= 1.0 { share } else { 0.0 };
+        for (number, (cell, past)) in cells.iter_mut().zip(memory).enumerate() {
+            let Some(rows) = self.rows(bodies, number) else { continue };
+            let mut held = Held { rows, cell, then: past.then };
+            for kind in 0..3 {
+                let on = share * past.direction[kind];
+                past.direction[kind] = held.cell.stress[kind] - past.stress[kind] + on;
+                held.press(bodies, kind, on);
+            }
+            past.stress = held.cell.stress;
+        }
+        square
+    }
+}
+
+impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
+    fn demand(&self) -> Demand {
+        let words = |each: usize, more| Words {
+            per_row: 0,
+            fixed: self.triangles.as_ref().len().saturating_mul(each).saturating_add(more),
+        };
+        Demand { kept: words(KEPT, 1), scratch: words(SCRATCH, 0), ..Demand::NONE }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.triangles.as_ref().is_empty()
+    }
+
+    /// Takes the shape at rest from where all are, at the first of all.
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let (known, cells) = self.cells(share.kept.fixed);
+        let [0] = *known else { return };
+        known[0] = 1;
+        for (number, cell) in cells.iter_mut().enumerate() {
+            if let Some([a, b, c]) = self.rows(bodies, number) {
+                let x = &bodies.position;
+                *cell = Cell::at_rest([x[b] - x[a], x[c] - x[a]], self.warp);
+            }
+        }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let (_, cells) = self.cells(share.kept.fixed);
+        let whole = share.scratch.len() - share.scratch.len() % SCRATCH;
+        let memory: &mut [Past] = bytemuck::cast_slice_mut(&mut share.scratch[..whole]);
+        if !(bodies.substep.seconds() > 0.0) || memory.len() < cells.len() {
+            return;
+        }
+        self.begin(bodies, cells, memory);
+        let (mut rounds, mut worst, mut last) = (0, f32::INFINITY, f32::INFINITY);
+        while worst > NEARLY && rounds < ROUNDS {
+            if rounds > 0 {
+                last = self.accelerate(bodies, cells, memory, last);
+            }
+            worst = self.sweep(bodies, cells, memory, false);
+            worst = max(worst, self.sweep(bodies, cells, memory, true));
+            rounds += 1;
+        }
+        bodies.report.effort.solved(rounds, 0.0, worst > NEARLY);
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let brake = self.params.damping * bodies.substep.seconds();
+        if !(brake > 0.0) {
+            return;
+        }
+        let (_, cells) = self.cells(share.kept.fixed);
+        for (number, cell) in cells.iter_mut().enumerate() {
+            let Some(rows) = self.rows(bodies, number).filter(|_| cell.stress != [0.0; 3]) else { continue };
+            let now = cell.deform([1, 2].map(|i| bodies.position[rows[i]] - bodies.position[rows[0]]));
+            let held = Held { rows, cell, then: now };
+            for kind in 0..3 {
+                let Some((_, slopes, weight)) = held.line(bodies, kind) else { continue };
+                let rate: f32 = rows.iter().zip(slopes).map(|(&row, slope)| dot(bodies.velocity[row], slope)).sum();
+                let share = brake * held.cell.area;
+                let taken = rate * (share / (1.0 + share * weight));
+                if held.cell.stress[kind] == 0.0 || !taken.is_finite() {
+                    continue;
+                }
+                for (row, slope) in rows.into_iter().zip(slopes) {
+                    bodies.velocity[row] -= slope * (taken * bodies.inverse_mass[row]);
+                }
+            }
+        }
+    }
+}
