@@ -82,8 +82,13 @@ impl Bend {
 
     /// The square of the curvature for each radian on a side \[1/m²\].
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(super) fn steepness(&self, side: usize) -> f32 {
+    pub(super) fn steep(&self, side: usize) -> f32 {
         self.moment(side, self.curvature[side])
+    }
+
+    /// The larger of both.
+    pub(super) fn steepness(&self) -> f32 {
+        max(self.steep(0), self.steep(1))
     }
 
     /// Adds the curvature that a change of the angle makes to that of both triangles.
@@ -179,7 +184,7 @@ impl Fold {
         let [m, n] = self.slope;
         let (a, b) = (dot(m, m), dot(n, n));
         let sharp = max(1.0 - dot(m, n) / sqrt(a * b), 0.0);
-        let narrow = max(a / bend.steepness(0), b / bend.steepness(1)) - 1.0;
+        let narrow = max(a / bend.steep(0), b / bend.steep(1)) - 1.0;
         TOGETHER * (sharp + max(narrow, 0.0))
     }
 

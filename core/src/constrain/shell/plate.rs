@@ -30,7 +30,7 @@ const GONE: u32 = 3;
 pub(super) struct Plate<'m> {
     /// What each particle is in the matrix.
     roll: &'m mut [u32],
-    /// The square of the largest curvature that a radian makes \[1/m²\].
+    /// The largest of the squares of the curvatures that a radian makes \[1/m²\] and of how slender their triangles are.
     steepest: &'m mut [f32],
     /// What edges do to particles, and along the links of the finest graph.
     pub(super) own: &'m mut [f32],
@@ -79,8 +79,7 @@ impl<'m> Plate<'m> {
         })
     }
 
-    /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest: else what holds in all directions
-    /// alike would hold it back where it turns.
+    /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon another.
     pub(super) fn is_thin(&self, params: &ShellParams) -> bool {
         let [warp, weft] = params.stretch;
         let steepest = self.steepest.first().copied().unwrap_or(f32::INFINITY);
@@ -140,13 +139,15 @@ impl<'m> Plate<'m> {
         for numbers in [&mut self.own, &mut self.near, &mut self.alone, &mut self.numbers] {
             numbers.fill(0.0);
         }
-        let steep = |bend: &Bend| max(bend.steepness(0), bend.steepness(1));
-        self.steepest[0] = shape.bends.iter().map(steep).fold(0.0, max);
+        self.steepest[0] = 0.0;
         let Some((first, hinges)) = shape.by_face(work) else { return };
         for (face, cell) in shape.cells.iter().enumerate() {
             let (Some(&from), Some(&to)) = (first.get(face), first.get(face + 1)) else { return };
             let mut patch = Patch::default();
+            let slender = cell.slenderness();
             for &hinge in hinges.get(from as usize..to as usize).unwrap_or(&[]) {
+                let steep = shape.bends.get(hinge as usize).map_or(0.0, Bend::steepness);
+                self.steepest[0] = max(steep * (slender * slender), self.steepest[0]);
                 patch.take(shape, self.roll, face as u32, hinge as usize);
             }
             self.add(&patch, cell.area);
@@ -248,7 +249,7 @@ impl Patch {
 
 /// How the angle of a hinge changes for each metre that the corners of its edge and the far one of a side go along that side's normal, at rest.
 fn slopes(bend: &Bend, side: usize) -> [f32; 3] {
-    let slope = sqrt(bend.steepness(side));
+    let slope = sqrt(bend.steep(side));
     let foot = bend.foot[side];
     [-(1.0 - foot) * slope, -foot * slope, slope]
 }
