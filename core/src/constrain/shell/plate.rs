@@ -136,10 +136,7 @@ impl<'m> Plate<'m> {
         if same || graph.rows() == 0 {
             return;
         }
-        for numbers in [&mut self.own, &mut self.near, &mut self.alone, &mut self.numbers] {
-            numbers.fill(0.0);
-        }
-        self.steepest[0] = 0.0;
+        self.clear();
         let Some((first, hinges)) = shape.by_face(work) else { return };
         for (face, cell) in shape.cells.iter().enumerate() {
             let (Some(&from), Some(&to)) = (first.get(face), first.get(face + 1)) else { return };
@@ -153,6 +150,19 @@ impl<'m> Plate<'m> {
             self.add(&patch, cell.area);
         }
         self.part(graph);
+        let mut all = self.own.iter().chain(&*self.near).chain(&*self.alone).chain(&*self.numbers);
+        if !all.all(|number| number.is_finite()) {
+            // Which bits a NaN has depends on the machine, and these words are in the hash.
+            self.clear();
+            self.steepest[0] = f32::INFINITY;
+        }
+    }
+
+    fn clear(&mut self) {
+        for numbers in [&mut self.own, &mut self.near, &mut self.alone, &mut self.numbers] {
+            numbers.fill(0.0);
+        }
+        self.steepest[0] = 0.0;
     }
 
     /// Adds how the corners of a triangle's hinges hold each other.
