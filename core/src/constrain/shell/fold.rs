@@ -2,9 +2,12 @@
 
 use super::membrane::frame;
 use super::solver::Step;
-use crate::math::{angle, dot, length};
+use crate::math::{angle, dot, length, max, sqrt};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
+
+/// The folds of a triangle.
+const TOGETHER: f32 = 3.0;
 
 /// A fold at rest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -15,6 +18,8 @@ pub(super) struct Bend {
     /// The curvature of the triangle on each side for each radian of the angle: along warp, weft, and √2 times that between
     /// them \[1/m\]. Zero where the fold is degenerate.
     pub(super) curvature: [[f32; 3]; 2],
+    /// The point of the edge beside the far corner of each, as a share of it.
+    pub(super) foot: [f32; 2],
 }
 
 /// A fold in a sub-step: how its angle changes as its corners move.
@@ -59,7 +64,7 @@ impl Bend {
     /// The fold with these ways from the first corner; `signs` say on which side each triangle's normal is.
     pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2]) -> Self {
         let [e, f, g] = ways;
-        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2] };
+        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], foot: [0.0; 2] };
         let side = |far: Vec3, sign: f32| {
             let up = far - e * (dot(far, e) / dot(e, e));
             let height = length(up);
@@ -68,9 +73,22 @@ impl Bend {
             Some([x * x, y * y, core::f32::consts::SQRT_2 * x * y].map(|part| sign * part / height))
         };
         let (Some(first), Some(second)) = (side(f, signs[0]), side(g, signs[1])) else { return none };
-        let this = Self { angle: fold_angle(ways), curvature: [first, second] };
-        let sound = this.angle.is_finite() && this.curvature.iter().flatten().all(|part| part.is_finite());
+        let foot = [f, g].map(|far| dot(far, e) / dot(e, e));
+        let this = Self { angle: fold_angle(ways), curvature: [first, second], foot };
+        let sound =
+            this.angle.is_finite() && this.curvature.iter().flatten().chain(&this.foot).all(|part| part.is_finite());
         if sound { this } else { none }
+    }
+
+    /// The square of the curvature for each radian on a side \[1/m²\].
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn steep(&self, side: usize) -> f32 {
+        self.moment(side, self.curvature[side])
+    }
+
+    /// The larger of both.
+    pub(super) fn steepness(&self) -> f32 {
+        max(self.steep(0), self.steep(1))
     }
 
     /// Adds the curvature that a change of the angle makes to that of both triangles.
@@ -148,12 +166,33 @@ impl Fold {
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
     }
 
-    /// The part of that which the corners on a side do to each other: those of the edge, the first of them and the far one, the second and that.
+    /// The part of that which the corners on a side do to each other, and of what stiffness of its angle there is besides: those of the edge, the
+    /// first of them and the far one, the second and that.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(super) fn held(&self, side: usize) -> [f32; 3] {
+    pub(super) fn held(&self, side: usize, [excess, slip]: [f32; 2]) -> [f32; 3] {
         let (x, slope) = (self.foot[side], self.slope[side]);
-        let held = 0.25 * self.moment * dot(slope, slope);
-        [x * (1.0 - x) * held, -(1.0 - x) * held, -x * held]
+        let square = dot(slope, slope);
+        let held = (0.25 * self.moment + excess) * square;
+        [x * (1.0 - x) * held - slip * square, -(1.0 - x) * held, -x * held]
+    }
+
+    /// What the matrix of bending, which takes all normals for one and triangles for what they are at rest, may lack of its stiffness, as a share of that: its
+    /// angle changes by m f + n g, and by ½ |m − n|² at the most of what f and g are alone where m and n are taken for one. The folds of a
+    /// triangle act together.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn excess(&self, bend: &Bend) -> f32 {
+        let [m, n] = self.slope;
+        let (a, b) = (dot(m, m), dot(n, n));
+        let sharp = max(1.0 - dot(m, n) / sqrt(a * b), 0.0);
+        let narrow = max(a / bend.steep(0), b / bend.steep(1)) - 1.0;
+        TOGETHER * (sharp + max(narrow, 0.0))
+    }
+
+    /// The same where the point beside a far corner has gone along the edge: for the way of the edge's corners from each other.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn slip(&self, bend: &Bend, side: usize) -> f32 {
+        let slip = self.foot[side] - bend.foot[side];
+        TOGETHER * (slip * slip)
     }
 
     /// Forces on both far corners, and against them on the edge.

@@ -57,6 +57,20 @@ impl Cell {
         if sound { Self { inverse, area: 0.5 * twice } } else { Self::NONE }
     }
 
+    /// Its corners at rest along warp and weft, from the first \[m\].
+    pub(super) fn places(&self) -> [[f32; 2]; 3] {
+        let [a, b, c, d] = self.inverse;
+        let twice = 2.0 * self.area;
+        [[0.0; 2], [d * twice, -b * twice], [-c * twice, a * twice]]
+    }
+
+    /// The square of its longest edge in those of a square of twice its area; 2 for half a square.
+    pub(super) fn slenderness(&self) -> f32 {
+        let [a, b, c] = self.places();
+        let square = |a: [f32; 2], b: [f32; 2]| (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);
+        max(max(square(a, b), square(b, c)), square(c, a)) / (2.0 * self.area)
+    }
+
     /// What warp and weft become where the edges are these.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn deform(&self, [e, f]: [Vec3; 2]) -> [Vec3; 2] {

@@ -21,17 +21,24 @@ pub(super) struct Room {
     pub(super) rows: [usize; 2],
     /// Their links: each edge is two.
     pub(super) links: [usize; 2],
+    /// Links of those of the finest that bend together.
+    pub(super) far: usize,
 }
 
 impl Room {
     pub(super) fn of([particles, triangles, hinges]: [usize; 3]) -> Self {
-        if particles < LEAST || triangles == 0 || particles > NONE as usize / 64 || triangles > NONE as usize / 64 {
-            return Self { rows: [0; 2], links: [0; 2] };
+        if particles < LEAST
+            || triangles == 0
+            || [particles, triangles, hinges].iter().any(|&of| of > NONE as usize / 64)
+        {
+            return Self { rows: [0; 2], links: [0; 2], far: 0 };
         }
         // A hinge is an edge that two triangles share.
         let edges = 3 * triangles - hinges.min(triangles + triangles / 2);
         // Groups are a fifth of their members, and have about as many links each.
-        Self { rows: [particles, particles / 3 + 4], links: [2 * edges, edges / 2 + 16] }
+        // Edges, corners across a hinge, and those beyond two hinges of a triangle.
+        let far = 2 * (edges + hinges + 3 * triangles.min(hinges));
+        Self { rows: [particles, particles / 3 + 4], links: [2 * edges, edges / 2 + 16], far }
     }
 
     /// Words for the graphs.
@@ -196,7 +203,7 @@ fn nearest(graph: &Graph<'_>, into: &[u32], members: &[usize]) -> Option<usize> 
 }
 
 /// The numbers of what belongs to each of so many rows: of the first, of the second ... and where those of each begin.
-fn sorted(
+pub(super) fn sorted(
     rows: usize,
     pairs: impl Iterator<Item = (usize, u32)> + Clone,
     work: &mut [u32],
@@ -253,7 +260,7 @@ fn link_groups(fine: &Graph<'_>, starts: &mut [u32], links: &mut [u32], work: &m
 }
 
 /// Links each row with those that `visit` names, each once and in ascending order, and tells with how many links.
-fn link(
+pub(super) fn link(
     starts: &mut [u32],
     links: &mut [u32],
     mut visit: impl FnMut(usize, &mut dyn FnMut(u32) -> Option<()>) -> Option<()>,

@@ -7,8 +7,10 @@ mod fold;
 mod linear;
 mod membrane;
 mod mesh;
+mod plate;
 mod resist;
 mod solver;
+mod sweep;
 mod taut;
 
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
@@ -19,6 +21,7 @@ use fold::{Bend, Fold};
 use glam::Vec3;
 use membrane::{Cell, Strain};
 use mesh::{Graph, Room};
+use plate::{Plate, Shape};
 use solver::{Solver, Step};
 
 /// What a sheet is made of, by numbers that do not depend on its mesh.
@@ -172,13 +175,35 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let bends = whole(take(&mut rest, hinges.saturating_mul(KEPT[1])));
         let room = Room::of(self.counts());
         let graphs = take(&mut rest, room.words());
-        Rest { cells, bends, graphs, last: whole(take(&mut rest, 3 * room.rows[0])) }
+        let plate = Plate::of(&room, take(&mut rest, plate::words(&room)));
+        Rest { cells, bends, graphs, plate, last: whole(take(&mut rest, 3 * room.rows[0])) }
+    }
+
+    fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [Bend]) -> Shape<'s> {
+        Shape { triangles: self.triangles.as_ref(), cells, hinges: self.hinges.as_ref(), bends }
+    }
+
+    /// Makes the matrix of bending of those who are there, if these are others than before.
+    fn update(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
+        let Rest { cells, bends, graphs, mut plate, .. } = self.rest(kept);
+        let [finest, ..] = Graph::all(graphs);
+        let moves = |&particle: &u32| {
+            let row = bodies.row_of_start(particle)?;
+            let inverse = bodies.inverse_mass[row];
+            Some(inverse > 0.0 && inverse < f32::INFINITY)
+        };
+        plate.update(&finest, &self.shape(cells, bends), self.particles.as_ref().iter().map(moves), work);
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
-        let Rest { cells, bends, graphs, .. } = self.rest(kept);
+        let Rest { cells, bends, graphs, mut plate, .. } = self.rest(kept);
         mesh::make(&Room::of(self.counts()), self.triangles.as_ref(), graphs, work);
+        let [finest, ..] = Graph::all(graphs);
+        if finest.rows() > 0 && !plate.link(&self.shape(&[], &[]), work) {
+            // Without room for all that bends together everything goes triangle by triangle.
+            graphs.fill(0);
+        }
         let place = |corner: u32| {
             let row = bodies.row_of_start(*self.particles.as_ref().get(corner as usize)?)?;
             Some(bodies.position[row])
@@ -199,11 +224,12 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 }
 
-/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, and its last shifts.
+/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, and where it went last.
 struct Rest<'m> {
     cells: &'m mut [Cell],
     bends: &'m mut [Bend],
     graphs: &'m mut [u32],
+    plate: Plate<'m>,
     last: &'m mut [Vec3],
 }
 
@@ -225,7 +251,7 @@ where
         let sum = |parts: [usize; 3]| parts.into_iter().fold(0, usize::saturating_add);
         let room = Room::of(self.counts());
         let kept = sum([
-            1 + room.words() + 3 * room.rows[0],
+            1 + room.words() + plate::words(&room) + 3 * room.rows[0],
             triangles.saturating_mul(KEPT[0]),
             hinges.saturating_mul(KEPT[1]),
         ]);
@@ -245,6 +271,7 @@ where
         if share.claim(*b"shel", &self.counts()) {
             self.learn(bodies, share.kept.fixed, share.scratch);
         }
+        self.update(bodies, share.kept.fixed, share.scratch);
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -253,12 +280,12 @@ where
             return;
         }
         let [particles, triangles, hinges] = self.counts();
-        let Rest { cells, bends, graphs, last, .. } = self.rest(share.kept.fixed);
+        let Rest { cells, bends, graphs, plate, last, .. } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = whole(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = whole(take(&mut rest, hinges.saturating_mul(WORK[1])));
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
-        let mut levels = Levels::of(Graph::all(graphs), rest);
+        let mut levels = Levels::of(Graph::all(graphs), plate, rest);
         let mut solver = Solver {
             params: &self.params,
             step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },
@@ -269,6 +296,7 @@ where
             bends,
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
+            thin: false,
             walls: &mut [],
             last,
         };

@@ -122,6 +122,8 @@ pub(super) struct Solver<'m> {
     pub(super) bends: &'m [Bend],
     pub(super) folds: &'m mut [Fold],
     pub(super) vectors: Vectors<'m>,
+    /// True if a matrix holds how it bends.
+    pub(super) thin: bool,
     /// The scenery that particles are pressed by.
     pub(super) walls: &'m mut [Wall],
     /// How far the particles were moved in the sub-step before; none, where there are no graphs.
@@ -135,25 +137,29 @@ impl Solver<'_> {
     }
 
     /// q = (M + h² K) p, zero where nothing moves.
-    fn apply(&mut self, levels: &Levels<'_>) {
+    fn apply(&mut self, levels: &mut Levels<'_>) {
         let bending = self.bending() * self.step.rate;
-        let Vectors { p, q, weight, .. } = &mut self.vectors;
         let bends_only = !levels.is_empty();
         if bends_only {
-            levels.apply(p, q);
-        } else {
+            levels.apply(self.vectors.p, self.vectors.q);
+        }
+        if !bends_only || (bending > 0.0 && !self.thin) {
+            self.resist(bending, bends_only);
+        }
+        let Vectors { p, q, .. } = &mut self.vectors;
+        walls::brake(self.walls, p, q);
+    }
+
+    /// Adds what is not assembled: what bending does, or all.
+    fn resist(&mut self, bending: f32, bends_only: bool) {
+        let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
+        let Vectors { p, q, weight, .. } = &mut self.vectors;
+        if !bends_only {
             for ((q, &p), &weight) in q.iter_mut().zip(&**p).zip(&**weight) {
                 *q = if weight > 0.0 { p / weight } else { Vec3::ZERO };
             }
         }
-        let Self { params, ref step, triangles, cells, ref mut strains, hinges, bends, ref folds, .. } = *self;
-        let Vectors { p, q, weight, .. } = &mut self.vectors;
-        if !bends_only || bending > 0.0 {
-            let all =
-                Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q };
-            lanes::run(all);
-        }
-        walls::brake(self.walls, p, q);
+        lanes::run(Resist { params, step, bending, bends_only, triangles, cells, strains, hinges, bends, folds, p, q });
         for (q, &weight) in q.iter_mut().zip(&**weight) {
             *q = if weight > 0.0 { *q } else { Vec3::ZERO };
         }
@@ -200,7 +206,7 @@ impl Solver<'_> {
     }
 
     /// Begins with as much of the last sub-step's shifts as is best in the norm of energy, and tells the energy of that.
-    fn go_on(&mut self, levels: &Levels<'_>) -> f32 {
+    fn go_on(&mut self, levels: &mut Levels<'_>) -> f32 {
         if self.last.is_empty() || levels.is_empty() {
             return 0.0;
         }

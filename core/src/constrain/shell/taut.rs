@@ -148,14 +148,9 @@ fn edge<F: Eight>(of: &[Side<F>; 3], side: usize) -> Side<F> {
 impl Cell {
     /// The length of one of its edges at rest.
     fn rest(&self, side: usize) -> f32 {
-        let [a, b, c, d] = self.inverse;
-        let twice = 2.0 * self.area;
-        let (e, f) = ([d * twice, -b * twice], [-c * twice, a * twice]);
-        let [x, y] = match side {
-            0 => e,
-            1 => [f[0] - e[0], f[1] - e[1]],
-            _ => f,
-        };
+        let places = self.places();
+        let ([a, b], [c, d]) = (places[side], places[(side + 1) % 3]);
+        let (x, y) = (c - a, d - b);
         sqrt(x * x + y * y)
     }
 }

@@ -1,0 +1,265 @@
+//! The matrix of bending: of a shell that hardly stretches it is always the same, and one number for each two particles.
+
+use super::ShellParams;
+use super::fold::Bend;
+use super::membrane::Cell;
+use super::mesh::{Graph, Room, link, sorted};
+use crate::cloth::Hinge;
+use crate::math::{max, min, sqrt};
+use crate::memory::take;
+
+/// Hinges of a triangle, and corners that they have together, at the most.
+const SIDES: usize = 3;
+const PATCH: usize = 4 * SIDES;
+/// The most that a thin shell resists bending, in its triangles, as a share of stretching.
+const THIN: f32 = 0.05;
+/// What a particle is: it moves, it is fixed, it is not there. Nothing is known of it before that is set.
+const MOVES: u32 = 1;
+const FIXED: u32 = 2;
+const GONE: u32 = 3;
+
+/// How particles hold each other by bending, where bending stiffness is one: ½ xᵀ K x is the energy of positions x, for each coordinate by itself.
+///
+/// Folds change by the ways of four corners along normals. Of a sheet that bends and hardly stretches, how these ways count is what it is at rest, and all that
+/// changes is where normals point: taken for all directions alike (Bergou et al., "A quadratic bending model for inextensible surfaces", SGP 2006; here for
+/// the energy of triangles) the matrix never changes. What sharp folds do besides is added along edges: see `assemble`.
+///
+/// Edges get a part of it that alone is as stiff as K where the mesh folds to and fro, so that sweeps through it know of bending and go no
+/// farther than edges do.
+#[derive(Default)]
+pub(super) struct Plate<'m> {
+    /// What each particle is in the matrix.
+    roll: &'m mut [u32],
+    /// The largest of the squares of the curvatures that a radian makes \[1/m²\] and of how slender their triangles are.
+    steepest: &'m mut [f32],
+    /// What edges do to particles, and along the links of the finest graph.
+    pub(super) own: &'m mut [f32],
+    pub(super) near: &'m mut [f32],
+    /// What all of it does to particles where those that move all go the same way.
+    pub(super) alone: &'m mut [f32],
+    /// The rest: where those that bend with each begin, who they are in ascending order, and numbers.
+    starts: &'m mut [u32],
+    links: &'m mut [u32],
+    numbers: &'m mut [f32],
+}
+
+/// A shell at rest.
+pub(super) struct Shape<'s> {
+    pub(super) triangles: &'s [[u32; 3]],
+    pub(super) cells: &'s [Cell],
+    pub(super) hinges: &'s [Hinge],
+    pub(super) bends: &'s [Bend],
+}
+
+/// Words that a matrix is kept in.
+pub(super) fn words(room: &Room) -> usize {
+    let [rows, _] = room.rows;
+    if rows == 0 { 0 } else { 4 * rows + 2 + room.links[0] + 2 * room.far }
+}
+
+impl<'m> Plate<'m> {
+    pub(super) fn of(room: &Room, words: &'m mut [u32]) -> Self {
+        let ([rows, _], mut rest) = (room.rows, words);
+        if rows == 0 {
+            return Self::default();
+        }
+        let roll = take(&mut rest, rows);
+        let lengths = [1, rows, room.links[0], rows, room.far];
+        let [steepest, own, near, alone, numbers] = lengths.map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
+        let starts = take(&mut rest, rows + 1);
+        Self { roll, steepest, own, near, alone, starts, links: take(&mut rest, room.far), numbers }
+    }
+
+    /// Those that bend together with each row, and numbers.
+    #[inline(always)]
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[u32], &[f32])> {
+        self.starts.windows(2).map(|ends| {
+            let range = ends[0] as usize..ends[1] as usize;
+            (self.links.get(range.clone()).unwrap_or(&[]), self.numbers.get(range).unwrap_or(&[]))
+        })
+    }
+
+    /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon another.
+    pub(super) fn is_thin(&self, params: &ShellParams) -> bool {
+        let [warp, weft] = params.stretch;
+        let steepest = self.steepest.first().copied().unwrap_or(f32::INFINITY);
+        params.bending * steepest <= THIN * min(min(warp, weft), params.shear)
+    }
+
+    /// Finds who bends together: all corners of the hinges of each triangle. Tells whether there is room.
+    pub(super) fn link(&mut self, shape: &Shape<'_>, work: &mut [u32]) -> bool {
+        self.find(shape, work).is_some()
+    }
+
+    fn find(&mut self, shape: &Shape<'_>, work: &mut [u32]) -> Option<()> {
+        let rows = self.own.len();
+        let corners = shape.hinges.iter().flat_map(|hinge| {
+            hinge.corners().into_iter().flat_map(|corner| hinge.faces.map(|face| (corner as usize, face)))
+        });
+        let (work, others) = work.split_at_mut_checked(rows + 2 + 8 * shape.hinges.len())?;
+        let (begin, faces) = sorted(rows, corners, work)?;
+        let (first, hinges) = shape.by_face(others)?;
+        link(self.starts, self.links, |row, add| {
+            let faces = faces.get(begin[row] as usize..begin[row + 1] as usize)?;
+            for (i, &face) in faces.iter().enumerate() {
+                if faces[..i].contains(&face) {
+                    continue;
+                }
+                let face = face as usize;
+                let hinges = hinges.get(*first.get(face)? as usize..*first.get(face + 1)? as usize)?;
+                if hinges.len() > SIDES {
+                    return None;
+                }
+                let hinges = hinges.iter().filter_map(|&hinge| shape.hinges.get(hinge as usize));
+                for corner in hinges.flat_map(Hinge::corners) {
+                    add(corner)?;
+                }
+            }
+            Some(())
+        })?;
+        Some(())
+    }
+
+    /// Makes the matrix, if other particles are there, or move, than when it was made: of each is said whether it moves, if it is there.
+    pub(super) fn update(
+        &mut self,
+        graph: &Graph<'_>,
+        shape: &Shape<'_>,
+        particles: impl Iterator<Item = Option<bool>>,
+        work: &mut [u32],
+    ) {
+        let mut same = true;
+        for (was, is) in self.roll.iter_mut().zip(particles) {
+            let is = is.map_or(GONE, |moves| if moves { MOVES } else { FIXED });
+            same &= core::mem::replace(was, is) == is;
+        }
+        if same || graph.rows() == 0 {
+            return;
+        }
+        self.clear();
+        let Some((first, hinges)) = shape.by_face(work) else { return };
+        for (face, cell) in shape.cells.iter().enumerate() {
+            let (Some(&from), Some(&to)) = (first.get(face), first.get(face + 1)) else { return };
+            let mut patch = Patch::default();
+            let slender = cell.slenderness();
+            for &hinge in hinges.get(from as usize..to as usize).unwrap_or(&[]) {
+                let steep = shape.bends.get(hinge as usize).map_or(0.0, Bend::steepness);
+                self.steepest[0] = max(steep * (slender * slender), self.steepest[0]);
+                patch.take(shape, self.roll, face as u32, hinge as usize);
+            }
+            self.add(&patch, cell.area);
+        }
+        self.part(graph);
+        let mut all = self.own.iter().chain(&*self.near).chain(&*self.alone).chain(&*self.numbers);
+        if !all.all(|number| number.is_finite()) {
+            // Which bits a NaN has depends on the machine, and these words are in the hash.
+            self.clear();
+            self.steepest[0] = f32::INFINITY;
+        }
+    }
+
+    fn clear(&mut self) {
+        for numbers in [&mut self.own, &mut self.near, &mut self.alone, &mut self.numbers] {
+            numbers.fill(0.0);
+        }
+        self.steepest[0] = 0.0;
+    }
+
+    /// Adds how the corners of a triangle's hinges hold each other.
+    fn add(&mut self, patch: &Patch, area: f32) {
+        let corners = || patch.corners.iter().zip(&patch.weights).take(patch.count);
+        for (&row, [a, b, c]) in corners() {
+            for (&other, [d, e, f]) in corners().filter(|&(&other, _)| other != row) {
+                let number = area * (a * d + b * e + c * f);
+                // So nothing comes of it where all go the same way.
+                self.own[row as usize] -= number;
+                if self.roll[other as usize] == FIXED {
+                    self.alone[row as usize] -= number;
+                } else if self.roll[row as usize] == MOVES
+                    && let Some(place) = self.place(row as usize, other)
+                {
+                    self.numbers[place] += number;
+                }
+            }
+        }
+    }
+
+    /// Gives edges their part: what each particle does to itself is shared among its edges.
+    fn part(&mut self, graph: &Graph<'_>) {
+        for (row, range) in graph.ranges().enumerate() {
+            let share = |row: usize| self.own[row] / graph.range(row).len() as f32;
+            for (link, &other) in range.zip(graph.row(row)) {
+                if self.place(row, other).is_some() {
+                    self.near[link] = -0.5 * (share(row) + share(other as usize));
+                }
+            }
+        }
+        for (row, range) in graph.ranges().enumerate() {
+            let moves = self.roll[row] == MOVES;
+            self.own[row] = 0.0;
+            for (link, &other) in range.zip(graph.row(row)).filter(|_| moves) {
+                self.own[row] -= self.near[link];
+                if let Some(place) = self.place(row, other).filter(|_| self.roll[other as usize] == MOVES) {
+                    self.numbers[place] -= self.near[link];
+                }
+            }
+        }
+    }
+
+    /// Where the number of two lies that bend together.
+    fn place(&self, row: usize, other: u32) -> Option<usize> {
+        let (from, to) = (*self.starts.get(row)? as usize, *self.starts.get(row + 1)? as usize);
+        Some(from + self.links.get(from..to)?.binary_search(&other).ok()?)
+    }
+}
+
+impl Shape<'_> {
+    /// Where the hinges of each triangle begin, and their numbers.
+    fn by_face<'w>(&self, work: &'w mut [u32]) -> Option<(&'w [u32], &'w [u32])> {
+        let numbered = self.hinges.iter().enumerate();
+        let pairs = numbered.flat_map(|(hinge, of)| of.faces.map(|face| (face as usize, hinge as u32)));
+        sorted(self.triangles.len(), pairs, work)
+    }
+}
+
+/// The corners of a triangle's hinges, and the curvature that comes of each metre that one goes along the normal.
+#[derive(Default)]
+struct Patch {
+    corners: [u32; PATCH],
+    weights: [[f32; 3]; PATCH],
+    count: usize,
+}
+
+impl Patch {
+    /// Adds a hinge, if all of its corners are there.
+    fn take(&mut self, shape: &Shape<'_>, roll: &[u32], face: u32, hinge: usize) {
+        let (Some(hinge), Some(bend)) = (shape.hinges.get(hinge), shape.bends.get(hinge)) else { return };
+        let gone = |corner: u32| roll.get(corner as usize).is_none_or(|&is| is == GONE);
+        if hinge.corners().into_iter().any(gone) || bend.curvature[0] == [0.0; 3] {
+            return;
+        }
+        let [first, second] = [0, 1].map(|side| slopes(bend, side));
+        let [a, b] = [first[0] + second[0], first[1] + second[1]];
+        for (curvature, _) in bend.curvature.iter().zip(hinge.faces).filter(|&(_, of)| of == face) {
+            for (corner, slope) in hinge.corners().into_iter().zip([a, b, first[2], second[2]]) {
+                self.add(corner, curvature.map(|part| part * slope));
+            }
+        }
+    }
+
+    fn add(&mut self, corner: u32, curvature: [f32; 3]) {
+        let known = self.corners[..self.count].iter().position(|&known| known == corner);
+        let at = known.unwrap_or(self.count);
+        let Some(weight) = self.weights.get_mut(at) else { return };
+        self.corners[at] = corner;
+        self.count = self.count.max(at + 1);
+        weight.iter_mut().zip(curvature).for_each(|(sum, part)| *sum += part);
+    }
+}
+
+/// How the angle of a hinge changes for each metre that the corners of its edge and the far one of a side go along that side's normal, at rest.
+fn slopes(bend: &Bend, side: usize) -> [f32; 3] {
+    let slope = sqrt(bend.steep(side));
+    let foot = bend.foot[side];
+    [-(1.0 - foot) * slope, -foot * slope, slope]
+}
