@@ -1,14 +1,16 @@
 //! Loose balls among rigid bodies: they bounce off them, rest on them, push them and hold them up.
 
 use pointmass::constrain::{RigidBodies, RigidBox};
+use pointmass::emit::Burst;
 use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::scene::{Model, SceneFile};
 use pointmass::shape::Plane;
 use pointmass::{
-    Attention, ContactMaterial, Contacts, Gravity, Impact, Measures, Method, Observer, Particle, Scene, Time, Vec3,
+    Attention, ContactMaterial, Contacts, Emitter, Gravity, Impact, Measures, Method, Observer, Particle, Scene, Time,
+    Varied, Vec3,
 };
-use pointmass_tests::{Random, gap, run, started};
+use pointmass_tests::{Random, gap, point, run, started};
 
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
 const GROUND: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -216,6 +218,50 @@ fn more_balls_than_there_is_room_for_are_counted() {
         let through = system.particles().position[8..].iter().filter(|x| x.y < 0.0).count();
         assert_eq!(through, fallen, "room for {balls}");
         assert_eq!(system.totals().caps.contacts > 0, balls == 2, "{:?}", system.totals());
+    }
+}
+
+/// A heavy ball lies between a wall and the ground until its life is over; one that is born in its place just before moves as if it had not been
+/// there.
+#[test]
+fn who_takes_the_place_of_a_dead_ball_takes_nothing_of_what_held_that() {
+    for (mass, radius, pull, substeps, method) in [
+        (50.0, 0.05, 2.0, 8, Method::Symplectic),
+        (3.0, 0.1, 0.0, 4, Method::Rk4),
+        (500.0, 0.02, 20.0, 20, Method::Verlet),
+    ] {
+        let wall = RigidBox::new(Vec3::new(0.1, 0.2, 0.5), Vec3::new(-0.1, 0.2, 0.0), 0);
+        let place = Vec3::new(radius, radius, 0.0);
+        let after = |before: Vec3| {
+            let part = Particle { elasticity: 0.0, material: Some(0), ..Particle::REST };
+            let mut start = wall.solid(Particle { fixed: true, ..part }).to_vec();
+            start.push(Particle { position: before, radius, mass, lifetime: 0.195, ..part });
+            let emitter = Emitter {
+                burst: Some(Burst { count: 1, at: 0.19, every: 0.0 }),
+                radius: Varied::exactly(radius),
+                mass: Varied::exactly(0.1),
+                elasticity: Varied::exactly(0.0),
+                material: Some(0),
+                ..Emitter::new(point(place), 0.0)
+            };
+            let (bodies, materials) = (RigidBodies { balls: 1, ..RigidBodies::boxes([wall]) }, rough(0.5));
+            // Toward the wall, and along both: friction holds it, or not.
+            let forces = Gravity { acceleration: Vec3::new(-4.0, -9.81, pull) };
+            let parts =
+                Scene { start: &start, forces: &forces, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+            let scene =
+                Scene { constraints: &bodies, emitters: &emitter, substeps, integrator: method.integrator(), ..parts };
+            let mut system = started(&scene, 12, 0);
+            let steps = (1..=24).map(|frame| {
+                system.step_to(&scene, Time::frame(frame, 60));
+                let particles = system.particles();
+                (system.len(), particles.position[8..].to_vec(), particles.velocity[8..].to_vec())
+            });
+            steps.skip(11).collect::<Vec<_>>()
+        };
+        let (there, elsewhere) = (after(place), after(place + Vec3::X * 10.0));
+        assert!(there.iter().all(|(len, ..)| *len == 9), "one has died, one was born");
+        assert_eq!(there, elsewhere, "{mass} kg, {radius} m, {method}");
     }
 }
 

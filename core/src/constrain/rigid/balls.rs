@@ -4,6 +4,7 @@ use super::super::Bodies;
 use super::body::Body;
 use super::forms::Forms;
 use super::lists::Kept;
+use super::scenery::{self, DIRECTIONS};
 use crate::math::{length, max};
 use glam::Vec3;
 
@@ -68,7 +69,7 @@ pub(super) fn invite(
     meet: &mut dyn FnMut([u32; 2]),
 ) {
     let Around { middles, widest, rows } = around;
-    let Kept { balls, bodies: all, .. } = kept;
+    let Kept { balls, bodies: all, scenery, .. } = kept;
     let first = all.len() - balls.len();
     sort_out(bodies, balls, forms, rows, first);
     let (mut fastest, mut thickest) = (0.0, 0.0);
@@ -110,9 +111,14 @@ pub(super) fn invite(
         }
     });
     bodies.report.caps.contacts += left_out;
-    for (ball, body) in balls.iter_mut().zip(&mut all[first..]) {
+    let own = scenery.chunks_exact_mut(DIRECTIONS).skip(first - 1);
+    for ((ball, body), slots) in balls.iter_mut().zip(&mut all[first..]).zip(own) {
         if ball.state == LEAVES {
             ball.state = FREE;
+        }
+        if ball.is_new() {
+            // What pressed on another that had its number says nothing of it.
+            scenery::clear(body, slots);
         }
         if let Some(row) = ball.row(bodies) {
             body.follow(bodies, row);

@@ -238,10 +238,18 @@ impl Body {
         }
         let made = Made { of, places };
         let (mut living, mut is_sound) = (0, true);
-        made.each(bodies, &mut |row, place| {
-            living += 1;
-            is_sound &= (bodies.position[row] + bodies.velocity[row] + place).is_finite();
-        });
+        if let Some(rows) = made.run(bodies) {
+            let [at, moving] = [&bodies.position[rows.clone()], &bodies.velocity[rows]].map(bytemuck::cast_slice);
+            let (at, moving): (&[f32], &[f32]) = (at, moving);
+            let all = at.iter().zip(moving).zip(made.places);
+            is_sound = all.fold(true, |all, ((&x, &v), &place)| all & (x + v + f32::from_bits(place)).is_finite());
+            living = of.count;
+        } else {
+            made.each(bodies, &mut |row, place| {
+                living += 1;
+                is_sound &= (bodies.position[row] + bodies.velocity[row] + place).is_finite();
+            });
+        }
         if self.known == living + 1 && is_sound == self.is_there() {
             return false;
         }
@@ -324,19 +332,26 @@ impl Body {
     /// Takes in what has been done to its particles since they were last told where to be: what the method did by the forces, and others.
     /// Without any of that they are, to the bit, where it says, and its momenta stay as they are.
     pub(super) fn gather(&mut self, bodies: &Bodies<'_>, made: Made<'_>) {
+        self.begin();
+        if self.moves() {
+            self.take(self.sums(bodies, made), bodies.substep.seconds());
+        }
+    }
+
+    /// Begins a sub-step.
+    pub(super) fn begin(&mut self) {
         self.before = [self.velocity, self.omega];
         self.pressed = 0;
-        if !self.moves() {
-            return;
-        }
-        let [way, push, torque] = self.sums(bodies, made);
+    }
+
+    /// Takes in what has been done to its particles in a sub-step of so many seconds: what [`gather`](Self::gather) sums up.
+    pub(super) fn take(&mut self, [way, push, torque]: [Vec3; 3], seconds: f32) {
         if !(way + push + torque).is_finite() {
             self.state = ABSENT;
             self.inverse_mass = 0.0;
             self.asleep = 0;
             return;
         }
-        let seconds = bodies.substep.seconds();
         self.drive = [push, torque].map(|change| change * (1.0 / seconds));
         // What is −0 becomes 0, here and where a body has turned: impulses of zero change nothing then.
         self.velocity = self.velocity + push + Vec3::ZERO;
@@ -400,9 +415,14 @@ impl Body {
         self.face();
     }
 
+    /// Tells whether it can say where its particles are.
+    pub(super) fn tells(&self) -> bool {
+        self.moves() && (self.center + self.velocity + self.omega).is_finite()
+    }
+
     /// Puts its particles where it says.
     pub(super) fn tell(&self, bodies: &mut Bodies<'_>, made: Made<'_>) {
-        if !self.moves() || !(self.center + self.velocity + self.omega).is_finite() {
+        if !self.tells() {
             return;
         }
         let run = made.run(bodies);

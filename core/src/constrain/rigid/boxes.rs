@@ -1,7 +1,8 @@
-//! How two boxes are apart: by separating axes.
+//! Boxes: their faces, edges and corners.
 
-use super::facets::{Apart, By, Edge, Facet, Faceted};
-use crate::math::{clamp, dot, length, min, sqrt};
+use super::body::Body;
+use super::facets::{Apart, By, Edge, Spots, nearest_of, push};
+use crate::math::{clamp, dot, length};
 use glam::{Mat3, Vec3};
 
 /// A box that stands anywhere.
@@ -21,14 +22,15 @@ pub(super) const FACES_FIRST: f32 = 0.02;
 pub(super) const PARALLEL: f32 = 1e-4;
 
 impl Oriented {
+    /// That of a body.
+    pub(super) fn of(body: &Body) -> Self {
+        Self { middle: body.middle(), axes: body.rotation, half: body.half }
+    }
+
     /// Its corner with a number from 0 to 7, from its middle along its own axes \[m\].
     pub(super) fn corner(half: Vec3, number: u32) -> Vec3 {
         let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
         half * Vec3::new(side(0), side(1), side(2))
-    }
-
-    pub(super) fn least(&self) -> f32 {
-        min(self.half.x, min(self.half.y, self.half.z))
     }
 }
 
@@ -55,18 +57,23 @@ pub(super) fn nearest(half: Vec3, place: Vec3) -> (Vec3, Vec3, f32) {
     (on, normal, -depth[axis])
 }
 
-impl Faceted for Oriented {
-    fn face(&self, number: usize, toward: Vec3) -> Facet {
+/// A face of a box: a point in its middle, the way out, and from the middle to two of its sides \[m\].
+struct Side {
+    middle: Vec3,
+    out: Vec3,
+    across: [Vec3; 2],
+}
+
+impl Oriented {
+    /// The one of two opposite faces that looks more in a direction.
+    fn side(&self, number: usize, toward: Vec3) -> Side {
         let out = facing(self.axes.col(number), toward);
-        let (i, j) = ((number + 1) % 3, (number + 2) % 3);
         let side = |k: usize| self.axes.col(k) * self.half[k];
-        let (middle, u, v) = (self.middle + out * self.half[number], side(i), side(j));
-        let mut facet = Facet { middle, out, sides: heapless::Vec::new(), corners: heapless::Vec::new() };
-        facet.sides.extend([u, v, -u, -v].map(|side| (side, middle, dot(side, side))));
-        facet.corners.extend([middle - u - v, middle + u - v, middle + u + v, middle - u + v]);
-        facet
+        let across = [side((number + 1) % 3), side((number + 2) % 3)];
+        Side { middle: self.middle + out * self.half[number], out, across }
     }
 
+    /// The number of the face that looks most in a direction, or of the opposite one.
     fn across(&self, toward: Vec3) -> usize {
         let [x, y, z] = [0, 1, 2].map(|k| dot(self.axes.col(k), toward).abs());
         if x >= y && x >= z {
@@ -78,6 +85,7 @@ impl Faceted for Oriented {
         }
     }
 
+    /// The one of four parallel edges that is farthest in a direction.
     fn edge(&self, number: usize, toward: Vec3) -> Edge {
         let side = |k: usize| facing(self.axes.col(k), toward) * self.half[k];
         let middle = self.middle + side((number + 1) % 3) + side((number + 2) % 3);
@@ -85,98 +93,67 @@ impl Faceted for Oriented {
     }
 }
 
-/// An axis, or its opposite, whichever looks in a direction.
-fn facing(axis: Vec3, toward: Vec3) -> Vec3 {
-    if dot(axis, toward) < 0.0 { -axis } else { axis }
-}
+/// The corners of a face that has been clipped to another: each of four sides adds one at the most.
+const CLIPPED: usize = 8;
 
-/// Two boxes as the first sees the second.
-struct Beside {
-    /// Half the sides of each \[m\].
-    half: [[f32; 3]; 2],
-    /// The way from the middle of the first to that of the second, along the sides of each \[m\].
-    way: [[f32; 3]; 2],
-    /// How far each side's direction of the first goes along each of the second, and the same without signs.
-    cos: [[f32; 3]; 3],
-    steep: [[f32; 3]; 3],
-}
-
-impl Beside {
-    #[inline(always)]
-    fn new(a: &Oriented, b: &Oriented) -> Self {
-        let way = b.middle - a.middle;
-        let axes = |of: &Oriented| [of.axes.x_axis, of.axes.y_axis, of.axes.z_axis];
-        let (u, v) = (axes(a), axes(b));
-        let (mut cos, mut steep, mut ways) = ([[0.0; 3]; 3], [[0.0; 3]; 3], [[0.0; 3]; 2]);
-        for i in 0..3 {
-            (ways[0][i], ways[1][i]) = (dot(way, u[i]), dot(way, v[i]));
-            for j in 0..3 {
-                cos[i][j] = dot(u[i], v[j]);
-                steep[i][j] = cos[i][j].abs();
-            }
-        }
-        Self { half: [a.half.to_array(), b.half.to_array()], way: ways, cos, steep }
-    }
-
-    /// How far they are apart across a face of the first, or of the second \[m\].
-    #[inline(always)]
-    fn across_face(&self, side: usize, axis: usize) -> f32 {
-        let ([x, y, z], steep) = (self.half[1 - side], &self.steep);
-        let reach = if side == 0 {
-            x * steep[axis][0] + y * steep[axis][1] + z * steep[axis][2]
-        } else {
-            x * steep[0][axis] + y * steep[1][axis] + z * steep[2][axis]
-        };
-        self.way[side][axis].abs() - self.half[side][axis] - reach
-    }
-
-    /// How far they are apart across an edge of each \[m\]; none if these are parallel, or if that is below zero and not above `least`.
-    #[inline(always)]
-    fn across_edges(&self, i: usize, j: usize, least: f32) -> Option<f32> {
-        let ([half, other], [p, q], [k, l]) = (self.half, [(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
-        let (cos, steep, way) = (&self.cos, &self.steep, self.way[0]);
-        let reach = half[p] * steep[q][j] + half[q] * steep[p][j] + other[k] * steep[i][l] + other[l] * steep[i][k];
-        let gap = (way[q] * cos[p][j] - way[p] * cos[q][j]).abs() - reach;
-        let square = cos[p][j] * cos[p][j] + cos[q][j] * cos[q][j];
-        // The sine is one at the most.
-        (square > PARALLEL && (gap > least || gap > 0.0)).then(|| gap / sqrt(square))
-    }
-}
-
-/// How two boxes are apart; none if that is more than `bound` \[m\] (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996).
-pub(super) fn apart(a: &Oriented, b: &Oriented, bound: f32) -> Option<Apart> {
-    let (beside, way) = (Beside::new(a, b), b.middle - a.middle);
-    let (mut most, mut by) = (f32::NEG_INFINITY, By::Face(0, 0));
-    for side in 0..2 {
-        for axis in 0..3 {
-            let gap = beside.across_face(side, axis);
-            if !(gap <= bound) {
-                return None;
-            }
-            if gap > most {
-                (most, by) = (gap, By::Face(side, axis));
-            }
-        }
-    }
-    let mut least = most + FACES_FIRST * min(a.least(), b.least());
-    for i in 0..3 {
-        for j in 0..3 {
-            let Some(gap) = beside.across_edges(i, j, least) else { continue };
-            if !(gap <= bound) {
-                return None;
-            }
-            if gap > least {
-                (least, most, by) = (gap, gap, By::Edges(i, j));
-            }
-        }
-    }
-    let axis = match by {
-        By::Face(0, axis) => a.axes.col(axis),
-        By::Face(_, axis) => b.axes.col(axis),
+/// Adds the places where two boxes touch that are apart in a way, or are at most `reach` \[m\] apart: what [`Apart::touching`] does with any two.
+pub(super) fn touching([a, b]: [&Oriented; 2], apart: &Apart, reach: f32, spots: &mut Spots) {
+    let normal = apart.normal;
+    match apart.by {
+        By::Face(0, face) => clip([a, b], (face, normal), reach, &mut |on, off| push(spots, [on, off])),
+        By::Face(_, face) => clip([b, a], (face, -normal), reach, &mut |on, off| push(spots, [off, on])),
         By::Edges(i, j) => {
-            let cross = a.axes.col(i).cross(b.axes.col(j));
-            cross * (1.0 / length(cross))
+            if apart.gap <= reach {
+                push(spots, nearest_of(&a.edge(i, normal), &b.edge(j, -normal)));
+            }
         }
-    };
-    Some(Apart { gap: most, normal: facing(axis, way), by })
+    }
+}
+
+/// Visits the places where the face of a box that looks at a face of another is within `reach` \[m\] of it, clipped to that.
+#[inline(always)]
+fn clip([one, other]: [&Oriented; 2], (number, toward): (usize, Vec3), reach: f32, visit: &mut impl FnMut(Vec3, Vec3)) {
+    let Side { middle, out, across: [u, v] } = one.side(number, toward);
+    let Side { middle: m, across: [p, q], .. } = other.side(other.across(-out), -out);
+    let mut polygon = heapless::Vec::<Vec3, CLIPPED>::new();
+    polygon.extend([m - p - q, m + p - q, m + p + q, m - p + q]);
+    for side in [u, v, -u, -v] {
+        let limit = dot(side, side);
+        cut(&mut polygon, |x| dot(side, x - middle) - limit);
+    }
+    for &x in &polygon {
+        let gap = dot(out, x - middle);
+        if gap <= reach {
+            visit(x - out * gap, x);
+        }
+    }
+}
+
+/// Cuts off a polygon what is beyond a plane.
+#[inline(always)]
+fn cut(polygon: &mut heapless::Vec<Vec3, CLIPPED>, beyond: impl Fn(Vec3) -> f32) {
+    let mut far = [0.0; CLIPPED];
+    for (far, &x) in far.iter_mut().zip(&*polygon) {
+        *far = beyond(x);
+    }
+    if !far.iter().any(|&far| far > 0.0) {
+        return;
+    }
+    let (all, len) = (polygon.clone(), polygon.len());
+    polygon.clear();
+    for (i, (&to, &after)) in all.iter().zip(&far).enumerate() {
+        let last = if i > 0 { i - 1 } else { len - 1 };
+        let (from, before) = (all[last], far[last]);
+        if (before > 0.0) != (after > 0.0) {
+            let _ = polygon.push(from + (to - from) * (before / (before - after)));
+        }
+        if !(after > 0.0) {
+            let _ = polygon.push(to);
+        }
+    }
+}
+
+/// An axis, or its opposite, whichever looks in a direction.
+pub(super) fn facing(axis: Vec3, toward: Vec3) -> Vec3 {
+    if dot(axis, toward) < 0.0 { -axis } else { axis }
 }

@@ -30,12 +30,8 @@ pub(super) enum By {
 /// A place where two bodies touch, or are about to: on the surface of each \[m\].
 pub(super) type Spot = [Vec3; 2];
 
-/// How two bodies touch: the direction from the first to the second, and where.
-#[derive(Clone, Debug)]
-pub(super) struct Touching {
-    pub(super) normal: Vec3,
-    pub(super) spots: heapless::Vec<Spot, CLIPPED>,
-}
+/// The places where two touch.
+pub(super) type Spots = heapless::Vec<Spot, CLIPPED>;
 
 /// A face of a body.
 pub(super) struct Facet {
@@ -71,30 +67,31 @@ pub(super) trait Faceted {
 }
 
 impl Apart {
-    /// The places where they touch, or are at most `reach` \[m\] apart.
-    pub(super) fn touching(&self, a: &dyn Faceted, b: &dyn Faceted, reach: f32) -> Touching {
+    /// Adds the places where they touch, or are at most `reach` \[m\] apart, as far as there is room: for as many as clipping leaves.
+    pub(super) fn touching(&self, [a, b]: [&dyn Faceted; 2], reach: f32, spots: &mut Spots) {
         let normal = self.normal;
-        let mut spots = heapless::Vec::new();
         match self.by {
-            By::Face(0, face) => clip(&a.face(face, normal), b, reach, &mut |on, off| push(&mut spots, [on, off])),
-            By::Face(_, face) => clip(&b.face(face, -normal), a, reach, &mut |on, off| push(&mut spots, [off, on])),
+            By::Face(0, face) => clip(&a.face(face, normal), b, reach, &mut |on, off| push(spots, [on, off])),
+            By::Face(_, face) => clip(&b.face(face, -normal), a, reach, &mut |on, off| push(spots, [off, on])),
             By::Edges(i, j) => {
                 if self.gap <= reach {
-                    push(&mut spots, nearest(&a.edge(i, normal), &b.edge(j, -normal)));
+                    push(spots, nearest_of(&a.edge(i, normal), &b.edge(j, -normal)));
                 }
             }
         }
-        Touching { normal, spots }
     }
 }
 
 /// There is room for as many as clipping leaves.
-fn push(spots: &mut heapless::Vec<Spot, CLIPPED>, spot: Spot) {
+pub(super) fn push(spots: &mut Spots, spot: Spot) {
     let _ = spots.push(spot);
 }
 
 /// The points of two edges that are nearest to each other.
-fn nearest(&Edge { middle: p, along: u, half }: &Edge, &Edge { middle: q, along: v, half: other }: &Edge) -> Spot {
+pub(super) fn nearest_of(
+    &Edge { middle: p, along: u, half }: &Edge,
+    &Edge { middle: q, along: v, half: other }: &Edge,
+) -> Spot {
     let (way, cos) = (q - p, dot(u, v));
     let sine = max(1.0 - cos * cos, PARALLEL);
     let s = clamp((dot(u, way) - cos * dot(v, way)) / sine, -half, half);
@@ -107,14 +104,16 @@ fn nearest(&Edge { middle: p, along: u, half }: &Edge, &Edge { middle: q, along:
 fn clip(face: &Facet, of: &dyn Faceted, reach: f32, visit: &mut dyn FnMut(Vec3, Vec3)) {
     let out = face.out;
     let other = of.face(of.across(-out), -out);
-    let mut polygon = heapless::Vec::<Vec3, CLIPPED>::new();
+    let mut polygons = [const { heapless::Vec::<Vec3, CLIPPED>::new() }; 2];
+    let [polygon, rest] = &mut polygons;
+    let (mut polygon, mut kept) = (polygon, rest);
     polygon.extend(other.corners.iter().copied());
     for &(side, point, limit) in &face.sides {
         let beyond = |x: Vec3| dot(side, x - point) - limit;
-        let mut kept = heapless::Vec::<Vec3, CLIPPED>::new();
+        kept.clear();
         let last = polygon.last().copied().unwrap_or(other.middle);
         let (mut from, mut before) = (last, beyond(last));
-        for &to in &polygon {
+        for &to in polygon.iter() {
             let after = beyond(to);
             if (before > 0.0) != (after > 0.0) {
                 let _ = kept.push(from + (to - from) * (before / (before - after)));
@@ -124,9 +123,9 @@ fn clip(face: &Facet, of: &dyn Faceted, reach: f32, visit: &mut dyn FnMut(Vec3, 
             }
             (from, before) = (to, after);
         }
-        polygon = kept;
+        core::mem::swap(&mut polygon, &mut kept);
     }
-    for &x in &polygon {
+    for &x in polygon.iter() {
         let gap = dot(out, x - face.middle);
         if gap <= reach {
             visit(x - out * gap, x);
@@ -136,8 +135,7 @@ fn clip(face: &Facet, of: &dyn Faceted, reach: f32, visit: &mut dyn FnMut(Vec3, 
 
 /// The four of many spots that hold two best: the deepest, that farthest from it, that farthest from their line, and that farthest from it
 /// on the other side.
-pub(super) fn four(touching: &Touching) -> heapless::Vec<Spot, 4> {
-    let Touching { normal, spots } = touching;
+pub(super) fn four(normal: Vec3, spots: &Spots) -> heapless::Vec<Spot, 4> {
     let mut chosen = heapless::Vec::new();
     if spots.len() <= 4 {
         chosen.extend(spots.iter().copied());
@@ -153,9 +151,9 @@ pub(super) fn four(touching: &Touching) -> heapless::Vec<Spot, 4> {
         }
         spots[best.0]
     };
-    let first = most(&|[p, q]| -dot(*normal, *q - *p));
+    let first = most(&|[p, q]| -dot(normal, *q - *p));
     let second = most(&|[p, _]| dot(*p - first[0], *p - first[0]));
-    let area = |p: Vec3| dot((second[0] - first[0]).cross(p - first[0]), *normal);
+    let area = |p: Vec3| dot((second[0] - first[0]).cross(p - first[0]), normal);
     let third = most(&|[p, _]| area(*p));
     let fourth = most(&|[p, _]| -area(*p));
     for spot in [first, second, third, fourth] {

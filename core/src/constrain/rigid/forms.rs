@@ -31,6 +31,11 @@ impl<'a> Forms<'a> {
         let hull = of.hull.and_then(|hull| self.hulls.hull(usize::from(hull)));
         hull.map_or(Form::Box, Form::Hull)
     }
+
+    /// Tells whether both of two are boxes.
+    pub(super) fn are_boxes(&self, numbers: [u32; 2]) -> bool {
+        numbers.iter().all(|&number| matches!(self.of(number), Form::Box))
+    }
 }
 
 impl Form<'_> {
@@ -66,36 +71,21 @@ impl Form<'_> {
     }
 }
 
-/// How two bodies with faces are apart; none if that is more than `bound` \[m\]. Calls `then` with that and both, for their features.
-pub(super) fn with_apart<T>(
+/// How two bodies with faces are apart, of which one is a hull. Calls `then` with that and both, for their features, unless it is more than
+/// `bound` \[m\]. It takes much of the stack, of which boxes alone are spared.
+#[inline(never)]
+pub(super) fn with_hulls(
     [a, b]: [&Body; 2],
     forms: [Form<'_>; 2],
     bound: f32,
-    then: impl FnOnce(&Apart, [&dyn Faceted; 2]) -> T,
-) -> Option<T> {
-    if let [Form::Box, Form::Box] = forms {
-        let [a, b] = [a, b].map(oriented);
-        return boxes::apart(&a, &b, bound).map(|apart| then(&apart, [&a, &b]));
-    }
-    let (mut then, mut result) = (Some(then), None);
-    with_hulls([a, b], forms, bound, &mut |apart, features| result = then.take().map(|then| then(apart, features)));
-    result
-}
-
-/// The same where one is a hull, and the other a hull or a box. It takes much of the stack, of which boxes alone are spared.
-#[inline(never)]
-fn with_hulls([a, b]: [&Body; 2], forms: [Form<'_>; 2], bound: f32, then: &mut dyn FnMut(&Apart, [&dyn Faceted; 2])) {
+    then: &mut dyn FnMut(&Apart, [&dyn Faceted; 2]),
+) {
     let lends = [BoxHull::of(a.half), BoxHull::of(b.half)];
     let hull = |side: usize| if let Form::Hull(hull) = forms[side] { hull } else { lends[side].lend() };
     let (a, b) = (Posed::new(a, hull(0)), Posed::new(b, hull(1)));
     if let Some(apart) = apart(&a, &b, bound) {
         then(&apart, [&a, &b]);
     }
-}
-
-/// A body's box.
-fn oriented(body: &Body) -> Oriented {
-    Oriented { middle: body.middle(), axes: body.rotation, half: body.half }
 }
 
 /// A box as a hull: its corners, numbered by the signs of their coordinates, and its faces.

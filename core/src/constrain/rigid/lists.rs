@@ -2,6 +2,7 @@
 
 use super::super::{Bodies, Words};
 use super::balls::{self, Around, Ball, NEAR};
+use super::beside::Beside;
 use super::body::Body;
 use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
@@ -9,6 +10,7 @@ use super::order::packs_of;
 use super::pack::Pack;
 use super::scenery::{DIRECTIONS, leash};
 use super::sleep;
+use crate::lanes::{ABREAST, run_abreast};
 use crate::material::of_two;
 use crate::math::{length, max};
 use crate::memory::{take, take_vectors};
@@ -150,18 +152,49 @@ pub(super) fn gather(
     if !is_awake {
         return is_over;
     }
-    for pair in &mut pairs[..lists.pairs as usize] {
+    look(all, &mut pairs[..lists.pairs as usize], forms, h);
+    true
+}
+
+/// Looks where pairs touch that may have gone as far as they may without that, or will in a sub-step of `h` \[s\]: boxes as many at a time as go
+/// side by side.
+fn look(all: &[Body], pairs: &mut [Manifold], forms: Forms<'_>, h: f32) {
+    let mut due = heapless::Vec::<(u32, f32), ABREAST>::new();
+    for number in 0..pairs.len() {
+        let pair = &mut pairs[number];
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
         if !(a.is_awake() || b.is_awake()) {
             continue;
         }
         let way = (length(a.velocity - b.velocity) + a.whirl + b.whirl) * h;
         if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
+            if forms.are_boxes(pair.bodies) {
+                let _ = due.push((number as u32, way));
+                if due.is_full() {
+                    look_at_boxes(all, pairs, &due);
+                    due.clear();
+                }
+                continue;
+            }
             pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);
         }
         pair.spare -= way;
     }
-    true
+    look_at_boxes(all, pairs, &due);
+}
+
+/// Looks where pairs of boxes touch: those with some numbers, which go so far against each other \[m\].
+fn look_at_boxes(all: &[Body], pairs: &mut [Manifold], due: &[(u32, f32)]) {
+    let mut numbers = [[0; 2]; ABREAST];
+    for (place, &(number, _)) in numbers.iter_mut().zip(due) {
+        *place = pairs[number as usize].bodies;
+    }
+    let gaps = run_abreast(Beside { bodies: all, pairs: &numbers[..due.len()], bound: [f32::MAX; ABREAST] });
+    for (lane, &(number, way)) in due.iter().enumerate() {
+        let pair = &mut pairs[number as usize];
+        pair.find_boxes(pair.bodies.map(|number| &all[number as usize]), (&gaps, lane), 2.0 * way);
+        pair.spare -= way;
+    }
 }
 
 /// Makes the list. Those that were in the list before go on with what they have.
@@ -174,7 +207,8 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     let candidates: &mut [[u32; 2]] = bytemuck::cast_slice_mut(take(&mut rest, 2 * sizes.candidates()));
     let found = invite(bodies, kept, forms, (middles, rows), candidates);
     let candidates = &mut candidates[..found];
-    candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b));
+    mark_far(kept.bodies, forms, candidates);
+    candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b & !FAR));
     // The old list, beside the new one.
     let old = kept.lists.pairs as usize;
     let room = rest.len() - rest.len() % words::<Manifold>();
@@ -230,6 +264,26 @@ fn invite(
     found.min(candidates.len())
 }
 
+/// A bit of the second number of two boxes that are farther apart than they may go before the lists are made anew.
+const FAR: u32 = 1 << 31;
+
+/// Marks boxes that are farther apart than they may go before the lists are made anew.
+fn mark_far(all: &[Body], forms: Forms<'_>, candidates: &mut [[u32; 2]]) {
+    for some in candidates.chunks_mut(ABREAST) {
+        let mut bound = [0.0; ABREAST];
+        for (bound, numbers) in bound.iter_mut().zip(&*some) {
+            let [a, b] = numbers.map(|number| &all[number as usize]);
+            *bound = a.leash + b.leash;
+        }
+        let gaps = run_abreast(Beside { bodies: all, pairs: some, bound });
+        for (lane, numbers) in some.iter_mut().enumerate() {
+            if !gaps.is_near(lane) && forms.are_boxes(*numbers) {
+                numbers[1] |= FAR;
+            }
+        }
+    }
+}
+
 /// Takes into the list who of the candidates is near enough; returns how many that are. Those that were in it before go on with what they have.
 fn admit(
     bodies: &mut Bodies<'_>,
@@ -240,7 +294,8 @@ fn admit(
 ) -> usize {
     let Kept { bodies: all, pairs, balls, .. } = kept;
     let (mut before, mut len) = (before.iter().peekable(), 0);
-    for &key in candidates {
+    for &[a, b] in candidates {
+        let (key, is_far) = ([a, b & !FAR], b & FAR != 0);
         while before.peek().is_some_and(|pair| pair.bodies < key) {
             before.next();
         }
@@ -249,7 +304,11 @@ fn admit(
         let pair = key.map(|number| &all[number as usize]);
         let holds = known.is_some_and(|pair| pair.count > 0);
         let [a, b] = pair;
-        if ball.is_none() && !holds && !are_near(pair, key.map(|number| forms.of(number)), a.leash + b.leash) {
+        let are_apart = || {
+            let boxes = forms.are_boxes(key);
+            is_far || !boxes && !are_near(pair, key.map(|number| forms.of(number)), a.leash + b.leash)
+        };
+        if ball.is_none() && !holds && are_apart() {
             continue;
         }
         let Some(place) = pairs.get_mut(len) else {

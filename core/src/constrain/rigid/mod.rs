@@ -1,6 +1,7 @@
 //! Rigid bodies of particles that collide as boxes.
 
 mod balls;
+mod beside;
 mod body;
 mod boxes;
 mod facets;
@@ -9,8 +10,10 @@ mod forms;
 mod hull;
 #[cfg(feature = "alloc")]
 mod hull_buf;
+mod lie;
 mod lists;
 mod manifold;
+mod members;
 mod order;
 mod pack;
 mod pass;
@@ -27,7 +30,7 @@ use crate::math::sqrt;
 use crate::memory::take;
 use crate::particles::Particle;
 use balls::Ball;
-use body::{Body, Made};
+use body::Body;
 use boxes::Oriented;
 use forms::Forms;
 use glam::{Mat3, Vec3};
@@ -212,14 +215,7 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         if kept.lists.awake != 0 {
             sleep::look_out(kept, span);
         }
-        let mut is_stirred = false;
-        self.each(kept, |body, of, places| {
-            if body.sleeps() && !body.lies(bodies, Made { of, places }) {
-                body.calls |= sleep::STIRRED;
-                is_stirred = true;
-            }
-        });
-        if is_stirred {
+        if lie::lie(bodies, kept, self.boxes.as_ref()) {
             sleep::rouse(kept.bodies);
             kept.lists.awake = 1;
         }
@@ -227,11 +223,7 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
 
     /// Moves those that are awake through a sub-step, and lets them do to each other what they do.
     fn solve(&self, bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, memory: &mut [u32], span: Span) {
-        self.each(kept, |body, of, places| {
-            if !body.sleeps() {
-                body.gather(bodies, Made { of, places });
-            }
-        });
+        members::gather(bodies, kept, self.boxes.as_ref());
         each_ball(bodies, kept, &mut |bodies, _, body, row| body.gather_ball(bodies, row));
         let len = kept.lists.pairs as usize;
         let Kept { bodies: all, pairs, scenery, .. } = kept;
@@ -240,15 +232,11 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         solver::keep_apart(all, &manifolds, &mut order, span);
         fly::go(all, span.h);
         solver::part(all, &mut manifolds, &mut order, span);
-        sleep::feel(all, &pairs[..len], span);
+        sleep::feel(all, &pairs[..len], order.numbers, span);
         if bodies.substep.is_last() {
             sleep::settle(bodies, kept);
         }
-        self.each(kept, |body, of, places| {
-            if body.has_news() {
-                body.tell(bodies, Made { of, places });
-            }
-        });
+        members::tell(bodies, kept, self.boxes.as_ref());
     }
 
     /// Does something with each body, and the places of its particles.

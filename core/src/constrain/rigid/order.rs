@@ -40,6 +40,8 @@ impl Manifolds<'_> {
 /// All that touch and are not asleep, packed colour by colour.
 pub(super) struct Order<'a> {
     pub(super) packs: &'a mut [Pack],
+    /// The numbers of all of them, in their order.
+    pub(super) numbers: &'a [u32],
     /// Where the colours begin.
     starts: [u32; ALL + 1],
 }
@@ -56,13 +58,17 @@ impl<'a> Order<'a> {
     /// and the packs.
     pub(super) fn of(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, memory: &'a mut [u32]) -> Self {
         bodies.iter_mut().for_each(|body| body.colours = 0);
-        let mut starts = [0u32; SHELVES + 1];
-        for manifold in manifolds.pairs.iter_mut() {
-            manifold.colour = u32::MAX;
+        let (mut starts, mut active) = ([0u32; SHELVES + 1], 0);
+        for (number, manifold) in manifolds.pairs.iter_mut().enumerate() {
             if is_active(bodies, manifold) {
                 let colour = free(bodies, manifold.bodies);
                 manifold.colour = shelf(colour, manifold);
                 starts[manifold.colour as usize + 1] += 1;
+                // The last word of the memory stands for the first of them.
+                if let Some(place) = memory.len().checked_sub(active + 1).and_then(|last| memory.get_mut(last)) {
+                    *place = number as u32;
+                }
+                active += 1;
             }
         }
         for (body, slots) in bodies[1..].iter().zip(manifolds.scenery.chunks_exact_mut(DIRECTIONS)) {
@@ -77,7 +83,8 @@ impl<'a> Order<'a> {
         }
         let count = (starts[SHELVES] as usize).min(memory.len());
         let (numbers, rest) = memory.split_at_mut(count);
-        put_all(bodies, manifolds, starts, numbers);
+        let active = rest.len().saturating_sub(active)..rest.len();
+        put_all(bodies, manifolds, (starts, rest.get(active).unwrap_or_default()), numbers);
         let room = rest.len() - rest.len() % (size_of::<Pack>() / 4);
         Self::packed(bodies, manifolds, (&starts, numbers), bytemuck::cast_slice_mut(&mut rest[..room]))
     }
@@ -86,20 +93,20 @@ impl<'a> Order<'a> {
     fn packed(
         bodies: &[Body],
         manifolds: &Manifolds<'_>,
-        (shelves, numbers): (&[u32; SHELVES + 1], &[u32]),
+        (shelves, all): (&[u32; SHELVES + 1], &'a [u32]),
         packs: &'a mut [Pack],
     ) -> Self {
         let (mut starts, mut len) = ([0u32; ALL + 1], 0);
         for colour in 0..ALL {
             let range = shelves[colour * POINTS] as usize..shelves[(colour + 1) * POINTS] as usize;
-            for numbers in numbers.get(range).unwrap_or_default().chunks(ABREAST) {
+            for numbers in all.get(range).unwrap_or_default().chunks(ABREAST) {
                 let Some(pack) = packs.get_mut(len) else { continue };
                 pack.fill(bodies, manifolds, numbers);
                 len += 1;
             }
             starts[colour + 1] = len as u32;
         }
-        Self { packs: &mut packs[..len], starts }
+        Self { packs: &mut packs[..len], numbers: all, starts }
     }
 
     pub(super) fn colours(&self) -> Range<usize> {
@@ -128,8 +135,13 @@ fn shelf(colour: usize, manifold: &Manifold) -> u32 {
     (colour * POINTS + missing) as u32
 }
 
-/// Writes the numbers of all that have a colour in the order of these.
-fn put_all(bodies: &[Body], manifolds: &Manifolds<'_>, mut next: [u32; SHELVES + 1], numbers: &mut [u32]) {
+/// Writes the numbers of all that have a colour in the order of these: of the active pairs, the last of which comes first, and of the scenery.
+fn put_all(
+    bodies: &[Body],
+    manifolds: &Manifolds<'_>,
+    (mut next, active): ([u32; SHELVES + 1], &[u32]),
+    numbers: &mut [u32],
+) {
     let mut put = |number: usize, manifold: &Manifold| {
         let Some(next) = next.get_mut(manifold.colour as usize) else { return };
         if let Some(place) = numbers.get_mut(*next as usize) {
@@ -138,7 +150,9 @@ fn put_all(bodies: &[Body], manifolds: &Manifolds<'_>, mut next: [u32; SHELVES +
         *next += 1;
     };
     let Manifolds { pairs, scenery } = manifolds;
-    pairs.iter().enumerate().for_each(|(number, manifold)| put(number, manifold));
+    for &number in active.iter().rev() {
+        pairs.get(number as usize).into_iter().for_each(|manifold| put(number as usize, manifold));
+    }
     for (number, body) in bodies[1..].iter().enumerate().filter(|(_, body)| body.is_awake()) {
         for number in (DIRECTIONS * number..).take(body.met as usize) {
             scenery.get(number).into_iter().for_each(|slot| put(pairs.len() + number, slot));

@@ -58,6 +58,8 @@ pub(super) struct Pack {
     /// Their numbers, and those of their bodies.
     pub(super) manifolds: [u32; ABREAST],
     pub(super) bodies: [[u32; ABREAST]; 2],
+    /// Those of their bodies that are pushed, the world for others.
+    pushed: [[u32; ABREAST]; 2],
     /// The tick of the clock of passes at which each was gone over last.
     pub(super) seen: [u32; ABREAST],
     /// The number of points of each.
@@ -76,6 +78,7 @@ impl Pack {
     /// Takes those with some numbers, and nothing of what they do yet.
     pub(super) fn fill(&mut self, bodies: &[Body], manifolds: &Manifolds<'_>, numbers: &[u32]) {
         (self.count, self.most, self.gives, self.points) = (0, 0, [0; 2], [0.0; ABREAST]);
+        self.pushed = [[0; ABREAST]; 2];
         for (lane, &number) in numbers.iter().enumerate().take(ABREAST) {
             let Some(manifold) = manifolds.get(number) else { continue };
             self.count = lane as u32 + 1;
@@ -87,6 +90,7 @@ impl Pack {
                 self.bodies[side][lane] = body;
                 let gives = bodies.get(body as usize).is_some_and(|body| body.gives(manifold.rested));
                 self.gives[side] |= u32::from(gives) << lane;
+                self.pushed[side][lane] = if gives { body } else { 0 };
             }
         }
     }
@@ -132,6 +136,16 @@ impl Pack {
         let mut all = [nobody; LANES];
         for lane in (0..self.len()).filter(|lane| which >> lane & 1 != 0) {
             all[lane] = bodies.get(self.bodies[side][lane] as usize).unwrap_or(nobody);
+        }
+        all
+    }
+
+    /// Those that are pushed on one side; the world, or `nobody`, for the others.
+    #[inline(always)]
+    pub(super) fn pushed<'a>(&self, side: usize, bodies: &'a [Body], nobody: &'a Body) -> [&'a Body; LANES] {
+        let mut all = [nobody; LANES];
+        for (place, &number) in all.iter_mut().zip(&self.pushed[side]) {
+            *place = bodies.get(number as usize).unwrap_or(nobody);
         }
         all
     }
@@ -182,6 +196,17 @@ impl Pack {
             manifold.presses = presses >> lane & 1;
         }
     }
+}
+
+/// The lanes whose bits are set.
+#[inline(always)]
+pub(super) fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
+    bits &= (1 << ABREAST) - 1;
+    core::iter::from_fn(move || {
+        let lane = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
+        bits &= bits - 1;
+        Some(lane)
+    })
 }
 
 #[inline(always)]
@@ -251,8 +276,8 @@ impl<F: Eight> Motion<F> {
         let ([x, y, z], [l, m, n], [p, q, r]) = (self.velocity.0, self.spin.0, self.omega.0);
         let Vectors([xx, xy, _]) = self.inverse[0];
         let fours = [F::rows_of([self.inverse_mass, x, y, z]), F::rows_of([l, m, n, p]), F::rows_of([q, r, xx, xy])];
-        for (lane, &number) in numbers.iter().enumerate().filter(|(lane, _)| which >> lane & 1 != 0) {
-            let Some(body) = bodies.get_mut(number as usize) else { continue };
+        for lane in lanes(which) {
+            let Some(body) = bodies.get_mut(numbers[lane] as usize) else { continue };
             for (k, rows) in fours.iter().enumerate() {
                 put(body, MOTION + 4 * k, rows[lane]);
             }
@@ -331,10 +356,16 @@ impl<F: Eight> Pose<F> {
         Vectors([a.dot(v), b.dot(v), c.dot(v)])
     }
 
+    /// From their centres to a place in their frames.
+    #[inline(always)]
+    pub(super) fn arm(&self, place: Vectors<F>) -> Vectors<F> {
+        self.turned(place - self.rest)
+    }
+
     /// The place in the world of a place in their frames.
     #[inline(always)]
     pub(super) fn point(&self, place: Vectors<F>) -> Vectors<F> {
-        self.center + self.turned(place - self.rest)
+        self.center + self.arm(place)
     }
 
     #[inline(always)]

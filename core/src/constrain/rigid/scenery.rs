@@ -108,6 +108,10 @@ impl Visit<'_> {
     fn corner(&mut self, bodies: &mut Bodies<'_>, place: Vec3) {
         let (middle, at, colliders) = (self.body.middle(), bodies.substep.during[0], bodies.colliders);
         let mut point = self.body.point(place);
+        let around = Aabb { min: middle.min(point) - self.reach, max: middle.max(point) + self.reach };
+        if !colliders.may_touch(&around) {
+            return;
+        }
         let path = Segment { from: middle, to: point, radius: 0.0, during: [at, at] };
         if let Some(hit) = colliders.first_hit(&path) {
             let met = path.at(hit.time);
@@ -236,7 +240,9 @@ fn mean_velocity(bodies: &Bodies<'_>, contact: &Contact, small: f32) -> Vec3 {
     velocity + change * 0.5
 }
 
-/// A bound on how far a body goes in a time \[m\].
+/// How far a body may go before the lists are made anew \[m\], if that shall last for some time: who sleeps goes nowhere, and those around it that
+/// do not touch it are left out of the lists until it wakes.
 pub(super) fn leash(body: &Body, seconds: f32) -> f32 {
-    0.25 * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
+    let share = if body.sleeps() { 0.02 } else { 0.25 };
+    share * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
 }

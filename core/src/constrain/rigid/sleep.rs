@@ -8,13 +8,12 @@
 
 use super::super::Bodies;
 use super::super::union::{Bound, root, unite};
-use super::body::{Body, Made};
+use super::body::Body;
 use super::lists::Kept;
 use super::manifold::Manifold;
 use super::scenery::{self, DIRECTIONS};
 use super::solver::{self, Span};
 use crate::math::{length, max, sqrt};
-use core::ops::Range;
 use glam::Vec3;
 
 /// How long bodies lie still before they sleep: in units of the time √(r/a) in which one falls half its size r.
@@ -22,7 +21,7 @@ const AFTER: f32 = 5.0;
 /// A body is too fast to sleep at so many times the speed at which it would go a small share of its size in that time.
 const SLOW: f32 = 3.0;
 /// The share by which forces may change before they wake a body.
-const ALIKE: f32 = 1e-3;
+pub(super) const ALIKE: f32 = 1e-3;
 
 /// The share by which what presses on a body may change before that wakes it: as much as impulses that are sought in a few passes do.
 const PRESSED_ALIKE: f32 = 0.5;
@@ -123,76 +122,6 @@ impl Body {
         }
         self.lull != 0
     }
-
-    /// Tells whether its particles, in these rows, began the sub-step where it says.
-    fn is_where_told(&self, bodies: &Bodies<'_>, made: Made<'_>, rows: &Range<usize>) -> bool {
-        let before = bodies.before[0].get(rows.clone()).unwrap_or_default();
-        let places = made.places.as_chunks().0.iter().map(|&[x, y, z]| Vec3::from_array([x, y, z].map(f32::from_bits)));
-        places.zip(before).fold(true, |all, (place, &from)| all & (self.point(place) == from))
-    }
-
-    /// Lets its particles lie where they are, in these rows, if forces do the same to all of them as when it fell asleep: they are put back to where
-    /// they began the sub-step. Tells whether that is so.
-    fn lies_evenly(&self, bodies: &mut Bodies<'_>, rows: Range<usize>) -> bool {
-        let (h, size) = (bodies.substep.seconds(), length(self.drive[0]));
-        let [from, still] = bodies.before.map(|column| &column[rows.clone()]);
-        let (to, velocities) = (&bodies.position[rows.clone()], &bodies.velocity[rows.clone()]);
-        let Some(&change) = velocities.first() else { return false };
-        if !(length(change * (1.0 / h) - self.drive[0]) <= ALIKE * size
-            && length(self.drive[1]) <= ALIKE * size * self.radius)
-        {
-            return false;
-        }
-        // Half of how far the method may move them beyond that along each axis, so that the whole of it is no farther.
-        let all = [from, still, to, velocities].map(bytemuck::cast_slice);
-        if !falls_evenly(all, change, h, size * h * h) {
-            return false;
-        }
-        bodies.position[rows.clone()].copy_from_slice(from);
-        bodies.velocity[rows.clone()].fill(Vec3::ZERO);
-        rows.for_each(|row| bodies.mark_followed(row));
-        true
-    }
-
-    /// Lets its particles lie where they are while it sleeps; tells whether that is so. What does otherwise to them than when it fell asleep wakes it.
-    pub(super) fn lies(&mut self, bodies: &mut Bodies<'_>, made: Made<'_>) -> bool {
-        // Between steps others may have moved them.
-        let rows = made.run(bodies).filter(|rows| bodies.substep.number > 0 || self.is_where_told(bodies, made, rows));
-        if rows.is_some_and(|rows| self.lies_evenly(bodies, rows)) {
-            return true;
-        }
-        let mut probe = *self;
-        probe.gather(bodies, made);
-        let [push, torque] = [0, 1].map(|k| length(probe.drive[k] - self.drive[k]));
-        let (size, h) = (length(self.drive[0]), bodies.substep.seconds());
-        let is_alike = push <= ALIKE * size && torque <= ALIKE * size * self.radius;
-        if is_alike && length(probe.drift) <= 2.0 * size * h * h {
-            self.tell(bodies, made);
-            return true;
-        }
-        false
-    }
-}
-
-/// Tells whether all particles have begun a sub-step of `h` \[s\] at rest, have the same velocity now, and have not gone so far from where that leads
-/// along any axis. The columns' numbers go through it one like the other, four particles at a time.
-fn falls_evenly([from, still, to, velocities]: [&[f32]; 4], velocity: Vec3, h: f32, far: f32) -> bool {
-    let [x, y, z] = velocity.to_array();
-    let velocity = [x, y, z, x, y, z, x, y, z, x, y, z];
-    let wrong = |k: usize, [from, still, to, now]: [f32; 4]| {
-        let (other, drift) = (now.to_bits() ^ velocity[k].to_bits(), to - from - now * h);
-        other | still.to_bits() << 1 | u32::from(!(drift.abs() <= far))
-    };
-    let mut wrongs = [0; 12];
-    let [from, still, to, now] = [from, still, to, velocities].map(<[f32]>::as_chunks::<12>);
-    for ((from, still), (to, now)) in from.0.iter().zip(still.0).zip(to.0.iter().zip(now.0)) {
-        for k in 0..12 {
-            wrongs[k] |= wrong(k, [from[k], still[k], to[k], now[k]]);
-        }
-    }
-    let rest = from.1.iter().zip(still.1).zip(to.1.iter().zip(now.1)).enumerate();
-    let wrong = rest.fold(0, |all, (k, ((&from, &still), (&to, &now)))| all | wrong(k, [from, still, to, now]));
-    wrongs.iter().fold(wrong, |all, wrong| all | wrong) == 0
 }
 
 /// Says that all wake who sleep with a body.
@@ -332,15 +261,16 @@ fn wake_around(all: &mut [Body], pairs: &[Manifold]) {
 }
 
 /// At the end of a sub-step: wakes with the next one who sleeps with those that have been pushed, or are pressed on otherwise than when they fell
-/// asleep.
-pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], span: Span) {
+/// asleep. `touching` are the numbers of those pairs that touch and are awake.
+pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], touching: &[u32], span: Span) {
     for number in 1..all.len() {
         let body = &all[number];
         if body.sleeps() && (body.velocity != Vec3::ZERO || body.spin != Vec3::ZERO) {
             strike(all, number, 1.0 + body.speed() / (length(body.drive[0]) * span.step));
         }
     }
-    for pair in pairs.iter().filter(|pair| pair.rested != 0 && pair.count > 0) {
+    let touching = touching.iter().filter_map(|&number| pairs.get(number as usize));
+    for pair in touching.filter(|pair| pair.rested != 0 && pair.count > 0) {
         let [a, b] = pair.bodies.map(|number| &all[number as usize]);
         if !(a.is_awake() || b.is_awake()) {
             continue;

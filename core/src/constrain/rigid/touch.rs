@@ -43,9 +43,9 @@ impl<F: Eight> Spot<F> {
 
 /// Those of a pack, and how their bodies move.
 pub(super) struct Touch<F> {
-    /// How the bodies move; the first is the world where that is so of all.
+    /// How the bodies move; the first says nothing where that is the world for all.
     pub(super) motions: [Motion<F>; 2],
-    on_scenery: bool,
+    pub(super) on_scenery: bool,
     normal: Vectors<F>,
     along: [Vectors<F>; 2],
     friction: [F; 2],
@@ -72,13 +72,9 @@ impl<F: Eight> Touch<F> {
         }
     }
 
-    /// Goes over all points of a pack once; `which` says who of them takes part.
+    /// Writes down the impulses at all points where a mask holds.
     #[inline(always)]
-    pub(super) fn go(&mut self, pack: &mut Pack, which: F) {
-        self.press_evenly(pack);
-        for i in pack.numbers() {
-            self.press(pack, i);
-        }
+    pub(super) fn save(&self, pack: &mut Pack, which: F) {
         for i in pack.numbers() {
             let spots = &mut pack.spots[i];
             save_where(which, self.pressed[i], &mut spots.pressed);
@@ -106,7 +102,7 @@ impl<F: Eight> Touch<F> {
     /// Changes the impulses of all points that press, or should, by the same: what presses evenly, as a box that lies flat, is done with at
     /// once, whatever the order of points.
     #[inline(always)]
-    fn press_evenly(&mut self, pack: &Pack) {
+    pub(super) fn press_evenly(&mut self, pack: &Pack) {
         let like = self.friction[0];
         let (zero, one) = (like.all(0.0), like.all(1.0));
         let (mut lack, mut least, mut number, mut little) = (zero, like.all(f32::INFINITY), zero, zero);
@@ -117,7 +113,7 @@ impl<F: Eight> Touch<F> {
             let missing = spot.wanted - self.slip(spot.arms).dot(self.normal);
             let counts = spot.is_there & (missing.simd_gt(zero) | spot.pressed.simd_gt(zero));
             all[i] = counts;
-            self.pressed[i] = spot.pressed;
+            (self.pressed[i], self.held[i]) = (spot.pressed, spot.held);
             lack = lack + (missing & counts);
             least = counts.select(min(least, spot.pressed), least);
             number = number + (one & counts);
@@ -148,11 +144,11 @@ impl<F: Eight> Touch<F> {
     /// Brings the speed at which they part at a point to what is wanted, as far as pushing alone does it; then takes from their slip, and from
     /// what they lag behind the scenery and where they were held, what Coulomb's friction can.
     #[inline(always)]
-    fn press(&mut self, pack: &Pack, i: usize) {
+    pub(super) fn press(&mut self, pack: &Pack, i: usize) {
         let like = self.friction[0];
         let (zero, one) = (like.all(0.0), like.all(1.0));
-        let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, held, .. } = Spot::of(like, pack, i);
-        let (pressed, slip) = (self.pressed[i], self.slip(arms));
+        let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, .. } = Spot::of(like, pack, i);
+        let (pressed, held, slip) = (self.pressed[i], self.held[i], self.slip(arms));
         let new = max(pressed + (wanted - slip.dot(self.normal)) * mass, zero);
         let impulse = new - pressed;
         let u = slip.dot(self.along[0]) + answer[0] * impulse + lag[0];
