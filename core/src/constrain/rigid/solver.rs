@@ -10,7 +10,7 @@ use crate::math::{dot, max};
 use glam::Vec3;
 
 /// Passes at the most where anything bounces, for the points of bodies that touch share one blow.
-const BLOWS: u32 = 12;
+const BLOWS: u32 = 8;
 /// Passes at the most where nothing does.
 pub(super) const PASSES: u32 = 4;
 /// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
