@@ -1,10 +1,10 @@
 #![doc = include_str!("../README.md")]
 //!
 //! # Map
-//! [`System`] holds the state, `step` moves it on. [`emit`] creates; [`force`] and [`integrate`] move,
-//! [`constrain`] binds; `collide` and [`shape`] collide, with [`rays`] to find what a path meets first and [`index`] to find what is near; [`reap`] deletes.
-//! [`Report`], and with the feature `std` [`Measures`], [`Ledger`] and [`stability`], tell what happened and what will.
-//! [`Sheet`] makes cloth. [`Storage`] is the memory. [`scene`] reads and writes scene files.
+//! [`System`] holds the state, `step` moves it on. [`emit`] creates; [`force`] and [`integrate`] move, [`constrain`] binds; `collide` and
+//! [`shape`] collide, with [`rays`] to find what a path meets first and [`index`] to find what is near; [`reap`] deletes. [`Report`], and with
+//! the feature `std` [`Measures`], [`Ledger`] and [`stability`], tell what happened and what will. [`Sheet`] makes cloth. [`Storage`] is the
+//! memory. [`scene`] reads and writes scene files.
 
 #![no_std]
 #![forbid(unsafe_code)]

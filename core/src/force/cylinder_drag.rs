@@ -10,12 +10,11 @@ use glam::Vec3;
 /// and narrow animals", Proc. R. Soc. A 214, 1952).
 ///
 /// A segment of length l and diameter d feels ½ ρ d l C_D |u_n| u_n across itself, where u_n is that part of the relative wind. C_D is the
-/// coefficient of a long cylinder at its Reynolds number Re = ρ d |u_n| / μ:
-/// Re C_D = 3.4 + 5.8 √Re / (1 + 0.04 Re) + 1.2 Re (1 − 0.42 / (x + 1/x)), x = Re / 2000. That is within 8 % of the theory of slow flow
-/// (Kaplun, J. Math. Mech. 6, 1957) from Re 0.01 to 0.3, of computed flows (Dennis and Chang, J. Fluid Mech. 42, 1970; Park, Kwon and
-/// Choi, KSME Int. J. 12, 1998) up to 160, and of measured ones (Wieselsberger, Phys. Z. 22, 1921) from there to 10⁵; beyond 2·10⁵, where drag falls to
-/// a third, it is too large. Below 0.01 drag is linear in the wind, as that of a rod of finite length is: so much as of one 700 times
-/// as long as thick.
+/// coefficient of a long cylinder at its Reynolds number Re = ρ d |u_n| / μ: Re C_D = 3.4 + 5.8 √Re / (1 + 0.04 Re) + 1.2 Re (1 − 0.42 / (x +
+/// 1/x)), x = Re / 2000. That is within 8 % of the theory of slow flow (Kaplun, J. Math. Mech. 6, 1957) from Re 0.01 to 0.3, of computed flows
+/// (Dennis and Chang, J. Fluid Mech. 42, 1970; Park, Kwon and Choi, KSME Int. J. 12, 1998) up to 160, and of measured ones (Wieselsberger, Phys.
+/// Z. 22, 1921) from there to 10⁵; beyond 2·10⁵, where drag falls to a third, it is too large. Below 0.01 drag is linear in the wind, as that of
+/// a rod of finite length is: so much as of one 700 times as long as thick.
 ///
 /// Along itself it feels 0.85 μ l u_t + ½ ρ π d l C_f |u_t| u_t. The first is half of what slow flow does across, as resistive-force theory
 /// has it of slender rods (Cox, J. Fluid Mech. 44, 1970): such a rod sinks upright twice as fast as level. The second is the friction of fast flow;

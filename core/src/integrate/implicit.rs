@@ -11,11 +11,11 @@ use glam::Vec3;
 /// Implicit Euler: v += h a, x += h v with the acceleration and the velocity of the step's end, found by Newton's method
 /// (Baraff and Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998).
 ///
-/// Order 1, stable at any step; fast motion is damped the more, the longer the step. For what is stiff and may look soft:
-/// cloth, hair, thick springs at sixty steps a second. Each Newton step costs one evaluation and as many products with the
-/// forces' Jacobian as conjugate gradients take, preconditioned by its diagonal. Forces that give no Jacobian are
-/// taken as constant over each Newton step: with one they act as in an explicit method, with several they are iterated, which
-/// diverges, uncounted, where h² times their slope over the mass is more than one. Nothing is allocated; a solution that is cut off is still a step toward it, and counted.
+/// Order 1, stable at any step; fast motion is damped the more, the longer the step. For what is stiff and may look soft: cloth, hair, thick
+/// springs at sixty steps a second. Each Newton step costs one evaluation and as many products with the forces' Jacobian as conjugate gradients
+/// take, preconditioned by its diagonal. Forces that give no Jacobian are taken as constant over each Newton step: with one they act as in an
+/// explicit method, with several they are iterated, which diverges, uncounted, where h² times their slope over the mass is more than one. Nothing
+/// is allocated; a solution that is cut off is still a step toward it, and counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Implicit {
     /// Newton steps; one solves a linear system exactly, and that of springs well enough.

@@ -49,10 +49,10 @@ use glam::Vec3;
 pub trait Collider: Sync {
     /// Where `segment` first meets it, if it does.
     ///
-    /// A point that starts on the surface and leaves it does not hit it: the surface of a closed solid belongs to the
-    /// outside, an open surface to the side that its normal points to. A ball (`segment.radius`) hits when it first touches; a
-    /// collider that takes balls for points lets them sink in by their radius. The engine sets what hit off the surface, by twice the
-    /// hit's slack: one that is less than what rounding may do lets it pass. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
+    /// A point that starts on the surface and leaves it does not hit it: the surface of a closed solid belongs to the outside, an open surface to
+    /// the side that its normal points to. A ball (`segment.radius`) hits when it first touches; a collider that takes balls for points lets them
+    /// sink in by their radius. The engine sets what hit off the surface, by twice the hit's slack: one that is less than what rounding may do
+    /// lets it pass. No path whose two ends lie on different sides goes unnoticed, however the arithmetic rounds.
     fn first_hit(&self, segment: &Segment) -> Option<Hit>;
 
     /// Tells whether a path inside `bounds` might meet it. May say yes too often, never no wrongly: it spares the

@@ -66,8 +66,9 @@ fn lie_together(bodies: &mut Bodies<'_>, all: &[Body], boxes: &[RigidBox], mut p
     put_back(bodies, rows, change, far)
 }
 
-/// Puts particles back to where they began the sub-step, at rest, if forces have changed the velocity of each of them so, and the method has moved
-/// them no farther beyond that than `far` \[m\] along each axis: half of what may be, so that the whole of it is no farther. Tells whether that is so.
+/// Puts particles back to where they began the sub-step, at rest, if forces have changed the velocity of each of them so, and the method has
+/// moved them no farther beyond that than `far` \[m\] along each axis: half of what may be, so that the whole of it is no farther. Tells whether
+/// that is so.
 fn put_back(bodies: &mut Bodies<'_>, rows: Range<usize>, change: Vec3, far: f32) -> bool {
     let h = bodies.substep.seconds();
     let [from, still] = bodies.before.map(|column| &column[rows.clone()]);
@@ -108,7 +109,8 @@ impl Body {
         self.is_driven_so(change, h) && put_back(bodies, rows, change, size * h * h)
     }
 
-    /// Lets its particles lie where they are while it sleeps; tells whether that is so. What does otherwise to them than when it fell asleep wakes it.
+    /// Lets its particles lie where they are while it sleeps; tells whether that is so. What does otherwise to them than when it fell asleep
+    /// wakes it.
     fn lies(&mut self, bodies: &mut Bodies<'_>, made: Made<'_>) -> bool {
         // Between steps others may have moved them.
         let rows = made.run(bodies).filter(|rows| bodies.substep.number > 0 || self.is_where_told(bodies, made, rows));

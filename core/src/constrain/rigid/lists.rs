@@ -118,7 +118,8 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Lists all that may touch before one of them has gone as far as it may, and looks where they do; tells whether any body is awake or the list is new.
+/// Lists all that may touch before one of them has gone as far as it may, and looks where they do; tells whether any body is awake or the list is
+/// new.
 pub(super) fn gather(
     bodies: &mut Bodies<'_>,
     kept: &mut Kept<'_>,

@@ -47,32 +47,34 @@ use solver::Span;
 /// colliders and loose balls as such, with friction and elasticity.
 ///
 /// A body has the mass, centre and inertia of its particles, and their momenta; it turns by Euler's equations as
-/// [`ShapeMatching`](crate::ShapeMatching) does, and in the end its particles are put where it says. Eight equal particles at 1/√3 of the way to the
-/// corners have the inertia of a solid box, those of [`Hull::particles`] that of a solid hull, others that of loaded dice. A body with a fixed particle stays where it is; particles that have died no
-/// longer count. Particles of bodies should have no radius, so that no other constraint takes them for balls.
+/// [`ShapeMatching`](crate::ShapeMatching) does, and in the end its particles are put where it says. Eight equal particles at 1/√3 of the way to
+/// the corners have the inertia of a solid box, those of [`Hull::particles`] that of a solid hull, others that of loaded dice. A body with a
+/// fixed particle stays where it is; particles that have died no longer count. Particles of bodies should have no radius, so that no other
+/// constraint takes them for balls.
 ///
 /// Where two bodies touch is found by separating axes: face on face by clipping (four points), edge on edge by their nearest points. Against
-/// colliders a body's corners count, and what of the scenery is nearest to its middle, where that lies in it: of what is smaller than the body, edges
-/// and balls, one place each. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does not spin,
-/// and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to begin with, keep bodies from passing into each other within
-/// the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019; Catto, "Soft Constraints", GDC 2011), then velocities are brought to
-/// part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", SCA 2020, section 3.6).
-/// Friction is Coulomb's. All impulses act on both at one place, so that linear and angular momentum are kept to rounding. Points are gone over until
-/// what is left to change is a hundredth of what forces change in a sub-step, a few times at the most.
+/// colliders a body's corners count, and what of the scenery is nearest to its middle, where that lies in it: of what is smaller than the body,
+/// edges and balls, one place each. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does
+/// not spin, and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to
+/// begin with, keep bodies from passing into each other within the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019;
+/// Catto, "Soft Constraints", GDC 2011), then velocities are brought to part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation
+/// with Extended Position Based Dynamics", SCA 2020, section 3.6). Friction is Coulomb's. All impulses act on both at one place, so that linear
+/// and angular momentum are kept to rounding. Points are gone over until what is left to change is a hundredth of what forces change in a
+/// sub-step, a few times at the most.
 ///
-/// Bodies that lie still sleep: they stay where they are, at rest, and cost little. One falls asleep when for 5 √(r/a), r being half its size and a
-/// what forces accelerate it by, neither it nor any that it touches has gone farther than 4 % of its least half side; who is awake and lies still on
-/// one that sleeps finds it fixed. It wakes alone when what presses on it changes by half of that and of its weight, or one that moves comes to lie
-/// against it. A blow wakes those around as well: as many contacts away as it is times faster than what forces do in a step, and that times more if it is
-/// heavier. All that sleep and touch wake together when forces on one change by a thousandth, when the scenery that one touches or has near
-/// it moves, comes or goes, and when what one has lain on goes; all bodies wake when any loses a particle. What creeps more slowly than that
-/// stops. Without forces nothing sleeps.
+/// Bodies that lie still sleep: they stay where they are, at rest, and cost little. One falls asleep when for 5 √(r/a), r being half its size and
+/// a what forces accelerate it by, neither it nor any that it touches has gone farther than 4 % of its least half side; who is awake and lies
+/// still on one that sleeps finds it fixed. It wakes alone when what presses on it changes by half of that and of its weight, or one that moves
+/// comes to lie against it. A blow wakes those around as well: as many contacts away as it is times faster than what forces do in a step, and
+/// that times more if it is heavier. All that sleep and touch wake together when forces on one change by a thousandth, when the scenery that one
+/// touches or has near it moves, comes or goes, and when what one has lain on goes; all bodies wake when any loses a particle. What creeps more
+/// slowly than that stops. Without forces nothing sleeps.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
 /// touching pairs a body, two for each ball and three directions of the scenery; what finds none is counted (`caps.contacts`).
 ///
-/// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands, with the
-/// mass of the whole and the velocities of the body where it was struck.
+/// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands,
+/// with the mass of the whole and the velocities of the body where it was struck.
 ///
 /// ```
 /// use pointmass::constrain::{RigidBodies, RigidBox};

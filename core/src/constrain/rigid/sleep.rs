@@ -1,10 +1,10 @@
 //! Bodies that lie still sleep: a heap at rest costs next to nothing until something stirs it.
 //!
 //! A body sleeps when neither it nor any that it touches has gone farther than a small share of its size for a time in which one that is not held
-//! would have fallen many times that far. It stays where it is, at rest, as long as forces do to its particles what they did then; who is awake and
-//! lies on it finds it fixed. It wakes alone when that presses on it otherwise than it did, and with those around when it is struck, so far as the blow
-//! is hard: what is farther off would not be moved by it. All that sleep and touch wake together when forces or the scenery change, and all
-//! when a particle of any body has died. In a scene without forces nothing sleeps, nor does what touches a ball.
+//! would have fallen many times that far. It stays where it is, at rest, as long as forces do to its particles what they did then; who is awake
+//! and lies on it finds it fixed. It wakes alone when that presses on it otherwise than it did, and with those around when it is struck, so far
+//! as the blow is hard: what is farther off would not be moved by it. All that sleep and touch wake together when forces or the scenery change,
+//! and all when a particle of any body has died. In a scene without forces nothing sleeps, nor does what touches a ball.
 
 use super::super::Bodies;
 use super::super::union::{Bound, root, unite};

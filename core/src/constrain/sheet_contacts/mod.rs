@@ -20,12 +20,13 @@ use rest::Rest;
 /// Keeps the triangles of sheets a thickness apart, those of one sheet as those of several, on both sides, with Coulomb's friction and the
 /// elasticity of their particles and materials. It keeps particles half a thickness off the scenery as well.
 ///
-/// Points are kept from triangles and edges from edges by equal and opposite pushes at their nearest places, which keep momentum to
-/// rounding. The angular momentum that these lose is given back by turning all sheets together, but not where one is fixed or touches the
-/// scenery, nor where that would turn them by more than 0.02 rad in a sub-step, as very fast hits would. Whatever comes near is found by a tree of boxes that the
-/// order of the material makes: a triangle is wider than a touch reaches, and what is near in a sheet stays near. Pairs are listed that come near each other where all
-/// go on as they do, within a skin, and last through the step's sub-steps; the triangles of whoever leaves its way by more are sought anew. Lists change no bit of what
-/// happens. They are counted in [`Effort::lists`](crate::Effort::lists), and searches for which they found no room in [`Effort::streamed`](crate::Effort::streamed).
+/// Points are kept from triangles and edges from edges by equal and opposite pushes at their nearest places, which keep momentum to rounding. The
+/// angular momentum that these lose is given back by turning all sheets together, but not where one is fixed or touches the scenery, nor where
+/// that would turn them by more than 0.02 rad in a sub-step, as very fast hits would. Whatever comes near is found by a tree of boxes that the
+/// order of the material makes: a triangle is wider than a touch reaches, and what is near in a sheet stays near. Pairs are listed that come near
+/// each other where all go on as they do, within a skin, and last through the step's sub-steps; the triangles of whoever leaves its way by more
+/// are sought anew. Lists change no bit of what happens. They are counted in [`Effort::lists`](crate::Effort::lists), and searches for which they
+/// found no room in [`Effort::streamed`](crate::Effort::streamed).
 ///
 /// **Nothing passes.** Paths are straight from the sub-step's beginning to its end. Two that are apart in some direction at both ends are so all
 /// the way; others are followed by conservative advancement. Between searches nobody goes farther than a share below half of the distance to
@@ -36,16 +37,16 @@ use rest::Rest;
 /// particles after it can bring sheets through each other. So can the scenery's sweep, to which only those are left that something without
 /// [`contacts`](crate::shape::Collider::contacts) stops in the step. Sheets that begin through each other stay so.
 ///
-/// A push takes along what its corner hangs on: edges that pushes have lengthened are shortened between them, so that a push on a corner is one on the
-/// sheet.
+/// A push takes along what its corner hangs on: edges that pushes have lengthened are shortened between them, so that a push on a corner is one
+/// on the sheet.
 ///
-/// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method; with explicit Euler and
-/// two sub-steps what should lie still creeps by millimetres all the same. What leans against
-/// a sheet (edges on edges, points beyond a rim) pushes only where points over triangles leave it too near.
+/// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method; with explicit
+/// Euler and two sub-steps what should lie still creeps by millimetres all the same. What leans against a sheet (edges on edges, points beyond a
+/// rim) pushes only where points over triangles leave it too near.
 ///
-/// Parts of one sheet that are nearer at rest than twice the thickness are kept only half as far apart as they are there, so that a mesh may be as fine as
-/// it likes, and triangles with a common corner do not mind each other. Two sheets that begin nearer than they may be are let apart slowly. What begins
-/// exactly in one place has no sides, and is not kept apart.
+/// Parts of one sheet that are nearer at rest than twice the thickness are kept only half as far apart as they are there, so that a mesh may be
+/// as fine as it likes, and triangles with a common corner do not mind each other. Two sheets that begin nearer than they may be are let apart
+/// slowly. What begins exactly in one place has no sides, and is not kept apart.
 ///
 /// ```
 /// use pointmass::constrain::SheetContacts;

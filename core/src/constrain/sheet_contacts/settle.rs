@@ -109,7 +109,8 @@ fn push(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &mut Bodies<'_>
     contact.between(|i| bodies.position[rows[i] as usize]).cross(by)
 }
 
-/// Turns all sheets together by what pushes would change of their angular momentum that do not go along the line between two, where nothing else holds them.
+/// Turns all sheets together by what pushes would change of their angular momentum that do not go along the line between two, where nothing else
+/// holds them.
 fn keep_spin(kept: &Kept<'_>, bodies: &mut Bodies<'_>, torque: Vec3) {
     let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
     let members = || kept.rows.iter().zip(&*kept.weight).filter_map(living);

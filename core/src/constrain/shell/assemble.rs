@@ -7,8 +7,8 @@ use crate::lanes;
 use glam::Mat3;
 
 impl Solver<'_> {
-    /// Puts M + h² K into the blocks of the finest graph, and of all others what comes of it. Of bending edges have a part, and the matrix of bending has the rest;
-    /// of what is not thin blocks have only what each particle does to itself.
+    /// Puts M + h² K into the blocks of the finest graph, and of all others what comes of it. Of bending edges have a part, and the matrix of
+    /// bending has the rest; of what is not thin blocks have only what each particle does to itself.
     pub(super) fn assemble(&mut self, levels: &mut Levels<'_>) {
         if levels.is_empty() {
             return;
@@ -51,8 +51,8 @@ impl Solver<'_> {
         }
     }
 
-    /// Adds to a fold's triangles how their corners hold each other, by its moment, and by what the matrix of bending lacks of its stiffness; or what its
-    /// corners do to themselves.
+    /// Adds to a fold's triangles how their corners hold each other, by its moment, and by what the matrix of bending lacks of its stiffness; or
+    /// what its corners do to themselves.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn add_fold(&mut self, finest: &mut Level<'_>, bending: f32, i: usize) {
         let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {

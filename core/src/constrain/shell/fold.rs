@@ -176,9 +176,9 @@ impl Fold {
         [x * (1.0 - x) * held - slip * square, -(1.0 - x) * held, -x * held]
     }
 
-    /// What the matrix of bending, which takes all normals for one and triangles for what they are at rest, may lack of its stiffness, as a share of that: its
-    /// angle changes by m f + n g, and by ½ |m − n|² at the most of what f and g are alone where m and n are taken for one. The folds of a
-    /// triangle act together.
+    /// What the matrix of bending, which takes all normals for one and triangles for what they are at rest, may lack of its stiffness, as a share
+    /// of that: its angle changes by m f + n g, and by ½ |m − n|² at the most of what f and g are alone where m and n are taken for one. The
+    /// folds of a triangle act together.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn excess(&self, bend: &Bend) -> f32 {
         let [m, n] = self.slope;

@@ -159,8 +159,8 @@ pub(super) fn make(room: &Room, triangles: &[[u32; 3]], words: &mut [u32], work:
     }
 }
 
-/// Puts all into groups of about so many who hang together, in the order of their first members, and tells how many there are. Whoever is left alone joins the
-/// first group beside him.
+/// Puts all into groups of about so many who hang together, in the order of their first members, and tells how many there are. Whoever is left
+/// alone joins the first group beside him.
 fn group(graph: &Graph<'_>, into: &mut [u32]) -> usize {
     into.fill(NONE);
     let mut groups = 0;

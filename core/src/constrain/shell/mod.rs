@@ -72,13 +72,13 @@ impl ShellParams {
 /// with weights of 3 length² / area (Bergou et al., "A quadratic bending model for inextensible surfaces", SGP 2006) are three times that
 /// where such a sheet bends along its cells, and nine times along one of their diagonals.
 ///
-/// Stretching and bending are solved as one, by conjugate gradients for the positions at the sub-step's end, as often as it takes
-/// to be as stiff as the numbers say: at rest the forces are those of the material, whatever the sub-steps, and that does not depend
-/// on the order of triangles. From 16 particles on, a cycle through coarser meshes of groups of particles (algebraic multigrid by plain aggregation: Vaněk,
-/// Mandel and Brezina, Computing 56, 1996; symmetric Gauss-Seidel sweeps) goes before each iteration, so that about ten are enough however fine and stiff
-/// it is; where bending resists more than stretching, some dozens. They end where what is left is 0.3 % of the whole in the norm of energy, or
-/// 0.01 % of the residual of fewer particles. Iterations are
-/// counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it is then softer for a while.
+/// Stretching and bending are solved as one, by conjugate gradients for the positions at the sub-step's end, as often as it takes to be as stiff
+/// as the numbers say: at rest the forces are those of the material, whatever the sub-steps, and that does not depend on the order of triangles.
+/// From 16 particles on, a cycle through coarser meshes of groups of particles (algebraic multigrid by plain aggregation: Vaněk, Mandel and
+/// Brezina, Computing 56, 1996; symmetric Gauss-Seidel sweeps) goes before each iteration, so that about ten are enough however fine and stiff it
+/// is; where bending resists more than stretching, some dozens. They end where what is left is 0.3 % of the whole in the norm of energy, or 0.01
+/// % of the residual of fewer particles. Iterations are counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it
+/// is then softer for a while.
 ///
 /// Where particles meet the scenery in a sub-step, that presses and brakes them while the material is solved (an active set of planes, one a
 /// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches little

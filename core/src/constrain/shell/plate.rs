@@ -20,9 +20,10 @@ const GONE: u32 = 3;
 
 /// How particles hold each other by bending, where bending stiffness is one: ½ xᵀ K x is the energy of positions x, for each coordinate by itself.
 ///
-/// Folds change by the ways of four corners along normals. Of a sheet that bends and hardly stretches, how these ways count is what it is at rest, and all that
-/// changes is where normals point: taken for all directions alike (Bergou et al., "A quadratic bending model for inextensible surfaces", SGP 2006; here for
-/// the energy of triangles) the matrix never changes. What sharp folds do besides is added along edges: see `assemble`.
+/// Folds change by the ways of four corners along normals. Of a sheet that bends and hardly stretches, how these ways count is what it is at
+/// rest, and all that changes is where normals point: taken for all directions alike (Bergou et al., "A quadratic bending model for inextensible
+/// surfaces", SGP 2006; here for the energy of triangles) the matrix never changes. What sharp folds do besides is added along edges: see
+/// `assemble`.
 ///
 /// Edges get a part of it that alone is as stiff as K where the mesh folds to and fro, so that sweeps through it know of bending and go no
 /// farther than edges do.
@@ -79,7 +80,8 @@ impl<'m> Plate<'m> {
         })
     }
 
-    /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon another.
+    /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon
+    /// another.
     pub(super) fn is_thin(&self, params: &ShellParams) -> bool {
         let [warp, weft] = params.stretch;
         let steepest = self.steepest.first().copied().unwrap_or(f32::INFINITY);

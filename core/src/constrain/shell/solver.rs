@@ -21,8 +21,8 @@ const ITERATIONS: u32 = 400;
 const PASSES: u32 = 8;
 /// As many of them at the most are good to ten times what a solution is to be good to: it takes no more to see which walls press.
 const ROUGHLY: u32 = 4;
-/// The residual that a solution may have, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses; and where
-/// walls press that are rough, as friction goes by what these bear.
+/// The residual that a solution may have, as a share of what it begins with: in the norm of energy by a cycle through graphs, and by masses; and
+/// where walls press that are rough, as friction goes by what these bear.
 const RESIDUAL: [f32; 2] = [3e-3, 1e-4];
 const ROUGH: [f32; 2] = [3e-4, 1e-4];
 /// The row of a particle that is not there.

@@ -90,8 +90,8 @@ fn strain(kind: usize, [u, v]: [Vec3; 2]) -> Option<(f32, [Vec3; 2])> {
     slopes.iter().all(|slope| slope.is_finite()).then_some((value, slopes))
 }
 
-/// The multiplier with which a strain is within its range, pulling alone at the upper end and pushing alone at the lower; `soft` is the compliance for
-/// it, and `weight` what it moves by.
+/// The multiplier with which a strain is within its range, pulling alone at the upper end and pushing alone at the lower; `soft` is the
+/// compliance for it, and `weight` what it moves by.
 fn held(value: f32, [low, high]: [f32; 2], before: f32, weight: f32, soft: f32) -> f32 {
     let free = |limit: f32| before - (value - limit + soft * before) / (weight + soft);
     if before < 0.0 || before == 0.0 && value > high {

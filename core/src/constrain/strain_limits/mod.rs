@@ -75,10 +75,10 @@ const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
 /// for interactive contact force problems", Visual Computer 26, 2010). Heavy loads on light cloth ask for sub-steps that resolve how fast it swings
 /// under them. Within limits nothing acts.
 ///
-/// Stresses act along the directions of the sub-step's beginning, by which both momenta are kept to rounding; those of triangles that turn by more than
-/// 60° in a sub-step along those of its end, which keep linear momentum alone. A triangle that has lost a corner is gone, whoever is fixed
-/// stays, and what is degenerate does nothing. A [`Shell`](super::Shell) follows its particles past the scenery by itself: limits
-/// of the same particles go before it in a list.
+/// Stresses act along the directions of the sub-step's beginning, by which both momenta are kept to rounding; those of triangles that turn by
+/// more than 60° in a sub-step along those of its end, which keep linear momentum alone. A triangle that has lost a corner is gone, whoever is
+/// fixed stays, and what is degenerate does nothing. A [`Shell`](super::Shell) follows its particles past the scenery by itself: limits of the
+/// same particles go before it in a list.
 ///
 /// ```
 /// use pointmass::constrain::{StrainLimitParams, StrainLimits};
