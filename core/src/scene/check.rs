@@ -2,8 +2,9 @@
 
 use super::check_force::check_force;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
-use super::{Boxes, Fog, Group, Light, SceneError, SceneFile, Sky};
+use super::{Boxes, Fog, Group, Light, Material, SceneError, SceneFile, Sky};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
+use crate::force::Spring;
 use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
 use crate::reap::ReaperKind;
@@ -46,30 +47,7 @@ impl SceneFile {
             }
         }
         for (i, spring) in self.springs.iter().enumerate() {
-            let at = format!("springs[{i}]");
-            for (name, number) in [("rest_length", spring.rest_length), ("ks", spring.ks), ("kd", spring.kd)] {
-                finite(&format!("{at}.{name}"), &[number])?;
-            }
-            if let Some(drive) = spring.drive {
-                finite(&format!("{at}.drive"), &[drive.amplitude, drive.frequency, drive.phase])?;
-                if !(drive.amplitude.abs() < 1.0) {
-                    return Err(SceneError::value(
-                        format!("{at}.drive.amplitude"),
-                        format!("has to be within -1 and 1, a share of the rest length, not {}", drive.amplitude),
-                    ));
-                }
-            }
-            if spring.breaks_at.is_some() && !(spring.rest_length > 0.0) {
-                return Err(SceneError::value(format!("{at}.breaks_at"), "needs a rest_length above zero"));
-            }
-            check_breaking(&format!("{at}.breaks_at"), spring.breaks_at)?;
-            if let Some(end) = spring.ends.iter().find(|&&end| end as usize >= self.particles.len()) {
-                let count = self.particles.len();
-                return Err(SceneError::value(
-                    at,
-                    format!("particle {end} is out of range; there are {count}, from 0"),
-                ));
-            }
+            self.check_spring(&format!("springs[{i}]"), spring)?;
         }
         self.check_fabrics()?;
         self.check_boxes()?;
@@ -103,6 +81,30 @@ impl SceneFile {
         self.check_room()?;
         self.check_scenery()?;
         self.check_look()
+    }
+
+    fn check_spring(&self, at: &str, spring: &Spring) -> Checked {
+        for (name, number) in [("rest_length", spring.rest_length), ("ks", spring.ks), ("kd", spring.kd)] {
+            finite(&format!("{at}.{name}"), &[number])?;
+        }
+        if let Some(drive) = spring.drive {
+            finite(&format!("{at}.drive"), &[drive.amplitude, drive.frequency, drive.phase])?;
+            if !(drive.amplitude.abs() < 1.0) {
+                return Err(SceneError::value(
+                    format!("{at}.drive.amplitude"),
+                    format!("has to be within -1 and 1, a share of the rest length, not {}", drive.amplitude),
+                ));
+            }
+        }
+        if spring.breaks_at.is_some() && !(spring.rest_length > 0.0) {
+            return Err(SceneError::value(format!("{at}.breaks_at"), "needs a rest_length above zero"));
+        }
+        check_breaking(&format!("{at}.breaks_at"), spring.breaks_at)?;
+        if let Some(end) = spring.ends.iter().find(|&&end| end as usize >= self.particles.len()) {
+            let count = self.particles.len();
+            return Err(SceneError::value(at, format!("particle {end} is out of range; there are {count}, from 0")));
+        }
+        Ok(())
     }
 
     /// The groups around a piece of scenery, the outermost first.
@@ -191,33 +193,7 @@ impl SceneFile {
             let message = format!("has to be from zero to {MAX_RATE:e}, not {}", emitter.rate);
             return Err(SceneError::value(format!("{at}.rate"), message));
         }
-        let Emitter { speed, radius, mass, drag, charge, elasticity, lifetime, .. } = emitter;
-        let varied = [
-            ("speed", speed),
-            ("radius", radius),
-            ("mass", mass),
-            ("drag", drag),
-            ("charge", charge),
-            ("elasticity", elasticity),
-            ("lifetime", lifetime),
-        ];
-        for (name, Varied { mean, half_width }) in varied {
-            finite(&format!("{at}.{name}"), &[*mean, *half_width])?;
-            if !(mean - half_width).is_finite() || !(mean + half_width).is_finite() {
-                let message = format!("{mean:?} ± {half_width:?} goes beyond the range of a 32-bit float");
-                return Err(SceneError::value(format!("{at}.{name}"), message));
-            }
-        }
-        let lightest = mass.mean - mass.half_width.abs();
-        if !emitter.fixed && !(lightest > 3e-39) {
-            return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the half_width counted in"));
-        }
-        if !(lightest >= 0.0) {
-            return Err(SceneError::value(format!("{at}.mass"), "must not be below zero, the half_width counted in"));
-        }
-        if !(radius.mean - radius.half_width.abs() >= 0.0) {
-            return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the half_width counted in"));
-        }
+        check_varied(at, emitter)?;
         if let Some(message) = emitter.motion.as_ref().and_then(Motion::fault) {
             return Err(SceneError::value(format!("{at}.motion"), message));
         }
@@ -316,61 +292,10 @@ impl SceneFile {
             return Err(SceneError::value("materials", format!("a scene has at most {MAX_MATERIALS}")));
         }
         for (i, m) in self.materials.iter().enumerate() {
-            let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
-            finite(&format!("materials[{i}]"), colors.as_flattened())?;
-            finite(&format!("materials[{i}]"), &[m.shininess, m.refraction, m.size, m.glow])?;
-            if let Some((name, number, meant)) = m.contact.fault() {
-                let message = format!("{meant}, not {number}");
-                return Err(SceneError::value(format!("materials[{i}].contact.{name}"), message));
-            }
-            if let Some(sprite) = &m.sprite {
-                sprite.check(&format!("materials[{i}].sprite"))?;
-            }
-            if let Some(shape) = &m.shape {
-                let at = format!("materials[{i}].shape");
-                if m.sprite.is_some() {
-                    return Err(SceneError::value(at, "particles are drawn as a shape or with a sprite, not both"));
-                }
-                if matches!(shape.form, Shape::Plane(_) | Shape::Line(_)) {
-                    return Err(SceneError::value(
-                        format!("{at}.form"),
-                        "a particle cannot be drawn as a plane or a line",
-                    ));
-                }
-                check_shape(&format!("{at}.form"), &shape.form)?;
-            }
-            if let Some(TrailMaterial { seconds, width }) = m.trail {
-                let at = format!("materials[{i}].trail");
-                if !(seconds > 0.0 && seconds.is_finite()) {
-                    let message = format!("has to be above zero, in seconds, not {seconds}");
-                    return Err(SceneError::value(format!("{at}.seconds"), message));
-                }
-                if !(0.0..f32::INFINITY).contains(&width) {
-                    let message = format!("has to be zero or more, in metres, not {width}");
-                    return Err(SceneError::value(format!("{at}.width"), message));
-                }
-            }
-            m.life.check(&format!("materials[{i}].life"))?;
+            check_properties(&format!("materials[{i}]"), m)?;
         }
         for (i, light) in self.lights.iter().enumerate() {
-            let at = format!("lights[{i}]");
-            match light {
-                Light::Directional { color, direction } => finite(&at, [*color, *direction].as_flattened())?,
-                Light::Point { color, position, attenuation } => {
-                    finite(&at, [*color, *position, *attenuation].as_flattened())?;
-                }
-                Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
-                    finite(&at, [*color, *position, *direction, *attenuation].as_flattened())?;
-                    finite(&at, &[*cutoff, *dropoff])?;
-                }
-                Light::Area { color, position, direction, radius, attenuation } => {
-                    finite(&at, [*color, *position, *direction, *attenuation].as_flattened())?;
-                    finite(&at, &[*radius])?;
-                    if *radius < 0.0 {
-                        return Err(SceneError::value(at, format!("the radius has to be zero or more, not {radius}")));
-                    }
-                }
-            }
+            check_light(&format!("lights[{i}]"), light)?;
         }
         if let Some(c) = &self.camera {
             finite("camera", [c.eye, c.towards, c.up, [c.xfov, c.near, c.far]].as_flattened())?;
@@ -420,4 +345,94 @@ pub(super) fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
         Shape::Plane(s) => rows(&[s.point]).and(check_direction(at, s.normal)),
         Shape::Mesh(_) | Shape::HeightField(_) => Ok(()),
     }
+}
+
+/// Checks the numbers that births vary by.
+fn check_varied(at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -> Checked {
+    let Emitter { speed, radius, mass, drag, charge, elasticity, lifetime, .. } = emitter;
+    let varied = [
+        ("speed", speed),
+        ("radius", radius),
+        ("mass", mass),
+        ("drag", drag),
+        ("charge", charge),
+        ("elasticity", elasticity),
+        ("lifetime", lifetime),
+    ];
+    for (name, Varied { mean, half_width }) in varied {
+        finite(&format!("{at}.{name}"), &[*mean, *half_width])?;
+        if !(mean - half_width).is_finite() || !(mean + half_width).is_finite() {
+            let message = format!("{mean:?} ± {half_width:?} goes beyond the range of a 32-bit float");
+            return Err(SceneError::value(format!("{at}.{name}"), message));
+        }
+    }
+    let lightest = mass.mean - mass.half_width.abs();
+    if !emitter.fixed && !(lightest > 3e-39) {
+        return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the half_width counted in"));
+    }
+    if !(lightest >= 0.0) {
+        return Err(SceneError::value(format!("{at}.mass"), "must not be below zero, the half_width counted in"));
+    }
+    if !(radius.mean - radius.half_width.abs() >= 0.0) {
+        return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the half_width counted in"));
+    }
+    Ok(())
+}
+
+/// Checks how particles of a material feel and look.
+fn check_properties(at: &str, m: &Material) -> Checked {
+    let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
+    finite(at, colors.as_flattened())?;
+    finite(at, &[m.shininess, m.refraction, m.size, m.glow])?;
+    if let Some((name, number, meant)) = m.contact.fault() {
+        let message = format!("{meant}, not {number}");
+        return Err(SceneError::value(format!("{at}.contact.{name}"), message));
+    }
+    if let Some(sprite) = &m.sprite {
+        sprite.check(&format!("{at}.sprite"))?;
+    }
+    if let Some(shape) = &m.shape {
+        let at = format!("{at}.shape");
+        if m.sprite.is_some() {
+            return Err(SceneError::value(at, "particles are drawn as a shape or with a sprite, not both"));
+        }
+        if matches!(shape.form, Shape::Plane(_) | Shape::Line(_)) {
+            return Err(SceneError::value(format!("{at}.form"), "a particle cannot be drawn as a plane or a line"));
+        }
+        check_shape(&format!("{at}.form"), &shape.form)?;
+    }
+    if let Some(TrailMaterial { seconds, width }) = m.trail {
+        let at = format!("{at}.trail");
+        if !(seconds > 0.0 && seconds.is_finite()) {
+            let message = format!("has to be above zero, in seconds, not {seconds}");
+            return Err(SceneError::value(format!("{at}.seconds"), message));
+        }
+        if !(0.0..f32::INFINITY).contains(&width) {
+            let message = format!("has to be zero or more, in metres, not {width}");
+            return Err(SceneError::value(format!("{at}.width"), message));
+        }
+    }
+    m.life.check(&format!("{at}.life"))
+}
+
+/// Checks a light.
+fn check_light(at: &str, light: &Light) -> Checked {
+    match light {
+        Light::Directional { color, direction } => finite(at, [*color, *direction].as_flattened())?,
+        Light::Point { color, position, attenuation } => {
+            finite(at, [*color, *position, *attenuation].as_flattened())?;
+        }
+        Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
+            finite(at, [*color, *position, *direction, *attenuation].as_flattened())?;
+            finite(at, &[*cutoff, *dropoff])?;
+        }
+        Light::Area { color, position, direction, radius, attenuation } => {
+            finite(at, [*color, *position, *direction, *attenuation].as_flattened())?;
+            finite(at, &[*radius])?;
+            if *radius < 0.0 {
+                return Err(SceneError::value(at, format!("the radius has to be zero or more, not {radius}")));
+            }
+        }
+    }
+    Ok(())
 }

@@ -69,7 +69,7 @@ pub(super) fn invite(
     meet: &mut dyn FnMut([u32; 2]),
 ) {
     let Around { middles, widest, rows } = around;
-    let Kept { balls, bodies: all, scenery, .. } = kept;
+    let Kept { balls, bodies: all, .. } = &mut *kept;
     let first = all.len() - balls.len();
     sort_out(bodies, balls, forms, rows, first);
     let (mut fastest, mut thickest) = (0.0, 0.0);
@@ -111,6 +111,13 @@ pub(super) fn invite(
         }
     });
     bodies.report.caps.contacts += left_out;
+    follow_all(bodies, kept);
+}
+
+/// Frees the numbers of balls that have left, and takes the others as they are.
+fn follow_all(bodies: &Bodies<'_>, kept: &mut Kept<'_>) {
+    let first = kept.first_ball();
+    let Kept { balls, bodies: all, scenery, .. } = kept;
     let own = scenery.chunks_exact_mut(DIRECTIONS).skip(first - 1);
     for ((ball, body), slots) in balls.iter_mut().zip(&mut all[first..]).zip(own) {
         if ball.state == LEAVES {
