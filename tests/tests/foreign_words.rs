@@ -2,7 +2,7 @@
 
 use pointmass::constrain::{
     Attach, Bodies, Contacts, Demand, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, Share, SheetContacts,
-    Shell, ShellParams, StrandParams, Strands,
+    Shell, ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands,
 };
 use pointmass::motion::Motion;
 use pointmass::shape::Plane;
@@ -77,8 +77,11 @@ fn each_kind(mut visit: impl FnMut(&[Particle], &str, &dyn Constraint)) {
     let hand = Attach { particles: [0, 3], motion: Motion { spin: 0.5, axis: Vec3::Y, ..Motion::STILL } };
     let leash = Distance::string([0, 16], 0.2);
     let cloth = SheetContacts { particles: &woven[..], triangles: &triangles[..], thickness: [0.02] };
+    let within =
+        StrainLimitParams { warp: Some([0.9, 1.1]), weft: None, shear: Some(0.2), compliance: 0.0, damping: 0.0 };
+    let limits = StrainLimits { triangles: &triangles[..], warp: Vec3::X, params: within };
     let all = &(&hand, leash, (&rope, &jelly), (&shell, &chest), &cloth, Contacts::HARD);
-    let kinds: [(&str, &dyn Constraint); 9] = [
+    let kinds: [(&str, &dyn Constraint); 10] = [
         ("shell", &shell),
         ("chest", &chest),
         ("rope", &rope),
@@ -87,6 +90,7 @@ fn each_kind(mut visit: impl FnMut(&[Particle], &str, &dyn Constraint)) {
         ("hand", &hand),
         ("leash", &leash),
         ("cloth", &cloth),
+        ("limits", &limits),
         ("all", all),
     ];
     kinds.into_iter().for_each(|(name, constraints)| visit(&start, name, constraints));

@@ -126,8 +126,9 @@ fn interrupts_leave_nothing_behind() {
             ("render a.scn --duration 1e6 --size 64x64 --out o.gif", 2),
         ] {
             let folder = Folder::with("a.scn", ONE);
-            let mut program = Command::new(PROGRAM);
-            program.args(command.split(' ')).current_dir(folder.path(""));
+            // Where somebody has started all of this with nohup, hang-ups would be ignored, as they should.
+            let mut program = Command::new("env");
+            program.args(["--default-signal=HUP", PROGRAM]).args(command.split(' ')).current_dir(folder.path(""));
             let mut child = program.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("it starts");
             let begun = Instant::now();
             // Once there are files it can be interrupted.

@@ -13,8 +13,8 @@ use glam::Vec3;
 /// coefficient of a long cylinder at its Reynolds number Re = ρ d |u_n| / μ: Re C_D = 3.4 + 5.8 √Re / (1 + 0.04 Re) + 1.2 Re (1 − 0.42 / (x +
 /// 1/x)), x = Re / 2000. That is within 8 % of the theory of slow flow (Kaplun, J. Math. Mech. 6, 1957) from Re 0.01 to 0.3, of computed flows
 /// (Dennis and Chang, J. Fluid Mech. 42, 1970; Park, Kwon and Choi, KSME Int. J. 12, 1998) up to 160, and of measured ones (Wieselsberger, Phys.
-/// Z. 22, 1921) from there to 10⁵; beyond 2·10⁵, where drag falls to a third, it is too large. Below 0.01 drag is linear in the wind, as that of
-/// a rod of finite length is: so much as of one 700 times as long as thick.
+/// Z. 22, 1921) from there to 10⁵; beyond 2·10⁵, where drag falls to a third, it is too large. Far below 0.01 drag becomes linear in the wind, as that
+/// of a rod of finite length is: so much as of one 700 times as long as thick.
 ///
 /// Along itself it feels 0.85 μ l u_t + ½ ρ π d l C_f |u_t| u_t. The first is half of what slow flow does across, as resistive-force theory
 /// has it of slender rods (Cox, J. Fluid Mech. 44, 1970): such a rod sinks upright twice as fast as level. The second is the friction of fast flow;
@@ -25,8 +25,8 @@ use glam::Vec3;
 ///
 /// Half of a segment goes with each of its ends: the wind is that at the end, less the end's velocity, and the end bears the half's force.
 /// Still air takes energy from every motion, and gives none. A segment that has lost an end is gone. Explicit methods need steps
-/// shorter than 2 m / k, m being a particle's mass and k the force on a segment for its speed: 0.14 s for hair in a breeze. The implicit
-/// one takes any.
+/// shorter than 2 m / k, m being a particle's mass and k how much the force on a segment grows with its speed: 0.047 s for hair in a breeze of
+/// 1 m/s. The implicit one takes any.
 ///
 /// ```
 /// use pointmass::force::{CylinderDrag, Gusts};

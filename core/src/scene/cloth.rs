@@ -5,7 +5,7 @@ use super::{PatchBuf, SceneError, SceneFile, SheetContactsBuf};
 use crate::cloth::{ClothSprings, Sheet, mesh_hinges, mesh_springs};
 use crate::constrain::{ConstraintKind, Shell, ShellParams, StrainLimitParams, StrainLimits};
 use crate::force::{Aerodynamics, FlowKind, ForceKind, Pressure, Spring};
-use crate::math::length;
+use crate::math::{length, min};
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
 use alloc::format;
@@ -31,8 +31,8 @@ pub struct Cloth {
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub shell: Option<ShellParams>,
     /// How thick it is \[m\]: it then touches itself, the other cloths that have a thickness, and the scenery, without passing through
-    /// any; and `boxes`, which its particles meet as balls of that diameter. Without one only its particles meet the scenery, and it passes
-    /// through boxes.
+    /// any. Where there are `boxes`, its particles are balls of that diameter, to them and to all `contacts`. Without a thickness only its
+    /// particles meet the scenery, and it passes through boxes.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub thickness: Option<f32>,
     /// How the air pushes it: that of all `wind` among the scene's forces, or still air.
@@ -171,6 +171,13 @@ impl Cloth {
         }
     }
 
+    /// The length of its shortest edge \[m\].
+    pub(super) fn shortest_edge(&self, mesh: Option<&MeshBuf>, particles: &[Particle]) -> f32 {
+        let place = |corner: u32| particles.get(corner as usize).map_or(Vec3::INFINITY, |particle| particle.position);
+        let edges = self.triangles(mesh).into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        edges.map(|edge| length(place(edge[0]) - place(edge[1]))).fold(f32::INFINITY, min)
+    }
+
     /// What holds it together, if it is a shell; its particles are those from `first` on, so many.
     pub(super) fn shell(&self, mesh: Option<&MeshBuf>, first: u32, count: u32) -> Option<ConstraintKind> {
         let params = self.shell?;
@@ -264,6 +271,10 @@ impl Cloth {
         let Some(params) = self.limits else { return Ok(()) };
         if self.shell.is_some() {
             let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
+            return Err(SceneError::value(format!("{at}.limits"), message));
+        }
+        if self.breaks_at.is_some() {
+            let message = "hold triangles together whose springs have broken; it has to go without breaks_at";
             return Err(SceneError::value(format!("{at}.limits"), message));
         }
         let Some((name, message)) = params.fault() else { return Ok(()) };

@@ -68,6 +68,14 @@ impl Start {
             if let Some(thickness) = cloth.thickness.filter(|_| !file.boxes.is_empty()) {
                 // To bodies its particles are balls, as thick as it is.
                 particles.iter_mut().for_each(|particle| particle.radius = 0.5 * thickness);
+                let shortest = cloth.shortest_edge(mesh.as_deref(), &particles);
+                if file.contacts.is_some() && !(0.9999 * thickness <= shortest) {
+                    let message = format!(
+                        "has to be at most {shortest:?}, its shortest edge in m: with boxes and contacts in a scene its particles are balls, \
+                         which would drive each other apart"
+                    );
+                    return Err(SceneError::value(format!("cloths[{i}].thickness"), message).in_file(meshes.path));
+                }
             }
             let refuse = |field: &str, message: String| {
                 Err(SceneError::value(format!("cloths[{i}].{field}"), message).in_file(meshes.path))

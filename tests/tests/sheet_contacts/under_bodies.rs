@@ -62,3 +62,22 @@ fn a_cloth_is_drawn_away_from_under_a_box() {
         assert!((0.02..0.12).contains(&way.z) && way.x.abs() < 1e-3, "{case:?}: {way}");
     }
 }
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let refused = |cloth: &str| {
+        let text = format!(
+            r#"{{"contacts": {{"position": {{}}}}, "boxes": [{{"sides": [1, 1, 1], "mass": 1, "position": [0, 9, 0]}}],
+            "cloths": [{{"form": {{"sheet": {{"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [20, 10]}}}}, "mass": 1,
+             "springs": {{"structural": {{"ks": 100, "kd": 0}}}}, {cloth}}}]}}"#
+        );
+        let file = SceneFile::from_json("a.json", &text).expect("it is sound");
+        file.check().and_then(|()| Model::load(&file, "a.json", &mut ())).map(|_| ()).map_err(|error| error.to_string())
+    };
+    // Neighbours in so fine a sheet would push each other as balls.
+    assert_eq!(refused(r#""thickness": 0.05"#), Ok(()));
+    let message = refused(r#""thickness": 0.051"#).expect_err("too thick");
+    assert!(message.contains("cloths[0].thickness") && message.contains("shortest edge"), "{message}");
+    let torn = refused(r#""breaks_at": 1.5, "limits": {"warp": [0.9, 1.1]}"#).expect_err("it would not tear");
+    assert!(torn.contains("cloths[0].limits") && torn.contains("breaks_at"), "{torn}");
+}

@@ -4,7 +4,6 @@ mod cell;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{clamp, dot, max, sin_cos};
-use crate::memory::take;
 use cell::{Cell, Held, Past};
 use glam::Vec3;
 
@@ -135,7 +134,9 @@ impl<T: AsRef<[[u32; 3]]>> StrainLimits<T> {
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let params = self.params.fault();
-        params.or_else(|| (!self.warp.is_finite()).then_some(("warp", "has to be finite, a direction")))
+        let square = self.warp.dot(self.warp);
+        let is_direction = square > 0.0 && square < f32::INFINITY;
+        params.or_else(|| (!is_direction).then_some(("warp", "has to be a direction: finite, and not zero")))
     }
 
     /// The ranges of its three strains; everything, where there is no limit.
@@ -157,12 +158,11 @@ impl<T: AsRef<[[u32; 3]]>> StrainLimits<T> {
         rows.iter().all(|&row| bodies.position[row].is_finite()).then_some(rows)
     }
 
-    /// What is kept of all triangles, and whether that is known.
-    fn cells<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [u32], &'m mut [Cell]) {
-        let mut rest = kept;
-        let known = take(&mut rest, 1);
-        let whole = rest.len() - rest.len() % KEPT;
-        (known, bytemuck::cast_slice_mut(take(&mut rest, whole)))
+    /// What is kept of all triangles, behind the word that tells whose it is.
+    fn cells<'m>(&self, kept: &'m mut [u32]) -> &'m mut [Cell] {
+        let cells = kept.get_mut(1..).unwrap_or_default();
+        let whole = cells.len() - cells.len() % KEPT;
+        bytemuck::cast_slice_mut(&mut cells[..whole])
     }
 
     /// Notes what all triangles were as the sub-step began. None has any stress yet.
@@ -238,9 +238,10 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let (known, cells) = self.cells(share.kept.fixed);
-        let [0] = *known else { return };
-        known[0] = 1;
+        if !share.claim(*b"limi", &[self.triangles.as_ref().len()]) {
+            return;
+        }
+        let cells = self.cells(share.kept.fixed);
         for (number, cell) in cells.iter_mut().enumerate() {
             if let Some([a, b, c]) = self.rows(bodies, number) {
                 let x = &bodies.position;
@@ -250,7 +251,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let (_, cells) = self.cells(share.kept.fixed);
+        let cells = self.cells(share.kept.fixed);
         let whole = share.scratch.len() - share.scratch.len() % SCRATCH;
         let memory: &mut [Past] = bytemuck::cast_slice_mut(&mut share.scratch[..whole]);
         if !(bodies.substep.seconds() > 0.0) || memory.len() < cells.len() {
@@ -274,7 +275,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
         if !(brake > 0.0) {
             return;
         }
-        let (_, cells) = self.cells(share.kept.fixed);
+        let cells = self.cells(share.kept.fixed);
         for (number, cell) in cells.iter_mut().enumerate() {
             let Some(rows) = self.rows(bodies, number).filter(|_| cell.stress != [0.0; 3]) else { continue };
             let now = cell.deform([1, 2].map(|i| bodies.position[rows[i]] - bodies.position[rows[0]]));
