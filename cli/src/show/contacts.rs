@@ -205,18 +205,23 @@ impl Lines {
         if index.build(state.position, reach).is_err() {
             return;
         }
-        let mut pairs = Vec::new();
-        index.pairs(reach, &mut |row, others| pairs.extend(others.iter().map(|&other| [row, other])));
-        pairs.sort_unstable();
-        for [a, b] in pairs.into_iter().map(|pair| pair.map(|row| row as usize)) {
+        // One large ball has many within reach: only those who touch are kept.
+        let touch = |a: usize, b: usize| {
             let (way, radii) = (state.between(a, b), [state.radius[a], state.radius[b]]);
             let is_near = way.length() <= radii[0] + radii[1] + self.slack;
-            if is_near && radii[0] > 0.0 && radii[1] > 0.0 {
-                let normal = way.normalize_or_zero();
-                let on = state.position[a] + normal * radii[0];
-                let half = normal * (0.5 * self.long);
-                self.all.push(Line::plain([on - half, on + half], EACH_OTHER));
-            }
+            is_near && radii[0] > 0.0 && radii[1] > 0.0
+        };
+        let mut pairs = Vec::new();
+        index.pairs(reach, &mut |row, others| {
+            let touching = others.iter().filter(|&&other| touch(row as usize, other as usize));
+            pairs.extend(touching.map(|&other| [row as usize, other as usize]));
+        });
+        pairs.sort_unstable();
+        for [a, b] in pairs {
+            let normal = state.between(a, b).normalize_or_zero();
+            let on = state.position[a] + normal * state.radius[a];
+            let half = normal * (0.5 * self.long);
+            self.all.push(Line::plain([on - half, on + half], EACH_OTHER));
         }
     }
 }
