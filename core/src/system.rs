@@ -60,13 +60,15 @@ impl<B: Storage> System<B> {
     /// Forgets everything and puts in what `scene` begins with.
     ///
     /// # Errors
-    /// If the memory has not enough emitters, springs or columns for the scene; nothing is put in then. Particles
+    /// If the memory has not enough emitters, springs or columns for the scene, or holds an attribute for all particles alike that
+    /// the scene needs of each; nothing is put in then. Particles
     /// beyond the capacity are refused and counted.
     pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), InsufficientMemory> {
         self.status = Status { seed, ..Status::NEW };
         let have = self.memory.columns().size();
-        if !scene.fits(have) {
-            return Err(InsufficientMemory { need: scene.size_for(have.particles), have });
+        let differs = self.workspace().differs(scene);
+        if differs.is_some() || !scene.fits(have) {
+            return Err(InsufficientMemory { need: scene.size_for(have.particles), have, differs });
         }
         self.workspace().start(scene);
         Ok(())
@@ -96,7 +98,7 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         self.status.is_reaped |= !scene.reapers.is_empty();
-        if scene.fits(self.memory.columns().size()) {
+        if scene.fits(self.memory.columns().size()) && self.workspace().lacks(scene).is_none() {
             self.status.kept = scene.plan().kept();
             self.workspace().step(scene, dt, &mut report, observer);
         } else {

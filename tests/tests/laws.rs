@@ -1,6 +1,7 @@
 //! All tests of laws in one program, so that the engine is compiled for them once: `cargo test -p pointmass-tests --test laws walls`.
 
 mod adaptive;
+mod alike;
 mod balls;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;

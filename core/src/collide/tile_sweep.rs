@@ -121,7 +121,10 @@ impl Waiting {
 impl TileSweep<'_, '_> {
     /// Follows one row after the other; those who are near the same face alone go past it in packets.
     fn go(&mut self) {
-        let in_packets = SHORT_WAY && self.goes_in_packets();
+        if !SHORT_WAY {
+            return (0..self.tile.position.len()).for_each(|row| self.follow(row));
+        }
+        let in_packets = self.goes_in_packets();
         let mut waiting: Option<Waiting> = None;
         for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
             let mut in_packet = 0;

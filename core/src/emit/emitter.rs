@@ -147,6 +147,26 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
         self.where_sparse.map_or(0.0, |sparse| sparse.radius)
     }
 
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+        let mean = self.color.unwrap_or(WHITE);
+        for side in [-1.0, 1.0] {
+            let end = |varied: Varied| varied.mean + side * varied.half_width;
+            let tint =
+                |i| if side < 0.0 { u8::saturating_sub } else { u8::saturating_add }(mean[i], self.color_half_width[i]);
+            visit(&Particle {
+                radius: end(self.radius),
+                mass: end(self.mass),
+                fixed: self.fixed,
+                drag: end(self.drag),
+                charge: end(self.charge),
+                elasticity: end(self.elasticity),
+                material: self.material,
+                color: Some(core::array::from_fn(tint)),
+                ..Particle::REST
+            });
+        }
+    }
+
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
         let (start, stop) = (Time::from_seconds(self.start), self.stop.map_or(Time::NEVER, Time::from_seconds));

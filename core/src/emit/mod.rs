@@ -66,6 +66,13 @@ pub trait Emit: Sync {
         0.0
     }
 
+    /// Visits particles between whose attributes those of all lie that it bears, by which [`start`](crate::System::start) tells whether
+    /// memory that holds some of them for all ([`Column::Common`](crate::Column)) will do. By default none: births that are otherwise are refused
+    /// one by one, and counted.
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+        let _ = visit;
+    }
+
     /// Brings about the births between `from` (excluded) and `to` (included).
     ///
     /// Claims as many numbers of `births` as `count` says.
@@ -156,7 +163,7 @@ impl Births<'_> {
             self.miss(at);
             return Err(Full);
         }
-        self.bear(stream, at, &make(stream))
+        self.bear(stream, at, &make(stream)).inspect_err(|_| self.miss(at))
     }
 
     /// A birth of emitter `number` that may come to nothing: `make` sees who is there. What finds no room is counted.
@@ -252,6 +259,9 @@ impl<T: Emit + ?Sized> Emit for &T {
     fn reach(&self) -> f32 {
         (**self).reach()
     }
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+        (**self).extremes(visit);
+    }
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         (**self).emit(from, to, births);
     }
@@ -263,6 +273,9 @@ impl<T: Emit> Emit for [T] {
     }
     fn reach(&self) -> f32 {
         self.iter().map(Emit::reach).fold(0.0, max)
+    }
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+        self.iter().for_each(|emitter| emitter.extremes(visit));
     }
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         for emitter in self {
@@ -281,6 +294,9 @@ macro_rules! lists {
             }
             fn reach(&self) -> f32 {
                 self.as_slice().reach()
+            }
+            fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+                self.as_slice().extremes(visit);
             }
             fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
                 self.as_slice().emit(from, to, births);
@@ -307,6 +323,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 [$($name.reach()),+].into_iter().fold(0.0, max)
+            }
+            fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.extremes(visit);)+
             }
             fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
                 #[allow(non_snake_case)]

@@ -188,11 +188,19 @@ pub struct InsufficientMemory {
     pub need: Size,
     /// The memory that there is.
     pub have: Size,
+    /// An attribute that the memory holds for all particles alike ([`Column::Common`](crate::Column)), where the scene needs it of each.
+    pub differs: Option<&'static str>,
 }
 
 impl core::fmt::Display for InsufficientMemory {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self { need, have } = self;
+        let Self { need, have, differs } = self;
+        if let Some(attribute) = differs {
+            return write!(
+                f,
+                "the scene needs a column of its own for {attribute}, which the system's memory holds for all particles alike"
+            );
+        }
         write!(
             f,
             "the scene needs {} emitters, {} springs, {} columns and {} kept words, the system has {}, {}, {} and {}",

@@ -62,8 +62,12 @@ pub trait Collider: Sync {
         true
     }
 
-    /// Marks those of many paths that might meet it, each inside a hull of its own: as [`Collider::may_touch`] says by default.
+    /// Marks those of many paths that might meet it, each inside a hull of its own: as [`Collider::may_touch`] says by default. Chips without an
+    /// operating system do not ask.
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+        if cfg!(target_os = "none") {
+            return;
+        }
         for (i, mark) in marks.iter_mut().enumerate() {
             if *mark == 0 && self.may_touch(&hulls.get(i)) {
                 *mark = u32::MAX;

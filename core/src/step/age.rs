@@ -19,9 +19,9 @@ impl Workspace<'_> {
             dies: &m.dies[..len],
             material: &m.material[..len],
             key: &m.key[..len],
-            drag: &mut m.drag[..len],
-            mass: &mut m.mass[..len],
-            inverse_mass: &mut m.inverse_mass[..len],
+            drag: &mut m.drag.own()[..len],
+            mass: &mut m.mass.own()[..len],
+            inverse_mass: &mut m.inverse_mass.own()[..len],
             own: Layout::of(scene.plan(), capacity).ageing(m.kept),
         };
         (code.age)(scene.materials, rows);

@@ -3,7 +3,7 @@
 use super::{TILED, Workspace};
 use crate::force::SpringList;
 use crate::memory::Storage;
-use crate::particles::{Full, Id, Particle, WHITE};
+use crate::particles::{Full, Id, Particle};
 use crate::reap::PendingDeath;
 use crate::report::Report;
 use crate::rng::Stream;
@@ -28,6 +28,9 @@ impl Workspace<'_> {
         }
         let (m, capacity, status) = (&mut self.memory, self.capacity, &mut *self.status);
         let row = status.len;
+        if !m.give(row, particle) {
+            return Err(Full);
+        }
         let slot = if status.free > 0 {
             let slot = status.free - 1;
             status.free = m.row_of[slot as usize];
@@ -46,20 +49,12 @@ impl Workspace<'_> {
         // lifetime can be used: one that is no number or beyond all is for ever.
         let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
         m.velocity[row] = if particle.is_usable() { velocity } else { Vec3::NAN };
-        m.radius[row] = particle.radius;
-        m.mass[row] = particle.mass;
-        m.inverse_mass[row] = if particle.fixed { 0.0 } else { 1.0 / particle.mass };
-        m.drag[row] = particle.drag;
-        m.charge[row] = particle.charge;
-        m.elasticity[row] = particle.elasticity;
         m.born[row] = born;
         let dies = death(born, particle.lifetime);
         m.dies[row] = dies;
         if TILED {
             status.ends_at(dies);
         }
-        m.color[row] = particle.color.unwrap_or(WHITE);
-        m.material[row] = particle.material.map_or(0, |number| number.saturating_add(1));
         m.pending_death[row] = PendingDeath::Lives;
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
         status.len += 1;

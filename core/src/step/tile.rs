@@ -128,12 +128,12 @@ impl Workspace<'_> {
             start: self.status.start,
             serial: m.serial,
             row_of: m.row_of,
-            last_spring: m.last_spring,
+            last_spring: m.last_spring.read(),
             incident: m.incident,
         };
-        let (radius, mass, drag, charge) = (&*m.radius, &*m.mass, &*m.drag, &*m.charge);
+        let (radius, mass, drag, charge) = (m.radius.read(), m.mass.read(), m.drag.read(), m.charge.read());
         let (born, dies, slot, key) = (&*m.born, &*m.dies, &*m.slot, &*m.key);
-        let (color, material, materials) = (&*m.color, &*m.material, scene.materials);
+        let (color, material, materials) = (m.color.read(), m.material.read(), scene.materials);
         let custom = CustomColumns::kept(scene.custom, m.kept, whole, whole);
         let lives = State {
             radius,
@@ -152,7 +152,7 @@ impl Workspace<'_> {
             near: Neighbours::among(&[]).in_room(scene.index.room()),
             ..State::EMPTY
         };
-        let attributes = Attributes { lives, inverse_mass: m.inverse_mass, elasticity: m.elasticity };
+        let attributes = Attributes { lives, inverse_mass: m.inverse_mass.read(), elasticity: m.elasticity.read() };
         Tile {
             scene,
             now,

@@ -4,7 +4,7 @@ use crate::custom::{CustomColumnsMut, Newcomers};
 use crate::force::State;
 use crate::index::Listed;
 use crate::memory::{Layout, Slices, Storage, Words};
-use crate::particles::Full;
+use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
@@ -120,14 +120,33 @@ impl Workspace<'_> {
         }
         self.status.start = self.status.taken;
         self.give_custom(scene, 0);
-        self.memory.last_spring.fill(0);
+        self.memory.last_spring.own().fill(0);
         // Entries beyond the lists count in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);
         if let Some(code) = scene.springs.code() {
-            let (last, incident) = (&mut *self.memory.last_spring, &mut *self.memory.incident);
+            let (last, incident) = (self.memory.last_spring.own(), &mut *self.memory.incident);
             report.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
         }
         self.status.totals = report;
+    }
+
+    /// An attribute that the memory holds for all alike, where the scene changes it or sorts by it.
+    pub(crate) fn lacks(&self, scene: &Scene<'_>) -> Option<&'static str> {
+        let Slices { drag, mass, inverse_mass, last_spring, .. } = &self.memory;
+        let changes = scene.materials.code().is_some_and(|code| (code.kept)(scene.materials) > 0);
+        if changes && !(drag.is_own() && mass.is_own() && inverse_mass.is_own()) {
+            return Some("drag, mass and inverse_mass");
+        }
+        (!scene.springs.list().is_empty() && !last_spring.is_own()).then_some("last_spring")
+    }
+
+    /// The same, or one in which a particle that the scene begins with or bears differs from what all have.
+    pub(crate) fn differs(&self, scene: &Scene<'_>) -> Option<&'static str> {
+        let mut differs = self.lacks(scene);
+        let mut ask = |particle: &Particle| differs = differs.or(self.memory.differs(particle));
+        scene.start.iter().for_each(&mut ask);
+        scene.emitters.extremes(&mut ask);
+        differs
     }
 
     /// The particles as forces see them.

@@ -11,7 +11,8 @@ use cortex_m as _;
 
 use pointmass::shape::{Disc, Plane};
 use pointmass::{
-    Drag, Emitter, Gravity, Inline, Scene, Slices, Spread, Storage, Symplectic, System, Time, Varied, Vec3,
+    Alike, Common, Drag, Emitter, Gravity, Particle, Scene, Slices, Spread, Storage, Symplectic, System, Time, Varied,
+    Vec3,
 };
 use semihosting::process;
 use static_cell::ConstStaticCell;
@@ -19,8 +20,18 @@ use static_cell::ConstStaticCell;
 /// Drops at once.
 const DROPS: usize = 64;
 
+/// What a drop is like, which is not kept of each.
+struct Drop;
+
+impl Common for Drop {
+    const PARTICLE: Particle = Particle { drag: 0.1, elasticity: 0.4, ..Particle::REST };
+}
+
 /// Fresh memory is all zeros: it lies in .bss and costs no flash.
-static MEMORY: ConstStaticCell<Inline<DROPS, 1, 0, 3>> = ConstStaticCell::new(Inline::new());
+static MEMORY: ConstStaticCell<Alike<Drop, DROPS, 1, 3>> = ConstStaticCell::new(Alike::new());
+
+/// Vectors to work with aside, a drop takes no more.
+const _: () = assert!(size_of::<Alike<Drop, 1000, 0, 0>>() <= 60 * 1000);
 
 #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
 #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -29,10 +40,8 @@ fn main() -> ! {
     let emitter = Emitter {
         speed: Varied { mean: 4.0, half_width: 0.5 },
         spread: Spread::Uniform(0.3),
-        drag: Varied::exactly(0.1),
-        elasticity: Varied::exactly(0.4),
         lifetime: Varied { mean: 1.5, half_width: 0.3 },
-        ..Emitter::new(nozzle, 35.0)
+        ..Emitter::new(nozzle, 35.0).giving_birth_to(&Drop::PARTICLE)
     };
     let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let forces = (Gravity::EARTH, Drag {});

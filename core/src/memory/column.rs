@@ -1,0 +1,95 @@
+//! A column of numbers that need not exist: then all particles have the same one.
+
+use core::ops::Deref;
+
+/// A column of particles that an owner of memory may leave out, because all of them have the same in it.
+#[derive(Debug)]
+pub enum Column<'a, T> {
+    /// One entry a row.
+    Own(&'a mut [T]),
+    /// What all have, as often as there are rows: only read, so it may lie in a chip's flash, and not in its memory.
+    Common(&'a [T]),
+}
+
+impl<'a, T: Copy + PartialEq> Column<'a, T> {
+    /// The same column, borrowed again.
+    pub(crate) fn again(&mut self) -> Column<'_, T> {
+        match self {
+            Self::Own(rows) => Column::Own(rows),
+            Self::Common(rows) => Column::Common(rows),
+        }
+    }
+
+    /// All of it, for reading.
+    pub(crate) fn read(self) -> &'a [T] {
+        match self {
+            Self::Own(rows) => rows,
+            Self::Common(rows) => rows,
+        }
+    }
+
+    /// All of it, for changing, if it exists; else no entries.
+    pub fn own(&mut self) -> &mut [T] {
+        match self {
+            Self::Own(rows) => rows,
+            Self::Common(_) => &mut [],
+        }
+    }
+
+    /// Tells whether it exists.
+    pub(crate) fn is_own(&self) -> bool {
+        matches!(self, Self::Own(_))
+    }
+
+    /// Tells whether a particle with this number may be in any row.
+    pub(crate) fn takes(&self, value: T) -> bool {
+        match self {
+            Self::Own(_) => true,
+            Self::Common(rows) => rows.first().is_none_or(|common| *common == value),
+        }
+    }
+
+    /// Gives a row its number, if that may be in it, and says whether it may.
+    pub(crate) fn put(&mut self, row: usize, value: T) -> bool {
+        if let Self::Own(rows) = self {
+            rows[row] = value;
+        }
+        self.takes(value)
+    }
+
+    /// Gives row `to` what row `from` has.
+    pub(crate) fn move_row(&mut self, from: usize, to: usize) {
+        if let Self::Own(rows) = self {
+            rows[to] = rows[from];
+        }
+    }
+}
+
+impl<T> Deref for Column<'_, T> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        match self {
+            Self::Own(rows) => rows,
+            Self::Common(rows) => rows,
+        }
+    }
+}
+
+impl<'a, T> From<&'a mut [T]> for Column<'a, T> {
+    fn from(rows: &'a mut [T]) -> Self {
+        Self::Own(rows)
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<'a, T> From<&'a mut alloc::vec::Vec<T>> for Column<'a, T> {
+    fn from(rows: &'a mut alloc::vec::Vec<T>) -> Self {
+        Self::Own(rows)
+    }
+}
+
+impl<'a, T, const ROWS: usize> From<&'a mut [T; ROWS]> for Column<'a, T> {
+    fn from(rows: &'a mut [T; ROWS]) -> Self {
+        Self::Own(rows)
+    }
+}
