@@ -8,7 +8,7 @@ use super::path::Path;
 use super::sweep::{Sweep, facing};
 use super::waiting::{Packet, Queue, ones};
 use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
-use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run};
+use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run, widest};
 use crate::material::on_surface;
 use crate::math::max;
 use crate::memory::Past;
@@ -23,6 +23,9 @@ use glam::Vec3;
 
 /// True where what faces one flat wall alone is followed by code of its own: chips are spared that.
 const SHORT_WAY: bool = !cfg!(target_os = "none");
+
+/// A bit for each row of a packet.
+const ALL: u32 = (1 << LANES) - 1;
 
 /// Everything.
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
@@ -158,14 +161,20 @@ impl TileSweep<'_, '_> {
             let block = self.balls().block(first..old.min(first + BLOCK), self.tile.reached);
             let (Near { touching, lying }, are_points) = (block.near(face), block.are_points());
             self.are_points &= are_points;
-            let marks = words(&touching).zip(words(&lying));
-            for (row, (touching, lying)) in (first..old).step_by(u64::BITS as usize).zip(marks) {
-                if in_packets {
-                    self.queue(row, [touching, lying], &mut waiting);
-                } else {
-                    ones(touching).for_each(|i| self.follow(row + i));
-                }
+            let marks = (first..old).step_by(u64::BITS as usize).zip(words(&touching).zip(words(&lying)));
+            if !in_packets {
+                marks.for_each(|(row, (touching, _))| ones(touching).for_each(|i| self.follow(row + i)));
+                continue;
             }
+            // Not for wide vectors, but for the instructions that find the bits of a word.
+            widest(
+                #[inline(always)]
+                || {
+                    for (row, (touching, lying)) in marks {
+                        self.queue(row, [touching, lying], &mut waiting);
+                    }
+                },
+            );
         }
         self.go_on(&mut waiting);
         self.let_go_past(face);
@@ -247,6 +256,9 @@ impl TileSweep<'_, '_> {
             true => run(Lie::<true> { of: self, packet, face }),
             false => run(Lie::<false> { of: self, packet, face }),
         };
+        if unsettled.left | unsettled.others == 0 {
+            return;
+        }
         ones(unsettled.left).for_each(|i| self.follow(packet.rows[i % LANES] as usize));
         ones(unsettled.others).for_each(|i| bouncing.push(packet.rows[i % LANES]));
         while let Some(packet) = bouncing.pop() {
@@ -274,12 +286,18 @@ impl TileSweep<'_, '_> {
         }
         let (position, velocity) = (&mut *self.tile.position, &mut *self.tile.velocity);
         let velocity = &mut velocity[..position.len()];
-        let [places, velocities] = [outcome.ends[0].rows(), outcome.ends[1].rows()];
-        for i in 0..LANES {
-            let (row, [x, y, z, _], [u, v, w, _]) = (packet.rows[i] as usize, places[i], velocities[i]);
-            // Who is missing is the first over again.
-            if outcome.settled >> i & 1 != 0 {
-                (position[row], velocity[row]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
+        let [places, velocities] = outcome.ends.map(Vectors::rows);
+        let lanes = packet.rows.iter().zip(&places).zip(&velocities);
+        if outcome.settled == ALL {
+            for ((row, place), speed) in lanes {
+                put(position, velocity, *row, [place, speed]);
+            }
+        } else {
+            for (i, ((row, place), speed)) in lanes.enumerate() {
+                // Who is missing is the first over again.
+                if outcome.settled >> i & 1 != 0 {
+                    put(position, velocity, *row, [place, speed]);
+                }
             }
         }
         Unsettled { left: outcome.left & present, others: present & !(outcome.settled | outcome.left) }
@@ -426,6 +444,13 @@ impl TileSweep<'_, '_> {
             tile.reached = tile.reached.and_then(|reached| reached.with(end.position, end.velocity));
         }
     }
+}
+
+/// Puts a row to a place, with a velocity: three numbers of each.
+#[inline(always)]
+fn put(position: &mut [Vec3], velocity: &mut [Vec3], row: u32, [[x, y, z, _], [u, v, w, _]]: [&[f32; 4]; 2]) {
+    let row = row as usize;
+    (position[row], velocity[row]) = (Vec3::new(*x, *y, *z), Vec3::new(*u, *v, *w));
 }
 
 /// The marks of 64 rows after the other.

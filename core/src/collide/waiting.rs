@@ -39,13 +39,13 @@ impl Queue {
     /// Puts in those from the first on that are marked.
     #[inline(always)]
     pub(super) fn push_all(&mut self, first: u32, mut marks: u64) {
-        let mut len = self.len;
-        while marks != 0 {
-            self.rows[len % PLACES] = first + marks.trailing_zeros();
-            marks &= marks - 1;
-            len += 1;
+        let end = self.len + marks.count_ones() as usize;
+        let Some(places) = self.rows.get_mut(self.len..end) else { return };
+        for place in places {
+            *place = first + marks.trailing_zeros();
+            marks &= marks.wrapping_sub(1);
         }
-        self.len = len;
+        self.len = end;
     }
 
     /// The last eight, once there are so many.

@@ -66,8 +66,8 @@ impl Steady {
     }
 
     fn fall<const FALLS: bool, const DRAGS: bool>(self, rows: Inertia<'_>) -> Fall<'_, FALLS, DRAGS> {
-        let Inertia { mass, drag, inverse_mass } = rows;
-        Fall { g: self.acceleration.unwrap_or(Vec3::ZERO), mass, drag, inverse_mass }
+        let Inertia { mass, drag, inverse_mass, are_alike } = rows;
+        Fall { g: self.acceleration.unwrap_or(Vec3::ZERO), mass, drag, inverse_mass, are_alike }
     }
 }
 
@@ -80,6 +80,8 @@ pub(crate) struct Inertia<'a> {
     pub(crate) mass: &'a [f32],
     pub(crate) drag: &'a [f32],
     pub(crate) inverse_mass: &'a [f32],
+    /// True if each column is known to be one number all over.
+    pub(crate) are_alike: bool,
 }
 
 #[cfg(test)]
@@ -121,7 +123,8 @@ mod tests {
             for forces in [&() as &dyn Force, &g, &Drag {}, &(g, Drag {}), &(Drag {}, g), &((), (g, ()), [Drag {}])] {
                 let steady = forces.steady().expect("it is steady");
                 let (mut once, mut sum) = (std::vec![Vec3::ONE; len], std::vec![Vec3::ZERO; len]);
-                let rows = Inertia { mass: &mass, drag: &drag, inverse_mass: &inverse_mass };
+                let are_alike = len % 12 == 0;
+                let rows = Inertia { mass: &mass, drag: &drag, inverse_mass: &inverse_mass, are_alike };
                 steady.accelerate(rows, &velocity, &mut once);
                 forces.add_to(&state, 0..len, &mut sum);
                 for (sum, &inverse) in sum.iter_mut().zip(&inverse_mass) {

@@ -51,10 +51,13 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
 
     /// Gives a row its number, if that may be in it, and says whether it may.
     pub(crate) fn put(&mut self, row: usize, value: T) -> bool {
-        if let Self::Own(rows) = self {
-            rows[row] = value;
+        match self {
+            Self::Own(rows) => {
+                rows[row] = value;
+                true
+            }
+            Self::Common(rows) => rows.first() == Some(&value),
         }
-        self.takes(value)
     }
 
     /// Gives row `to` what row `from` has.

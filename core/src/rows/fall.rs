@@ -12,6 +12,8 @@ pub(crate) struct Fall<'a, const FALLS: bool, const DRAGS: bool> {
     pub(crate) mass: &'a [f32],
     pub(crate) drag: &'a [f32],
     pub(crate) inverse_mass: &'a [f32],
+    /// True if each column is known to be one number all over.
+    pub(crate) are_alike: bool,
 }
 
 /// Finds their accelerations.
@@ -222,6 +224,7 @@ impl<'a, const FALLS: bool, const DRAGS: bool> Fall<'a, FALLS, DRAGS> {
     /// The factors, if they are the same for all rows and nobody is fixed, as where one emitter feeds a fountain.
     #[inline(always)]
     fn of_all(&self) -> Option<[f32; 3]> {
+        let same = |column: &[f32]| if self.are_alike { column.first().copied() } else { same(column) };
         let factors = [same(self.mass)?, same(self.drag)?, same(self.inverse_mass)?];
         (factors[2] != 0.0).then_some(factors)
     }

@@ -1,6 +1,7 @@
 //! Age: materials change drags and masses over the lives of particles.
 
 use super::Workspace;
+use super::workspace::Inertias;
 use crate::material::Ageing;
 use crate::memory::Layout;
 use crate::scene::Scene;
@@ -12,6 +13,7 @@ impl Workspace<'_> {
     pub(super) fn age(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2]) {
         let Some(code) = scene.materials.code().filter(|code| (code.kept)(scene.materials) > 0) else { return };
         let (len, capacity) = (self.len(), self.capacity());
+        self.status.inertias = Inertias::Various;
         let m = &mut self.memory;
         let rows = Ageing {
             during: [now, now + dt],

@@ -19,6 +19,8 @@ pub(crate) struct Attributes<'a> {
     pub(crate) lives: State<'a>,
     pub(crate) inverse_mass: &'a [f32],
     pub(crate) elasticity: &'a [f32],
+    /// True if all are known to have the same mass and drag.
+    pub(crate) are_alike: bool,
 }
 
 impl<'a> Attributes<'a> {
@@ -32,9 +34,9 @@ impl<'a> Attributes<'a> {
 
     /// The columns that tell how some rows fall.
     pub(super) fn inertia(&self, rows: Range<usize>) -> Inertia<'a> {
-        let Self { lives, inverse_mass, .. } = *self;
+        let Self { lives, inverse_mass, are_alike, .. } = *self;
         let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
-        Inertia { mass, drag, inverse_mass }
+        Inertia { mass, drag, inverse_mass, are_alike }
     }
 
     /// Those of some rows.
@@ -43,6 +45,7 @@ impl<'a> Attributes<'a> {
             inverse_mass: &self.inverse_mass[rows.clone()],
             elasticity: &self.elasticity[rows.clone()],
             lives: self.lives.attributes_of(rows),
+            are_alike: self.are_alike,
         }
     }
 }

@@ -54,6 +54,7 @@ impl Workspace<'_> {
         m.dies[row] = dies;
         if TILED {
             status.ends_at(dies);
+            status.inertias.add(particle);
         }
         m.pending_death[row] = PendingDeath::Lives;
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);

@@ -123,7 +123,7 @@ impl Moved<'_> {
     #[inline(never)]
     fn ask(&mut self, code: ConstraintCode, moment: Moment, substep: Substep) {
         let scene = self.scene;
-        let Attributes { lives, inverse_mass, elasticity } = *self.attributes;
+        let Attributes { lives, inverse_mass, elasticity, .. } = *self.attributes;
         let len = self.position.len();
         let [memory, scratch] = self.scratch.constraining();
         let (custom, kept) = Layout::of(scene.plan(), self.capacity).kept(self.kept);

@@ -2,6 +2,7 @@
 
 use super::field::Attributes;
 use super::substeps::Carried;
+use super::workspace::Inertias;
 use super::{Status, TILED, Workspace};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
@@ -152,7 +153,9 @@ impl Workspace<'_> {
             near: Neighbours::among(&[]).in_room(scene.index.room()),
             ..State::EMPTY
         };
-        let attributes = Attributes { lives, inverse_mass: m.inverse_mass.read(), elasticity: m.elasticity.read() };
+        let (inverse_mass, elasticity) = (m.inverse_mass.read(), m.elasticity.read());
+        let are_alike = matches!(self.status.inertias, Inertias::Same(_));
+        let attributes = Attributes { lives, inverse_mass, elasticity, are_alike };
         Tile {
             scene,
             now,

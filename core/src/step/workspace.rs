@@ -43,12 +43,38 @@ pub(crate) struct Status {
     /// The words that the scene keeps of particles.
     pub(crate) kept: Words,
     pub(crate) time: Time,
+    /// What is known of the masses and drags of all.
+    pub(crate) inertias: Inertias,
     /// How long before the end of all time the first of them dies of age, or sooner: an empty system is nothing but zeros.
     pub(crate) ends_before_never: Time,
     /// The step that an integrator which chooses its own goes on with.
     pub(crate) hint: Time,
     pub(crate) seed: u64,
     pub(crate) totals: Report,
+}
+
+/// Masses, drags, and who is fixed, of all that have come since a start.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum Inertias {
+    /// Nobody has come.
+    #[default]
+    Unknown,
+    /// All have the same.
+    Same((f32, f32, bool)),
+    /// They may differ.
+    Various,
+}
+
+impl Inertias {
+    /// Another one comes.
+    pub(crate) fn add(&mut self, &Particle { mass, drag, fixed, .. }: &Particle) {
+        match *self {
+            Self::Unknown => *self = Self::Same((mass, drag, fixed)),
+            Self::Same((m, k, is_fixed))
+                if m.to_bits() == mass.to_bits() && k.to_bits() == drag.to_bits() && is_fixed == fixed => {}
+            _ => *self = Self::Various,
+        }
+    }
 }
 
 impl Status {
@@ -65,6 +91,7 @@ impl Status {
         changes: 0,
         kept: Words::NONE,
         time: Time::ZERO,
+        inertias: Inertias::Unknown,
         ends_before_never: Time::ZERO,
         hint: Time::ZERO,
         seed: 0,
