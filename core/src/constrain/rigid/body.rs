@@ -23,8 +23,6 @@ pub(super) struct Body {
     state: u32,
     /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
     pub(super) whirl: f32,
-    /// The tick of the clock of passes at which it was changed last.
-    pub(super) changed: u32,
     /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go, and at a sub-step's beginning
     /// all up to how it moved before.
     pub(super) inverse_mass: f32,

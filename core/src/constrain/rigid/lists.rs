@@ -6,6 +6,7 @@ use super::beside::Beside;
 use super::body::Body;
 use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
+use super::moving::Moving;
 use super::order::packs_of;
 use super::pack::Pack;
 use super::scenery::{DIRECTIONS, leash};
@@ -92,7 +93,9 @@ impl Sizes {
             .saturating_add(each(self.bodies, 3))
             .saturating_add(each(self.candidates(), 2));
         let touching = self.pairs().saturating_add(each(all, DIRECTIONS));
-        let solving = each(packs_of(self.pairs(), all), words::<Pack>()).saturating_add(touching);
+        let solving = each(packs_of(self.pairs(), all), words::<Pack>())
+            .saturating_add(touching)
+            .saturating_add(each(all.saturating_add(1), words::<Moving>()));
         let scratch = listing.max(solving);
         let per_row = usize::from(self.balls > 0);
         [Words { per_row: 0, fixed: kept }, Words { per_row, fixed: scratch }]

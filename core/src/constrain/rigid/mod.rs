@@ -14,6 +14,7 @@ mod lie;
 mod lists;
 mod manifold;
 mod members;
+mod moving;
 mod order;
 mod pack;
 mod pass;
