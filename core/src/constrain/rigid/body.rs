@@ -101,9 +101,14 @@ impl Made<'_> {
         let rows = bodies.row_of.get(first..end)?;
         let row = *rows.first()? as usize;
         let serials = bodies.serial.get(row..row.checked_add(count)?)?;
-        let follows = |i: usize, at: u32, serial: u32| (at as usize == row + i) & (serial as usize == first + i);
+        // Words that differ leave bits, which are looked at once: so many go side by side.
+        let (row, first) = (row as u32, first as u32);
+        let differs = |i: usize, at: u32, serial: u32| {
+            (at ^ row.wrapping_add(i as u32)) | (serial ^ first.wrapping_add(i as u32))
+        };
         let both = rows.iter().zip(serials).enumerate();
-        both.fold(true, |all, (i, (&at, &serial))| all & follows(i, at, serial)).then_some(row..row + count)
+        let differ = both.fold(0, |any, (i, (&at, &serial))| any | differs(i, at, serial));
+        (differ == 0).then_some(row as usize..row as usize + count)
     }
 
     /// Visits its living particles: row, and place in the box's frame \[m\].
@@ -240,7 +245,8 @@ impl Body {
             let [at, moving] = [&bodies.position[rows.clone()], &bodies.velocity[rows]].map(bytemuck::cast_slice);
             let (at, moving): (&[f32], &[f32]) = (at, moving);
             let all = at.iter().zip(moving).zip(made.places);
-            is_sound = all.fold(true, |all, ((&x, &v), &place)| all & (x + v + f32::from_bits(place)).is_finite());
+            let is_none = |sum: f32| u32::from(!(sum.abs() < f32::INFINITY));
+            is_sound = all.fold(0, |any, ((&x, &v), &place)| any | is_none(x + v + f32::from_bits(place))) == 0;
             living = of.count;
         } else {
             made.each(bodies, &mut |row, place| {

@@ -2,7 +2,7 @@
 
 use super::super::{Bodies, Words};
 use super::balls::{self, Around, Ball, NEAR};
-use super::beside::Beside;
+use super::beside::{Beside, Ways};
 use super::body::Body;
 use super::forms::Forms;
 use super::manifold::{Manifold, are_near};
@@ -164,25 +164,32 @@ pub(super) fn gather(
 /// side by side.
 fn look(all: &[Body], pairs: &mut [Manifold], forms: Forms<'_>, h: f32) {
     let mut due = heapless::Vec::<(u32, f32), ABREAST>::new();
-    for number in 0..pairs.len() {
-        let pair = &mut pairs[number];
-        let [a, b] = pair.bodies.map(|number| &all[number as usize]);
-        if !(a.is_awake() || b.is_awake()) {
-            continue;
+    let (mut some, mut number) = (heapless::Vec::<u32, ABREAST>::new(), 0);
+    while number < pairs.len() {
+        some.clear();
+        while number < pairs.len() && !some.is_full() {
+            if pairs[number].bodies.iter().any(|&number| all[number as usize].is_awake()) {
+                let _ = some.push(number as u32);
+            }
+            number += 1;
         }
-        let way = (length(a.velocity - b.velocity) + a.whirl + b.whirl) * h;
-        if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
-            if forms.are_boxes(pair.bodies) {
-                let _ = due.push((number as u32, way));
+        let ways = run_abreast(Ways { bodies: all, pairs, numbers: &some, h });
+        for (&number, way) in some.iter().zip(ways) {
+            let pair = &mut pairs[number as usize];
+            if !(pair.spare <= if pair.count == 0 { 2.0 * way } else { way }) {
+                pair.spare -= way;
+            } else if !forms.are_boxes(pair.bodies) {
+                let both = pair.bodies.map(|number| &all[number as usize]);
+                pair.find(both, pair.bodies.map(|number| forms.of(number)), 2.0 * way);
+                pair.spare -= way;
+            } else {
                 if due.is_full() {
                     look_at_boxes(all, pairs, &due);
                     due.clear();
                 }
-                continue;
+                let _ = due.push((number, way));
             }
-            pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);
         }
-        pair.spare -= way;
     }
     look_at_boxes(all, pairs, &due);
 }
@@ -212,7 +219,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     let found = invite(bodies, kept, forms, (middles, rows), candidates);
     let candidates = &mut candidates[..found];
     mark_far(kept.bodies, forms, candidates);
-    candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b & !FAR));
+    sort(candidates, kept.bodies.len(), rest);
     // The old list, beside the new one.
     let old = kept.lists.pairs as usize;
     let room = rest.len() - rest.len() % words::<Manifold>();
@@ -285,6 +292,40 @@ fn mark_far(all: &[Body], forms: Forms<'_>, candidates: &mut [[u32; 2]]) {
                 numbers[1] |= FAR;
             }
         }
+    }
+}
+
+/// Brings candidates among so many bodies into the order of their numbers: by counting, if there is memory for that.
+fn sort(candidates: &mut [[u32; 2]], bodies: usize, memory: &mut [u32]) {
+    if let Some((starts, rest)) = memory.split_at_mut_checked(bodies + 1)
+        && let Some(room) = rest.get_mut(..2 * candidates.len())
+    {
+        let other = bytemuck::cast_slice_mut(room);
+        count_out(candidates, other, starts, |&[_, b]| b & !FAR);
+        count_out(other, candidates, starts, |&[a, _]| a);
+    } else {
+        candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b & !FAR));
+    }
+}
+
+/// Writes some down in the order of their keys, which are less than the number of `starts`; of those with one key as they come.
+fn count_out(from: &[[u32; 2]], to: &mut [[u32; 2]], starts: &mut [u32], key: impl Fn(&[u32; 2]) -> u32) {
+    starts.fill(0);
+    for pair in from {
+        if let Some(count) = starts.get_mut(key(pair) as usize) {
+            *count += 1;
+        }
+    }
+    let mut next = 0;
+    for start in &mut *starts {
+        next += core::mem::replace(start, next);
+    }
+    for pair in from {
+        let Some(start) = starts.get_mut(key(pair) as usize) else { continue };
+        if let Some(place) = to.get_mut(*start as usize) {
+            *place = *pair;
+        }
+        *start += 1;
     }
 }
 

@@ -205,7 +205,8 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
     /// The numbers of them all.
     fn sizes(&self) -> Sizes {
         let boxes = self.boxes.as_ref();
-        let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));
+        let particles = boxes.iter().fold(0, |sum: u64, body| sum.wrapping_add(u64::from(body.count)));
+        let particles = usize::try_from(particles).unwrap_or(usize::MAX);
         Sizes { bodies: boxes.len(), particles, balls: self.balls as usize }
     }
 
