@@ -5,6 +5,7 @@ use super::balls::{self, Around, Ball, NEAR};
 use super::beside::{Beside, Ways};
 use super::body::Body;
 use super::forms::Forms;
+use super::lie::Lain;
 use super::manifold::{Manifold, are_near};
 use super::moving::Moving;
 use super::order::packs_of;
@@ -37,6 +38,8 @@ pub(super) struct Lists {
     /// The number of pairs that press on each other, and of places of the scenery on bodies; none known where the list is new.
     pub(super) presses: [u32; 2],
     pub(super) counted: u32,
+    /// How all have lain as one in the last sub-step, if they have.
+    pub(super) lain: Lain,
 }
 
 /// The memory of bodies in its parts.

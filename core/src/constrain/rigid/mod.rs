@@ -270,7 +270,8 @@ fn each_ball(
 /// Looks where bodies meet the scenery, or will; balls that touch no body leave that to the sweep.
 fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) {
     let first = kept.first_ball();
-    for pair in &kept.pairs[..kept.lists.pairs as usize] {
+    let listed = if kept.balls.is_empty() { 0 } else { kept.lists.pairs as usize };
+    for pair in &kept.pairs[..listed] {
         if pair.bodies[1] as usize >= first && pair.count > 0 {
             kept.bodies[pair.bodies[1] as usize].pressed = 1;
         }
