@@ -40,8 +40,7 @@ pub(super) struct Body {
     pub(super) spare: f32,
     /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
     pub(super) whirl: f32,
-    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go, and at a sub-step's beginning
-    /// all up to how it moved before.
+    /// One over its mass \[1/kg\]; zero: it stays. This and what follows, up to how it moved before, is read in one go when a sub-step begins.
     pub(super) inverse_mass: f32,
     /// Its velocity \[m/s\].
     pub(super) velocity: Vec3,
