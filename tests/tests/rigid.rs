@@ -296,37 +296,51 @@ fn fallen(boxes: &[RigidBox], x: &[Vec3]) -> [u32; 6] {
 }
 
 /// Throws dice that do not meet each other.
-fn throw(seed: u64, count: u32, load: f32) -> [u32; 6] {
+fn throw(seed: u64, count: u32, load: f32, substeps: u32) -> [u32; 6] {
     let (start, boxes) = dice(seed, count, 3.0, load);
     let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
     let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
-    let scene = Scene { constraints: &bodies, substeps: 10, ..parts };
+    let scene = Scene { constraints: &bodies, substeps, ..parts };
     let mut system = started(&scene, start.len(), 0);
     run(&mut system, &scene, 1.0 / 60.0, 200);
     let fastest = system.particles().velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
-    assert!(fastest < 1e-3, "{fastest} m/s");
+    assert!(fastest < 1e-3, "{substeps} sub-steps: {fastest} m/s");
     fallen(&bodies.boxes, system.particles().position)
 }
 
 #[test]
 fn dice_are_fair_and_loaded_dice_are_not() {
-    let counts = throw(5, 180, 0.0);
-    assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) < FAIR, "{counts:?}");
-    let counts = throw(6, 120, 0.75);
-    assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) > 2.0 * FAIR, "{counts:?}");
+    for substeps in [3, 4, 6, 10] {
+        let counts = throw(5, 180, 0.0, substeps);
+        assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) < FAIR, "{substeps} sub-steps: {counts:?}");
+        let counts = throw(6, 120, 0.75, substeps);
+        assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) > 2.0 * FAIR, "{substeps} sub-steps: {counts:?}");
+    }
 }
 
 #[test]
 #[ignore = "long: six thousand throws, in release"]
 fn dice_are_fair_in_the_long_run() {
-    let counts = throw(7, 6000, 0.0);
-    assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) < FAIR, "{counts:?}");
+    for substeps in [3, 10] {
+        let counts = throw(7, 6000, 0.0, substeps);
+        assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) < FAIR, "{substeps} sub-steps: {counts:?}");
+    }
 }
 
 /// Dice that meet in the air and on the ground: all at rest within five seconds, on a face or leaning on others, none in another.
 #[test]
 fn thrown_dice_come_to_rest() {
-    for (seed, method) in [(1, Method::Rk4), (2, Method::Verlet)] {
+    let cases = [
+        (1, Method::Rk4, 20),
+        (2, Method::Verlet, 10),
+        (3, Method::Symplectic, 6),
+        (4, Method::Rk4, 4),
+        (5, Method::Symplectic, 4),
+        (6, Method::Verlet, 3),
+        (7, Method::Symplectic, 3),
+    ];
+    for (seed, method, substeps) in cases {
+        let case = format!("{method}, {substeps} sub-steps");
         let (mut start, boxes) = dice(seed, 27, 0.16, 0.0);
         let middle = Vec3::new(0.4, 0.5, 0.4);
         for particle in &mut start {
@@ -335,21 +349,21 @@ fn thrown_dice_come_to_rest() {
         }
         let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
         let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
-        let scene = Scene { constraints: &bodies, substeps: 20, integrator: method.integrator(), ..parts };
+        let scene = Scene { constraints: &bodies, substeps, integrator: method.integrator(), ..parts };
         let mut system = started(&scene, start.len(), 0);
         let (risen, fastest) = watch(&mut system, &scene, 300);
-        assert!(risen < 1e-5, "{method}: energy grew by {risen}");
-        assert!(fastest < 1e-3, "{method}: {fastest} m/s");
+        assert!(risen < 1e-5, "{case}: energy grew by {risen}");
+        assert!(fastest < 1e-3, "{case}: {fastest} m/s");
         assert!(system.totals().contacts > 100 && system.totals().caps.contacts == 0, "{:?}", system.totals());
         let x = system.particles().position;
         for (i, a) in bodies.boxes.iter().enumerate() {
             for b in &bodies.boxes[..i] {
                 let depth = overlap([a, b], x);
-                assert!(depth < 0.002, "{method}: {depth} m");
+                assert!(depth < 0.002, "{case}: {depth} m");
             }
             let (middle, axes) = pose(a, x);
             let low = middle[1] - (0..3).map(|k| 0.05 * axes[k][1].abs()).sum::<f64>();
-            assert!(low > -1e-3, "{method}: {low} m in the ground");
+            assert!(low > -1e-3, "{case}: {low} m in the ground");
         }
     }
 }
@@ -397,6 +411,27 @@ fn any_number_of_threads_and_any_index_gives_the_same_bits() {
 }
 
 /// Whatever boxes there are: nothing panics, and who is sound stays so.
+/// Of bodies that share particles the last one has its way, however many are told side by side: its particles keep their distances.
+#[test]
+fn the_last_of_bodies_that_share_particles_has_its_way() {
+    for (offset, count) in [(4, 8), (8, 16), (2, 8), (4, 4), (12, 16)] {
+        let at = |first: u32| RigidBox { count, ..RigidBox::new(Vec3::splat(0.1), Vec3::ZERO, first) };
+        let boxes = [at(0), at(offset)];
+        let mut random = Random::new(u64::from(offset + count));
+        let particle = |_| Particle { position: random.vector(0.1), velocity: random.vector(1.0), ..Particle::REST };
+        let start: Vec<_> = (0..offset + count).map(particle).collect();
+        let bodies = RigidBodies::boxes(boxes);
+        let scene = Scene { start: &start, constraints: &bodies, substeps: 4, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        run(&mut system, &scene, 1.0 / 60.0, 30);
+        let (x, last) = (system.particles().position, offset as usize..(offset + count) as usize);
+        for (i, j) in last.clone().flat_map(|i| (last.start..i).map(move |j| (i, j))) {
+            let (now, first) = (x[i].distance(x[j]), start[i].position.distance(start[j].position));
+            assert!((now - first).abs() < 1e-5, "{offset}, {count}: {i} and {j} are {now} m apart, not {first} m");
+        }
+    }
+}
+
 #[test]
 fn hostile_bodies_do_no_harm() {
     let part = Particle { material: Some(0), ..Particle::REST };

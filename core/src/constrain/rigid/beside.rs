@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::boxes::{FACES_FIRST, Oriented, PARALLEL, facing};
 use super::facets::{Apart, By};
+use super::manifold::Manifold;
 use super::pack::fours;
 use crate::lanes::{ABREAST, Eight, Kernel, LANES, Row, Vectors, load, min, not, saved};
 use crate::math::length;
@@ -72,7 +73,34 @@ impl Kernel for Beside<'_> {
 
 /// The words of a body that are read in fours.
 const CENTER: usize = offset_of!(Body, center) / 4;
+const WHIRL: usize = offset_of!(Body, whirl) / 4;
 const HALF: usize = offset_of!(Body, half) / 4;
+
+/// How far pairs may go against each other in a sub-step of `h` \[s\]: those with some numbers, as many as go side by side at the most \[m\].
+pub(super) struct Ways<'a> {
+    pub(super) bodies: &'a [Body],
+    pub(super) pairs: &'a [Manifold],
+    pub(super) numbers: &'a [u32],
+    pub(super) h: f32,
+}
+
+impl Kernel for Ways<'_> {
+    type Output = Row;
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> Row {
+        let nobody = Body::zeroed();
+        let (mut first, mut second) = ([&nobody; LANES], [&nobody; LANES]);
+        for (lane, &number) in self.numbers.iter().enumerate().take(ABREAST) {
+            let Some(pair) = self.pairs.get(number as usize) else { continue };
+            first[lane] = self.bodies.get(pair.bodies[0] as usize).unwrap_or(&nobody);
+            second[lane] = self.bodies.get(pair.bodies[1] as usize).unwrap_or(&nobody);
+        }
+        let ([whirl, _, a, b], [c, ..]) = (fours(like, &first, WHIRL), fours(like, &first, WHIRL + 4));
+        let ([other, _, x, y], [z, ..]) = (fours(like, &second, WHIRL), fours(like, &second, WHIRL + 4));
+        let apart = Vectors([a, b, c]) - Vectors([x, y, z]);
+        saved((apart.length() + whirl + other) * like.all(self.h))
+    }
+}
 
 /// Eight boxes.
 struct Boxes<F> {

@@ -18,15 +18,29 @@ const MOVING: u32 = 2;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Body {
-    /// 1 if it sleeps. What is asked for of many that may touch stands here, side by side.
+    /// 1 if it sleeps. What is asked for of all again and again stands here, in one line of a cache.
     pub(super) asleep: u32,
     state: u32,
+    /// Marks that others call out to it.
+    pub(super) calls: u32,
+    /// The least number among those that sleep with it.
+    pub(super) island: u32,
+    /// One more than how many contacts away from it bodies wake by a blow to it.
+    pub(super) rings: u32,
+    /// In how many directions the scenery may press on it: in the first of those that there is room for.
+    pub(super) met: u32,
+    /// 1 if something presses on it in this sub-step.
+    pub(super) pressed: u32,
+    /// 1 if it takes part in a blow that something shall bounce off.
+    pub(super) bounces: u32,
+    /// The colours of those that it touches, a bit for each.
+    pub(super) colours: u32,
+    /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
+    pub(super) leash: f32,
+    pub(super) spare: f32,
     /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
     pub(super) whirl: f32,
-    /// The tick of the clock of passes at which it was changed last.
-    pub(super) changed: u32,
-    /// One over its mass \[1/kg\]; zero: it stays. Passes read this and what follows up to the inertia in one go, and at a sub-step's beginning
-    /// all up to how it moved before.
+    /// One over its mass \[1/kg\]; zero: it stays. This and what follows, up to how it moved before, is read in one go when a sub-step begins.
     pub(super) inverse_mass: f32,
     /// Its velocity \[m/s\].
     pub(super) velocity: Vec3,
@@ -54,14 +68,6 @@ pub(super) struct Body {
     pub(super) drive: [Vec3; 2],
     /// The number of its particles that live, plus one; zero before it is seen for the first time.
     known: u32,
-    /// Marks that others call out to it.
-    pub(super) calls: u32,
-    /// The least number among those that sleep with it.
-    pub(super) island: u32,
-    /// One more than how many contacts away from it bodies wake by a blow to it.
-    pub(super) rings: u32,
-    /// In how many directions the scenery may press on it: in the first of those that there is room for.
-    pub(super) met: u32,
     /// The number of places of the scenery that were near when it fell asleep.
     pub(super) faces: u32,
     /// For how long it has been near a place, and how it was turned there \[s, m\].
@@ -70,8 +76,6 @@ pub(super) struct Body {
     pub(super) lull: u32,
     pub(super) home: Vec3,
     pub(super) home_turn: [f32; 4],
-    /// 1 if something presses on it in this sub-step.
-    pub(super) pressed: u32,
     /// Half the sides of its box \[m\].
     pub(super) half: Vec3,
     /// How far its box reaches from its centre of mass \[m\].
@@ -79,13 +83,6 @@ pub(super) struct Body {
     /// The share of the normal speed it keeps in a hit, and the number of its material plus one.
     pub(super) elasticity: f32,
     pub(super) material: u32,
-    /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
-    pub(super) leash: f32,
-    pub(super) spare: f32,
-    /// The colours of those that it touches, a bit for each.
-    pub(super) colours: u32,
-    /// 1 if it takes part in a blow that something shall bounce off.
-    pub(super) bounces: u32,
 }
 
 /// The make of a body: its box, and the places of its particles in it, three words each.
@@ -103,9 +100,14 @@ impl Made<'_> {
         let rows = bodies.row_of.get(first..end)?;
         let row = *rows.first()? as usize;
         let serials = bodies.serial.get(row..row.checked_add(count)?)?;
-        let follows = |i: usize, at: u32, serial: u32| (at as usize == row + i) & (serial as usize == first + i);
+        // Words that differ leave bits, which are looked at once: so many go side by side.
+        let (row, first) = (row as u32, first as u32);
+        let differs = |i: usize, at: u32, serial: u32| {
+            (at ^ row.wrapping_add(i as u32)) | (serial ^ first.wrapping_add(i as u32))
+        };
         let both = rows.iter().zip(serials).enumerate();
-        both.fold(true, |all, (i, (&at, &serial))| all & follows(i, at, serial)).then_some(row..row + count)
+        let differ = both.fold(0, |any, (i, (&at, &serial))| any | differs(i, at, serial));
+        (differ == 0).then_some(row as usize..row as usize + count)
     }
 
     /// Visits its living particles: row, and place in the box's frame \[m\].
@@ -242,7 +244,8 @@ impl Body {
             let [at, moving] = [&bodies.position[rows.clone()], &bodies.velocity[rows]].map(bytemuck::cast_slice);
             let (at, moving): (&[f32], &[f32]) = (at, moving);
             let all = at.iter().zip(moving).zip(made.places);
-            is_sound = all.fold(true, |all, ((&x, &v), &place)| all & (x + v + f32::from_bits(place)).is_finite());
+            let is_none = |sum: f32| u32::from(!(sum.abs() < f32::INFINITY));
+            is_sound = all.fold(0, |any, ((&x, &v), &place)| any | is_none(x + v + f32::from_bits(place))) == 0;
             living = of.count;
         } else {
             made.each(bodies, &mut |row, place| {

@@ -1,11 +1,11 @@
 //! Who sleeps stays where it is, as long as forces do to its particles what they did when it fell asleep.
 
-use super::super::Bodies;
+use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
 use super::body::{Body, Made};
 use super::lists::Kept;
 use super::sleep::{ALIKE, STIRRED};
-use crate::lanes::widest;
+use crate::lanes::{ABREAST, Eight, Kernel, LANES, not, run};
 use crate::math::{length, min};
 use core::ops::Range;
 use glam::Vec3;
@@ -14,6 +14,9 @@ use glam::Vec3;
 ///
 /// Those next to each other are looked at as one: a heap that sleeps is a few columns of numbers.
 pub(super) fn lie(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, boxes: &[RigidBox]) -> bool {
+    if kept.lists.awake != 0 {
+        kept.lists.lain = Lain::default();
+    }
     let (mut is_stirred, mut number, mut place) = (false, 0, 0);
     while number < boxes.len() {
         let sleeps = |i: usize| kept.bodies.get(i + 1).is_some_and(Body::sleeps);
@@ -30,7 +33,11 @@ pub(super) fn lie(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, boxes: &[RigidBo
         let (some, all) = (&boxes[number..end], &mut kept.bodies[number + 1..=end]);
         let len = some.iter().map(|of| 3 * of.count as usize).sum::<usize>();
         let mut places = kept.places.get(place..place + len).unwrap_or_default();
-        if end == number + 1 || !lie_together(bodies, all, some, places) {
+        // What has lain so as one goes on with that, as long as nobody wakes.
+        let mut lain = if end - number == boxes.len() { kept.lists.lain } else { Lain::default() };
+        let lies = end > number + 1 && lie_together(bodies, (all, &mut lain), some, places);
+        kept.lists.lain = if lies && end - number == boxes.len() { lain } else { Lain::default() };
+        if !lies {
             for (body, of) in all.iter_mut().zip(some) {
                 let (own, rest) = places.split_at((3 * of.count as usize).min(places.len()));
                 places = rest;
@@ -45,24 +52,54 @@ pub(super) fn lie(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, boxes: &[RigidBo
     is_stirred
 }
 
+/// What forces did to bodies in the last sub-step in which all of them lay as one.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Lain {
+    /// The change of their velocities \[m/s\], in so long \[s\]; zero: they did not.
+    change: Vec3,
+    h: f32,
+    /// How far the method may have moved them beyond that \[m\].
+    far: f32,
+}
+
+impl Lain {
+    /// Tells whether forces do the same again, to the bit.
+    fn is_so(&self, change: Vec3, h: f32) -> bool {
+        self.h > 0.0
+            && self.h.to_bits() == h.to_bits()
+            && self.change.to_array().map(f32::to_bits) == change.to_array().map(f32::to_bits)
+    }
+}
+
 /// Lets the particles of some bodies lie where they are, if they are one behind the other and forces do the same to all; tells whether that is so.
-fn lie_together(bodies: &mut Bodies<'_>, all: &[Body], boxes: &[RigidBox], mut places: &[u32]) -> bool {
+fn lie_together(
+    bodies: &mut Bodies<'_>,
+    (all, lain): (&[Body], &mut Lain),
+    boxes: &[RigidBox],
+    mut places: &[u32],
+) -> bool {
     let Some(first) = boxes.first() else { return false };
     let count = boxes.iter().fold(0u32, |sum, of| sum.saturating_add(of.count));
     let Some(rows) = (Made { of: &RigidBox { count, ..*first }, places }).run(bodies) else { return false };
     let h = bodies.substep.seconds();
     let Some(&change) = bodies.velocity.get(rows.start) else { return false };
+    let is_known = lain.is_so(change, h);
+    if is_known && bodies.substep.number > 0 {
+        return put_back(bodies, rows, change, lain.far);
+    }
     let (mut row, mut far) = (rows.start, f32::INFINITY);
     for (body, of) in all.iter().zip(boxes) {
         let (own, rest) = places.split_at((3 * of.count as usize).min(places.len()));
         let own_rows = row..row + of.count as usize;
         // Between steps others may have moved them.
         let is_there = bodies.substep.number > 0 || body.is_where_told(bodies, Made { of, places: own }, &own_rows);
-        if !(is_there && body.is_driven_so(change, h)) {
+        if !(is_there && (is_known || body.is_driven_so(change, h))) {
             return false;
         }
         (places, row, far) = (rest, own_rows.end, min(far, length(body.drive[0]) * h * h));
     }
+    *lain = Lain { change, h, far };
     put_back(bodies, rows, change, far)
 }
 
@@ -74,15 +111,18 @@ fn put_back(bodies: &mut Bodies<'_>, rows: Range<usize>, change: Vec3, far: f32)
     let [from, still] = bodies.before.map(|column| &column[rows.clone()]);
     let (to, velocities) = (&bodies.position[rows.clone()], &bodies.velocity[rows.clone()]);
     let all = [from, still, to, velocities].map(bytemuck::cast_slice);
-    if !widest(
-        #[inline(always)]
-        || falls_evenly(all, change, h, far),
-    ) {
+    // Chips take them one by one.
+    let lie = if ABREAST > 1 {
+        run(Falls { columns: all, velocity: change, h, far })
+    } else {
+        wrongs(all, change, h, far) == 0
+    };
+    if !lie {
         return false;
     }
     bodies.position[rows.clone()].copy_from_slice(from);
     bodies.velocity[rows.clone()].fill(Vec3::ZERO);
-    rows.for_each(|row| bodies.mark_followed(row));
+    bodies.marks.get_mut(rows).unwrap_or_default().iter_mut().for_each(|mark| *mark |= SHIFTED | CARRIED);
     true
 }
 
@@ -132,21 +172,47 @@ impl Body {
 
 /// Tells whether all particles have begun a sub-step of `h` \[s\] at rest, have the same velocity now, and have not gone so far from where that leads
 /// along any axis. The columns' numbers go through it one like the other, eight particles at a time.
-#[inline(always)]
-fn falls_evenly([from, still, to, velocities]: [&[f32]; 4], velocity: Vec3, h: f32, far: f32) -> bool {
-    const WIDE: usize = 24;
-    let velocity: [f32; WIDE] = core::array::from_fn(|k| velocity[k % 3]);
-    let mut wrongs = [0; WIDE];
-    let [from, still, to, now] = [from, still, to, velocities].map(<[f32]>::as_chunks::<WIDE>);
-    for ((from, still), (to, now)) in from.0.iter().zip(still.0).zip(to.0.iter().zip(now.0)) {
-        for k in 0..WIDE {
-            wrongs[k] |= wrong([from[k], still[k], to[k], now[k]], velocity[k], h, far);
+struct Falls<'a> {
+    /// Where they began, how they moved then, where they are, and how they move.
+    columns: [&'a [f32]; 4],
+    velocity: Vec3,
+    h: f32,
+    far: f32,
+}
+
+/// Numbers of eight particles.
+const WIDE: usize = 3 * LANES;
+
+impl Kernel for Falls<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> bool {
+        let Self { columns: [from, still, to, now], velocity, h, far } = self;
+        let Vec3 { x, y, z } = velocity;
+        let velocities =
+            [like.of([x, y, z, x, y, z, x, y]), like.of([z, x, y, z, x, y, z, x]), like.of([y, z, x, y, z, x, y, z])];
+        let (step, reach, mut differ) = (like.all(h), like.all(far), like.all(0.0));
+        let ((from, a), (still, b)) = (from.as_chunks::<WIDE>(), still.as_chunks::<WIDE>());
+        let ((to, c), (now, d)) = (to.as_chunks::<WIDE>(), now.as_chunks::<WIDE>());
+        for ((from, still), (to, now)) in from.iter().zip(still).zip(to.iter().zip(now)) {
+            let [from, still, to, now] = [from, still, to, now].map(|numbers| numbers.as_chunks::<LANES>().0);
+            for (((from, still), (to, now)), &velocity) in
+                from.iter().zip(still).zip(to.iter().zip(now)).zip(&velocities)
+            {
+                let (from, still, to, now) = (like.of(*from), like.of(*still), like.of(*to), like.of(*now));
+                let drift = to - from - now * step;
+                differ = differ | (now ^ velocity) | still.abs() | not(drift.abs().simd_le(reach));
+            }
         }
+        let differ = differ.to_array().iter().fold(0, |all, bits| all | bits.to_bits());
+        differ | wrongs([a, b, c, d], velocity, h, far) == 0
     }
-    let rest = from.1.iter().zip(still.1).zip(to.1.iter().zip(now.1)).zip(velocity);
-    let is_wrong =
-        rest.fold(0, |all, (((&from, &still), (&to, &now)), v)| all | wrong([from, still, to, now], v, h, far));
-    wrongs.iter().fold(is_wrong, |all, wrong| all | wrong) == 0
+}
+
+/// Zero if all coordinates are as they have to be.
+fn wrongs([from, still, to, now]: [&[f32]; 4], velocity: Vec3, h: f32, far: f32) -> u32 {
+    let all = from.iter().zip(still).zip(to.iter().zip(now)).zip(velocity.to_array().into_iter().cycle());
+    all.fold(0, |all, (((&from, &still), (&to, &now)), v)| all | wrong([from, still, to, now], v, h, far))
 }
 
 /// Zero if a coordinate is as it has to be.

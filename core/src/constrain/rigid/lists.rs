@@ -2,10 +2,12 @@
 
 use super::super::{Bodies, Words};
 use super::balls::{self, Around, Ball, NEAR};
-use super::beside::Beside;
+use super::beside::{Beside, Ways};
 use super::body::Body;
 use super::forms::Forms;
+use super::lie::Lain;
 use super::manifold::{Manifold, are_near};
+use super::moving::Moving;
 use super::order::packs_of;
 use super::pack::Pack;
 use super::scenery::{DIRECTIONS, leash};
@@ -36,6 +38,8 @@ pub(super) struct Lists {
     /// The number of pairs that press on each other, and of places of the scenery on bodies; none known where the list is new.
     pub(super) presses: [u32; 2],
     pub(super) counted: u32,
+    /// How all have lain as one in the last sub-step, if they have.
+    pub(super) lain: Lain,
 }
 
 /// The memory of bodies in its parts.
@@ -92,7 +96,9 @@ impl Sizes {
             .saturating_add(each(self.bodies, 3))
             .saturating_add(each(self.candidates(), 2));
         let touching = self.pairs().saturating_add(each(all, DIRECTIONS));
-        let solving = each(packs_of(self.pairs(), all), words::<Pack>()).saturating_add(touching);
+        let solving = each(packs_of(self.pairs(), all), words::<Pack>())
+            .saturating_add(touching)
+            .saturating_add(each(all.saturating_add(1), words::<Moving>()));
         let scratch = listing.max(solving);
         let per_row = usize::from(self.balls > 0);
         [Words { per_row: 0, fixed: kept }, Words { per_row, fixed: scratch }]
@@ -161,25 +167,32 @@ pub(super) fn gather(
 /// side by side.
 fn look(all: &[Body], pairs: &mut [Manifold], forms: Forms<'_>, h: f32) {
     let mut due = heapless::Vec::<(u32, f32), ABREAST>::new();
-    for number in 0..pairs.len() {
-        let pair = &mut pairs[number];
-        let [a, b] = pair.bodies.map(|number| &all[number as usize]);
-        if !(a.is_awake() || b.is_awake()) {
-            continue;
+    let (mut some, mut number) = (heapless::Vec::<u32, ABREAST>::new(), 0);
+    while number < pairs.len() {
+        some.clear();
+        while number < pairs.len() && !some.is_full() {
+            if pairs[number].bodies.iter().any(|&number| all[number as usize].is_awake()) {
+                let _ = some.push(number as u32);
+            }
+            number += 1;
         }
-        let way = (length(a.velocity - b.velocity) + a.whirl + b.whirl) * h;
-        if pair.spare <= if pair.count == 0 { 2.0 * way } else { way } {
-            if forms.are_boxes(pair.bodies) {
-                let _ = due.push((number as u32, way));
+        let ways = run_abreast(Ways { bodies: all, pairs, numbers: &some, h });
+        for (&number, way) in some.iter().zip(ways) {
+            let pair = &mut pairs[number as usize];
+            if !(pair.spare <= if pair.count == 0 { 2.0 * way } else { way }) {
+                pair.spare -= way;
+            } else if !forms.are_boxes(pair.bodies) {
+                let both = pair.bodies.map(|number| &all[number as usize]);
+                pair.find(both, pair.bodies.map(|number| forms.of(number)), 2.0 * way);
+                pair.spare -= way;
+            } else {
                 if due.is_full() {
                     look_at_boxes(all, pairs, &due);
                     due.clear();
                 }
-                continue;
+                let _ = due.push((number, way));
             }
-            pair.find([a, b], pair.bodies.map(|number| forms.of(number)), 2.0 * way);
         }
-        pair.spare -= way;
     }
     look_at_boxes(all, pairs, &due);
 }
@@ -209,7 +222,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     let found = invite(bodies, kept, forms, (middles, rows), candidates);
     let candidates = &mut candidates[..found];
     mark_far(kept.bodies, forms, candidates);
-    candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b & !FAR));
+    sort(candidates, kept.bodies.len(), rest);
     // The old list, beside the new one.
     let old = kept.lists.pairs as usize;
     let room = rest.len() - rest.len() % words::<Manifold>();
@@ -282,6 +295,40 @@ fn mark_far(all: &[Body], forms: Forms<'_>, candidates: &mut [[u32; 2]]) {
                 numbers[1] |= FAR;
             }
         }
+    }
+}
+
+/// Brings candidates among so many bodies into the order of their numbers: by counting, if there is memory for that.
+fn sort(candidates: &mut [[u32; 2]], bodies: usize, memory: &mut [u32]) {
+    if let Some((starts, rest)) = memory.split_at_mut_checked(bodies + 1)
+        && let Some(room) = rest.get_mut(..2 * candidates.len())
+    {
+        let other = bytemuck::cast_slice_mut(room);
+        count_out(candidates, other, starts, |&[_, b]| b & !FAR);
+        count_out(other, candidates, starts, |&[a, _]| a);
+    } else {
+        candidates.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b & !FAR));
+    }
+}
+
+/// Writes some down in the order of their keys, which are less than the number of `starts`; of those with one key as they come.
+fn count_out(from: &[[u32; 2]], to: &mut [[u32; 2]], starts: &mut [u32], key: impl Fn(&[u32; 2]) -> u32) {
+    starts.fill(0);
+    for pair in from {
+        if let Some(count) = starts.get_mut(key(pair) as usize) {
+            *count += 1;
+        }
+    }
+    let mut next = 0;
+    for start in &mut *starts {
+        next += core::mem::replace(start, next);
+    }
+    for pair in from {
+        let Some(start) = starts.get_mut(key(pair) as usize) else { continue };
+        if let Some(place) = to.get_mut(*start as usize) {
+            *place = *pair;
+        }
+        *start += 1;
     }
 }
 

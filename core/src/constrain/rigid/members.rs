@@ -82,14 +82,17 @@ fn each(
         }
         let abreast = ABREAST > 1 && body.moves() && (of.count as usize).is_multiple_of(FOUR);
         let made = Made { of, places: &[] };
-        let Some(rows) = made.run(bodies).filter(|_| abreast) else {
-            visit(bodies, kept, Whom::One(number, of, first..end));
-            continue;
-        };
-        if !few.all.is_empty() && (few.count != of.count || few.all.is_full()) {
+        let rows = made.run(bodies).filter(|_| abreast);
+        // Those that share particles are called up one after the other, as they are on chips.
+        let waits = rows.as_ref().is_some_and(|rows| few.takes(rows, of.count));
+        if !few.all.is_empty() && !waits {
             visit(bodies, kept, Whom::Few(&few));
             few.all.clear();
         }
+        let Some(rows) = rows else {
+            visit(bodies, kept, Whom::One(number, of, first..end));
+            continue;
+        };
         few.count = of.count;
         let _ = few.all.push(One { body: number as u32, row: rows.start as u32, place: first as u32 });
     }
@@ -103,6 +106,15 @@ const FOUR: usize = 4;
 const COORDINATES: usize = 3 * FOUR;
 
 impl Few {
+    /// Tells whether there is room for another of so many particles, which has none of theirs.
+    fn takes(&self, rows: &Range<usize>, count: u32) -> bool {
+        let is_apart = |one: &One| {
+            let first = one.row as usize;
+            rows.end <= first || first + self.count as usize <= rows.start
+        };
+        self.count == count && !self.all.is_full() && self.all.iter().all(is_apart)
+    }
+
     /// Those bodies; `nobody` in lanes that are left.
     #[inline(always)]
     fn bodies<'a>(&self, all: &'a [Body], nobody: &'a Body) -> [&'a Body; LANES] {

@@ -14,6 +14,7 @@ mod lie;
 mod lists;
 mod manifold;
 mod members;
+mod moving;
 mod order;
 mod pack;
 mod pass;
@@ -204,7 +205,8 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
     /// The numbers of them all.
     fn sizes(&self) -> Sizes {
         let boxes = self.boxes.as_ref();
-        let particles = boxes.iter().fold(0usize, |sum, body| sum.saturating_add(body.count as usize));
+        let particles = boxes.iter().fold(0, |sum: u64, body| sum.wrapping_add(u64::from(body.count)));
+        let particles = usize::try_from(particles).unwrap_or(usize::MAX);
         Sizes { bodies: boxes.len(), particles, balls: self.balls as usize }
     }
 
@@ -268,7 +270,8 @@ fn each_ball(
 /// Looks where bodies meet the scenery, or will; balls that touch no body leave that to the sweep.
 fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) {
     let first = kept.first_ball();
-    for pair in &kept.pairs[..kept.lists.pairs as usize] {
+    let listed = if kept.balls.is_empty() { 0 } else { kept.lists.pairs as usize };
+    for pair in &kept.pairs[..listed] {
         if pair.bodies[1] as usize >= first && pair.count > 0 {
             kept.bodies[pair.bodies[1] as usize].pressed = 1;
         }

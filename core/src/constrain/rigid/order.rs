@@ -2,9 +2,11 @@
 
 use super::body::Body;
 use super::manifold::{Manifold, POINTS};
+use super::moving::Moving;
 use super::pack::Pack;
 use super::scenery::DIRECTIONS;
 use crate::lanes::ABREAST;
+use crate::memory::take;
 use core::ops::Range;
 
 /// Colours of pairs: those of one share no moving body. Those that find none of the others have the last, one after the other.
@@ -40,6 +42,8 @@ impl Manifolds<'_> {
 /// All that touch and are not asleep, packed colour by colour.
 pub(super) struct Order<'a> {
     pub(super) packs: &'a mut [Pack],
+    /// How all bodies move, while impulses change that.
+    pub(super) moving: &'a mut [Moving],
     /// The numbers of all of them, in their order.
     pub(super) numbers: &'a [u32],
     /// Where the colours begin.
@@ -54,9 +58,11 @@ pub(super) fn packs_of(pairs: usize, bodies: usize) -> usize {
 }
 
 impl<'a> Order<'a> {
-    /// Colours pairs and scenery one after the other: each gets the first colour that neither of its bodies has yet. `memory` is a word for each,
-    /// and the packs.
-    pub(super) fn of(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, memory: &'a mut [u32]) -> Self {
+    /// Colours pairs and scenery one after the other: each gets the first colour that neither of its bodies has yet. `memory` is how each
+    /// body moves, a word for each of those, and the packs.
+    pub(super) fn of(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, mut memory: &'a mut [u32]) -> Self {
+        let moving = take(&mut memory, bodies.len() * (size_of::<Moving>() / 4));
+        let moving = bytemuck::try_cast_slice_mut(moving).unwrap_or_default();
         bodies.iter_mut().for_each(|body| body.colours = 0);
         let (mut starts, mut active) = ([0u32; SHELVES + 1], 0);
         for (number, manifold) in manifolds.pairs.iter_mut().enumerate() {
@@ -86,7 +92,7 @@ impl<'a> Order<'a> {
         let active = rest.len().saturating_sub(active)..rest.len();
         put_all(bodies, manifolds, (starts, rest.get(active).unwrap_or_default()), numbers);
         let room = rest.len() - rest.len() % (size_of::<Pack>() / 4);
-        Self::packed(bodies, manifolds, (&starts, numbers), bytemuck::cast_slice_mut(&mut rest[..room]))
+        Self::packed(bodies, manifolds, (&starts, numbers), (moving, bytemuck::cast_slice_mut(&mut rest[..room])))
     }
 
     /// Puts them into packs, those of each colour into its own.
@@ -94,7 +100,7 @@ impl<'a> Order<'a> {
         bodies: &[Body],
         manifolds: &Manifolds<'_>,
         (shelves, all): (&[u32; SHELVES + 1], &'a [u32]),
-        packs: &'a mut [Pack],
+        (moving, packs): (&'a mut [Moving], &'a mut [Pack]),
     ) -> Self {
         let (mut starts, mut len) = ([0u32; ALL + 1], 0);
         for colour in 0..ALL {
@@ -106,7 +112,7 @@ impl<'a> Order<'a> {
             }
             starts[colour + 1] = len as u32;
         }
-        Self { packs: &mut packs[..len], numbers: all, starts }
+        Self { packs: &mut packs[..len], moving, numbers: all, starts }
     }
 
     pub(super) fn colours(&self) -> Range<usize> {

@@ -2,8 +2,9 @@
 
 use super::body::Body;
 use super::manifold::{Manifold, POINTS, Point};
+use super::moving::Inverse;
 use super::order::Manifolds;
-use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors, load, saved};
+use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors, load};
 use bytemuck::Pod;
 use core::mem::offset_of;
 use glam::Vec3;
@@ -59,15 +60,17 @@ pub(super) struct Pack {
     pub(super) manifolds: [u32; ABREAST],
     pub(super) bodies: [[u32; ABREAST]; 2],
     /// Those of their bodies that are pushed, the world for others.
-    pushed: [[u32; ABREAST]; 2],
+    pub(super) pushed: [[u32; ABREAST]; 2],
     /// The tick of the clock of passes at which each was gone over last.
-    pub(super) seen: [u32; ABREAST],
+    pub(super) seen: Row,
     /// The number of points of each.
     pub(super) points: Row,
     /// The normal, and two directions across it, in the world.
     pub(super) normal: [Row; 3],
     pub(super) along: [[Row; 3]; 2],
     pub(super) friction: [Row; 2],
+    /// How their bodies turn by an angular impulse.
+    pub(super) inverse: [Inverse; 2],
     /// The normal in the first's frame.
     pub(super) within: [Row; 3],
     pub(super) spots: [Spots; POINTS],
@@ -140,16 +143,6 @@ impl Pack {
         all
     }
 
-    /// Those that are pushed on one side; the world, or `nobody`, for the others.
-    #[inline(always)]
-    pub(super) fn pushed<'a>(&self, side: usize, bodies: &'a [Body], nobody: &'a Body) -> [&'a Body; LANES] {
-        let mut all = [nobody; LANES];
-        for (place, &number) in all.iter_mut().zip(&self.pushed[side]) {
-            *place = bodies.get(number as usize).unwrap_or(nobody);
-        }
-        all
-    }
-
     /// All of them; `nothing` in lanes that stand for nobody.
     #[inline(always)]
     pub(super) fn all<'a>(&self, manifolds: &'a Manifolds<'_>, nothing: &'a Manifold) -> [&'a Manifold; LANES] {
@@ -198,17 +191,6 @@ impl Pack {
     }
 }
 
-/// The lanes whose bits are set.
-#[inline(always)]
-pub(super) fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
-    bits &= (1 << ABREAST) - 1;
-    core::iter::from_fn(move || {
-        let lane = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
-        bits &= bits - 1;
-        Some(lane)
-    })
-}
-
 #[inline(always)]
 fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
     Vec3::new(x, y, z)
@@ -245,7 +227,6 @@ pub(super) fn fours<F: Eight, T: Pod>(like: F, all: &[&T; LANES], first: usize) 
 pub(super) struct Motion<F> {
     pub(super) inverse_mass: F,
     pub(super) velocity: Vectors<F>,
-    pub(super) spin: Vectors<F>,
     pub(super) omega: Vectors<F>,
     pub(super) inverse: [Vectors<F>; 3],
 }
@@ -257,30 +238,15 @@ impl<F: Eight> Motion<F> {
     #[inline(always)]
     pub(super) fn of(like: F, bodies: &[&Body; LANES]) -> Self {
         let [inverse_mass, x, y, z] = fours(like, bodies, MOTION);
-        let [l, m, n, p] = fours(like, bodies, MOTION + 4);
+        let [_, _, _, p] = fours(like, bodies, MOTION + 4);
         let [q, r, xx, xy] = fours(like, bodies, MOTION + 8);
         let [xz, yx, yy, yz] = fours(like, bodies, MOTION + 12);
         let [zx, zy, zz, _] = fours(like, bodies, MOTION + 16);
         Self {
             inverse_mass,
             velocity: Vectors([x, y, z]),
-            spin: Vectors([l, m, n]),
             omega: Vectors([p, q, r]),
             inverse: [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])],
-        }
-    }
-
-    /// Writes down how those of which a bit is set move now.
-    #[inline(always)]
-    pub(super) fn tell(&self, bodies: &mut [Body], numbers: &[u32; ABREAST], which: u32) {
-        let ([x, y, z], [l, m, n], [p, q, r]) = (self.velocity.0, self.spin.0, self.omega.0);
-        let Vectors([xx, xy, _]) = self.inverse[0];
-        let fours = [F::rows_of([self.inverse_mass, x, y, z]), F::rows_of([l, m, n, p]), F::rows_of([q, r, xx, xy])];
-        for lane in lanes(which) {
-            let Some(body) = bodies.get_mut(numbers[lane] as usize) else { continue };
-            for (k, rows) in fours.iter().enumerate() {
-                put(body, MOTION + 4 * k, rows[lane]);
-            }
         }
     }
 
@@ -291,25 +257,9 @@ impl<F: Eight> Motion<F> {
         a * x + b * y + c * z
     }
 
-    /// Gives them impulses \[N s\] there.
-    #[inline(always)]
-    pub(super) fn push(&mut self, arm: Vectors<F>, impulse: Vectors<F>) {
-        let change = impulse * self.inverse_mass;
-        let torque = arm.cross(change);
-        self.velocity = self.velocity + change;
-        self.spin = self.spin + torque;
-        self.omega = self.omega + self.turned_by(torque);
-    }
-
     #[inline(always)]
     pub(super) fn at(&self, arm: Vectors<F>) -> Vectors<F> {
         self.velocity + self.omega.cross(arm)
-    }
-
-    #[inline(always)]
-    pub(super) fn yielding(&self, arm: Vectors<F>, direction: Vectors<F>) -> F {
-        let lever = arm.cross(direction);
-        self.inverse_mass * (self.inverse_mass.all(1.0) + lever.dot(self.turned_by(lever)))
     }
 }
 
@@ -409,10 +359,4 @@ pub(super) fn surfaces<F: Eight>(like: F, all: &[&Manifold; LANES]) -> (Vectors<
     let first = offset_of!(Manifold, normal) / 4;
     let ([x, y, z, elasticity], [sticks, slides, _, _]) = (fours(like, all, first), fours(like, all, first + 4));
     (Vectors([x, y, z]), elasticity, [sticks, slides])
-}
-
-/// Writes numbers where a mask holds.
-#[inline(always)]
-pub(super) fn save_where<F: Eight>(mask: F, lanes: F, row: &mut Row) {
-    *row = saved(mask.select(lanes, load(mask, row)));
 }

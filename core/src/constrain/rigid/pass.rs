@@ -4,16 +4,16 @@
 //! is −0 when a sub-step begins ([`Body::gather`](super::body::Body::gather)), so impulses of zero, where others have more points, change no bit.
 
 use super::body::Body;
+use super::moving::Moving;
 use super::order::{Order, is_in_turn, is_scenery};
-use super::pack::{Motion, Pack, lanes};
+use super::pack::Pack;
 use super::solver::PASSES;
 use super::touch::Touch;
-use crate::lanes::{ABREAST, Eight, Kernel, mask_of};
-use bytemuck::Zeroable;
+use crate::lanes::{ABREAST, Eight, Kernel, load, max};
 
 /// All that touch, and how they are gone over.
 pub(super) struct Passes<'a, 'b> {
-    pub(super) bodies: &'a mut [Body],
+    pub(super) bodies: &'a [Body],
     pub(super) order: &'a mut Order<'b>,
     /// How often at the most.
     pub(super) count: u32,
@@ -24,13 +24,10 @@ impl Kernel for Passes<'_, '_> {
     /// Goes over all so many times at the most, and over those again whose bodies have been changed since.
     #[inline(always)]
     fn run<F: Eight>(mut self, like: F) {
-        for body in self.bodies.iter_mut() {
-            body.changed = 0;
-        }
         for pack in self.order.packs.iter_mut() {
-            pack.seen.fill(0);
+            pack.seen.fill(0.0);
         }
-        let mut clock = 0;
+        let mut clock = 0.0;
         for pass in 0..self.count {
             let before = clock;
             if pass == PASSES {
@@ -39,7 +36,7 @@ impl Kernel for Passes<'_, '_> {
             for colour in self.order.colours() {
                 clock = self.over(like, colour, clock);
             }
-            if clock == before {
+            if clock <= before {
                 return;
             }
         }
@@ -49,15 +46,16 @@ impl Kernel for Passes<'_, '_> {
 impl Passes<'_, '_> {
     /// Goes over those of one colour that have something left to do, all at one tick, however many go side by side; returns the last tick.
     #[inline(always)]
-    fn over<F: Eight>(&mut self, like: F, colour: usize, clock: u32) -> u32 {
-        let (range, on_scenery, tick) = (self.order.range(colour), is_scenery(colour), clock + 1);
-        let packs = self.order.packs.get_mut(range).unwrap_or_default();
+    fn over<F: Eight>(&mut self, like: F, colour: usize, clock: f32) -> f32 {
+        let (range, on_scenery, tick) = (self.order.range(colour), is_scenery(colour), clock + 1.0);
+        let Order { packs, moving, .. } = &mut *self.order;
+        let packs = packs.get_mut(range).unwrap_or_default();
         if is_in_turn(colour) {
-            return in_turn(like, self.bodies, packs, clock);
+            return in_turn(like, moving, packs, clock);
         }
         let (mut last, mut waits) = (clock, None::<(usize, u32)>);
         for number in 0..packs.len() {
-            let due = due(self.bodies, &packs[number]);
+            let due = due(like, moving, &packs[number]);
             if due == 0 {
                 continue;
             }
@@ -65,14 +63,14 @@ impl Passes<'_, '_> {
             let Some((other, others)) = waits.replace((number, due)) else { continue };
             match packs.get_disjoint_mut([other, number]) {
                 Ok([one, two]) if ABREAST > 1 && one.most == two.most => {
-                    go_both(like, self.bodies, [(one, others), (two, due)], on_scenery, tick);
+                    go_both(like, moving, [(one, others), (two, due)], on_scenery, tick);
                     waits = None;
                 }
-                _ => go(like, self.bodies, (&mut packs[other], others), on_scenery, tick),
+                _ => go(like, moving, (&mut packs[other], others), on_scenery, tick),
             }
         }
         if let Some((number, due)) = waits {
-            go(like, self.bodies, (&mut packs[number], due), on_scenery, tick);
+            go(like, moving, (&mut packs[number], due), on_scenery, tick);
         }
         last
     }
@@ -84,7 +82,7 @@ impl Passes<'_, '_> {
         for pack in order.packs.iter_mut() {
             for lane in 0..pack.len() {
                 if !(shares(pack.bodies[0][lane]) || shares(pack.bodies[1][lane])) {
-                    pack.seen[lane] = u32::MAX;
+                    pack.seen[lane] = f32::INFINITY;
                 }
             }
         }
@@ -93,26 +91,27 @@ impl Passes<'_, '_> {
 
 /// A bit for each of a pack that has something left to do: of its bodies one has been changed since it was gone over.
 #[inline(always)]
-fn due(bodies: &[Body], pack: &Pack) -> u32 {
-    let changed = |number: u32| bodies.get(number as usize).map_or(0, |body| body.changed);
-    let mut due = 0;
-    for lane in 0..ABREAST {
-        let last = changed(pack.bodies[0][lane]).max(changed(pack.bodies[1][lane]));
-        due |= u32::from(last >= pack.seen[lane]) << lane;
+fn due<F: Eight>(like: F, moving: &[Moving], pack: &Pack) -> u32 {
+    let mut changed = [[0.0; ABREAST]; 2];
+    for (changed, numbers) in changed.iter_mut().zip(&pack.bodies) {
+        for (changed, &number) in changed.iter_mut().zip(numbers) {
+            *changed = moving.get(number as usize).map_or(0.0, Moving::changed);
+        }
     }
-    due & pack.everyone()
+    let last = max(load(like, &changed[0]), load(like, &changed[1]));
+    last.simd_ge(load(like, &pack.seen)).to_bitmask() & pack.everyone()
 }
 
 /// Goes over those that may share bodies, which are called up one by one.
 #[inline(never)]
-fn in_turn<F: Eight>(like: F, bodies: &mut [Body], packs: &mut [Pack], clock: u32) -> u32 {
+fn in_turn<F: Eight>(like: F, moving: &mut [Moving], packs: &mut [Pack], clock: f32) -> f32 {
     let mut last = clock;
     for pack in packs {
         for turn in 0..pack.len() {
-            let due = due(bodies, pack) & 1 << turn;
+            let due = due(like, moving, pack) & 1 << turn;
             if due != 0 {
-                last = clock + 1;
-                go(like, bodies, (pack, due), false, last);
+                last = clock + 1.0;
+                go(like, moving, (pack, due), false, last);
             }
         }
     }
@@ -121,61 +120,32 @@ fn in_turn<F: Eight>(like: F, bodies: &mut [Body], packs: &mut [Pack], clock: u3
 
 /// Goes over the points of those of a pack that are due once, and notes at which tick of the clock that was and whether it has changed the bodies.
 #[inline(always)]
-fn go<F: Eight>(like: F, bodies: &mut [Body], (pack, due): (&mut Pack, u32), on_scenery: bool, clock: u32) {
-    let mut touch = begin(like, bodies, pack, on_scenery);
+fn go<F: Eight>(like: F, moving: &mut [Moving], (pack, due): (&mut Pack, u32), on_scenery: bool, tick: f32) {
+    let Some(mut touch) = Touch::of(like, pack, moving, due, on_scenery) else { return };
     touch.press_evenly(pack);
     for i in pack.numbers() {
         touch.press(pack, i);
     }
-    end(&touch, bodies, (pack, due), clock);
+    touch.end(pack, moving, tick);
 }
 
 /// The same of two packs that have nothing to do with each other, and as many points: one's impulses are computed while the other's wait for a root.
 #[inline(always)]
 fn go_both<F: Eight>(
     like: F,
-    bodies: &mut [Body],
+    moving: &mut [Moving],
     [(one, due), (two, others)]: [(&mut Pack, u32); 2],
     on_scenery: bool,
-    clock: u32,
+    tick: f32,
 ) {
-    let mut touch = begin(like, bodies, one, on_scenery);
-    let mut other = begin(like, bodies, two, on_scenery);
+    let Some(mut touch) = Touch::of(like, one, moving, due, on_scenery) else { return };
+    let Some(mut other) = Touch::of(like, two, moving, others, on_scenery) else { return };
     touch.press_evenly(one);
     other.press_evenly(two);
     for i in one.numbers() {
         touch.press(one, i);
         other.press(two, i);
     }
-    end(&touch, bodies, (one, due), clock);
-    end(&other, bodies, (two, others), clock);
-}
-
-/// Takes the bodies of a pack as they move.
-#[inline(always)]
-fn begin<F: Eight>(like: F, bodies: &[Body], pack: &Pack, on_scenery: bool) -> Touch<F> {
-    let nobody = Body::zeroed();
-    let second = Motion::of(like, &pack.pushed(1, bodies, &nobody));
-    // Nobody asks how the scenery moves.
-    let first = if on_scenery { second } else { Motion::of(like, &pack.pushed(0, bodies, &nobody)) };
-    Touch::of(like, pack, [first, second], on_scenery)
-}
-
-/// Writes down what has been done to those of a pack that are due.
-#[inline(always)]
-fn end<F: Eight>(touch: &Touch<F>, bodies: &mut [Body], (pack, due): (&mut Pack, u32), clock: u32) {
-    touch.save(pack, mask_of(touch.is_changed, due));
-    let changed = touch.is_changed.to_bitmask();
-    for side in usize::from(touch.on_scenery)..2 {
-        let given = pack.gives[side] & due;
-        touch.motions[side].tell(bodies, &pack.bodies[side], given);
-        for lane in lanes(given & changed) {
-            if let Some(body) = bodies.get_mut(pack.bodies[side][lane] as usize) {
-                body.changed = clock;
-            }
-        }
-    }
-    for (lane, seen) in pack.seen.iter_mut().enumerate() {
-        *seen = if due >> lane & 1 != 0 { clock } else { *seen };
-    }
+    touch.end(one, moving, tick);
+    other.end(two, moving, tick);
 }

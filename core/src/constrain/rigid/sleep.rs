@@ -134,6 +134,9 @@ fn call(all: &mut [Body], number: usize) {
 
 /// Wakes all who sleep with one that has been called.
 pub(super) fn wake_called(all: &mut [Body]) {
+    if all.iter().all(|body| body.calls == 0) {
+        return;
+    }
     for number in 1..all.len() {
         if all[number].sleeps() && all[all[number].island as usize].calls != 0 {
             all[number].wake();
@@ -219,9 +222,7 @@ pub(super) fn look_out(kept: &mut Kept<'_>, span: Span) {
             }
         }
     }
-    free(all);
-    wake_around(all, &kept.pairs[..kept.lists.pairs as usize]);
-    wake_called(all);
+    stir(all, &kept.pairs[..kept.lists.pairs as usize]);
 }
 
 /// Says that those wake who are so many contacts or fewer from one that is struck.
@@ -283,9 +284,16 @@ pub(super) fn feel(all: &mut [Body], pairs: &[Manifold], touching: &[u32], span:
             all[pair.bodies[side] as usize].calls |= FREED;
         }
     }
-    free(all);
-    wake_around(all, pairs);
-    wake_called(all);
+    stir(all, pairs);
+}
+
+/// Wakes those who are to be freed, who are struck, and who sleep with those that have been called.
+fn stir(all: &mut [Body], pairs: &[Manifold]) {
+    if all.iter().any(|body| body.calls | body.rings != 0) {
+        free(all);
+        wake_around(all, pairs);
+        wake_called(all);
+    }
 }
 
 /// Wakes those who are to be freed: alone, and for as long as it takes to see whether they stay where they are.

@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::manifold::{Manifold, middle};
+use super::moving::{self, Moving};
 use super::order::{Manifolds, Order};
 use super::pass::Passes;
 use super::stand::{Begin, HoldOn, Stand, Tell};
@@ -57,8 +58,10 @@ pub(super) fn meeting(bodies: &[Body], manifold: &Manifold, h: f32) -> Option<f3
 /// Keeps all from passing into each other within the sub-step, by velocities, before they go: with what held them in the last one to begin with.
 pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: &mut Order<'_>, span: Span) {
     run_abreast(Begin { bodies, manifolds, order, span });
-    run_abreast(HoldOn { bodies, order });
+    moving::take(order.moving, bodies);
+    run_abreast(HoldOn { order });
     go_over(bodies, order, PASSES);
+    moving::tell(order.moving, bodies);
     for pack in order.packs.iter() {
         let pressed = pack.pressed();
         for lane in (0..pack.len()).filter(|lane| pressed >> lane & 1 != 0) {
@@ -75,12 +78,15 @@ pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: 
 pub(super) fn part(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, order: &mut Order<'_>, span: Span) {
     bodies.iter_mut().for_each(|body| body.bounces = 0);
     let bounces = run_abreast(Stand { bodies, order, span });
+    moving::take(order.moving, bodies);
     go_over(bodies, order, if bounces { BLOWS } else { PASSES });
+    moving::tell(order.moving, bodies);
     run_abreast(Tell { manifolds, order });
 }
 
 /// Goes over all so many times at the most.
 #[inline(never)]
-fn go_over(bodies: &mut [Body], order: &mut Order<'_>, count: u32) {
+fn go_over(bodies: &[Body], order: &mut Order<'_>, count: u32) {
+    order.moving.iter_mut().for_each(Moving::begin);
     run_abreast(Passes { bodies, order, count });
 }

@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::manifold::Manifold;
+use super::moving::{Moves, Moving};
 use super::order::{Manifolds, Order, is_in_turn, is_scenery};
 use super::pack::{Kept, Motion, Pack, Places, Pose, surfaces};
 use super::solver::{AGAIN, HOLDS, RECOVERY, SETTLED, Span};
@@ -35,7 +36,6 @@ impl Kernel for Begin<'_, '_, '_> {
 
 /// Gives all again most of what held them in the last sub-step.
 pub(super) struct HoldOn<'a, 'b> {
-    pub(super) bodies: &'a mut [Body],
     pub(super) order: &'a mut Order<'b>,
 }
 
@@ -43,15 +43,15 @@ impl Kernel for HoldOn<'_, '_> {
     type Output = ();
     #[inline(always)]
     fn run<F: Eight>(self, like: F) {
-        let nobody = Body::zeroed();
         for colour in self.order.colours() {
             let range = self.order.range(colour);
-            for pack in self.order.packs.get_mut(range).unwrap_or_default() {
+            let Order { packs, moving, .. } = &mut *self.order;
+            for pack in packs.get_mut(range).unwrap_or_default() {
                 // Those that may share a body are called up one by one.
                 let turns = if is_in_turn(colour) { pack.len() } else { 1 };
                 for turn in 0..turns {
                     let called = if turns > 1 { 1 << turn } else { u32::MAX };
-                    hold_on(like, (self.bodies, &nobody), (pack, called, is_scenery(colour)));
+                    hold_on(like, moving, (pack, called, is_scenery(colour)));
                 }
             }
         }
@@ -107,26 +107,23 @@ impl Kernel for Tell<'_, '_, '_> {
 
 /// Gives those of a pack that are called up what held them.
 #[inline(always)]
-fn hold_on<F: Eight>(like: F, (bodies, nobody): (&mut [Body], &Body), (pack, called, on_scenery): (&Pack, u32, bool)) {
-    let given = [pack.gives[0] & called, pack.gives[1] & called];
-    let mut motions = [
-        Motion::of(like, &pack.side(0, bodies, given[0], nobody)),
-        Motion::of(like, &pack.side(1, bodies, given[1], nobody)),
-    ];
+fn hold_on<F: Eight>(like: F, moving: &mut [Moving], (pack, called, on_scenery): (&Pack, u32, bool)) {
+    let Some(mut one) = Moves::of(like, moving, &pack.pushed[0]) else { return };
+    let Some(mut other) = Moves::of(like, moving, &pack.pushed[1]) else { return };
     let normal = Vectors::load(like, &pack.normal);
     for i in pack.numbers() {
         let (spots, is_there) = (&pack.spots[i], pack.is_there(like, i));
         let held = Vectors::load(like, &pack.places[i].aside);
         let impulse = (normal * load(like, &spots.pressed) + held).masked(is_there);
         if !on_scenery {
-            motions[0].push(Vectors::load(like, &spots.arms[0]), -impulse);
+            one.push(&pack.inverse[0], Vectors::load(like, &spots.arms[0]), -impulse);
         }
-        motions[1].push(Vectors::load(like, &spots.arms[1]), impulse);
+        other.push(&pack.inverse[1], Vectors::load(like, &spots.arms[1]), impulse);
     }
     if !on_scenery {
-        motions[0].tell(bodies, &pack.bodies[0], given[0]);
+        one.tell(moving, &pack.bodies[0], pack.gives[0] & called);
     }
-    motions[1].tell(bodies, &pack.bodies[1], given[1]);
+    other.tell(moving, &pack.bodies[1], pack.gives[1] & called);
 }
 
 /// Eight times two bodies.
@@ -190,6 +187,7 @@ impl<F: Eight> Pair<F> {
         (pack.within, pack.normal) = (within.saved(), normal.saved());
         pack.along = [along[0].saved(), along[1].saved()];
         pack.friction = [saved(sticks), saved(slides)];
+        pack.inverse = [a.motion.inverse(), b.motion.inverse()];
         // What forces make of the speed of either in a sub-step.
         let driven = max(max(like.all(0.0), a.gained()), b.gained());
         let holds = like.all(HOLDS) * slides;
@@ -288,6 +286,7 @@ impl<F: Eight> Pair<F> {
         let normal = self.poses[0].turned(Vectors::load(like, &pack.within));
         let along = [Vectors::load(like, &pack.along[0]), Vectors::load(like, &pack.along[1])];
         pack.normal = normal.saved();
+        pack.inverse = [self.poses[0].motion.inverse(), self.poses[1].motion.inverse()];
         let (zero, h, mut bounces) = (like.all(0.0), like.all(span.h), 0);
         for i in pack.numbers() {
             let is_there = pack.is_there(like, i);

@@ -1,8 +1,9 @@
 //! Eight times two bodies that touch, while impulses between them are sought.
 
 use super::manifold::POINTS;
-use super::pack::{Motion, Pack, Spots, save_where};
-use crate::lanes::{Eight, Vectors, load, max, min, negated, not};
+use super::moving::{Moves, Moving};
+use super::pack::{Pack, Spots};
+use crate::lanes::{Eight, Vectors, load, mask_of, max, min, negated, not, saved};
 
 /// One point of each two.
 #[derive(Clone, Copy)]
@@ -44,65 +45,68 @@ impl<F: Eight> Spot<F> {
 /// Those of a pack, and how their bodies move.
 pub(super) struct Touch<F> {
     /// How the bodies move; the first says nothing where that is the world for all.
-    pub(super) motions: [Motion<F>; 2],
-    pub(super) on_scenery: bool,
+    moves: [Moves<F>; 2],
+    on_scenery: bool,
+    /// Those that are gone over.
+    due: F,
     normal: Vectors<F>,
     along: [Vectors<F>; 2],
     friction: [F; 2],
-    /// The impulses at all points.
-    pressed: [F; POINTS],
-    held: [[F; 2]; POINTS],
     /// Where some change was large enough to go over their neighbours again.
-    pub(super) is_changed: F,
+    is_changed: F,
 }
 
 impl<F: Eight> Touch<F> {
+    /// Takes the bodies of those of a pack that are due, as they move; none: there are no such bodies.
     #[inline(always)]
-    pub(super) fn of(like: F, pack: &Pack, motions: [Motion<F>; 2], on_scenery: bool) -> Self {
-        let zero = like.all(0.0);
-        Self {
-            motions,
+    pub(super) fn of(like: F, pack: &Pack, moving: &[Moving], due: u32, on_scenery: bool) -> Option<Self> {
+        let second = Moves::of(like, moving, &pack.pushed[1])?;
+        Some(Self {
+            // Nobody asks how the scenery moves.
+            moves: [if on_scenery { second } else { Moves::of(like, moving, &pack.pushed[0])? }, second],
             on_scenery,
+            due: mask_of(like, due),
             normal: Vectors::load(like, &pack.normal),
             along: [Vectors::load(like, &pack.along[0]), Vectors::load(like, &pack.along[1])],
             friction: [load(like, &pack.friction[0]), load(like, &pack.friction[1])],
-            pressed: [zero; POINTS],
-            held: [[zero; 2]; POINTS],
-            is_changed: zero,
-        }
+            is_changed: like.all(0.0),
+        })
     }
 
-    /// Writes down the impulses at all points where a mask holds.
+    /// Writes down what has been done to those of a pack that are due, at a tick of the clock.
     #[inline(always)]
-    pub(super) fn save(&self, pack: &mut Pack, which: F) {
-        for i in pack.numbers() {
-            let spots = &mut pack.spots[i];
-            save_where(which, self.pressed[i], &mut spots.pressed);
-            save_where(which, self.held[i][0], &mut spots.held[0]);
-            save_where(which, self.held[i][1], &mut spots.held[1]);
+    pub(super) fn end(self, pack: &mut Pack, moving: &mut [Moving], tick: f32) {
+        let (due, tick) = (self.due.to_bitmask(), self.due.all(tick));
+        let [mut a, mut b] = self.moves;
+        if !self.on_scenery {
+            a.note(self.is_changed, tick);
+            a.tell(moving, &pack.bodies[0], pack.gives[0] & due);
         }
+        b.note(self.is_changed, tick);
+        b.tell(moving, &pack.bodies[1], pack.gives[1] & due);
+        pack.seen = saved(self.due.select(tick, load(tick, &pack.seen)));
     }
 
     /// How the second moves there as seen from the first \[m/s\].
     #[inline(always)]
     fn slip(&self, [one, other]: [Vectors<F>; 2]) -> Vectors<F> {
-        let [a, b] = &self.motions;
+        let [a, b] = &self.moves;
         if self.on_scenery { b.at(other) } else { b.at(other) - a.at(one) }
     }
 
     #[inline(always)]
-    fn push(&mut self, [one, other]: [Vectors<F>; 2], impulse: Vectors<F>) {
-        let [a, b] = &mut self.motions;
+    fn push(&mut self, pack: &Pack, [one, other]: [Vectors<F>; 2], impulse: Vectors<F>) {
+        let [a, b] = &mut self.moves;
         if !self.on_scenery {
-            a.push(one, -impulse);
+            a.push(&pack.inverse[0], one, -impulse);
         }
-        b.push(other, impulse);
+        b.push(&pack.inverse[1], other, impulse);
     }
 
     /// Changes the impulses of all points that press, or should, by the same: what presses evenly, as a box that lies flat, is done with at
     /// once, whatever the order of points.
     #[inline(always)]
-    pub(super) fn press_evenly(&mut self, pack: &Pack) {
+    pub(super) fn press_evenly(&mut self, pack: &mut Pack) {
         let like = self.friction[0];
         let (zero, one) = (like.all(0.0), like.all(1.0));
         let (mut lack, mut least, mut number, mut little) = (zero, like.all(f32::INFINITY), zero, zero);
@@ -113,7 +117,6 @@ impl<F: Eight> Touch<F> {
             let missing = spot.wanted - self.slip(spot.arms).dot(self.normal);
             let counts = spot.is_there & (missing.simd_gt(zero) | spot.pressed.simd_gt(zero));
             all[i] = counts;
-            (self.pressed[i], self.held[i]) = (spot.pressed, spot.held);
             lack = lack + (missing & counts);
             least = counts.select(min(least, spot.pressed), least);
             number = number + (one & counts);
@@ -121,21 +124,23 @@ impl<F: Eight> Touch<F> {
             levers[0] = levers[0] + spot.arms[0].masked(counts);
             levers[1] = levers[1] + spot.arms[1].masked(counts);
         }
-        let counts = number.simd_gt(one);
+        let counts = number.simd_gt(one) & self.due;
         if !counts.any() {
             return;
         }
         let share = one / number;
         let mean = [levers[0] * share, levers[1] * share];
-        let [a, b] = &self.motions;
-        let other = b.yielding(mean[1], self.normal);
-        let yielding = if self.on_scenery { other } else { a.yielding(mean[0], self.normal) + other };
+        let [a, b] = &self.moves;
+        let other = b.yielding(&pack.inverse[1], mean[1], self.normal);
+        let yielding = if self.on_scenery { other } else { a.yielding(&pack.inverse[0], mean[0], self.normal) + other };
         let each = max(lack / (number * number * yielding), negated(least));
         let counts = counts & each.abs().simd_lt(like.all(f32::INFINITY)) & not_zero(each);
         for i in pack.numbers() {
-            self.pressed[i] = self.pressed[i] + (each & counts & all[i]);
+            let pressed = &mut pack.spots[i].pressed;
+            *pressed = saved(load(like, pressed) + (each & counts & all[i]));
         }
-        self.push([mean[0].masked(counts), mean[1].masked(counts)], (self.normal * (each * number)).masked(counts));
+        let impulse = (self.normal * (each * number)).masked(counts);
+        self.push(pack, [mean[0].masked(counts), mean[1].masked(counts)], impulse);
         // The lack without its sign: what is not a number counts.
         let is_small = (lack * lack).simd_le(little * little);
         self.is_changed = self.is_changed | (counts & not(is_small));
@@ -144,11 +149,11 @@ impl<F: Eight> Touch<F> {
     /// Brings the speed at which they part at a point to what is wanted, as far as pushing alone does it; then takes from their slip, and from
     /// what they lag behind the scenery and where they were held, what Coulomb's friction can.
     #[inline(always)]
-    pub(super) fn press(&mut self, pack: &Pack, i: usize) {
+    pub(super) fn press(&mut self, pack: &mut Pack, i: usize) {
         let like = self.friction[0];
         let (zero, one) = (like.all(0.0), like.all(1.0));
-        let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, .. } = Spot::of(like, pack, i);
-        let (pressed, held, slip) = (self.pressed[i], self.held[i], self.slip(arms));
+        let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, pressed, held } = Spot::of(like, pack, i);
+        let slip = self.slip(arms);
         let new = max(pressed + (wanted - slip.dot(self.normal)) * mass, zero);
         let impulse = new - pressed;
         let u = slip.dot(self.along[0]) + answer[0] * impulse + lag[0];
@@ -164,10 +169,11 @@ impl<F: Eight> Touch<F> {
         let change = self.normal * impulse + self.along[0] * (x - held[0]) + self.along[1] * (y - held[1]);
         // What is no number is left out.
         let far = change.dot(change);
-        let counts = is_there & far.simd_lt(like.all(f32::INFINITY)) & not_zero(far);
-        self.pressed[i] = counts.select(new, pressed);
-        self.held[i] = [counts.select(x, held[0]), counts.select(y, held[1])];
-        self.push(arms, change.masked(counts));
+        let counts = is_there & self.due & far.simd_lt(like.all(f32::INFINITY)) & not_zero(far);
+        let spots = &mut pack.spots[i];
+        spots.pressed = saved(counts.select(new, pressed));
+        spots.held = [saved(counts.select(x, held[0])), saved(counts.select(y, held[1]))];
+        self.push(pack, arms, change.masked(counts));
         let little = little * mass;
         self.is_changed = self.is_changed | (counts & far.simd_gt(little * little));
     }
