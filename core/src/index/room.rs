@@ -123,8 +123,19 @@ impl Room {
         self.nearest(self.wrap(to) - self.wrap(from))
     }
 
+    /// How far the image of `to` that is nearest to `from` lies from it: by whole sides.
+    #[must_use]
+    pub(crate) fn image(&self, from: Vec3, to: Vec3) -> Vec3 {
+        let side = |from: f32, to: f32, side: f32| {
+            let turns = if side == 0.0 { 0.0 } else { floor((from - to) / side + 0.5) };
+            if turns.is_finite() { turns * side } else { 0.0 }
+        };
+        let sides = self.sides;
+        Vec3::new(side(from.x, to.x, sides.x), side(from.y, to.y, sides.y), side(from.z, to.z, sides.z))
+    }
+
     /// More than what rounding may make of a distance \[m\] in it: points lie where they are, or beside a corner, or in an image.
-    pub(super) fn slack(&self) -> f32 {
+    pub(crate) fn slack(&self) -> f32 {
         (largest(self.low) + largest(self.sides)) * (16.0 * f32::EPSILON)
     }
 
