@@ -383,6 +383,10 @@ fn files_have_rooms() {
             r#"{"room": {"sides": [9, 9, 9]}, "particles": [{"position": [0, 0, 0]}, {"position": [0.5, 0, 0]}], "constraints": [{"cluster": {"particles": [0, 1]}}]}"#,
             "clusters",
         ),
+        (
+            r#"{"room": {"sides": [9, 1, 9]}, "particles": [{"position": [0, 0, 0]}, {"position": [0.5, 0, 0]}], "springs": [{"ends": [0, 1], "rest_length": 2, "ks": 1}]}"#,
+            "springs[0]",
+        ),
         (r#"{"room": {"sides": [1, 1, 1]}, "forces": [{"coulomb": {"constant": 1}}]}"#, "forces[0]"),
     ] {
         let error = load(text).expect_err(text);

@@ -23,7 +23,8 @@ use glam::Vec3;
 /// [`Effort`](crate::Effort).
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing. A link whose ends are in one place
-/// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself.
+/// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
+/// [periodic room](crate::index::Periodic) links act along the shortest way through the sides.
 ///
 /// ```
 /// use pointmass::constrain::Rope;

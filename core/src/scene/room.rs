@@ -58,23 +58,25 @@ impl SceneFile {
 
     /// Checks that what keeps particles at distances, and balls as wide as so much \[m\], find one way the shortest.
     pub(super) fn check_lengths(&self, widest: f32) -> Checked {
-        let half = self.room.map_or(f32::INFINITY, |room| room.room().half());
+        let Some(half) = self.room.map(|room| room.room().half()) else { return Ok(()) };
         if self.contacts.is_some() && !(2.0 * widest < half) {
             let message =
                 format!("are too short: balls are {} m wide, and have to be less than half of each side", 2.0 * widest);
             return Err(SceneError::value("room.sides", message));
         }
-        for (i, constraint) in self.constraints.iter().enumerate() {
-            let length = match constraint {
-                ConstraintKind::Distance(Distance { length, .. }) => *length,
-                ConstraintKind::Rope(Rope { lengths, .. }) => lengths.iter().copied().fold(0.0, max),
-                _ => continue,
-            };
+        let bound = |constraint: &ConstraintKind| match constraint {
+            ConstraintKind::Distance(Distance { length, .. }) => *length,
+            ConstraintKind::Rope(Rope { lengths, .. }) => lengths.iter().copied().fold(0.0, max),
+            _ => 0.0,
+        };
+        let constraints = self.constraints.iter().map(bound).enumerate().map(|(i, length)| ("constraints", i, length));
+        let springs = self.springs.iter().enumerate().map(|(i, spring)| ("springs", i, spring.rest_length));
+        for (name, i, length) in constraints.chain(springs) {
             if !(length < half) {
                 let message = format!(
                     "keeps particles {length} m apart: in the scene's room that has to be less than half of each side"
                 );
-                return Err(SceneError::value(format!("constraints[{i}]"), message));
+                return Err(SceneError::value(format!("{name}[{i}]"), message));
             }
         }
         Ok(())
