@@ -165,9 +165,7 @@ impl EventDriven<'_> {
         };
         match near {
             Some(index) => {
-                // In a room an index looks a rounding farther, as ways are others there.
-                let farther = reach + room.map_or(0.0, Room::slack);
-                index.within(middle, farther, &mut |others| {
+                index.within(middle, reach + room.map_or(0.0, Room::slack), &mut |others| {
                     others.iter().for_each(|&other| consider(other as usize));
                 });
             }
@@ -199,6 +197,12 @@ impl EventDriven<'_> {
     fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<(f32, Vec3)>, bool) {
         let reach = self.radius[row] + self.radius[other];
         first_touch_of_images(self.room, &path.seen_from(its), reach, self.slack(row, other))
+    }
+
+    /// By how much the image of the second is off that the first touches, or if none is that which is nearest.
+    fn image(&self, touch: Option<(f32, Vec3)>, [first, second]: &[Path; 2]) -> Vec3 {
+        let nearest = || self.room.map_or(Vec3::ZERO, |room| room.image(first.x0, second.x0));
+        touch.map_or_else(nearest, |(_, image)| image)
     }
 
     /// The error that rounding may make in the distance of two particles.
@@ -245,8 +249,7 @@ impl EventDriven<'_> {
         }
         let waits = rows.map(|row| self.events.event(row).waits != 0);
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
-        let nearest = || self.room.map_or(Vec3::ZERO, |room| room.image(whole[0].x0, whole[1].x0));
-        let offset = paths[0].x0 - paths[1].x0 - at.map_or_else(nearest, |(_, image)| image);
+        let offset = paths[0].x0 - paths[1].x0 - self.image(at, &whole);
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
         let overlap = self.radius[row] + self.radius[other] - length(offset);
