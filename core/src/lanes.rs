@@ -6,6 +6,7 @@
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod avx2;
 mod eight;
+mod hits;
 #[cfg(any(test, target_os = "none"))]
 mod one;
 mod row;
@@ -15,6 +16,7 @@ mod vectors;
 
 pub(crate) use eight::{Eight, Kernel, max, min, negated, not, run, widest};
 use glam::Vec3;
+pub(crate) use hits::{COUNTS, HITS};
 #[cfg(any(test, target_os = "none"))]
 pub(crate) use one::One;
 pub(crate) use row::{Row, load, mask_of, saved};

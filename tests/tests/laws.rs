@@ -47,6 +47,7 @@ mod springs;
 mod storage;
 mod strain_limits;
 mod strands;
+mod through_sides;
 mod tunnelling;
 #[path = "walls/main.rs"]
 mod walls;

@@ -359,15 +359,35 @@ fn files_have_rooms() {
         (r#"{"room": {"sides": [0, 0, 0]}}"#, "room.sides"),
         (r#"{"room": {"sides": [1, -2, 0]}}"#, "room.sides"),
         (r#"{"room": {"sides": [1, 1, 1]}, "forces": [{"mutual_gravity": {"constant": 1}}]}"#, "forces[0]"),
-        (r#"{"room": {"sides": [1, 1, 1]}, "contacts": {"impulse": {}}}"#, "contacts"),
+        (
+            r#"{"room": {"sides": [1, 1, 1]}, "particles": [{"position": [0, 0, 0], "radius": 0.3}], "contacts": {"impulse": {}}}"#,
+            "0.6",
+        ),
+        (
+            r#"{"room": {"sides": [1, 1, 1]}, "particles": [{"position": [0, 0, 0], "radius": 0.3}], "contacts": {"position": {}}}"#,
+            "0.6",
+        ),
         (
             r#"{"room": {"sides": [9, 1, 9]}, "forces": [{"lennard_jones": {"epsilon": 1, "sigma": 0.2, "cutoff": 0.5}}]}"#,
             "0.5",
         ),
         (
-            r#"{"room": {"sides": [1, 1, 1]}, "constraints": [{"distance": {"ends": [0, 0], "length": 1}}]}"#,
-            "constraints",
+            r#"{"room": {"sides": [1, 1, 1]}, "particles": [{"position": [0, 0, 0]}, {"position": [0.5, 0, 0]}], "constraints": [{"distance": {"ends": [0, 1], "length": 1}}]}"#,
+            "constraints[0]",
         ),
+        (
+            r#"{"room": {"sides": [1, 1, 1]}, "particles": [{"position": [0, 0, 0]}, {"position": [0.5, 0, 0]}], "constraints": [{"rope": {"particles": [0, 1], "lengths": [0.6]}}]}"#,
+            "constraints[0]",
+        ),
+        (
+            r#"{"room": {"sides": [9, 9, 9]}, "particles": [{"position": [0, 0, 0]}, {"position": [0.5, 0, 0]}], "constraints": [{"cluster": {"particles": [0, 1]}}]}"#,
+            "clusters",
+        ),
+        (
+            r#"{"room": {"sides": [9, 1, 9]}, "particles": [{"position": [0, 0, 0]}, {"position": [0.5, 0, 0]}], "springs": [{"ends": [0, 1], "rest_length": 2, "ks": 1}]}"#,
+            "springs[0]",
+        ),
+        (r#"{"room": {"sides": [1, 1, 1]}, "forces": [{"coulomb": {"constant": 1}}]}"#, "forces[0]"),
     ] {
         let error = load(text).expect_err(text);
         assert!(error.contains(part), "{error}");

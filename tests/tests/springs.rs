@@ -336,6 +336,77 @@ fn a_spring_breaks_once_and_for_ever() {
     assert!(!system.state(&scene).springs.is_broken(0) && hash != system.hash() && time > Time::ZERO);
 }
 
+/// Who broke is kept with the state: a copy of a system made while springs break goes on as the system does, to the bit, whoever has died
+/// meanwhile and whichever row became whose; so does one that goes on with the same springs in other scenes.
+#[test]
+fn springs_that_broke_stay_broken_in_a_copy() {
+    let start: Vec<_> = (0..40)
+        .map(|i| Particle {
+            velocity: Vec3::X * (0.4 * (i * i % 17) as f32),
+            lifetime: if i % 7 == 3 { 0.9 } else { 0.0 },
+            ..at(i as f32)
+        })
+        .collect();
+    let springs: Vec<_> = (0..39)
+        .map(|i| Spring { breaks_at: (i % 2 == 0).then_some(1.2), ..Spring::new([i, i + 1], 1.0, 30.0) })
+        .collect();
+    for method in Method::ALL {
+        for fps in [30, 120] {
+            let scene = Scene { start: &start, springs: &springs, integrator: method.integrator(), ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            let mut copies = vec![];
+            for frame in 1..=2 * fps {
+                if frame % (fps / 5) == 0 {
+                    copies.push((frame, system.clone()));
+                }
+                system.step_to(&scene, Time::frame(u64::from(frame), fps));
+            }
+            let broken = |system: &System<Heap>| {
+                let table = system.state(&scene).springs;
+                (0..39).filter(|&number| table.is_broken(number)).collect::<Vec<_>>()
+            };
+            let last = broken(&system);
+            assert!(last.len() > 3 && last.len() as u64 == system.totals().broken, "{method}: {last:?}");
+            let mut some_were_broken = 0;
+            for (next, mut copy) in copies {
+                let before = broken(&copy);
+                assert_eq!(before.len() as u64, copy.totals().broken);
+                some_were_broken += usize::from(!before.is_empty() && before.len() < last.len());
+                // Seen by a scene in which nothing can break them, they are as broken.
+                let calm = Scene { forces: &(), ..scene };
+                assert_eq!(copy.state(&calm).springs.held().count(), copy.state(&scene).springs.held().count());
+                for frame in next..=2 * fps {
+                    copy.step_to(&scene, Time::frame(u64::from(frame), fps));
+                    let now = broken(&copy);
+                    assert!(before.iter().all(|number| now.contains(number)), "{method}: mended");
+                }
+                assert_eq!((copy.hash(), broken(&copy)), (system.hash(), last.clone()), "{method}, {next} of {fps}");
+            }
+            assert!(some_were_broken > 0, "{method}");
+        }
+    }
+}
+
+/// Two systems that differ in who broke alone differ in their fingerprints.
+#[test]
+fn fingerprints_tell_which_springs_broke() {
+    let start = [at(0.0), at(2.0), at(4.0), at(6.0)];
+    let hashes = [[true, false, false], [false, true, false], [false, false, true], [false; 3]].map(|weak| {
+        // They pull with no force.
+        let spring = |i: u32| Spring {
+            breaks_at: Some(if weak[i as usize] { 1.5 } else { 9.0 }),
+            ..Spring::new([i, i + 1], 1.0, 0.0)
+        };
+        let springs = [0, 1, 2].map(spring);
+        let scene = Scene { start: &start, springs: &springs, ..Scene::EMPTY };
+        let mut system = started(&scene, 4, 0);
+        let broken = system.step(&scene, Time::SECOND).broken;
+        assert_eq!(broken, weak.iter().map(|&weak| u64::from(weak)).sum::<u64>());
+        system.hash()
+    });
+    assert!((0..4).all(|i| (0..i).all(|j| hashes[i] != hashes[j])));
+}
+
 #[test]
 fn a_sheet_has_the_springs_it_should() {
     let thread = Some(SpringParams { ks: 10.0, kd: 0.1 });

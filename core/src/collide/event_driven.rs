@@ -1,10 +1,11 @@
 //! The step of particles that meet, worked through in the order of time.
 
-use super::meeting::{Answer, Touch, first_touch};
+use super::images::first_touch_of_images;
+use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
 use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
 use super::sweep::Sweep;
-use crate::index::SpatialIndex;
+use crate::index::{Room, SpatialIndex, between as shortest};
 use crate::material::of_two;
 use crate::math::{high, largest, length, max};
 use crate::observe::{Impact, Observer};
@@ -34,6 +35,8 @@ pub(super) struct EventDriven<'a> {
     pub(super) ends: [&'a mut [Vec3]; 2],
     /// Positions at the step's beginning, which the index sorts.
     pub(super) home: &'a [Vec3],
+    /// The room through whose sides they meet, if there is one.
+    pub(super) room: Option<&'a Room>,
     pub(super) pending_death: &'a mut [PendingDeath],
     pub(super) radius: &'a [f32],
     pub(super) mass: &'a [f32],
@@ -141,10 +144,10 @@ impl EventDriven<'_> {
         }
         let (middle, reach) = (hull.center(), hull.radius() + self.widest + self.max_travel);
         let (mut curved, mut found) = (false, 0_u32);
-        let home = self.home;
+        let (home, room) = (self.home, self.room);
         let mut consider = |other: usize| {
             // As an index defines who is near, whether there is one or not.
-            let offset = home[other] - middle;
+            let offset = shortest(room, middle, home[other]);
             found += u32::from(offset.dot(offset) <= reach * reach);
             // A wall comes first of several at one instant, then the lowest row: whatever order they are looked at in.
             // Nobody is met before the path begins.
@@ -162,7 +165,7 @@ impl EventDriven<'_> {
         };
         match near {
             Some(index) => {
-                index.within(middle, reach, &mut |others| {
+                index.within(middle, reach + room.map_or(0.0, Room::slack), &mut |others| {
                     others.iter().for_each(|&other| consider(other as usize));
                 });
             }
@@ -187,12 +190,19 @@ impl EventDriven<'_> {
         let from = self.instant(own.since.max(its.since));
         let (touch, curved) = self.touch(row, other, [&from_on(path, from), &from_on(&self.path(other), from)]);
         let end = self.end;
-        (touch.map_or(NEVER, |at| self.units(between([from, end], at))), curved)
+        (touch.map_or(NEVER, |(at, _)| self.units(between([from, end], at))), curved)
     }
 
-    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<f32>, bool) {
+    /// When on their paths two touch, and by how much that image of the other is off which is touched.
+    fn touch(&self, row: usize, other: usize, [path, its]: [&Path; 2]) -> (Option<(f32, Vec3)>, bool) {
         let reach = self.radius[row] + self.radius[other];
-        first_touch(&path.seen_from(its), reach, self.slack(row, other))
+        first_touch_of_images(self.room, &path.seen_from(its), reach, self.slack(row, other))
+    }
+
+    /// By how much the image of the second is off that the first touches, or if none is that which is nearest.
+    fn image(&self, touch: Option<(f32, Vec3)>, [first, second]: &[Path; 2]) -> Vec3 {
+        let nearest = || self.room.map_or(Vec3::ZERO, |room| room.image(first.x0, second.x0));
+        touch.map_or_else(nearest, |(_, image)| image)
     }
 
     /// The error that rounding may make in the distance of two particles.
@@ -232,14 +242,14 @@ impl EventDriven<'_> {
         let whole = rows.map(|row| from_on(&self.path(row), from));
         let at = self.touch(row, other, [&whole[0], &whole[1]]).0;
         let mut paths = whole.map(|path| from_on(&path, now));
-        if let Some(at) = at {
+        if let Some((at, _)) = at {
             for (path, whole) in paths.iter_mut().zip(&whole) {
                 path.x0 = whole.at(at);
             }
         }
         let waits = rows.map(|row| self.events.event(row).waits != 0);
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
-        let offset = paths[0].x0 - paths[1].x0;
+        let offset = paths[0].x0 - paths[1].x0 - self.image(at, &whole);
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
         let overlap = self.radius[row] + self.radius[other] - length(offset);

@@ -44,6 +44,7 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
         ends: [&mut position[..len], &mut velocity[..len]],
         starts: [&mut start_x[..len], &mut start_v[..len]],
         home: &[],
+        room: scene.index.room(),
         pending_death: &mut pending_death[..len],
         radius: &radius[..len],
         mass: &mass,
@@ -61,6 +62,6 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
     home.copy_from_slice(all.starts[0]);
     let home = &*home;
     all.home = home;
-    let reach = 2.0 * all.widest + all.max_travel;
-    scene.index.with_index(index_memory, home, reach, None, &mut |index| all.run(index));
+    let (reach, room) = (2.0 * all.widest + all.max_travel, all.room);
+    scene.index.with_index(index_memory, home, reach, room, &mut |index| all.run(index));
 }

@@ -1,6 +1,7 @@
 //! Particles that go where a script says, and take along whatever is bound to them.
 
 use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::index::image_beside;
 use crate::motion::Script;
 use glam::Vec3;
 
@@ -9,6 +10,8 @@ use glam::Vec3;
 ///
 /// Through a sub-step they go straight to where they have to be at its end; springs, rods and contacts feel them on that way. Whoever
 /// is `fixed` is moved by nothing else; others give way to constraints that come later in the list.
+///
+/// In a [periodic room](crate::index::Periodic) the places of all are those beside the first of them.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -30,10 +33,12 @@ impl<P: AsRef<[u32]>, M: Script> Attach<P, M> {
     /// Takes the places of all in the frame as it is at the sub-step's beginning, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
         let Some((_, places)) = kept.split_first_mut() else { return };
-        let frame = self.motion.frame(bodies.substep.during[0]);
+        let (frame, mut first) = (self.motion.frame(bodies.substep.during[0]), None);
         for (&number, place) in self.particles.as_ref().iter().zip(places.chunks_exact_mut(3)) {
             if let Some(row) = bodies.row_of_start(number) {
-                let local = frame.local(bodies.position[row]).to_array();
+                let first = *first.get_or_insert(bodies.position[row]);
+                let beside = image_beside(bodies.near.room(), first, bodies.position[row]);
+                let local = frame.local(beside).to_array();
                 place.copy_from_slice(&local.map(f32::to_bits));
             }
         }
@@ -49,6 +54,11 @@ impl<P: AsRef<[u32]>, M: Script> Attach<P, M> {
             }
         }
     }
+}
+
+/// A place, or that image of it in a periodic room which is nearest to where the particle in a row is.
+fn beside(bodies: &Bodies<'_>, row: usize, place: Vec3) -> Vec3 {
+    image_beside(bodies.near.room(), bodies.position[row], place)
 }
 
 impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
@@ -68,7 +78,7 @@ impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
         let (end, h) = (self.motion.frame(bodies.substep.during[1]), bodies.substep.seconds());
         if h > 0.0 {
             self.each(bodies, share.kept.fixed, |bodies, row, place| {
-                bodies.velocity[row] = (end.world(place) - bodies.position[row]) * (1.0 / h);
+                bodies.velocity[row] = (beside(bodies, row, end.world(place)) - bodies.position[row]) * (1.0 / h);
             });
         }
     }
@@ -76,10 +86,11 @@ impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let end = self.motion.frame(bodies.substep.during[1]);
         self.each(bodies, share.kept.fixed, |bodies, row, place| {
-            let to = end.world(place);
+            let target = end.world(place);
+            let to = beside(bodies, row, target);
             bodies.shift(row, to - bodies.position[row]);
             bodies.position[row] = to;
-            bodies.velocity[row] = end.velocity_at(to);
+            bodies.velocity[row] = end.velocity_at(target);
         });
     }
 }

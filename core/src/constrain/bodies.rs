@@ -1,7 +1,7 @@
 //! The particles as a constraint sees and moves them.
 
 use crate::custom::CustomColumnsMut;
-use crate::index::IndexChoice;
+use crate::index::{IndexChoice, Room, between};
 use crate::material::MaterialList;
 use crate::memory::{Demand, Kept, take};
 use crate::observe::{Impact, Observer};
@@ -115,6 +115,12 @@ impl Bodies<'_> {
         (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
     }
 
+    /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic).
+    #[must_use]
+    pub fn between(&self, from: usize, to: usize) -> Vec3 {
+        between(self.near.index.room(), self.position[from], self.position[to])
+    }
+
     /// Moves a particle by `by` \[m\], and lets its velocity follow: by what that is over the sub-step. Whoever is
     /// fixed is moved as well: a constraint leaves out rows whose inverse mass is zero.
     pub fn shift(&mut self, row: usize, by: Vec3) {
@@ -170,38 +176,48 @@ impl fmt::Debug for Near<'_> {
 /// Visits the rows of those near a place.
 pub type Around<'a> = dyn Fn(Vec3, &mut dyn FnMut(u32)) + 'a;
 
-impl Near<'_> {
+impl<'a> Near<'a> {
+    /// The room that the particles are in, if there is one.
+    pub(crate) fn room(&self) -> Option<&'a Room> {
+        self.index.room()
+    }
+
     /// Puts points into an index, and calls `then` with a function that visits those within `reach` \[m\] of any place, by their rows: in an order of
-    /// the index's own.
+    /// the index's own. In a [periodic room](crate::index::Periodic) they are near through its sides.
     pub fn ask(&mut self, points: &[Vec3], reach: f32, then: &mut dyn FnMut(&Around<'_>)) {
         let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
-        self.index.with_index(&mut self.memory[..words], points, reach, None, &mut |index| match index {
+        let room = self.index.room();
+        let farther = farther(room, reach);
+        self.index.with_index(&mut self.memory[..words], points, farther, room, &mut |index| match index {
             Some(index) => then(&|place, visit| {
-                index.within(place, reach, &mut |rows| rows.iter().for_each(|&row| visit(row)));
+                index.within(place, farther, &mut |rows| {
+                    let sure = |&&row: &&u32| room.is_none() || is_near(room, place, points[row as usize], reach);
+                    rows.iter().filter(sure).for_each(|&row| visit(row));
+                });
             }),
             None => then(&|place, visit| {
-                let near = |&(_, &point): &(usize, &Vec3)| {
-                    let d = point - place;
-                    d.x * d.x + d.y * d.y + d.z * d.z <= reach * reach
-                };
+                let near = |&(_, &point): &(usize, &Vec3)| is_near(room, place, point, reach);
                 points.iter().enumerate().filter(near).for_each(|(row, _)| visit(row as u32));
             }),
         });
     }
 
-    /// Visits every two of the points within `reach` \[m\] of each other once, by their rows: in an order of the index's own.
+    /// Visits every two of the points within `reach` \[m\] of each other once, by their rows: in an order of the index's own. In a
+    /// [periodic room](crate::index::Periodic) they are near through its sides.
     pub fn pairs(&mut self, points: &[Vec3], reach: f32, visit: &mut dyn FnMut(u32, u32)) {
         // No more memory than these points call for: more would make another structure.
         let words = (3 * self.index.columns() * points.len()).min(self.memory.len());
-        self.index.with_index(&mut self.memory[..words], points, reach, None, &mut |index| match index {
+        let room = self.index.room();
+        let farther = farther(room, reach);
+        let near = |a: Vec3, b: Vec3| is_near(room, a, b, reach);
+        self.index.with_index(&mut self.memory[..words], points, farther, room, &mut |index| match index {
             Some(index) => {
-                index.pairs(reach, &mut |row, others| others.iter().for_each(|&other| visit(row, other)));
+                index.pairs(farther, &mut |row, others| {
+                    let sure = |&&other: &&u32| room.is_none() || near(points[row as usize], points[other as usize]);
+                    others.iter().filter(sure).for_each(|&other| visit(row, other));
+                });
             }
             None => {
-                let near = |a: Vec3, b: Vec3| {
-                    let d = a - b;
-                    d.x * d.x + d.y * d.y + d.z * d.z <= reach * reach
-                };
                 for (row, &point) in points.iter().enumerate() {
                     let others = points[..row].iter().enumerate().filter(|&(_, &other)| near(point, other));
                     others.for_each(|(other, _)| visit(row as u32, other as u32));
@@ -209,6 +225,18 @@ impl Near<'_> {
             }
         });
     }
+}
+
+/// How far an index looks for what is within reach: in a room a rounding farther, as ways are others there.
+fn farther(room: Option<&Room>, reach: f32) -> f32 {
+    reach + room.map_or(0.0, Room::slack)
+}
+
+/// Tells whether one place is within reach of another, in a room if there is one.
+#[inline]
+fn is_near(room: Option<&Room>, from: Vec3, to: Vec3, reach: f32) -> bool {
+    let d = between(room, from, to);
+    d.x * d.x + d.y * d.y + d.z * d.z <= reach * reach
 }
 
 /// A constraint's own memory.

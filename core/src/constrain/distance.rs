@@ -13,7 +13,8 @@ use glam::Vec3;
 /// One iteration a sub-step: a chain of n links passes a pull on from link to link, and is as stiff as it says where the square
 /// of the sub-step is a hundredth of α m or less; a rigid one sags. Linear momentum is kept to rounding.
 ///
-/// Two that are in one place have no direction, and one that has lost an end does nothing.
+/// Two that are in one place have no direction, and one that has lost an end does nothing. In a [periodic room](crate::index::Periodic) it acts
+/// along the shortest way through the sides: `length` has to be less than half of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -66,7 +67,7 @@ impl Distance {
     /// direction, or nothing to move.
     fn line(&self, bodies: &Bodies<'_>) -> Option<([usize; 2], Vec3, f32)> {
         let [a, b] = [bodies.row_of_start(self.ends[0])?, bodies.row_of_start(self.ends[1])?];
-        let apart = bodies.position[a] - bodies.position[b];
+        let apart = bodies.between(b, a);
         let distance = length(apart);
         let moves = bodies.inverse_mass[a] + bodies.inverse_mass[b] > 0.0;
         (moves && distance > 0.0 && distance < f32::INFINITY).then(|| ([a, b], apart / distance, distance))

@@ -1,6 +1,7 @@
 //! Chains of links that are solved as one: ropes, strings, necklaces.
 
 use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::index::between;
 use crate::math::{clamp, floor, largest, length, max, sqrt};
 use crate::memory::take;
 use glam::Vec3;
@@ -22,7 +23,8 @@ use glam::Vec3;
 /// [`Effort`](crate::Effort).
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing. A link whose ends are in one place
-/// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself.
+/// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
+/// [periodic room](crate::index::Periodic) links act along the shortest way through the sides.
 ///
 /// ```
 /// use pointmass::constrain::Rope;
@@ -187,7 +189,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             let [(p, to), (q, other)] = ends;
             if p < bodies.len() && q < bodies.len() {
                 let [x, y] = [p, q].map(|row| bodies.before[0][row]);
-                let turned = length((to - x) - (other - y)) / max(length(x - y), self.length(link));
+                let apart = between(bodies.near.room(), y, x);
+                let turned = length((to - x) - (other - y)) / max(length(apart), self.length(link));
                 turn = if turned > turn { turned } else { turn };
             }
         }
@@ -363,7 +366,7 @@ impl<'m> Links<'m> {
         if p >= bodies.len() || q >= bodies.len() || !(bodies.inverse_mass[p] + bodies.inverse_mass[q] > 0.0) {
             return None;
         }
-        let apart = bodies.position[p] - bodies.position[q];
+        let apart = bodies.between(q, p);
         let distance = length(apart);
         (distance > 0.0 && distance < f32::INFINITY).then(|| Line { rows, apart, distance, normal: apart / distance })
     }

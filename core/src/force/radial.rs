@@ -1,14 +1,17 @@
 //! Forces between neighbours, along the line that joins them.
 
+mod laws;
+
 use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::{sum_of_pairs, wide_between};
 use super::{Force, Needs, Perturbation, State};
 use crate::index::{Nearby, Neighbours};
-use crate::lanes::{self, LANES};
-use crate::math::{max, sqrt};
-use core::ops::{MulAssign, Range};
+use crate::lanes::{self, Eight, Kernel, LANES};
+use crate::math::max;
+use core::ops::Range;
 use glam::Vec3;
+pub use laws::{LennardJones, PowerLaw, Weight};
 use wide::f32x8;
 
 /// Neighbours that come at once.
@@ -128,28 +131,87 @@ struct PairStiffness {
     across: f32,
 }
 
+/// What some neighbours do to a row that pull at it so.
+struct Sum<'a> {
+    nearby: &'a Nearby,
+    pull: &'a [f32; RUN],
+}
+
+impl Kernel for Sum<'_> {
+    type Output = Vec3;
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> Vec3 {
+        let ([x, y, z], square) = (self.nearby.toward(), self.nearby.square());
+        let (zero, infinity) = (like.all(0.0), like.all(f32::INFINITY));
+        let mut sum = [zero; 3];
+        for first in (0..self.nearby.rows().len()).step_by(LANES) {
+            let (pull, square) = (block(like, self.pull, first), block(like, square, first));
+            let terms = [block(like, x, first) * pull, block(like, y, first) * pull, block(like, z, first) * pull];
+            let finite = |term: F| term.abs().simd_lt(infinity);
+            let counts = square.simd_gt(zero) & finite(terms[0]) & finite(terms[1]) & finite(terms[2]);
+            for (sum, term) in sum.iter_mut().zip(terms) {
+                *sum = *sum + (term & counts);
+            }
+        }
+        let [x, y, z] = sum;
+        let total = |sum: F| lanes::total(f32x8::new(sum.to_array()));
+        Vec3::new(total(x), total(y), total(z))
+    }
+}
+
+/// Eight of a column.
+#[inline(always)]
+fn block<F: Eight>(like: F, column: &[f32; RUN], first: usize) -> F {
+    like.of(column[first..].first_chunk().copied().unwrap_or_default())
+}
+
+/// Sums that wait to be added to totals: rows come in no order of memory, and many totals are fetched at once in less time than it
+/// takes to wait for each in turn.
+struct Sums<'t> {
+    first: usize,
+    total: &'t mut [Vec3],
+    waiting: [(usize, Vec3); WAITING],
+    len: usize,
+}
+
+/// Sums that wait at the most.
+const WAITING: usize = if cfg!(target_os = "none") { 1 } else { 64 };
+
+impl<'t> Sums<'t> {
+    /// None yet, for the totals of rows from `first` on.
+    fn new(first: usize, total: &'t mut [Vec3]) -> Self {
+        Self { first, total, waiting: [(0, Vec3::ZERO); WAITING], len: 0 }
+    }
+
+    /// Adds one to the total of a row.
+    #[inline(always)]
+    fn add(&mut self, row: usize, sum: Vec3) {
+        self.waiting[self.len % WAITING] = (row, sum);
+        self.len += 1;
+        if self.len == WAITING {
+            self.flush();
+        }
+    }
+
+    /// Adds those that wait, in the order in which they came.
+    fn flush(&mut self) {
+        for &(row, sum) in &self.waiting[..self.len] {
+            if let Some(total) = self.total.get_mut(row.wrapping_sub(self.first)) {
+                *total += sum;
+            }
+        }
+        self.len = 0;
+    }
+}
+
 impl<L: RadialLaw> Radial<L> {
     /// Sums what some neighbours do to a row, in lanes. Those that coincide with it, and those that are not finite, are
     /// left out, so that they harm nobody else.
     #[inline]
     fn sum(&self, state: &State<'_>, row: usize, nearby: &Nearby) -> Vec3 {
-        let ([x, y, z], square, mut pull) = (nearby.toward(), nearby.square(), [0.0; RUN]);
-        self.0.pulls(&Run { row, others: nearby.rows(), square, state }, &mut pull);
-        let len = nearby.rows().len();
-        let mut sum = [f32x8::ZERO; 3];
-        for first in (0..len).step_by(LANES) {
-            let block = |column: &[f32; RUN]| f32x8::new(column[first..].first_chunk().copied().unwrap_or_default());
-            let pull = block(&pull);
-            let terms = [x, y, z].map(|way| block(way) * pull);
-            let finite = f32x8::splat(f32::INFINITY);
-            let counts = terms
-                .iter()
-                .fold(block(square).simd_gt(f32x8::ZERO), |counts, term| counts & term.abs().simd_lt(finite));
-            for (sum, term) in sum.iter_mut().zip(terms) {
-                *sum += term & counts;
-            }
-        }
-        Vec3::from_array(sum.map(lanes::total))
+        let mut pull = [0.0; RUN];
+        self.0.pulls(&Run { row, others: nearby.rows(), square: nearby.square(), state }, &mut pull);
+        lanes::run(Sum { nearby, pull: &pull })
     }
 
     /// About a pair of neighbours; none if they coincide.
@@ -173,14 +235,9 @@ impl<L: RadialLaw> Radial<L> {
 
 impl<L: RadialLaw> Force for Radial<L> {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        let first = rows.start;
-        state.near.of(rows, self.0.reach(), &mut |row, nearby| {
-            if let Some(total) = total.get_mut(row - first) {
-                // Rows come in no order of memory: it is fetched while the sum is made.
-                let before = *total;
-                *total = before + self.sum(state, row, nearby);
-            }
-        });
+        let mut sums = Sums::new(rows.start, total);
+        state.near.of(rows, self.0.reach(), &mut |row, nearby| sums.add(row, self.sum(state, row, nearby)));
+        sums.flush();
     }
 
     fn needs(&self) -> Needs {
@@ -243,177 +300,5 @@ impl<L: RadialLaw + ?Sized> RadialLaw for &L {
     #[cfg(feature = "std")]
     fn name(&self) -> &'static str {
         (**self).name()
-    }
-}
-
-/// Atoms without charge (Lennard-Jones 1924): energy 4 ε ((σ/d)¹² − (σ/d)⁶), shifted to zero at the cutoff. They rest
-/// 2^{1/6} σ = 1.1225 σ apart, where it takes ε to part them.
-///
-/// At the cutoff the force jumps to zero, by 0.039 ε/σ where that is 2.5 σ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LennardJones {
-    /// Depth of the well ε \[J\].
-    pub epsilon: f32,
-    /// The distance σ at which they neither lost nor gained energy \[m\].
-    pub sigma: f32,
-    /// Beyond this distance nothing acts \[m\]; 2.5 σ is usual.
-    pub cutoff: f32,
-}
-
-impl RadialLaw for LennardJones {
-    fn reach(&self) -> f32 {
-        self.cutoff
-    }
-
-    #[inline]
-    fn pull(&self, square: f32, _: &Pair) -> f32 {
-        let s2 = self.sigma * self.sigma / square;
-        let s6 = s2 * s2 * s2;
-        24.0 * self.epsilon * s6 * (1.0 - 2.0 * s6) / square
-    }
-
-    fn pulls(&self, run: &Run<'_>, pull: &mut [f32; RUN]) {
-        let whole = run.others.len().next_multiple_of(LANES).min(RUN);
-        let nobody = Pair { mass: [0.0; 2], charge: [0.0; 2] };
-        for (pull, &square) in pull[..whole].iter_mut().zip(run.square) {
-            *pull = self.pull(square, &nobody);
-        }
-    }
-
-    fn stiffness(&self, square: f32, _: &Pair) -> f32 {
-        let s2 = self.sigma * self.sigma / square;
-        let s6 = s2 * s2 * s2;
-        24.0 * self.epsilon * s6 * (26.0 * s6 - 7.0) / square
-    }
-
-    #[cfg(feature = "std")]
-    fn energy(&self, square: f64, _: &Pair) -> f64 {
-        let at = |square: f64| {
-            let s6 = (f64::from(self.sigma).powi(2) / square).powi(3);
-            4.0 * f64::from(self.epsilon) * s6 * (s6 - 1.0)
-        };
-        at(square) - at(f64::from(self.cutoff).powi(2))
-    }
-
-    #[cfg(feature = "std")]
-    fn name(&self) -> &'static str {
-        "Lennard-Jones"
-    }
-}
-
-/// Neighbours attract each other with c w₁ w₂ / Dⁿ, D² = d² + s², s being the softening: f = c w₁ w₂ d⃗ / Dⁿ⁺¹. Its
-/// energy is zero at its reach, where the force jumps to zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct PowerLaw {
-    /// The strength c: the force \[N\] at a distance of 1 m between weights of 1; below zero it repels.
-    pub strength: f32,
-    /// The exponent n, from 0, the same force at any distance, to 12.
-    pub exponent: u8,
-    /// Softening length s \[m\].
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub softening: f32,
-    /// Beyond this distance nothing acts \[m\].
-    pub reach: f32,
-    /// The quantities that the weights w are.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub weight: Weight,
-}
-
-/// The quantity that a force between two particles is proportional to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Weight {
-    /// Nothing: all particles count alike.
-    #[default]
-    One,
-    /// Both masses \[kg\].
-    Mass,
-    /// Both charges \[C\]. Where the strength is above zero, equal signs attract each other.
-    Charge,
-}
-
-impl PowerLaw {
-    /// c w₁ w₂.
-    #[inline(always)]
-    fn strength(&self, pair: &Pair) -> f32 {
-        let [a, b] = match self.weight {
-            Weight::One => return self.strength,
-            Weight::Mass => pair.mass,
-            Weight::Charge => pair.charge,
-        };
-        self.strength * (a * b)
-    }
-
-    /// 1 / D² and 1 / Dⁿ⁺¹.
-    #[inline(always)]
-    fn inverse(&self, square: f32) -> [f32; 2] {
-        let inverse_square = 1.0 / (square + self.softening * self.softening);
-        [inverse_square, self.power(sqrt(inverse_square))]
-    }
-
-    /// 1 / Dⁿ⁺¹ of 1 / D, or of several side by side.
-    #[inline(always)]
-    fn power<T: Copy + MulAssign>(&self, inverse: T) -> T {
-        let (mut power, mut factor) = (inverse, inverse);
-        for bit in 0..8 - self.exponent.leading_zeros() {
-            if self.exponent >> bit & 1 == 1 {
-                power *= factor;
-            }
-            factor *= factor;
-        }
-        power
-    }
-}
-
-impl RadialLaw for PowerLaw {
-    fn reach(&self) -> f32 {
-        self.reach
-    }
-
-    #[inline]
-    fn pull(&self, square: f32, pair: &Pair) -> f32 {
-        self.strength(pair) * self.inverse(square)[1]
-    }
-
-    fn pulls(&self, run: &Run<'_>, pull: &mut [f32; RUN]) {
-        let softening = f32x8::splat(self.softening * self.softening);
-        let blocks = pull.as_chunks_mut::<LANES>().0.iter_mut().zip(run.square.as_chunks::<LANES>().0);
-        for (pull, square) in blocks.take(run.others.len().div_ceil(LANES)) {
-            let inverse = lanes::sqrt(f32x8::ONE / (f32x8::new(*square) + softening));
-            *pull = self.power(inverse).to_array();
-        }
-        let weights = match self.weight {
-            Weight::One => return pull.iter_mut().for_each(|pull| *pull *= self.strength),
-            Weight::Mass => run.state.mass,
-            Weight::Charge => run.state.charge,
-        };
-        let own = weights[run.row];
-        for (pull, &other) in pull.iter_mut().zip(run.others) {
-            *pull *= self.strength * (own * weights[other as usize]);
-        }
-    }
-
-    fn stiffness(&self, square: f32, pair: &Pair) -> f32 {
-        let [inverse_square, power] = self.inverse(square);
-        self.strength(pair) * power * (1.0 - (f32::from(self.exponent) + 1.0) * square * inverse_square)
-    }
-
-    #[cfg(feature = "std")]
-    fn energy(&self, square: f64, pair: &Pair) -> f64 {
-        let softened = |square: f64| libm::sqrt(square + f64::from(self.softening).powi(2));
-        let (d, end) = (softened(square), softened(f64::from(self.reach).powi(2)));
-        let n = i32::from(self.exponent);
-        let work = if n == 1 { libm::log(d / end) } else { (d.powi(1 - n) - end.powi(1 - n)) / f64::from(1 - n) };
-        f64::from(self.strength(pair)) * work
-    }
-
-    #[cfg(feature = "std")]
-    fn name(&self) -> &'static str {
-        "power law"
     }
 }

@@ -136,10 +136,11 @@ by_type! {
 
 /// Neighbours through the sides of a room, found by any choice of index.
 ///
-/// Forces between neighbours and springs act along the shortest way through the sides, births and deaths count neighbours
-/// through them, and whoever has left at one side by the end of a step comes in at the other. It takes the reach of forces to be less than half of
-/// the shortest side: of a neighbour in several images the nearest counts. What asks for no neighbours acts straight: colliders, sinks,
-/// constraints, meetings, and forces that reach any distance.
+/// Forces between neighbours, springs, contacts of balls (by force, position and impulse), distances, ropes and attachments act along the
+/// shortest way through the sides, births and deaths count neighbours through them, and whoever has left at one side by the end of a step comes
+/// in at the other. It takes the reach of forces, the widths of balls and lengths to be less than half of the shortest side: of a neighbour in
+/// several images the nearest counts. All else acts straight: colliders, sinks, what makes bodies or surfaces of particles, and forces that reach
+/// any distance.
 ///
 /// ```
 /// use pointmass::force::{LennardJones, Radial};

@@ -1,17 +1,19 @@
 //! Lists of neighbours that last until somebody has gone half their skin (Verlet, "Computer 'Experiments' on Classical
 //! Fluids", Phys. Rev. 159, 1967).
 
-use super::nearby::{NOBODY, Nearby, Runs};
+use super::nearby::{NOBODY, Nearby};
 use super::sorted::Entry;
 use super::{Room, SpatialIndex, between, wrapped_in};
+use crate::lanes::{self, Eight, Kernel, LANES};
 use crate::math::{largest, max, sqrt};
 use crate::rows::farthest;
+use core::array;
 use core::ops::Range;
 use glam::Vec3;
 
 /// Words of a point's own: where its list begins and ends, where it was when the lists were made, where it is, and its row.
 const OWN: usize = 9;
-/// Fills a list up: the number of no point.
+/// The number of no point.
 const NO_POINT: u32 = u32::MAX;
 /// Lists whose entries are fetched together, and room for these.
 const BATCH: usize = 16;
@@ -61,7 +63,7 @@ pub(crate) struct Lists<'a> {
     spans: &'a [[u32; 2]],
     /// Where they are, and their rows.
     places: &'a [Entry],
-    /// The numbers of the near, in ascending order of rows, each list filled up to a multiple of four.
+    /// The numbers of the near, in ascending order of rows.
     entries: &'a [u32],
 }
 
@@ -93,19 +95,23 @@ impl Lists<'_> {
         room: Option<&Room>,
         visit: &mut dyn FnMut(usize, &Nearby),
     ) {
-        let (mut runs, mut fetched) = (Runs::EMPTY, [0; ROOM]);
-        let place_of = |other: u32| self.places.get(other as usize).copied().unwrap_or(NOBODY);
-        for (spans, places) in self.spans.chunks(BATCH).zip(self.places.chunks(BATCH)) {
-            let (entries, first) = self.fetched(spans, &mut fetched);
-            for (span, place) in spans.iter().zip(places) {
-                let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
-                if rows.contains(&row) {
-                    let list = entries.get(start..end).unwrap_or_default();
-                    let others = list.as_chunks().0.iter().map(|four| four.map(place_of));
-                    runs.visit((row, Vec3::from_array(place.x)), others, reach, room, visit);
-                }
-            }
-        }
+        lanes::run(Walk { lists: *self, rows, reach, room, visit });
+    }
+
+    /// The points of eight entries from one on, of which the first so many are asked for.
+    #[inline(always)]
+    fn eight(&self, entries: &[u32], at: usize) -> [Entry; LANES] {
+        let mut last = [NO_POINT; LANES];
+        let rest = entries.get(at..).unwrap_or_default();
+        let eight = rest.first_chunk().unwrap_or_else(
+            #[cold]
+            || {
+                last[..rest.len()].copy_from_slice(rest);
+                &last
+            },
+        );
+        let place_of = |lane: usize| *self.places.get(eight[lane] as usize).unwrap_or(&NOBODY);
+        array::from_fn(place_of)
     }
 
     /// The entries of some lists, and the number of the first: fetched from memory all at once, if there is room for them, which
@@ -116,11 +122,41 @@ impl Lists<'_> {
             [] => [0; 2],
         };
         match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
-            Some((room, entries)) => {
-                room.copy_from_slice(entries);
+            Some((front, entries)) => {
+                front.copy_from_slice(entries);
                 (room, start)
             }
             None => (self.entries, 0),
+        }
+    }
+}
+
+/// A walk along the lists.
+struct Walk<'w> {
+    lists: Lists<'w>,
+    rows: Range<usize>,
+    reach: f32,
+    room: Option<&'w Room>,
+    visit: &'w mut dyn FnMut(usize, &Nearby),
+}
+
+impl Kernel for Walk<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) {
+        let Self { lists, rows, reach, room, visit } = self;
+        let (mut nearby, mut fetched) = (Nearby::NOBODY, [0; ROOM]);
+        let within = (reach, room.map(|room| room.side_by_side(like)));
+        for (spans, places) in lists.spans.chunks(BATCH).zip(lists.places.chunks(BATCH)) {
+            let (entries, first) = lists.fetched(spans, &mut fetched);
+            for (span, place) in spans.iter().zip(places) {
+                let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
+                if rows.contains(&row) {
+                    // What follows the list is read as well, but does not count.
+                    let others = (start..end).step_by(LANES).map(|at| (lists.eight(entries, at), end - at));
+                    nearby.gather(like, (row, Vec3::from_array(place.x)), others, within, visit);
+                }
+            }
         }
     }
 }
@@ -280,15 +316,13 @@ impl Making<'_> {
     ) -> bool {
         let (mut next, start, mut len, mut fits) = (0, points.start, 0, true);
         let all = self.index.in_order(points, self.radius, &mut |point, others| {
-            let end = len + others.len().next_multiple_of(4);
+            let end = len + others.len();
             let place = point.wrapping_sub(start);
             match spans.get_mut(place).zip(entries.get_mut(len..end)) {
                 Some((span, room)) if place >= next => {
                     next = place + 1;
                     *span = [first + len, first + end].map(|at| at as u32);
-                    let (list, rest) = room.split_at_mut(others.len());
-                    list.copy_from_slice(others);
-                    rest.fill(NO_POINT);
+                    room.copy_from_slice(others);
                     len = end;
                 }
                 _ => fits = false,

@@ -1,25 +1,32 @@
 //! Some neighbours of a row, side by side.
 
 use super::Room;
+use super::room::SideBySide;
 use super::sorted::Entry;
-use crate::lanes::LANES;
+use crate::lanes::{self, Eight, Kernel, LANES};
+use core::array;
 use glam::Vec3;
-use wide::f32x4;
 
 /// Neighbours that are handed over at once.
 pub(super) const RUN: usize = 32;
 
+/// Room for a run and for what follows it in the last eight.
+const FOUND: usize = RUN + LANES;
+
+/// Stands for no other: whatever it is held against, it is not near.
+pub(super) const NOBODY: Entry = Entry { x: [f32::NAN; 3], row: u32::MAX };
+
 /// Others that are near a row, with the ways to them.
 #[derive(Clone, Debug)]
 pub struct Nearby {
-    rows: [u32; RUN],
-    toward: [[f32; RUN]; 3],
-    square: [f32; RUN],
+    rows: [u32; FOUND],
+    toward: [[f32; FOUND]; 3],
+    square: [f32; FOUND],
     len: usize,
 }
 
 impl Nearby {
-    const NOBODY: Self = Self { rows: [0; RUN], toward: [[0.0; RUN]; 3], square: [0.0; RUN], len: 0 };
+    pub(super) const NOBODY: Self = Self { rows: [0; FOUND], toward: [[0.0; FOUND]; 3], square: [0.0; FOUND], len: 0 };
 
     /// Their rows, in ascending order.
     #[must_use]
@@ -30,121 +37,136 @@ impl Nearby {
     /// The ways to them \[m\], coordinate by coordinate. Behind the last there are zeros up to the next multiple of eight.
     #[must_use]
     pub fn toward(&self) -> [&[f32; RUN]; 3] {
-        self.toward.each_ref()
+        let [x, y, z] = &self.toward;
+        [run_of(x), run_of(y), run_of(z)]
     }
 
     /// Their distances squared \[m²\], and zeros likewise.
     #[must_use]
     pub fn square(&self) -> &[f32; RUN] {
-        &self.square
+        run_of(&self.square)
     }
 
-    /// Takes the first `len` of some others than a row at a place, and hands them over, with the shortest ways to them.
-    #[inline]
-    fn hand_over(
-        &mut self,
-        (found, len): (&[f32x4; FOUND], usize),
-        (row, place): (usize, Vec3),
-        shortest: impl Fn([f32x4; 3]) -> [f32x4; 3],
-        visit: &mut dyn FnMut(usize, &Self),
-    ) {
-        if len == 0 {
+    /// Takes in those of eight others that are hits, one behind the other: the ways to them, their squares and what stands for their rows.
+    #[inline(always)]
+    fn take<F: Eight>(&mut self, [x, y, z, rows]: [F; 4], hits: u32) {
+        // Eight are written, and those that are no hits are written over.
+        let ([x, y, z, rows], more) = F::squeezed([x, y, z, rows], hits);
+        let (len, [to_x, to_y, to_z]) = (self.len, &mut self.toward);
+        put(to_x, len, x.to_array());
+        put(to_y, len, y.to_array());
+        put(to_z, len, z.to_array());
+        put(&mut self.square, len, (x * x + y * y + z * z).to_array());
+        put(&mut self.rows, len, bytemuck::cast(rows.to_array()));
+        self.len = len + more;
+    }
+
+    /// Hands over a run, if there is one, and keeps what follows it.
+    #[inline(always)]
+    fn hand_over_run(&mut self, row: usize, visit: &mut dyn FnMut(usize, &Self)) {
+        let Some(rest) = self.len.checked_sub(RUN) else { return };
+        self.len = RUN;
+        visit(row, self);
+        self.len = rest;
+        self.rows.copy_within(RUN.., 0);
+        self.square.copy_within(RUN.., 0);
+        self.toward.iter_mut().for_each(|toward| toward.copy_within(RUN.., 0));
+    }
+
+    /// Hands over the last ones, with zeros behind them.
+    #[inline(always)]
+    fn hand_over_rest(&mut self, row: usize, visit: &mut dyn FnMut(usize, &Self)) {
+        if self.len == 0 {
             return;
         }
-        let ([to_x, to_y, to_z], center) = (&mut self.toward, place.to_array().map(f32x4::splat));
-        for (k, four) in found.as_chunks().0.iter().enumerate().take(len.div_ceil(4)) {
-            let (ways, rows) = ways(*four, center);
-            let [x, y, z] = shortest(ways);
-            put(to_x, k, x);
-            put(to_y, k, y);
-            put(to_z, k, z);
-            put(&mut self.square, k, x * x + y * y + z * z);
-            put(bytemuck::cast_mut(&mut self.rows), k, rows);
-        }
-        for k in len..len.next_multiple_of(LANES) {
-            self.square[k] = 0.0;
-            self.toward.iter_mut().for_each(|toward| toward[k] = 0.0);
-        }
-        self.len = len;
+        let (len, zeros, [x, y, z]) = (self.len, [0.0; LANES], &mut self.toward);
+        put(x, len, zeros);
+        put(y, len, zeros);
+        put(z, len, zeros);
+        put(&mut self.square, len, zeros);
         visit(row, self);
     }
-}
 
-/// Puts four numbers into a column.
-#[inline(always)]
-fn put(column: &mut [f32; RUN], k: usize, lanes: f32x4) {
-    if let Some(four) = column.as_chunks_mut().0.get_mut(k) {
-        *four = lanes.to_array();
-    }
-}
-
-/// The ways from a place to four others, and what their rows are, side by side.
-#[inline(always)]
-fn ways(four: [f32x4; 4], center: [f32x4; 3]) -> ([f32x4; 3], f32x4) {
-    let [x, y, z, rows] = f32x4::transpose(four);
-    ([x - center[0], y - center[1], z - center[2]], rows)
-}
-
-/// Stands for no other: whatever it is held against, it is not near.
-pub(super) const NOBODY: Entry = Entry { x: [f32::NAN; 3], row: u32::MAX };
-
-/// Room for a run and what follows it in the last four; a power of two, so that no place in it needs a check.
-const FOUND: usize = 2 * RUN;
-
-/// Room to bring neighbours together in.
-pub(super) struct Runs {
-    /// Places and rows of the near.
-    found: [f32x4; FOUND],
-    nearby: Nearby,
-}
-
-impl Runs {
-    pub(super) const EMPTY: Self = Self { found: [f32x4::ZERO; FOUND], nearby: Nearby::NOBODY };
-
-    /// Visits a row at a place with those of some others, four by four, that are within `reach` of it, in their order. In a room all are
-    /// wrapped in, and ways lead through its sides.
-    #[inline]
-    pub(super) fn visit(
+    /// Visits a row at a place with those of some others that are within `reach` of it, in their order, by the shortest of all ways. The
+    /// others come eight by eight, each time with how many of them count.
+    #[inline(always)]
+    pub(super) fn gather<F: Eight>(
         &mut self,
-        own: (usize, Vec3),
-        others: impl Iterator<Item = [Entry; 4]>,
-        reach: f32,
-        room: Option<&Room>,
-        visit: &mut dyn FnMut(usize, &Nearby),
-    ) {
-        match room.map(Room::side_by_side) {
-            None => self.gather(own, others, reach, |ways| ways, visit),
-            Some(room) => self.gather(own, others, reach, |ways| room.nearest(ways), visit),
-        }
-    }
-
-    /// The same by the shortest of all ways.
-    #[inline]
-    fn gather(
-        &mut self,
+        like: F,
         (row, place): (usize, Vec3),
-        others: impl Iterator<Item = [Entry; 4]>,
-        reach: f32,
-        shortest: impl Fn([f32x4; 3]) -> [f32x4; 3],
-        visit: &mut dyn FnMut(usize, &Nearby),
+        others: impl Iterator<Item = ([Entry; LANES], usize)>,
+        (reach, sides): (f32, Option<SideBySide<F>>),
+        visit: &mut dyn FnMut(usize, &Self),
     ) {
-        let (center, square) = (place.to_array().map(f32x4::splat), f32x4::splat(reach * reach));
-        let mut len = 0;
-        for four in others {
-            let four = four.map(bytemuck::cast);
-            let [x, y, z] = shortest(ways(four, center).0);
-            let hits = (x * x + y * y + z * z).simd_le(square).to_bitmask() as usize;
-            for (k, other) in four.into_iter().enumerate() {
-                // Written whether it is near or not, and then written over, so that there is no branch to guess.
-                self.found[len % FOUND] = other;
-                len += hits >> k & 1;
+        let (center, square) = (
+            place.to_array().map(
+                #[inline(always)]
+                |x| like.all(x),
+            ),
+            like.all(reach * reach),
+        );
+        self.len = 0;
+        for (eight, left) in others {
+            let [x, y, z, rows] = like.quads_of(bytemuck::cast(eight));
+            let mut ways = [x - center[0], y - center[1], z - center[2]];
+            if let Some(sides) = sides {
+                ways = sides.nearest(ways);
             }
-            if len >= RUN {
-                self.nearby.hand_over((&self.found, RUN), (row, place), &shortest, visit);
-                self.found.copy_within(RUN..RUN + 4, 0);
-                len -= RUN;
-            }
+            let [x, y, z] = ways;
+            let hits = (x * x + y * y + z * z).simd_le(square).to_bitmask() & (0xff >> (LANES - left.min(LANES)));
+            self.take([x, y, z, rows], hits);
+            self.hand_over_run(row, visit);
         }
-        self.nearby.hand_over((&self.found, len), (row, place), &shortest, visit);
+        self.hand_over_rest(row, visit);
+    }
+}
+
+/// As many as are handed over at once.
+#[inline(always)]
+fn run_of(column: &[f32; FOUND]) -> &[f32; RUN] {
+    column.first_chunk().unwrap_or(&[0.0; RUN])
+}
+
+/// Puts eight numbers into a column.
+#[inline(always)]
+fn put<T: Copy>(column: &mut [T; FOUND], at: usize, eight: [T; LANES]) {
+    if let Some(room) = column.get_mut(at..).and_then(<[T]>::first_chunk_mut) {
+        *room = eight;
+    }
+}
+
+/// A visit to a row at a place with those of some others that are within reach of it. In a room all are wrapped in, and ways lead through
+/// its sides.
+pub(super) struct Visit<'v, I> {
+    pub(super) own: (usize, Vec3),
+    pub(super) others: I,
+    pub(super) reach: f32,
+    pub(super) room: Option<&'v Room>,
+    pub(super) nearby: &'v mut Nearby,
+    pub(super) visit: &'v mut dyn FnMut(usize, &Nearby),
+}
+
+impl<I: Iterator<Item = Entry>> Visit<'_, I> {
+    /// Makes it.
+    pub(super) fn pay(self) {
+        lanes::run(self);
+    }
+}
+
+impl<I: Iterator<Item = Entry>> Kernel for Visit<'_, I> {
+    type Output = ();
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) {
+        let Self { own, mut others, reach, room, nearby, visit } = self;
+        let sides = room.map(|room| room.side_by_side(like));
+        let eights = core::iter::from_fn(
+            #[inline(always)]
+            || {
+                let first = others.next()?;
+                let eight = array::from_fn(|k| if k == 0 { first } else { others.next().unwrap_or(NOBODY) });
+                Some((eight, LANES))
+            },
+        );
+        nearby.gather(like, own, eights, (reach, sides), visit);
     }
 }

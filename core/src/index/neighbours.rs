@@ -1,11 +1,10 @@
 //! Neighbours of particles: from lists that last for a while, from an index, or by looking at all; to the same bits.
 
 use super::lists::Lists;
-use super::nearby::{self, NOBODY, Nearby, Runs};
+use super::nearby::{self, NOBODY, Nearby, Visit};
 use super::room::Points;
 use super::sorted::Entry;
 use super::{Room, SpatialIndex, wrapped_in};
-use core::array;
 use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
@@ -118,16 +117,14 @@ impl<'a> Neighbours<'a> {
         visit: &mut dyn FnMut(usize, &Nearby),
     ) {
         let (mut found, mut len, mut of) = ([0; MOST], 0, None);
-        let mut runs = Runs::EMPTY;
+        let mut nearby = Nearby::NOBODY;
         // Whom the index has found is near, whatever its scale; in a room it looks a little farther, as ways are others there.
         let (farther, sure) = self.room.map_or((reach, f32::INFINITY), |room| (reach + room.slack(), reach));
         let mut finish = |row: Option<usize>, found: &mut [u32; MOST], len: usize| match row {
             Some(row) if len <= MOST => {
                 found[..len].sort_unstable();
-                let others = found[..len]
-                    .chunks(4)
-                    .map(|four| array::from_fn(|k| four.get(k).map_or(NOBODY, |&other| self.entry(other))));
-                runs.visit(self.place(row), others, sure, self.room, visit);
+                let (own, others) = (self.place(row), found[..len].iter().map(|&other| self.entry(other)));
+                Visit { own, others, reach: sure, room: self.room, nearby: &mut nearby, visit }.pay();
             }
             // Neighbours too many for that are a good part of all points.
             Some(row) => self.by_all(row, reach, &mut *visit),
@@ -152,11 +149,9 @@ impl<'a> Neighbours<'a> {
 
     /// The neighbours of one row, found by looking at all others.
     fn by_all(&self, row: usize, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
-        let mut runs = Runs::EMPTY;
-        let is_other = |&other: &u32| other as usize != row && (other as usize) < self.points.len();
-        let entry = |other| Some(other).filter(is_other).map_or(NOBODY, |other| self.entry(other));
-        let all = (0..self.points.len() as u32).step_by(4).map(|first| array::from_fn(|k| entry(first + k as u32)));
-        runs.visit(self.place(row), all, reach, self.room, visit);
+        let entry = |other| if other as usize == row { NOBODY } else { self.entry(other) };
+        let (own, others, mut nearby) = (self.place(row), (0..self.points.len() as u32).map(entry), Nearby::NOBODY);
+        Visit { own, others, reach, room: self.room, nearby: &mut nearby, visit }.pay();
     }
 
     fn place(&self, row: usize) -> (usize, Vec3) {

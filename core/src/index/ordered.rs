@@ -6,7 +6,7 @@ use super::near::{GROUP, Near, chunks};
 use super::partition::Partition;
 use super::search::{Reach, Search};
 use super::sorted::{LANES, Sorted};
-use crate::lanes;
+use crate::lanes::{self, COUNTS, Eight, HITS, Kernel};
 use crate::math::largest;
 use core::ops::Range;
 use glam::Vec3;
@@ -14,8 +14,8 @@ use wide::f32x8;
 
 /// The largest number of points near a group.
 const MOST: usize = 1024;
-/// Bits of a digit by which they are sorted.
-const DIGIT: usize = 8;
+/// The largest number of bits of a digit by which they are sorted.
+const DIGIT: usize = 9;
 
 /// The points near a group, in ascending order of their rows.
 struct Crowd {
@@ -132,25 +132,35 @@ impl Crowd {
             let center = sorted.point(slot);
             // It is none of its own neighbours.
             self.x[0][self.own[i]] = f32::NAN;
-            let len = self.find(center, square);
+            let len = lanes::run(Find { crowd: self, center, square });
             self.x[0][self.own[i]] = center.x;
             visit(slot, &self.found[..len]);
         }
     }
+}
 
-    /// Finds the slots of those within a distance of a place, and says how many they are.
-    #[inline]
-    fn find(&mut self, center: Vec3, square: f32) -> usize {
-        let [x, y, z] = self.x.each_ref().map(|x| x.as_chunks::<LANES>().0.iter().map(|x| f32x8::new(*x)));
-        let (center, square) = (lanes::splat(center), f32x8::splat(square));
+/// Finds the slots of those of a crowd that are within a distance of a place, and says how many they are.
+struct Find<'c> {
+    crowd: &'c mut Crowd,
+    center: Vec3,
+    square: f32,
+}
+
+impl Kernel for Find<'_> {
+    type Output = usize;
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> usize {
+        let Self { crowd, center, square } = self;
+        let [x, y, z] = [0, 1, 2].map(|axis| crowd.x[axis].as_chunks::<LANES>().0);
+        let (center, square) = ([like.all(center.x), like.all(center.y), like.all(center.z)], like.all(square));
         let (mut first, mut len) = (0, 0);
-        for ((x, y), z) in x.zip(y).zip(z).take(self.len.div_ceil(LANES)) {
-            let [x, y, z] = [x - center[0], y - center[1], z - center[2]];
+        for ((x, y), z) in x.iter().zip(y).zip(z).take(crowd.len.div_ceil(LANES)) {
+            let [x, y, z] = [like.of(*x) - center[0], like.of(*y) - center[1], like.of(*z) - center[2]];
             let hits = (x * x + y * y + z * z).simd_le(square).to_bitmask();
-            put_hits(&mut self.found, &mut len, hits, first);
+            put_hits(&mut crowd.found, &mut len, hits, first);
             first += LANES as u32;
         }
-        self.found[..len].iter_mut().for_each(|found| *found = self.slots[*found as usize % MOST]);
+        crowd.found[..len].iter_mut().for_each(|found| *found = crowd.slots[*found as usize % MOST]);
         len
     }
 }
@@ -178,13 +188,15 @@ fn is_met_once(sorted: &Sorted<'_>, group: &Range<usize>, reach: Reach) -> bool 
 /// Puts the first so many keys in ascending order of their upper halves, digit by digit, the lowest first.
 fn put_in_order(keys: &mut [[u64; MOST]; 2], len: usize, rows: usize) -> &[u64] {
     let [mut from, mut to] = keys.each_mut().map(|keys| &mut keys[..len]);
-    let bits = usize::BITS - rows.leading_zeros();
-    for shift in (0..bits).step_by(DIGIT) {
-        let digit = |key: u64| (key >> (32 + shift)) as usize % (1 << DIGIT);
+    let bits = (usize::BITS - rows.leading_zeros()) as usize;
+    // As few digits as are enough, and these no longer than they have to be.
+    let width = bits.div_ceil(bits.div_ceil(DIGIT).max(1));
+    for shift in (0..bits).step_by(width.max(1)) {
+        let digit = |key: u64| ((key >> (32 + shift)) as usize % (1 << DIGIT)) & ((1 << width) - 1);
         let mut next = [0_u16; 1 << DIGIT];
         from.iter().for_each(|&key| next[digit(key)] += 1);
         let mut sum = 0;
-        for next in &mut next {
+        for next in &mut next[..1 << width] {
             sum += core::mem::replace(next, sum);
         }
         for &key in &*from {
@@ -196,32 +208,3 @@ fn put_in_order(keys: &mut [[u64; MOST]; 2], len: usize, rows: usize) -> &[u64] 
     }
     from
 }
-
-/// For eight lanes, of which some are hits: the lanes of these, one behind the other.
-static HITS: [[u32; LANES]; 256] = {
-    let mut all = [[0; LANES]; 256];
-    let mut hits = 0;
-    while hits < all.len() {
-        let (mut lane, mut len) = (0, 0);
-        while lane < LANES {
-            if hits >> lane & 1 == 1 {
-                all[hits][len] = lane as u32;
-                len += 1;
-            }
-            lane += 1;
-        }
-        hits += 1;
-    }
-    all
-};
-
-/// The number of hits among eight lanes, by their bits.
-static COUNTS: [u8; 256] = {
-    let mut all = [0; 256];
-    let mut hits = 0;
-    while hits < all.len() {
-        all[hits] = hits.count_ones() as u8;
-        hits += 1;
-    }
-    all
-};

@@ -1,9 +1,9 @@
 //! A room whose opposite faces are one, and the shortest ways in it.
 
 use super::SpatialIndex;
+use crate::lanes::{Eight, negated};
 use crate::math::{floor, largest, max, min};
 use glam::Vec3;
-use wide::f32x4;
 
 /// A box whose opposite faces are one and the same: what leaves it at one comes in at the other, and ways between two points in it are the
 /// shortest of those that lead through its sides (the minimum image).
@@ -123,17 +123,31 @@ impl Room {
         self.nearest(self.wrap(to) - self.wrap(from))
     }
 
+    /// How far the image of `to` that is nearest to `from` lies from it: by whole sides.
+    #[must_use]
+    pub(crate) fn image(&self, from: Vec3, to: Vec3) -> Vec3 {
+        let side = |from: f32, to: f32, side: f32| {
+            let turns = if side == 0.0 { 0.0 } else { floor((from - to) / side + 0.5) };
+            if turns.is_finite() { turns * side } else { 0.0 }
+        };
+        let sides = self.sides;
+        Vec3::new(side(from.x, to.x, sides.x), side(from.y, to.y, sides.y), side(from.z, to.z, sides.z))
+    }
+
     /// More than what rounding may make of a distance \[m\] in it: points lie where they are, or beside a corner, or in an image.
-    pub(super) fn slack(&self) -> f32 {
+    pub(crate) fn slack(&self) -> f32 {
         (largest(self.low) + largest(self.sides)) * (16.0 * f32::EPSILON)
     }
 
     /// The same for ways side by side.
     #[inline(always)]
-    pub(super) fn side_by_side(&self) -> SideBySide {
+    pub(super) fn side_by_side<F: Eight>(&self, like: F) -> SideBySide<F> {
         let half = |side: f32| if side == 0.0 { f32::INFINITY } else { 0.5 * side };
-        let sides = self.sides.to_array();
-        SideBySide { sides: sides.map(f32x4::splat), half: sides.map(|side| f32x4::splat(half(side))) }
+        let Vec3 { x, y, z } = self.sides;
+        SideBySide {
+            sides: [like.all(x), like.all(y), like.all(z)],
+            half: [like.all(half(x)), like.all(half(y)), like.all(half(z))],
+        }
     }
 }
 
@@ -159,21 +173,24 @@ fn wrapped(x: f32, low: f32, side: f32) -> f32 {
     if inside < low + side { inside } else { low }
 }
 
-/// A room, for four ways at once.
+/// A room, for eight ways at once.
 #[derive(Clone, Copy)]
-pub(super) struct SideBySide {
-    sides: [f32x4; 3],
-    half: [f32x4; 3],
+pub(super) struct SideBySide<F> {
+    sides: [F; 3],
+    half: [F; 3],
 }
 
-impl SideBySide {
+impl<F: Eight> SideBySide<F> {
     /// As [`Room::nearest`].
     #[inline(always)]
-    pub(super) fn nearest(&self, ways: [f32x4; 3]) -> [f32x4; 3] {
-        core::array::from_fn(|axis| {
-            let (d, side, half) = (ways[axis], self.sides[axis], self.half[axis]);
-            d.simd_gt(half).select(d - side, d.simd_lt(-half).select(d + side, d))
-        })
+    pub(super) fn nearest(&self, [x, y, z]: [F; 3]) -> [F; 3] {
+        [self.side(0, x), self.side(1, y), self.side(2, z)]
+    }
+
+    #[inline(always)]
+    fn side(&self, axis: usize, d: F) -> F {
+        let (side, half) = (self.sides[axis], self.half[axis]);
+        d.simd_gt(half).select(d - side, d.simd_lt(negated(half)).select(d + side, d))
     }
 }
 
@@ -207,6 +224,7 @@ pub(crate) fn image_beside(room: Option<&Room>, of: Vec3, point: Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::rng::Stream;
+    use wide::f32x8;
 
     fn rooms() -> [Room; 4] {
         [
@@ -255,8 +273,8 @@ mod tests {
                     let shortest = [-side, 0.0, side].map(|by| (way[axis] + by).abs()).into_iter().reduce(min);
                     assert_eq!(Some(there[axis].abs()), shortest);
                 }
-                let four = room.side_by_side().nearest(way.to_array().map(f32x4::splat));
-                assert_eq!(four.map(|lanes| lanes.to_array()[2]), there.to_array());
+                let eight = room.side_by_side(f32x8::ZERO).nearest(way.to_array().map(f32x8::splat));
+                assert_eq!(eight.map(|lanes| lanes.to_array()[2]), there.to_array());
             }
         }
     }

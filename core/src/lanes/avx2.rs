@@ -1,6 +1,6 @@
 //! Eight numbers in one register of an x86-64 that has them.
 
-use super::{Eight, LANES};
+use super::{COUNTS, Eight, HITS, LANES};
 use core::arch::x86_64::{__m256, __m256i, _mm256_permutevar8x32_ps, _mm256_shuffle_ps};
 use core::arch::x86_64::{_mm256_unpackhi_ps, _mm256_unpacklo_ps};
 use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
@@ -184,6 +184,16 @@ impl Eight for Wide {
         let [ae, bf, cg, dh] = turned(avx2, x.0.into(), y.0.into(), z.0.into(), w.0.into());
         let [[a, e], [b, f], [c, g], [d, h]] = [halves(avx2, ae), halves(avx2, bf), halves(avx2, cg), halves(avx2, dh)];
         [a, b, c, d, e, f, g, h]
+    }
+    #[inline(always)]
+    fn squeezed([x, y, z, w]: [Self; 4], hits: u32) -> ([Self; 4], usize) {
+        let (avx2, hits) = (x.0.token(), hits as usize % HITS.len());
+        let order: __m256i = u32x8::simd_from(avx2, HITS[hits]).into();
+        let [x, y] = [permuted(avx2, x.0.into(), order), permuted(avx2, y.0.into(), order)];
+        let [z, w] = [permuted(avx2, z.0.into(), order), permuted(avx2, w.0.into(), order)];
+        let columns =
+            [Self(x.simd_into(avx2)), Self(y.simd_into(avx2)), Self(z.simd_into(avx2)), Self(w.simd_into(avx2))];
+        (columns, usize::from(COUNTS[hits]))
     }
     #[inline(always)]
     fn to_bitmask(self) -> u32 {

@@ -71,6 +71,17 @@ pub(crate) trait Eight:
         let ([a, e], [b, f], [c, g], [d, h]) = (halves(x), halves(y), halves(z), halves(w));
         bytemuck::cast([f32x4::transpose([a, b, c, d]), f32x4::transpose([e, f, g, h])])
     }
+    /// Four columns in which lanes whose bits are set come first, in their order, and how many these are; behind them is anything.
+    #[inline(always)]
+    fn squeezed(columns: [Self; 4], hits: u32) -> ([Self; 4], usize) {
+        let ([x, ..], mut rows, mut len) = (columns, [[0.0; 4]; LANES], 0);
+        for (lane, row) in Self::rows_of(columns).into_iter().enumerate() {
+            // Written whether it is a hit or not, and then written over, so that there is no branch to guess.
+            rows[len % LANES] = row;
+            len += (hits >> lane & 1) as usize;
+        }
+        (x.quads_of(rows), len)
+    }
     /// The largest of numbers none of which is below zero; anything, where one is no number.
     #[inline(always)]
     fn largest_lane(self) -> f32 {
@@ -285,6 +296,37 @@ mod tests {
             assert_eq!(one.1, other.1);
             for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");
+            }
+        }
+    }
+
+    struct Squeeze([[f32; LANES]; 4], u32);
+
+    impl Kernel for Squeeze {
+        type Output = ([[f32; LANES]; 4], usize);
+        #[inline(always)]
+        fn run<F: Eight>(self, like: F) -> Self::Output {
+            let (columns, len) = F::squeezed(self.0.map(|lanes| like.of(lanes)), self.1);
+            (columns.map(Eight::to_array), len)
+        }
+    }
+
+    #[test]
+    fn hits_come_first_and_in_their_order_in_all_registers() {
+        let columns = [0, 8, 16, 24].map(|first| core::array::from_fn(|lane| f32::from_bits(first + lane as u32)));
+        for hits in 0..256 {
+            let lanes = (0..LANES).filter(|lane| hits >> lane & 1 == 1);
+            for (found, len) in [run(Squeeze(columns, hits)), Squeeze(columns, hits).run(wide::f32x8::ZERO)] {
+                assert_eq!(len, lanes.clone().count());
+                for (column, found) in columns.iter().zip(found) {
+                    assert!(
+                        found[..len]
+                            .iter()
+                            .copied()
+                            .map(f32::to_bits)
+                            .eq(lanes.clone().map(|lane| column[lane].to_bits()))
+                    );
+                }
             }
         }
     }

@@ -131,6 +131,7 @@ impl Model {
         let colliders = colliders(&scenery, widest > 0.0).map_err(|error| error.in_file(path))?;
         let balls = start.balls(file);
         let forces = (file.forces.iter().cloned().chain(start.forces).collect(), sinks, pushes, goals);
+        file.check_lengths(widest).map_err(|error| error.in_file(path))?;
         file.check_reach(&forces).map_err(|error| error.in_file(path))?;
         let room = file.room.map_or(Room::OPEN, |room| room.room());
         let index = Periodic { room, index: file.run.index };

@@ -1,15 +1,17 @@
 //! A room whose opposite faces are one, as files say it.
 
 use super::numbers::{Checked, finite, zero_or_more};
-use super::{Response, SceneError, SceneFile};
+use super::{SceneError, SceneFile};
+use crate::constrain::{ConstraintKind, Distance, Rope};
 use crate::force::{Force, ForceKind};
 use crate::index::Room;
+use crate::math::max;
 use alloc::format;
 use alloc::string::String;
 use glam::Vec3;
 
-/// A box whose opposite faces are one: what leaves it at one comes in at the other, and forces between neighbours and springs act through its
-/// sides.
+/// A box whose opposite faces are one: what leaves it at one comes in at the other. Forces between neighbours, springs, contacts of balls,
+/// distances, ropes and attachments act through its sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -54,6 +56,32 @@ impl SceneFile {
         Err(SceneError::value("room.sides", message))
     }
 
+    /// Checks that what keeps particles at distances, and balls as wide as so much \[m\], find one way the shortest.
+    pub(super) fn check_lengths(&self, widest: f32) -> Checked {
+        let Some(half) = self.room.map(|room| room.room().half()) else { return Ok(()) };
+        if self.contacts.is_some() && !(2.0 * widest < half) {
+            let message =
+                format!("are too short: balls are {} m wide, and have to be less than half of each side", 2.0 * widest);
+            return Err(SceneError::value("room.sides", message));
+        }
+        let bound = |constraint: &ConstraintKind| match constraint {
+            ConstraintKind::Distance(Distance { length, .. }) => *length,
+            ConstraintKind::Rope(Rope { lengths, .. }) => lengths.iter().copied().fold(0.0, max),
+            _ => 0.0,
+        };
+        let constraints = self.constraints.iter().map(bound).enumerate().map(|(i, length)| ("constraints", i, length));
+        let springs = self.springs.iter().enumerate().map(|(i, spring)| ("springs", i, spring.rest_length));
+        for (name, i, length) in constraints.chain(springs) {
+            if !(length < half) {
+                let message = format!(
+                    "keeps particles {length} m apart: in the scene's room that has to be less than half of each side"
+                );
+                return Err(SceneError::value(format!("{name}[{i}]"), message));
+            }
+        }
+        Ok(())
+    }
+
     /// The first part of the scene that acts along straight ways alone.
     fn straight(&self) -> Option<(String, &'static str)> {
         let far = |force: &ForceKind| match force {
@@ -67,15 +95,16 @@ impl SceneFile {
         };
         let force = self.forces.iter().enumerate().find_map(|(i, force)| Some((format!("forces[{i}]"), far(force)?)));
         let part = |name: &str, is_empty: bool, what| (!is_empty).then(|| (format!("{name}[0]"), what));
-        let contacts = match self.contacts {
-            Some(Response::Impulse {} | Response::Position(_)) => {
-                Some(("contacts".into(), "contacts by impulse or by position (by force they can)"))
-            }
-            _ => None,
+        let bound = |constraint: &ConstraintKind| match constraint {
+            ConstraintKind::Distance(_) | ConstraintKind::Rope(_) | ConstraintKind::Attach(_) => None,
+            ConstraintKind::Cluster(_) => Some("clusters"),
+            ConstraintKind::Shell(_) | ConstraintKind::StrainLimits(_) => Some("surfaces of particles"),
+            ConstraintKind::Strands(_) => Some("strands"),
         };
+        let constraint =
+            self.constraints.iter().enumerate().find_map(|(i, one)| Some((format!("constraints[{i}]"), bound(one)?)));
         force
-            .or(contacts)
-            .or(part("constraints", self.constraints.is_empty(), "constraints"))
+            .or(constraint)
             .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))
             .or(part("boxes", self.boxes.is_empty(), "rigid bodies"))
             .or(part("strands", self.strands.is_empty(), "strands"))

@@ -2,6 +2,7 @@
 
 use super::super::{Bodies, Substep, Words};
 use super::touch::Touch;
+use crate::index::between;
 use crate::material::{of_two, on_surface};
 use crate::math::{length, max, min};
 use crate::memory::{take, take_vectors};
@@ -118,12 +119,13 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
         *middle = x + v * half;
     }
     let (middle, lists, room) = (&*middle, &mut *kept.lists, &mut *kept.pairs);
+    let around = bodies.near.room();
     let Bodies { velocity, radius, inverse_mass, material, elasticity, materials, report, near, .. } = bodies;
     near.pairs(middle, reach, &mut |row, other| {
         let (a, b) = (row as usize, other as usize);
         let way = length(velocity[a] - velocity[b]) * half;
         let near = radius[a] + radius[b] + MARGIN * min(radius[a], radius[b]) + way;
-        let d = middle[a] - middle[b];
+        let d = between(around, middle[b], middle[a]);
         let yielding = inverse_mass[a] + inverse_mass[b];
         let is_sound = |x: f32| x > 0.0 && x < f32::INFINITY;
         if !(d.dot(d) < near * near) || !is_sound(radius[a] + radius[b]) || !is_sound(yielding) {

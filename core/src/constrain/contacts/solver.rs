@@ -4,6 +4,7 @@ use super::super::Bodies;
 use super::lists::{Face, Kept, Pair};
 use super::touch::{hold_back, passed};
 use crate::collide::RESTING;
+use crate::index::{Room, between};
 use crate::math::{aside, largest, length, max, min, sqrt, unit};
 use crate::observe::Impact;
 use crate::particles::Id;
@@ -58,7 +59,7 @@ fn report(bodies: &mut Bodies<'_>, kept: &Kept<'_>) {
     let pairs = kept.pairs[..kept.lists.pairs as usize].iter();
     for pair in pairs.filter(|pair| pair.touch.is_on()) {
         let [a, b] = pair.rows.map(|row| row as usize);
-        let normal = unit(bodies.position[a] - bodies.position[b]);
+        let normal = unit(bodies.between(b, a));
         for (row, other, normal) in [(a, b, normal), (b, a, -normal)] {
             bodies.mark_touching(row);
             let met = Met { row, other: bodies.id(other), normal, surface: Vec3::ZERO };
@@ -116,6 +117,8 @@ struct Pass<'a> {
     owed: &'a mut [Vec3],
     position: &'a mut [Vec3],
     velocity: &'a mut [Vec3],
+    /// The room through whose sides they touch, if there is one.
+    room: Option<&'a Room>,
     radius: &'a [f32],
     inverse_mass: &'a [f32],
     /// Against what drives all of them on average, and the speed that gives them in a step.
@@ -151,6 +154,7 @@ impl<'a> Pass<'a> {
             borne: &mut kept.borne[..len],
             owed: &mut kept.owed[..len],
             position: bodies.position,
+            room: bodies.near.room(),
             velocity: bodies.velocity,
             radius: bodies.radius,
             inverse_mass: bodies.inverse_mass,
@@ -170,7 +174,7 @@ impl<'a> Pass<'a> {
     #[inline(always)]
     fn move_apart(&mut self, pair: &mut Pair) {
         let [a, b] = pair.rows.map(|row| row as usize);
-        let (d, reach) = (self.position[a] - self.position[b], self.radius[a] + self.radius[b]);
+        let (d, reach) = (self.apart(a, b), self.radius[a] + self.radius[b]);
         let square = d.dot(d);
         pair.touch.end();
         let slack = self.slack(a, reach);
@@ -180,7 +184,7 @@ impl<'a> Pass<'a> {
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
             (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance)
         } else if self.fast && square > 0.0 {
-            let Some(normal) = passed(self.x0[a] - self.x0[b], d, reach) else { return };
+            let Some(normal) = passed(between(self.room, self.x0[b], self.x0[a]), d, reach) else { return };
             (normal, reach - d.dot(normal))
         } else {
             return;
@@ -316,7 +320,7 @@ impl<'a> Pass<'a> {
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
         if taken == -slip && wa * wb == 0.0 && self.bounce(pair.touch.elasticity, &along) == 0.0 {
             let reach = self.radius[a] + self.radius[b];
-            let gap = length(self.x0[a] - self.x0[b]) - reach;
+            let gap = length(between(self.room, self.x0[b], self.x0[a])) - reach;
             let [row, other] = if wa > 0.0 { [a, b] } else { [b, a] };
             let way = self.position[other] - self.x0[other];
             let touched = gap.abs() <= self.slack(a, reach);
@@ -345,9 +349,15 @@ impl<'a> Pass<'a> {
         }
     }
 
+    /// The way from the second of two to the first.
+    #[inline(always)]
+    fn apart(&self, a: usize, b: usize) -> Vec3 {
+        between(self.room, self.position[b], self.position[a])
+    }
+
     fn ends(&self, pair: &Pair) -> ([usize; 2], Vec3) {
         let [a, b] = pair.rows.map(|row| row as usize);
-        let d = self.position[a] - self.position[b];
+        let d = self.apart(a, b);
         ([a, b], d * (1.0 / max(length(d), f32::MIN_POSITIVE)))
     }
 
