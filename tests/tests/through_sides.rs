@@ -291,7 +291,7 @@ fn scripts_lead_through_sides() {
     let motion = Motion { drift: Vec3::new(3.0, -2.0, 0.5), swing: Vec3::Z, frequency: 0.7, ..Motion::STILL };
     let start =
         [Vec3::new(0.9, 0.0, 0.0), Vec3::new(-0.9, 0.2, 1.4)].map(|x| Particle { fixed: true, ..ball(x, Vec3::ZERO) });
-    let attach = Attach { particles: [0, 1], motion: motion.clone() };
+    let attach = Attach { particles: [0, 1], motion };
     let index = Periodic { room, index: () };
     for (substeps, h) in [(1, 0.05), (7, 0.2)] {
         let scene = Scene { start: &start, constraints: &attach, substeps, index: &index, ..Scene::EMPTY };
