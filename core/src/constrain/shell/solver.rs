@@ -185,7 +185,7 @@ impl Solver<'_> {
             }
             let Vectors { shift, r, .. } = &mut self.vectors;
             if walls::judge(self.walls, bodies, shift, r) {
-                levels.fold(self.walls);
+                levels.press(self.walls);
             } else if !core::mem::take(&mut roughly) {
                 break;
             }
