@@ -32,19 +32,13 @@ pub(super) fn words(room: &Room) -> usize {
 
 impl<'m> Levels<'m> {
     /// As many as there are graphs, in words: they hold anything.
-    pub(super) fn of(
-        room: &Room,
-        graphs: [Graph<'m>; LEVELS],
-        links: Links<'m>,
-        plate: Plate<'m>,
-        words: &'m mut [u32],
-    ) -> Self {
+    pub(super) fn of(graphs: [Graph<'m>; LEVELS], links: Links<'m>, plate: Plate<'m>, words: &'m mut [u32]) -> Self {
         let [fine, others @ ..] = graphs;
         if fine.rows() == 0 {
             return Self::default();
         }
         let mut rest = words;
-        let finest = Finest::of(fine.into, strips::entries(room.links[0]), links, plate, &mut rest);
+        let finest = Finest::of(fine.into, links, plate, &mut rest);
         let mut count = 0;
         let others = others.map(|graph| {
             let rows = graph.rows();

@@ -187,15 +187,9 @@ impl Kernel for Back<'_, '_> {
 
 impl<'m> Finest<'m> {
     /// In words, with how it bends.
-    pub(super) fn of(
-        into: &'m [u32],
-        entries: usize,
-        links: Links<'m>,
-        plate: Plate<'m>,
-        words: &mut &'m mut [u32],
-    ) -> Self {
+    pub(super) fn of(into: &'m [u32], links: Links<'m>, plate: Plate<'m>, words: &mut &'m mut [u32]) -> Self {
         let strips = links.strips.len();
-        let blocks = super::whole(take(words, 9 * LANES * entries));
+        let blocks = super::whole(take(words, 9 * LANES * links.strips.entries()));
         let [whole, inverse] = [0, 1].map(|_| super::whole(take(words, 6 * LANES * strips)));
         let alone = super::whole(take(words, 9 * LANES * strips));
         let [r, x] = [0, 1].map(|_| super::whole(take(words, 3 * LANES * strips)));

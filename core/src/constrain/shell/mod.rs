@@ -139,7 +139,7 @@ pub struct Shell<P, T, H> {
 
 /// The words that it keeps of each triangle and each fold, and works with; and with each particle.
 const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<Bend>() / 4];
-const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 14];
+const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 15];
 
 impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     /// The numbers of its particles, triangles and hinges.
@@ -299,7 +299,7 @@ where
         let folds = whole(take(&mut rest, hinges.saturating_mul(WORK[1])));
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
-        let mut levels = Levels::of(&room, Graph::all(graphs), links, plate, rest);
+        let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
         let mut solver = Solver {
             params: &self.params,
             step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },

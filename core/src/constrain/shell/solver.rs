@@ -56,6 +56,9 @@ pub(super) struct Vectors<'m> {
     pub(super) r: &'m mut [Vec3],
     pub(super) p: &'m mut [Vec3],
     q: &'m mut [Vec3],
+    /// Who is pressed by a wall, and how many that are.
+    pressing: &'m mut [u32],
+    pressed: usize,
 }
 
 impl<'m> Vectors<'m> {
@@ -65,6 +68,7 @@ impl<'m> Vectors<'m> {
         let count = particles.len();
         let rows = take(&mut rest, count);
         let weight: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, count));
+        let pressing = take(&mut rest, count);
         let [shift, r, p, q] = core::array::from_fn(|_| super::whole(take(&mut rest, 3 * count)));
         for ((row, weight), &number) in rows.iter_mut().zip(&mut *weight).zip(particles) {
             let found = bodies.row_of_start(number);
@@ -76,7 +80,7 @@ impl<'m> Vectors<'m> {
         }
         shift.fill(Vec3::ZERO);
         r.fill(Vec3::ZERO);
-        Self { rows, weight, shift, r, p, q }
+        Self { rows, weight, shift, r, p, q, pressing, pressed: 0 }
     }
 
     /// The rows of some particles, if all are there.
@@ -94,10 +98,11 @@ impl<'m> Vectors<'m> {
 
     /// z ≈ A⁻¹ r, or W r, r being what is left beside what walls bear, and r · z.
     fn precondition(&mut self, levels: &mut Levels<'_>, walls: &mut [Wall], by_masses: bool) -> f32 {
-        walls::hold(walls, self.r);
+        let pressing = &self.pressing[..self.pressed];
+        walls::hold(walls, pressing, self.r);
         if !by_masses {
             levels.cycle(self.r, self.q);
-            walls::filter(walls, self.q);
+            walls::filter(walls, pressing, self.q);
             return lanes::dot(self.r, self.q);
         }
         for ((z, &r), &weight) in self.q.iter_mut().zip(&*self.r).zip(&*self.weight) {
@@ -146,8 +151,8 @@ impl Solver<'_> {
         if !bends_only || (bending > 0.0 && !self.thin) {
             self.resist(bending, bends_only);
         }
-        let Vectors { p, q, .. } = &mut self.vectors;
-        walls::brake(self.walls, p, q);
+        let Vectors { p, q, pressing, pressed, .. } = &mut self.vectors;
+        walls::brake(self.walls, &pressing[..*pressed], p, q);
     }
 
     /// Adds what is not assembled: what bending does, or all.
@@ -170,7 +175,8 @@ impl Solver<'_> {
         let mut enough = [0.0; 2];
         let mut roughly = self.walls.iter().any(Wall::is_near);
         for pass in 0..PASSES {
-            let Vectors { shift, p, .. } = &mut self.vectors;
+            let Vectors { shift, p, pressing, pressed, .. } = &mut self.vectors;
+            *pressed = walls::list(self.walls, pressing);
             if walls::impose(self.walls, bodies, shift, p) {
                 self.apply(levels);
                 let Vectors { shift, r, p, q, .. } = &mut self.vectors;
@@ -210,12 +216,12 @@ impl Solver<'_> {
         if self.last.is_empty() || levels.is_empty() {
             return 0.0;
         }
-        let Vectors { r, p, weight, .. } = &mut self.vectors;
+        let Vectors { r, p, weight, pressing, pressed, .. } = &mut self.vectors;
         for ((p, &last), &weight) in p.iter_mut().zip(&*self.last).zip(&**weight) {
             *p = if weight > 0.0 && last.is_finite() { last } else { Vec3::ZERO };
         }
-        walls::hold(self.walls, r);
-        walls::filter(self.walls, p);
+        walls::hold(self.walls, &pressing[..*pressed], r);
+        walls::filter(self.walls, &pressing[..*pressed], p);
         self.apply(levels);
         let Vectors { shift, r, p, q, .. } = &mut self.vectors;
         let (along, curvature) = (lanes::dot(p, r), lanes::dot(p, q));

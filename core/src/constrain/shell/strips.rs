@@ -12,6 +12,8 @@ use crate::memory::take;
 pub(super) const NONE: u32 = u32::MAX;
 /// So many of eight rows have to be linked with rows that lie one behind the other for these to be taken as they lie.
 const RUN: u32 = 4;
+/// The most links that the rows of a strip may have: who is linked with hundreds is not solved in strips.
+const KEYS: usize = 512;
 /// A bit for each lane.
 pub(super) const ALL: u32 = (1 << LANES) - 1;
 
@@ -66,6 +68,11 @@ impl<'m> Strips<'m> {
             }
         }
         Some(())
+    }
+
+    /// The number of entries.
+    pub(super) fn entries(&self) -> usize {
+        self.starts.last().map_or(0, |&end| end as usize)
     }
 
     pub(super) fn len(&self) -> usize {
@@ -215,21 +222,24 @@ impl Making<'_> {
 /// Tells of the links of a strip's rows, one of so many strips, where the first of eight would lead that lie one behind the other, and which of
 /// them there are: from the least on.
 fn each(graph: &Graph<'_>, [strip, strips]: [usize; 2], mut visit: impl FnMut(i64, u32) -> Option<()>) -> Option<()> {
-    let base = |lane: usize, link: u32| {
-        let link = link as usize;
-        (LANES * (link % strips) + link / strips) as i64 - lane as i64
-    };
+    let mut keys = [(i64::MAX, 0); KEYS];
+    let mut count = 0;
+    for lane in 0..LANES {
+        for &link in graph.row(lane * strips + strip) {
+            let link = link as usize;
+            let key = keys.get_mut(count)?;
+            *key = ((LANES * (link % strips) + link / strips) as i64 - lane as i64, 1 << lane);
+            count += 1;
+        }
+    }
     let mut last = i64::MIN;
     loop {
         let (mut least, mut lanes) = (i64::MAX, 0);
-        for lane in 0..LANES {
-            for &link in graph.row(lane * strips + strip) {
-                let base = base(lane, link);
-                if base > last && base < least {
-                    (least, lanes) = (base, 0);
-                }
-                lanes |= u32::from(base == least) << lane;
+        for &(base, lane) in &keys[..count] {
+            if base > last && base < least {
+                (least, lanes) = (base, 0);
             }
+            lanes |= if base == least { lane } else { 0 };
         }
         if lanes == 0 {
             return Some(());

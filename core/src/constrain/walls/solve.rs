@@ -11,9 +11,18 @@ const SETTLED: f32 = 0.1;
 /// The most that a particle is braked by, in its own masses.
 const MOST: f32 = 1e3;
 
-/// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
-pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
-    for (wall, left) in walls.iter_mut().zip(left).filter(|(wall, _)| wall.state > NEAR) {
+/// Lists the walls that press, and tells how many there are.
+pub(in crate::constrain) fn list(walls: &[Wall], pressing: &mut [u32]) -> usize {
+    let all = walls.iter().enumerate().filter(|(_, wall)| wall.presses());
+    pressing.iter_mut().zip(all).map(|(to, (number, _))| *to = number as u32).count()
+}
+
+/// Takes of the forces that are left what walls bear, of which those that press are listed, so that what remains is what moves particles.
+pub(in crate::constrain) fn hold(walls: &mut [Wall], pressing: &[u32], left: &mut [Vec3]) {
+    for &number in pressing {
+        let (Some(wall), Some(left)) = (walls.get_mut(number as usize), left.get_mut(number as usize)) else {
+            continue;
+        };
         let borne = if wall.state == STICKS { *left } else { wall.normal * left.dot(wall.normal) };
         wall.held += borne;
         *left -= borne;
@@ -21,16 +30,19 @@ pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
 }
 
 /// Leaves of directions what walls let pass.
-pub(in crate::constrain) fn filter(walls: &[Wall], directions: &mut [Vec3]) {
-    for (wall, p) in walls.iter().zip(directions).filter(|(wall, _)| wall.state > NEAR) {
+pub(in crate::constrain) fn filter(walls: &[Wall], pressing: &[u32], directions: &mut [Vec3]) {
+    for &number in pressing {
+        let (Some(wall), Some(p)) = (walls.get(number as usize), directions.get_mut(number as usize)) else { continue };
         *p = if wall.state == STICKS { Vec3::ZERO } else { aside(*p, wall.normal) };
     }
 }
 
 /// Adds how walls brake particles that go `p` along them.
-pub(in crate::constrain) fn brake(walls: &[Wall], p: &[Vec3], q: &mut [Vec3]) {
-    for ((wall, &p), q) in walls.iter().zip(p).zip(q).filter(|((wall, _), _)| wall.state == SLIDES) {
-        if wall.brake > 0.0 {
+pub(in crate::constrain) fn brake(walls: &[Wall], pressing: &[u32], p: &[Vec3], q: &mut [Vec3]) {
+    for &number in pressing {
+        let number = number as usize;
+        let (Some(wall), Some(&p), Some(q)) = (walls.get(number), p.get(number), q.get_mut(number)) else { continue };
+        if wall.state == SLIDES && wall.brake > 0.0 {
             *q += aside(p, wall.normal) * wall.brake;
         }
     }
