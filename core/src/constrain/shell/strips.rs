@@ -212,7 +212,7 @@ impl Making<'_> {
     }
 
     fn set(&mut self, at: usize, lane: usize, base: i64, strip: usize) {
-        let other = base as usize + lane;
+        let other = (base + lane as i64) as usize;
         self.columns[at][lane] = other as u32;
         let there = other / LANES;
         self.below[at] |= u32::from(there < strip) << lane | u32::from(there == strip) << (LANES + lane);
