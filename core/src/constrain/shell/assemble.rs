@@ -29,7 +29,7 @@ impl Solver<'_> {
         lanes::run(Membranes { solver: self, finest });
         lanes::run(Settle { finest, weight: self.vectors.weight });
         levels.sum();
-        levels.press(self.walls);
+        levels.press(self.walls, self.vectors.pressing());
     }
 
     /// Adds to a fold's triangles how their corners hold each other, by its moment, and by what the matrix of bending lacks of its stiffness; or
@@ -55,7 +55,9 @@ impl Solver<'_> {
                 let ([x, y, z], (strip, lane)) = (force.to_array(), finest.links.strips.at(corner as usize));
                 let Some(whole) = finest.whole.get_mut(strip) else { continue };
                 for (own, number) in whole.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z]) {
-                    own[lane] += stiffness * number;
+                    if let Some(own) = own.get_mut(lane) {
+                        *own += stiffness * number;
+                    }
                 }
             }
         }

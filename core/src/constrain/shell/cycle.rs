@@ -82,12 +82,14 @@ impl<'m> Levels<'m> {
 
     /// Inverts the blocks of rows with themselves. What a wall presses hardly gives way, in the cycle too; conjugate gradients know that it does not
     /// at all. It is done anew where other walls press: a cycle that takes them for what they were costs several times the iterations.
-    pub(super) fn press(&mut self, walls: &[Wall]) {
+    pub(super) fn press(&mut self, walls: &[Wall], pressing: &[u32]) {
         let Self { finest, others, count } = self;
         let others = &mut others[..*count];
         finest.inverse.copy_from_slice(finest.whole);
         others.iter_mut().for_each(|level| level.inverse.copy_from_slice(level.whole));
-        for (row, wall) in walls.iter().enumerate().filter(|(_, wall)| wall.presses()) {
+        for &row in pressing {
+            let row = row as usize;
+            let Some(wall) = walls.get(row) else { continue };
             let stiff = finest.stiffen(row, wall).to_cols_array();
             let [a, b, c, d, e, f, g, h, i] = stiff;
             let mut into = finest.into.get(row);

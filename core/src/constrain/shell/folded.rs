@@ -30,10 +30,9 @@ impl Kernel for Settle<'_, '_> {
         let Self { finest, weight } = self;
         let Finest { links, blocks, whole, alone, plate, bending, x, .. } = finest;
         x.fill(0.0);
-        for (row, &weight) in weight.iter().enumerate() {
-            let (strip, lane) = links.strips.at(row);
-            if let Some(x) = x.get_mut(LANES * strip + lane) {
-                *x = weight;
+        for (lane, weights) in weight.chunks(links.strips.len().max(1)).enumerate() {
+            for (strip, &weight) in x.as_chunks_mut::<LANES>().0.iter_mut().zip(weights) {
+                strip[lane] = weight;
             }
         }
         let (weight, zero, one, bending) = (&**x, like.all(0.0), like.all(1.0), like.all(*bending));

@@ -318,6 +318,7 @@ where
         let walls = walls::of(share.step, particles);
         walls::gather(walls, self.particles.as_ref(), bodies);
         solver.walls = walls;
+        solver.list_walls();
         solver.assemble(&mut levels);
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);

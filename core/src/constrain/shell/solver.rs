@@ -55,7 +55,7 @@ pub(super) struct Vectors<'m> {
     /// Residuals, directions, and what the system makes of these.
     pub(super) r: &'m mut [Vec3],
     pub(super) p: &'m mut [Vec3],
-    q: &'m mut [Vec3],
+    pub(super) q: &'m mut [Vec3],
     /// Who is pressed by a wall, and how many that are.
     pressing: &'m mut [u32],
     pressed: usize,
@@ -87,6 +87,17 @@ impl<'m> Vectors<'m> {
     pub(super) fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
         let rows = corners.map(|corner| self.rows.get(corner as usize).copied().unwrap_or(NOBODY) as usize);
         rows.iter().all(|&row| row != NOBODY as usize).then_some(rows)
+    }
+
+    /// A number for each, where what the system makes of directions no longer counts.
+    pub(super) fn stamps(&mut self) -> &mut [u32] {
+        let count = self.rows.len();
+        &mut bytemuck::cast_slice_mut(self.q)[..count]
+    }
+
+    /// Who is pressed by a wall.
+    pub(super) fn pressing(&self) -> &[u32] {
+        &self.pressing[..self.pressed]
     }
 
     /// The first direction, and r · z.
@@ -170,14 +181,18 @@ impl Solver<'_> {
         }
     }
 
+    /// Lists the walls that press.
+    pub(super) fn list_walls(&mut self) {
+        self.vectors.pressed = walls::list(self.walls, self.vectors.pressing);
+    }
+
     /// Solves it, and that anew for as long as other walls press than before.
     pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>) {
         let mut enough = [0.0; 2];
         let mut roughly = self.walls.iter().any(Wall::is_near);
         for pass in 0..PASSES {
             let Vectors { shift, p, pressing, pressed, .. } = &mut self.vectors;
-            *pressed = walls::list(self.walls, pressing);
-            if walls::impose(self.walls, bodies, shift, p) {
+            if walls::impose(self.walls, &pressing[..*pressed], bodies, shift, p) {
                 self.apply(levels);
                 let Vectors { shift, r, p, q, .. } = &mut self.vectors;
                 add_scaled(shift, 1.0, p);
@@ -191,7 +206,8 @@ impl Solver<'_> {
             }
             let Vectors { shift, r, .. } = &mut self.vectors;
             if walls::judge(self.walls, bodies, shift, r) {
-                levels.press(self.walls);
+                self.list_walls();
+                levels.press(self.walls, self.vectors.pressing());
             } else if !core::mem::take(&mut roughly) {
                 break;
             }
@@ -200,7 +216,7 @@ impl Solver<'_> {
             // Which bits a NaN has depends on the machine, and these words are in the hash.
             *last = if shift.is_finite() { shift } else { Vec3::ZERO };
         }
-        if !self.walls.iter().any(Wall::presses) {
+        if self.vectors.pressed == 0 {
             let Vectors { rows, weight, shift, .. } = &mut self.vectors;
             levels.rid_of_drift(
                 rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),
@@ -246,7 +262,8 @@ impl Solver<'_> {
     ) {
         let mut by_masses = levels.is_empty();
         let mut first = self.vectors.begin(levels, self.walls, by_masses);
-        let residual = if self.walls.iter().any(Wall::rubs) { ROUGH } else { RESIDUAL };
+        let rubs = |&number: &u32| self.walls.get(number as usize).is_some_and(Wall::rubs);
+        let residual = if self.vectors.pressing().iter().any(rubs) { ROUGH } else { RESIDUAL };
         let mut note = |first: f32, by_masses: bool| {
             let kind = usize::from(by_masses);
             let first = first + if by_masses { 0.0 } else { energy };

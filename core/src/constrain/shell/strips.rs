@@ -132,7 +132,7 @@ impl<'m> Strips<'m> {
     pub(super) fn place(&self, row: usize, other: u32) -> Option<(usize, usize)> {
         let ((strip, lane), (there, beside)) = (self.at(row), self.at(other as usize));
         let other = (LANES * there + beside) as u32;
-        let entry = self.range(strip).find(|&entry| self.columns(entry)[lane] == other)?;
+        let entry = self.range(strip).find(|&entry| self.columns(entry).get(lane) == Some(&other))?;
         (other != (LANES * strip + lane) as u32).then_some((entry, lane))
     }
 

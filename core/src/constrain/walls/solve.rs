@@ -49,12 +49,23 @@ pub(in crate::constrain) fn brake(walls: &[Wall], pressing: &[u32], p: &[Vec3], 
 }
 
 /// How far particles have to be moved besides to be where walls want them; tells whether anybody has to.
-pub(in crate::constrain) fn impose(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], by: &mut [Vec3]) -> bool {
+pub(in crate::constrain) fn impose(
+    walls: &mut [Wall],
+    pressing: &[u32],
+    bodies: &Bodies<'_>,
+    shift: &[Vec3],
+    by: &mut [Vec3],
+) -> bool {
     let h = bodies.substep.seconds();
     by.fill(Vec3::ZERO);
     let mut some = false;
-    for ((wall, &shift), by) in walls.iter_mut().zip(shift).zip(by) {
-        if wall.state <= NEAR || wall.fresh == 0 {
+    for &number in pressing {
+        let number = number as usize;
+        let (Some(wall), Some(&shift), Some(by)) = (walls.get_mut(number), shift.get(number), by.get_mut(number))
+        else {
+            continue;
+        };
+        if wall.fresh == 0 {
             continue;
         }
         wall.fresh = 0;
@@ -152,17 +163,24 @@ pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weig
             *shift += wall.grip.hold(&wall.touch, slid / h, pressed) * h;
         }
     }
-    keep(walls, bodies, shifts);
+    keep(walls, bodies, shifts, |_| ());
 }
 
-/// Moves out whoever is still behind a wall, or again.
-pub(in crate::constrain) fn keep(walls: &mut [Wall], bodies: &Bodies<'_>, shifts: &mut [Vec3]) {
+/// Moves out whoever is still behind a wall, or again, and tells who that is.
+pub(in crate::constrain) fn keep(
+    walls: &mut [Wall],
+    bodies: &Bodies<'_>,
+    shifts: &mut [Vec3],
+    mut tell: impl FnMut(usize),
+) {
     let h = bodies.substep.seconds();
-    for (wall, shift) in walls.iter_mut().zip(shifts).filter(|(wall, _)| wall.state >= NEAR) {
+    for (number, (wall, shift)) in walls.iter_mut().zip(shifts).enumerate().filter(|(_, (wall, _))| wall.state >= NEAR)
+    {
         let missing = wall.offset - (bodies.position[wall.row as usize] + *shift).dot(wall.normal);
         if missing > 0.0 {
             *shift += wall.normal * missing;
             wall.touch.begin(wall.touch.pressed() + missing / h);
+            tell(number);
         }
     }
 }
