@@ -5,7 +5,7 @@ use super::membrane::Cell;
 use super::solver::{NOBODY, Solver, Vectors};
 use crate::constrain::{Bodies, walls};
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors as Side};
-use crate::math::{length, max, min, sqrt};
+use crate::math::{length, max, sqrt};
 use glam::Vec3;
 
 /// Passes over all edges, at the most.
@@ -15,8 +15,7 @@ const SLACK: f32 = 1e-3;
 
 impl Solver<'_> {
     /// Shortens, by equal and opposite shifts, the edges that have turned so far that what is solved along the directions of the sub-step's
-    /// beginning leaves them longer than they are at rest and than it means them to be: to no more than they were at the beginning, as what that
-    /// adds while they turn is no strain that anything has pulled at.
+    /// beginning leaves them longer than they are at rest and than it means them to be.
     pub(super) fn tighten(&mut self, bodies: &Bodies<'_>) {
         let Vectors { shift, p, .. } = &mut self.vectors;
         p.copy_from_slice(shift);
@@ -66,7 +65,7 @@ impl Solver<'_> {
         if !(far > meant * (1.0 + SLACK)) {
             return false;
         }
-        let most = max(min(meant, length(before)), rest(self));
+        let most = max(meant, rest(self));
         if !(far > most * (1.0 + SLACK)) {
             return false;
         }
@@ -122,7 +121,7 @@ impl Tighten<'_, '_, '_, '_> {
     #[inline(always)]
     fn none_of_eight<F: Eight>(&self, like: F, first: usize) -> bool {
         let all = self.edges(like, first);
-        let Some((cells, [now, meant, least])) = all else { return false };
+        let Some((cells, [now, meant])) = all else { return false };
         let twice = like.all(2.0) * column!(like, cells, |cell| cell.area);
         let [a, b, c, d] = [
             column!(like, cells, |cell| cell.inverse[0]),
@@ -136,15 +135,15 @@ impl Tighten<'_, '_, '_, '_> {
         let mut some = like.all(0.0);
         for side in 0..3 {
             let [x, y] = sides[side];
-            let most = lanes::max(least[side], (x * x + y * y).sqrt());
+            let most = lanes::max(meant[side], (x * x + y * y).sqrt());
             some = some | (now[side].simd_gt(meant[side] * slack) & now[side].simd_gt(most * slack));
         }
         !(some & twice.simd_gt(like.all(0.0))).any()
     }
 
-    /// How long the edges of eight are, and mean to be, and the least of that and of what they were.
+    /// How long the edges of eight are, and mean to be.
     #[inline(always)]
-    fn edges<F: Eight>(&self, like: F, first: usize) -> Option<(&[Cell; LANES], [[F; 3]; 3])> {
+    fn edges<F: Eight>(&self, like: F, first: usize) -> Option<(&[Cell; LANES], [[F; 3]; 2])> {
         let Solver { triangles, cells, ref vectors, .. } = *self.solver;
         let (corners, cells) = (eight(triangles, first)?, eight(cells, first)?);
         let mut rows = [[NOBODY; 3]; LANES];
@@ -155,15 +154,13 @@ impl Tighten<'_, '_, '_, '_> {
         let before: [Side<F>; 3] = gathered(like, self.bodies.before[0], &rows)?;
         let shift: [Side<F>; 3] = gathered(like, vectors.shift, corners)?;
         let solved: [Side<F>; 3] = gathered(like, vectors.p, corners)?;
-        let [mut now, mut meant, mut least] = [[like.all(0.0); 3]; 3];
+        let [mut now, mut meant] = [[like.all(0.0); 3]; 2];
         for side in 0..3 {
             let (way, before) = (edge(&places, side), edge(&before, side));
             now[side] = (way + edge(&shift, side)).length();
-            let was = before.length();
-            meant[side] = way.length() + before.dot(edge(&solved, side)) / was;
-            least[side] = lanes::min(meant[side], was);
+            meant[side] = way.length() + before.dot(edge(&solved, side)) / before.length();
         }
-        Some((cells, [now, meant, least]))
+        Some((cells, [now, meant]))
     }
 }
 
