@@ -32,7 +32,7 @@ pub(super) struct Strips<'m> {
 
 /// Entries for so many links: rows with fewer than their neighbours leave places empty.
 pub(super) fn entries(links: usize) -> usize {
-    links / 8 + links / 16 + 16
+    links / 8 + links / 16 + links / 32 + 16
 }
 
 /// Words for so many rows and entries.
@@ -177,6 +177,20 @@ impl Making<'_> {
         let is_run = |base: i64, lanes: u32| {
             base >= 0 && base + LANES as i64 <= (LANES * strips) as i64 && lanes.count_ones() >= RUN
         };
+        let (mut runs, mut others, mut all) = (0, [0; LANES], [0; LANES]);
+        each(graph, [strip, strips], |base, lanes| {
+            let run = is_run(base, lanes);
+            runs += usize::from(run);
+            for lane in (0..LANES).filter(|lane| lanes & 1 << lane != 0) {
+                all[lane] += 1;
+                others[lane] += usize::from(!run);
+            }
+            Some(())
+        })?;
+        // Where few go together, each has its own places: as many as whoever has most.
+        let most = |counts: [usize; LANES]| counts.into_iter().fold(0, usize::max);
+        let pays = 2 * (runs + most(others)) <= 3 * most(all);
+        let is_run = |base: i64, lanes: u32| pays && is_run(base, lanes);
         each(graph, [strip, strips], |base, lanes| {
             if is_run(base, lanes) {
                 let at = self.add(strip)?;
