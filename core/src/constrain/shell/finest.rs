@@ -25,6 +25,8 @@ pub(super) struct Finest<'m> {
     /// where all go the same way.
     pub(super) whole: &'m mut [Own],
     pub(super) inverse: &'m mut [Own],
+    /// What sweeps take them for more than they are, in each direction, by what rows of one strip do to each other.
+    pub(super) soft: &'m mut [[f32; LANES]],
     pub(super) alone: &'m mut [Block],
     /// How it bends beyond what is in blocks, and so many times that: bending stiffness × h².
     pub(super) plate: Plate<'m>,
@@ -36,7 +38,7 @@ pub(super) struct Finest<'m> {
 
 /// Words for so many rows and entries.
 pub(super) fn words(rows: usize, entries: usize) -> usize {
-    rows.div_ceil(LANES) * LANES * (2 * 6 + 9 + 2 * 3) + 9 * LANES * entries
+    rows.div_ceil(LANES) * LANES * (1 + 2 * 6 + 9 + 2 * 3) + 9 * LANES * entries
 }
 
 /// Who is linked with whom, and what becomes of that.
@@ -191,9 +193,9 @@ impl<'m> Finest<'m> {
         let strips = links.strips.len();
         let blocks = super::whole(take(words, 9 * LANES * links.strips.entries()));
         let [whole, inverse] = [0, 1].map(|_| super::whole(take(words, 6 * LANES * strips)));
-        let alone = super::whole(take(words, 9 * LANES * strips));
+        let (soft, alone) = (super::whole(take(words, LANES * strips)), super::whole(take(words, 9 * LANES * strips)));
         let [r, x] = [0, 1].map(|_| super::whole(take(words, 3 * LANES * strips)));
-        Self { links, into, blocks, whole, inverse, alone, plate, bending: 0.0, r, x }
+        Self { links, into, blocks, whole, inverse, soft, alone, plate, bending: 0.0, r, x }
     }
 }
 
@@ -237,7 +239,12 @@ impl Finest<'_> {
     fn leave<F: Eight>(&self, like: F, next: &mut [Quad]) {
         let x = columns(self.x);
         for strip in 0..self.links.strips.len() {
-            let mut left = Vectors([like.all(0.0); 3]);
+            let soft = self.soft.get(strip).map_or(
+                like.all(0.0),
+                #[inline(always)]
+                |soft| like.of(*soft),
+            );
+            let mut left = load(like, x, LANES * strip) * soft;
             let range = self.links.strips.range(strip);
             for (entry, block) in range.clone().zip(self.blocks.get(range).unwrap_or(&[])) {
                 let below = self.links.strips.below(entry);
@@ -273,10 +280,10 @@ impl Finest<'_> {
 
     #[inline(always)]
     fn back<F: Eight>(&mut self, like: F, z: &mut [Vec3]) {
-        let Self { links: Links { strips, .. }, blocks, inverse, r, x, .. } = self;
+        let Self { links: Links { strips, .. }, blocks, inverse, soft, r, x, .. } = self;
         let (r, mut x) = (columns(r), columns_mut(x));
-        for (strip, inverse) in inverse.iter().enumerate().rev() {
-            let mut left = load(like, r, LANES * strip);
+        for (strip, (inverse, soft)) in inverse.iter().zip(&**soft).enumerate().rev() {
+            let mut left = load(like, r, LANES * strip) + load(like, shared(&x), LANES * strip) * like.of(*soft);
             let range = strips.range(strip);
             for (entry, block) in range.clone().zip(blocks.get(range).unwrap_or(&[])) {
                 left = left - times(like, block, strips.vectors(like, shared(&x), entry));

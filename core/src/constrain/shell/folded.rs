@@ -145,7 +145,8 @@ impl Finest<'_> {
     /// Adds to the blocks of rows with themselves a half of how hard others of their strips hold them, which sweeps take as they were: so that a
     /// sweep forth and one back never go too far.
     pub(super) fn soften(&mut self) {
-        for (strip, own) in self.inverse.iter_mut().enumerate() {
+        for (strip, (own, soft)) in self.inverse.iter_mut().zip(&mut *self.soft).enumerate() {
+            *soft = [0.0; LANES];
             for entry in self.links.strips.range(strip) {
                 let within = self.links.strips.within(entry);
                 if within == 0 {
@@ -154,6 +155,7 @@ impl Finest<'_> {
                 let Some(block) = self.blocks.get(entry) else { return };
                 for lane in (0..LANES).filter(|lane| within & 1 << lane != 0) {
                     let held = 0.5 * sqrt(block.iter().map(|lanes| lanes[lane] * lanes[lane]).sum());
+                    soft[lane] += held;
                     DIAGONAL.into_iter().for_each(|i| own[i][lane] += held);
                 }
             }
