@@ -1,10 +1,11 @@
 //! The blocks of a shell's system, for its graphs.
 
 use super::cycle::Levels;
+use super::eights::{WIDE, at_rest, column, eight, vectors};
+use super::finest::Finest;
+use super::folded::Settle;
 use super::solver::Solver;
-use super::sweep::{BLOCK, Level};
-use crate::lanes;
-use glam::Mat3;
+use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 
 impl Solver<'_> {
     /// Puts M + h² K into the blocks of the finest graph, and of all others what comes of it. Of bending edges have a part, and the matrix of
@@ -13,48 +14,28 @@ impl Solver<'_> {
         if levels.is_empty() {
             return;
         }
-        let [finest, ..] = &mut levels.all;
+        let finest = &mut levels.finest;
         self.thin = finest.plate.is_thin(self.params);
-        finest.blocks.fill(0.0);
-        finest.whole.fill(0.0);
+        finest.blocks.as_flattened_mut().as_flattened_mut().fill(0.0);
+        finest.whole.as_flattened_mut().as_flattened_mut().fill(0.0);
         let bending = self.bending() * self.step.rate;
         finest.bending = if self.thin { bending } else { 0.0 };
-        lanes::widest(
-            #[inline(always)]
-            || {
-                for i in 0..if bending > 0.0 { self.hinges.len() } else { 0 } {
-                    self.add_fold(finest, bending, i);
-                }
-                for i in 0..self.triangles.len() {
-                    self.add_membrane(finest, i);
-                }
-                self.settle_rows(finest);
-            },
-        );
-        levels.fold(self.walls);
-    }
-
-    /// Adds the blocks of a triangle's edges: of the link from the lesser number to the greater.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn add_membrane(&self, finest: &mut Level<'_>, i: usize) {
-        let (Some(corners), Some(cell), Some(strain)) = (self.triangles.get(i), self.cells.get(i), self.strains.get(i))
-        else {
-            return;
-        };
-        let blocks = strain.blocks(cell, self.params, &self.step);
-        for (k, block) in blocks.into_iter().enumerate() {
-            let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            let (from, to, block) = if from < to { (from, to, block) } else { (to, from, block.transpose()) };
-            if let Some(link) = finest.graph.link(from as usize, to) {
-                add(finest.blocks, link, &block);
-            }
+        if bending > 0.0 {
+            lanes::widest(
+                #[inline(always)]
+                || (0..self.hinges.len()).for_each(|i| self.add_fold(finest, bending, i)),
+            );
         }
+        lanes::run(Membranes { solver: self, finest });
+        lanes::run(Settle { finest, weight: self.vectors.weight });
+        levels.sum();
+        levels.press(self.walls, self.vectors.pressing());
     }
 
     /// Adds to a fold's triangles how their corners hold each other, by its moment, and by what the matrix of bending lacks of its stiffness; or
     /// what its corners do to themselves.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn add_fold(&mut self, finest: &mut Level<'_>, bending: f32, i: usize) {
+    fn add_fold(&mut self, finest: &mut Finest<'_>, bending: f32, i: usize) {
         let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
             return;
         };
@@ -71,8 +52,13 @@ impl Solver<'_> {
             besides = [0, 1].map(|side| [excess, stiffness * fold.slip(bend, side)]);
         } else {
             for (corner, force) in hinge.corners().into_iter().zip(fold.forces(1.0)) {
-                let [x, y, z] = force.to_array().map(|part| force * (stiffness * part));
-                add(finest.whole, corner as usize, &Mat3::from_cols(x, y, z));
+                let ([x, y, z], (strip, lane)) = (force.to_array(), finest.links.strips.at(corner as usize));
+                let Some(whole) = finest.whole.get_mut(strip) else { continue };
+                for (own, number) in whole.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z]) {
+                    if let Some(own) = own.get_mut(lane) {
+                        *own += stiffness * number;
+                    }
+                }
             }
         }
         for (side, face) in hinge.faces.into_iter().enumerate() {
@@ -87,66 +73,108 @@ impl Solver<'_> {
             }
         }
     }
+}
 
-    /// Each row's block with itself: its mass, and against what others feel of it. What does not move has none at all.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn settle_rows(&self, finest: &mut Level<'_>) {
-        let weight = &*self.vectors.weight;
-        for (row, &own) in weight.iter().enumerate() {
-            let range = finest.graph.range(row);
-            for (link, &other) in range.clone().zip(finest.graph.row(row)).rev() {
-                if (other as usize) < row {
-                    break;
-                }
-                mirror(finest, link, finest.graph.link(other as usize, row as u32));
-            }
-            let (mut sum, mut alone) = ([0.0f32; BLOCK], [0.0f32; BLOCK]);
-            for (link, &other) in range.clone().zip(finest.graph.row(row)) {
-                let Some(block) = finest.blocks.get_mut(BLOCK * link..BLOCK * (link + 1)) else { continue };
-                sum.iter_mut().zip(&*block).for_each(|(sum, number)| *sum -= number);
-                let moves = own > 0.0 && weight.get(other as usize).is_some_and(|&weight| weight > 0.0);
-                if moves {
-                    let near = finest.plate.near.get(link).map_or(0.0, |near| near * finest.bending);
-                    [0, 4, 8].into_iter().for_each(|i| block[i] += near);
-                } else {
-                    alone.iter_mut().zip(&*block).for_each(|(sum, number)| *sum -= number);
-                    block.fill(0.0);
-                }
-            }
-            let at = BLOCK * row..BLOCK * (row + 1);
-            let (Some(whole), Some(left)) = (finest.whole.get_mut(at.clone()), finest.alone.get_mut(at)) else {
-                continue;
-            };
-            if own > 0.0 {
-                let part = |of: &[f32]| 1.0 / own + of.get(row).map_or(0.0, |number| number * finest.bending);
-                for i in [0, 4, 8] {
-                    sum[i] += part(finest.plate.own);
-                    alone[i] += part(finest.plate.alone);
-                }
-                whole.iter_mut().zip(sum).for_each(|(number, sum)| *number += sum);
-                left.copy_from_slice(&alone);
-            } else {
-                whole.fill(0.0);
-                left.fill(0.0);
+/// Adds the blocks of all triangles' edges.
+struct Membranes<'a, 's, 'f, 'm> {
+    solver: &'a Solver<'s>,
+    finest: &'f mut Finest<'m>,
+}
+
+impl Kernel for Membranes<'_, '_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Eight>(mut self, like: F) {
+        let triangles = self.solver.triangles.len();
+        for first in (0..triangles).step_by(LANES) {
+            if !(WIDE && self.add_eight(like, first)) {
+                (first..triangles.min(first + LANES)).for_each(|i| self.add(i));
             }
         }
     }
 }
 
-/// Puts a block on the link back.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-fn mirror(finest: &mut Level<'_>, link: usize, back: Option<usize>) {
-    let from = finest.blocks.get(BLOCK * link..).and_then(|numbers| numbers.first_chunk::<BLOCK>());
-    let (Some(&[a, b, c, d, e, f, g, h, i, _]), Some(back)) = (from, back) else { return };
-    if let Some(to) = finest.blocks.get_mut(BLOCK * back..).and_then(|numbers| numbers.first_chunk_mut::<BLOCK>()) {
-        *to = [a, d, g, b, e, h, c, f, i, 0.0];
+impl Membranes<'_, '_, '_, '_> {
+    fn add(&mut self, i: usize) {
+        let Solver { params, ref step, cells, ref strains, .. } = *self.solver;
+        let (Some(cell), Some(strain)) = (cells.get(i), strains.get(i)) else { return };
+        let blocks = strain.blocks(cell, params, step);
+        let Some(places) = self.finest.links.edges.get(i) else { return };
+        let numbers = self.finest.blocks.as_flattened_mut().as_flattened_mut();
+        for (&[there, back], block) in places.as_chunks().0.iter().zip(blocks) {
+            add(numbers, there, block.to_cols_array());
+            add(numbers, back, block.transpose().to_cols_array());
+        }
+    }
+
+    /// Tells whether it has done so, by the operations of one in their order.
+    #[inline(always)]
+    fn add_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let Solver { params, ref step, cells, ref strains, .. } = *self.solver;
+        let (Some(cells), Some(strains)) = (eight(cells, first), eight(strains, first)) else { return false };
+        let Some(places) = eight(self.finest.links.edges, first) else { return false };
+        let ([a, b, c, d], area) = at_rest(like, cells);
+        let gain = [[lanes::negated(a + b), lanes::negated(c + d)], [a, c], [b, d]];
+        let u = vectors!(like, strains, |strain| strain.along[0]);
+        let v = vectors!(like, strains, |strain| strain.along[1]);
+        let tension = column!(like, strains, |strain| strain.tension);
+        let held = [
+            column!(like, strains, |strain| strain.held[0]),
+            column!(like, strains, |strain| strain.held[1]),
+            column!(like, strains, |strain| strain.held[2]),
+        ];
+        let square = like.all(step.h * step.h);
+        let (scale, rate) = (area * square, like.all(step.rate));
+        let [warp, weft] = params.stretch;
+        let stress =
+            [scale * like.all(warp) * rate, scale * like.all(weft) * rate, scale * like.all(params.shear) * rate];
+        let taut = like.all(0.25) * tension * area * square;
+        let numbers = self.finest.blocks.as_flattened_mut().as_flattened_mut();
+        for side in 0..3 {
+            let block = block(stress, taut, held[side], [gain[side], gain[(side + 1) % 3]], [u, v]);
+            for (lane, places) in places.iter().enumerate() {
+                let [mut there, mut back] = [[0.0; 9]; 2];
+                for (number, lanes) in block.iter().enumerate() {
+                    there[number] = lanes[lane];
+                    back[number / 3 + number % 3 * 3] = lanes[lane];
+                }
+                add(numbers, places[2 * side], there);
+                add(numbers, places[2 * side + 1], back);
+            }
+        }
+        true
     }
 }
 
-/// Adds to a block.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-fn add(blocks: &mut [f32], number: usize, block: &Mat3) {
-    if let Some(numbers) = blocks.get_mut(BLOCK * number..BLOCK * (number + 1)) {
-        numbers.iter_mut().zip(block.to_cols_array()).for_each(|(sum, number)| *sum += number);
+/// How two corners of eight triangles resist each other, as [`Strain::blocks`](super::membrane::Strain::blocks).
+#[inline(always)]
+fn block<F: Eight>(
+    [warp, weft, shear]: [F; 3],
+    taut: F,
+    held: F,
+    [[p, q], [r, s]]: [[F; 2]; 2],
+    [u, v]: [Vectors<F>; 2],
+) -> [[f32; LANES]; 9] {
+    let (uu, vv) = (warp * p * r + shear * q * s, weft * q * s + shear * p * r);
+    let (uv, vu) = (shear * q * r, shear * p * s);
+    let (first, second) = (u * uu + v * vu, u * uv + v * vv);
+    let own = taut * (p * r + q * s) + held;
+    let ([ux, uy, uz], [vx, vy, vz]) = (u.0, v.0);
+    let [a, b, c] = (first * ux + second * vx).0;
+    let [d, e, f] = (first * uy + second * vy).0;
+    let [g, h, i] = (first * uz + second * vz).0;
+    let array = F::to_array;
+    [array(a + own), array(b), array(c), array(d), array(e + own), array(f), array(g), array(h), array(i + own)]
+}
+
+/// Adds to a block whose first number is there.
+#[inline(always)]
+fn add(numbers: &mut [f32], place: u32, block: [f32; 9]) {
+    let place = place as usize;
+    if let Some(lane) = numbers.get_mut(place..).and_then(|rest| rest.first_chunk_mut::<{ 8 * LANES + 1 }>()) {
+        for (i, number) in block.into_iter().enumerate() {
+            lane[LANES * i] += number;
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Eight triangles, folds or particles taken side by side from where they lie one behind the other.
 
+use super::membrane::Cell;
 use crate::cloth::Hinge;
 use crate::lanes::{Eight, LANES, Vectors};
 use glam::Vec3;
@@ -39,6 +40,18 @@ macro_rules! vectors {
     };
 }
 pub(super) use {column, vectors};
+
+/// How eight triangles are at rest: the numbers of their inverses, and areas.
+#[inline(always)]
+pub(super) fn at_rest<F: Eight>(like: F, cells: &[Cell; LANES]) -> ([F; 4], F) {
+    let inverse = [
+        column!(like, cells, |cell| cell.inverse[0]),
+        column!(like, cells, |cell| cell.inverse[1]),
+        column!(like, cells, |cell| cell.inverse[2]),
+        column!(like, cells, |cell| cell.inverse[3]),
+    ];
+    (inverse, column!(like, cells, |cell| cell.area))
+}
 
 /// Eight of them, if there are as many from there on.
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! The forces of a shell where the method has moved it, and the directions in which they act, eight triangles or folds side by side: by the
 //! operations of one, in their order, so that the bits are the same.
 
-use super::eights::{WIDE, all_corners, column, eight, eight_mut, gathered, vector};
+use super::eights::{WIDE, all_corners, at_rest, column, eight, eight_mut, gathered, vector};
 use super::fold::Fold;
 use super::membrane::Strain;
 use super::resist::{columns, spread};
@@ -143,13 +143,7 @@ impl Linearise<'_, '_, '_> {
         };
         let Some(ways) = self.ways_of(like, corners) else { return false };
         let Some(strains) = eight_mut(self.solver.strains, first) else { return false };
-        let inverse = [
-            column!(like, cells, |cell| cell.inverse[0]),
-            column!(like, cells, |cell| cell.inverse[1]),
-            column!(like, cells, |cell| cell.inverse[2]),
-            column!(like, cells, |cell| cell.inverse[3]),
-        ];
-        let area = column!(like, cells, |cell| cell.area);
+        let (inverse, area) = at_rest(like, cells);
         let (along, tension, push, sound) = strain_of(like, self.solver.params, &self.solver.step, area, inverse, ways);
         let (u, v, tension) = (along[0].rows(), along[1].rows(), tension.to_array());
         let (f, g) = (push[0].rows(), push[1].rows());

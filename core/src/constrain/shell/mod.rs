@@ -3,13 +3,16 @@
 mod assemble;
 mod cycle;
 mod eights;
+mod finest;
 mod fold;
+mod folded;
 mod linear;
 mod membrane;
 mod mesh;
 mod plate;
 mod resist;
 mod solver;
+mod strips;
 mod sweep;
 mod taut;
 
@@ -17,6 +20,7 @@ use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
 use crate::memory::take;
 use cycle::Levels;
+use finest::Links;
 use fold::{Bend, Fold};
 use glam::Vec3;
 use membrane::{Cell, Strain};
@@ -135,7 +139,7 @@ pub struct Shell<P, T, H> {
 
 /// The words that it keeps of each triangle and each fold, and works with; and with each particle.
 const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<Bend>() / 4];
-const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 14];
+const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 15];
 
 impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     /// The numbers of its particles, triangles and hinges.
@@ -175,8 +179,9 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let bends = whole(take(&mut rest, hinges.saturating_mul(KEPT[1])));
         let room = Room::of(self.counts());
         let graphs = take(&mut rest, room.words());
-        let plate = Plate::of(&room, take(&mut rest, plate::words(&room)));
-        Rest { cells, bends, graphs, plate, last: whole(take(&mut rest, 3 * room.rows[0])) }
+        let links = take(&mut rest, finest::pattern(&room, triangles));
+        let plate = take(&mut rest, plate::words(&room));
+        Rest { cells, bends, graphs, links, plate, last: whole(take(&mut rest, 3 * room.rows[0])) }
     }
 
     fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [Bend]) -> Shape<'s> {
@@ -185,24 +190,30 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
 
     /// Makes the matrix of bending of those who are there, if these are others than before.
     fn update(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
-        let Rest { cells, bends, graphs, mut plate, .. } = self.rest(kept);
-        let [finest, ..] = Graph::all(graphs);
+        let Rest { cells, bends, graphs, links, plate, .. } = self.rest(kept);
+        let ([finest, ..], room) = (Graph::all(graphs), Room::of(self.counts()));
         let moves = |&particle: &u32| {
             let row = bodies.row_of_start(particle)?;
             let inverse = bodies.inverse_mass[row];
             Some(inverse > 0.0 && inverse < f32::INFINITY)
         };
-        plate.update(&finest, &self.shape(cells, bends), self.particles.as_ref().iter().map(moves), work);
+        let edges = Links::of(&room, cells.len(), links).strips;
+        let particles = self.particles.as_ref().iter().map(moves);
+        Plate::of(&room, plate).update(&finest, &edges, &self.shape(cells, bends), particles, work);
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
-        let Rest { cells, bends, graphs, mut plate, .. } = self.rest(kept);
-        mesh::make(&Room::of(self.counts()), self.triangles.as_ref(), graphs, work);
-        let [finest, ..] = Graph::all(graphs);
-        if finest.rows() > 0 && !plate.link(&self.shape(&[], &[]), work) {
-            // Without room for all that bends together everything goes triangle by triangle.
-            graphs.fill(0);
+        let (Rest { cells, bends, graphs, links, plate, .. }, room) = (self.rest(kept), Room::of(self.counts()));
+        mesh::make(&room, self.triangles.as_ref(), graphs, work);
+        let all = Graph::all(graphs);
+        if all[0].rows() > 0 {
+            let made = Links::make(&room, &all, self.triangles.as_ref(), links)
+                .and_then(|()| plate::find(&room, &self.shape(&[], &[]), plate, work));
+            if made.is_none() {
+                // Without room for all that hangs or bends together everything goes triangle by triangle.
+                graphs.fill(0);
+            }
         }
         let place = |corner: u32| {
             let row = bodies.row_of_start(*self.particles.as_ref().get(corner as usize)?)?;
@@ -229,7 +240,8 @@ struct Rest<'m> {
     cells: &'m mut [Cell],
     bends: &'m mut [Bend],
     graphs: &'m mut [u32],
-    plate: Plate<'m>,
+    links: &'m mut [u32],
+    plate: &'m mut [u32],
     last: &'m mut [Vec3],
 }
 
@@ -251,7 +263,7 @@ where
         let sum = |parts: [usize; 3]| parts.into_iter().fold(0, usize::saturating_add);
         let room = Room::of(self.counts());
         let kept = sum([
-            1 + room.words() + plate::words(&room) + 3 * room.rows[0],
+            1 + room.words() + finest::pattern(&room, triangles) + plate::words(&room) + 3 * room.rows[0],
             triangles.saturating_mul(KEPT[0]),
             hinges.saturating_mul(KEPT[1]),
         ]);
@@ -280,12 +292,14 @@ where
             return;
         }
         let [particles, triangles, hinges] = self.counts();
-        let Rest { cells, bends, graphs, plate, last, .. } = self.rest(share.kept.fixed);
+        let room = Room::of(self.counts());
+        let Rest { cells, bends, graphs, links, plate, last } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = whole(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = whole(take(&mut rest, hinges.saturating_mul(WORK[1])));
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
-        let mut levels = Levels::of(Graph::all(graphs), plate, rest);
+        let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
+        let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
         let mut solver = Solver {
             params: &self.params,
             step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },
@@ -304,6 +318,7 @@ where
         let walls = walls::of(share.step, particles);
         walls::gather(walls, self.particles.as_ref(), bodies);
         solver.walls = walls;
+        solver.list_walls();
         solver.assemble(&mut levels);
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);

@@ -1,10 +1,13 @@
 //! The matrix of bending: of a shell that hardly stretches it is always the same, and one number for each two particles.
 
 use super::ShellParams;
+use super::finest::eight_of;
 use super::fold::Bend;
 use super::membrane::Cell;
 use super::mesh::{Graph, Room, link, sorted};
+use super::strips::{self, Strips};
 use crate::cloth::Hinge;
+use crate::lanes::{Eight, LANES, Vectors};
 use crate::math::{max, min, sqrt};
 use crate::memory::take;
 
@@ -33,15 +36,14 @@ pub(super) struct Plate<'m> {
     roll: &'m mut [u32],
     /// The largest of the squares of the curvatures that a radian makes \[1/m²\] and of how slender their triangles are.
     steepest: &'m mut [f32],
-    /// What edges do to particles, and along the links of the finest graph.
+    /// What edges do to particles by their places in strips, and along the links of the finest graph.
     pub(super) own: &'m mut [f32],
-    pub(super) near: &'m mut [f32],
+    pub(super) near: &'m mut [[f32; LANES]],
     /// What all of it does to particles where those that move all go the same way.
     pub(super) alone: &'m mut [f32],
-    /// The rest: where those that bend with each begin, who they are in ascending order, and numbers.
-    starts: &'m mut [u32],
-    links: &'m mut [u32],
-    numbers: &'m mut [f32],
+    /// The rest: who bends with each, and numbers.
+    links: Strips<'m>,
+    numbers: &'m mut [[f32; LANES]],
 }
 
 /// A shell at rest.
@@ -55,7 +57,19 @@ pub(super) struct Shape<'s> {
 /// Words that a matrix is kept in.
 pub(super) fn words(room: &Room) -> usize {
     let [rows, _] = room.rows;
-    if rows == 0 { 0 } else { 4 * rows + 2 + room.links[0] + 2 * room.far }
+    let padded = LANES * rows.div_ceil(LANES);
+    let near = LANES * strips::entries(room.links[0]);
+    if rows == 0 { 0 } else { rows + 1 + 2 * padded + near + pattern(room) + LANES * entries(room) }
+}
+
+/// Entries of those that bend together: there is room for more links than there are most often.
+fn entries(room: &Room) -> usize {
+    room.far / LANES + room.far / 32 + 4 * room.rows[0].div_ceil(LANES).min(LANES) + 16
+}
+
+/// Words that say who bends together.
+pub(super) fn pattern(room: &Room) -> usize {
+    strips::words(room.rows[0], entries(room))
 }
 
 impl<'m> Plate<'m> {
@@ -64,20 +78,30 @@ impl<'m> Plate<'m> {
         if rows == 0 {
             return Self::default();
         }
+        let links = Strips::of(rows, entries(room), take(&mut rest, pattern(room)));
         let roll = take(&mut rest, rows);
-        let lengths = [1, rows, room.links[0], rows, room.far];
-        let [steepest, own, near, alone, numbers] = lengths.map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
-        let starts = take(&mut rest, rows + 1);
-        Self { roll, steepest, own, near, alone, starts, links: take(&mut rest, room.far), numbers }
+        let padded = LANES * rows.div_ceil(LANES);
+        let [steepest, own, alone] = [1, padded, padded].map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
+        let lanes = [strips::entries(room.links[0]), entries(room)].map(|entries| LANES * entries);
+        let [near, numbers] = lanes.map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
+        Self { roll, steepest, own, near, alone, links, numbers }
     }
 
-    /// Those that bend together with each row, and numbers.
+    /// What bending does beyond what is in blocks, of which these are the places of a strip's rows.
     #[inline(always)]
-    pub(super) fn rows(&self) -> impl Iterator<Item = (&[u32], &[f32])> {
-        self.starts.windows(2).map(|ends| {
-            let range = ends[0] as usize..ends[1] as usize;
-            (self.links.get(range.clone()).unwrap_or(&[]), self.numbers.get(range).unwrap_or(&[]))
-        })
+    pub(super) fn bend<F: Eight>(&self, like: F, x: [&[f32]; 3], strip: usize, own: Vectors<F>) -> Vectors<F> {
+        let mut sum = Vectors([like.all(0.0); 3]);
+        let range = self.links.range(strip);
+        for (entry, numbers) in range.clone().zip(self.numbers.get(range).unwrap_or(&[])) {
+            sum = sum + (self.links.vectors(like, x, entry) - own) * like.of(*numbers);
+        }
+        sum
+    }
+
+    /// What edges do to the particles of a strip, and all of it where all go the same way.
+    #[inline(always)]
+    pub(super) fn of_strip<F: Eight>(&self, like: F, strip: usize) -> [F; 2] {
+        [eight_of(like, self.own, LANES * strip), eight_of(like, self.alone, LANES * strip)]
     }
 
     /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon
@@ -88,44 +112,11 @@ impl<'m> Plate<'m> {
         params.bending * steepest <= THIN * min(min(warp, weft), params.shear)
     }
 
-    /// Finds who bends together: all corners of the hinges of each triangle. Tells whether there is room.
-    pub(super) fn link(&mut self, shape: &Shape<'_>, work: &mut [u32]) -> bool {
-        self.find(shape, work).is_some()
-    }
-
-    fn find(&mut self, shape: &Shape<'_>, work: &mut [u32]) -> Option<()> {
-        let rows = self.own.len();
-        let corners = shape.hinges.iter().flat_map(|hinge| {
-            hinge.corners().into_iter().flat_map(|corner| hinge.faces.map(|face| (corner as usize, face)))
-        });
-        let (work, others) = work.split_at_mut_checked(rows + 2 + 8 * shape.hinges.len())?;
-        let (begin, faces) = sorted(rows, corners, work)?;
-        let (first, hinges) = shape.by_face(others)?;
-        link(self.starts, self.links, |row, add| {
-            let faces = faces.get(begin[row] as usize..begin[row + 1] as usize)?;
-            for (i, &face) in faces.iter().enumerate() {
-                if faces[..i].contains(&face) {
-                    continue;
-                }
-                let face = face as usize;
-                let hinges = hinges.get(*first.get(face)? as usize..*first.get(face + 1)? as usize)?;
-                if hinges.len() > SIDES {
-                    return None;
-                }
-                let hinges = hinges.iter().filter_map(|&hinge| shape.hinges.get(hinge as usize));
-                for corner in hinges.flat_map(Hinge::corners) {
-                    add(corner)?;
-                }
-            }
-            Some(())
-        })?;
-        Some(())
-    }
-
     /// Makes the matrix, if other particles are there, or move, than when it was made: of each is said whether it moves, if it is there.
     pub(super) fn update(
         &mut self,
         graph: &Graph<'_>,
+        edges: &Strips<'_>,
         shape: &Shape<'_>,
         particles: impl Iterator<Item = Option<bool>>,
         work: &mut [u32],
@@ -151,9 +142,9 @@ impl<'m> Plate<'m> {
             }
             self.add(&patch, cell.area);
         }
-        self.part(graph);
-        let mut all = self.own.iter().chain(&*self.near).chain(&*self.alone).chain(&*self.numbers);
-        if !all.all(|number| number.is_finite()) {
+        self.part(graph, edges);
+        let all = self.own.iter().chain(self.near.as_flattened()).chain(&*self.alone);
+        if !all.chain(self.numbers.as_flattened()).all(|number| number.is_finite()) {
             // Which bits a NaN has depends on the machine, and these words are in the hash.
             self.clear();
             self.steepest[0] = f32::INFINITY;
@@ -161,7 +152,8 @@ impl<'m> Plate<'m> {
     }
 
     fn clear(&mut self) {
-        for numbers in [&mut self.own, &mut self.near, &mut self.alone, &mut self.numbers] {
+        for numbers in [&mut *self.own, &mut *self.alone, self.near.as_flattened_mut(), self.numbers.as_flattened_mut()]
+        {
             numbers.fill(0.0);
         }
         self.steepest[0] = 0.0;
@@ -174,45 +166,78 @@ impl<'m> Plate<'m> {
             for (&other, [d, e, f]) in corners().filter(|&(&other, _)| other != row) {
                 let number = area * (a * d + b * e + c * f);
                 // So nothing comes of it where all go the same way.
-                self.own[row as usize] -= number;
+                let slot = self.links.slot(row as usize);
+                self.own[slot] -= number;
                 if self.roll[other as usize] == FIXED {
-                    self.alone[row as usize] -= number;
+                    self.alone[slot] -= number;
                 } else if self.roll[row as usize] == MOVES
-                    && let Some(place) = self.place(row as usize, other)
+                    && let Some((entry, lane)) = self.links.place(row as usize, other)
                 {
-                    self.numbers[place] += number;
+                    self.numbers[entry][lane] += number;
                 }
             }
         }
     }
 
-    /// Gives edges their part: what each particle does to itself is shared among its edges.
-    fn part(&mut self, graph: &Graph<'_>) {
-        for (row, range) in graph.ranges().enumerate() {
-            let share = |row: usize| self.own[row] / graph.range(row).len() as f32;
-            for (link, &other) in range.zip(graph.row(row)) {
-                if self.place(row, other).is_some() {
-                    self.near[link] = -0.5 * (share(row) + share(other as usize));
+    /// Gives edges their part: what each particle does to itself is shared among its edges. What does not move gets none.
+    fn part(&mut self, graph: &Graph<'_>, edges: &Strips<'_>) {
+        let slot = |row: usize| edges.slot(row);
+        let share = |own: &[f32], row: usize| own[slot(row)] / graph.range(row).len() as f32;
+        for row in 0..self.roll.len() {
+            for &other in graph.row(row) {
+                if let Some((entry, lane)) = edges.place(row, other)
+                    && self.links.place(row, other).is_some()
+                {
+                    self.near[entry][lane] = -0.5 * (share(self.own, row) + share(self.own, other as usize));
                 }
             }
         }
-        for (row, range) in graph.ranges().enumerate() {
+        for row in 0..self.roll.len() {
             let moves = self.roll[row] == MOVES;
-            self.own[row] = 0.0;
-            for (link, &other) in range.zip(graph.row(row)).filter(|_| moves) {
-                self.own[row] -= self.near[link];
-                if let Some(place) = self.place(row, other).filter(|_| self.roll[other as usize] == MOVES) {
-                    self.numbers[place] -= self.near[link];
+            self.own[slot(row)] = 0.0;
+            for &other in graph.row(row) {
+                let Some((entry, lane)) = edges.place(row, other) else { continue };
+                let near = &mut self.near[entry][lane];
+                let both = moves && self.roll[other as usize] == MOVES;
+                self.own[slot(row)] -= if moves { *near } else { 0.0 };
+                match self.links.place(row, other) {
+                    Some((entry, lane)) if both => self.numbers[entry][lane] -= *near,
+                    _ => *near = 0.0,
                 }
             }
         }
     }
+}
 
-    /// Where the number of two lies that bend together.
-    fn place(&self, row: usize, other: u32) -> Option<usize> {
-        let (from, to) = (*self.starts.get(row)? as usize, *self.starts.get(row + 1)? as usize);
-        Some(from + self.links.get(from..to)?.binary_search(&other).ok()?)
-    }
+/// Finds who bends together: all corners of the hinges of each triangle. Tells whether there is room.
+pub(super) fn find(room: &Room, shape: &Shape<'_>, words: &mut [u32], work: &mut [u32]) -> Option<()> {
+    let (rows, mut rest) = (room.rows[0], work);
+    let (starts, links) = (take(&mut rest, rows + 1), take(&mut rest, room.far));
+    let corners = shape.hinges.iter().flat_map(|hinge| {
+        hinge.corners().into_iter().flat_map(|corner| hinge.faces.map(|face| (corner as usize, face)))
+    });
+    let (work, others) = rest.split_at_mut_checked(rows + 2 + 8 * shape.hinges.len())?;
+    let (begin, faces) = sorted(rows, corners, work)?;
+    let (first, hinges) = shape.by_face(others)?;
+    let made = link(starts, links, |row, add| {
+        let faces = faces.get(begin[row] as usize..begin[row + 1] as usize)?;
+        for (i, &face) in faces.iter().enumerate() {
+            if faces[..i].contains(&face) {
+                continue;
+            }
+            let face = face as usize;
+            let hinges = hinges.get(*first.get(face)? as usize..*first.get(face + 1)? as usize)?;
+            if hinges.len() > SIDES {
+                return None;
+            }
+            let hinges = hinges.iter().filter_map(|&hinge| shape.hinges.get(hinge as usize));
+            for corner in hinges.flat_map(Hinge::corners) {
+                add(corner)?;
+            }
+        }
+        Some(())
+    })?;
+    Strips::make(&Graph { starts, links: &links[..made], into: &[] }, entries(room), words)
 }
 
 impl Shape<'_> {

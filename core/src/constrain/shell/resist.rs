@@ -1,7 +1,7 @@
 //! How shells resist small shifts, eight triangles or folds side by side: by the operations of one, in their order, so that the bits are the same.
 
 use super::ShellParams;
-use super::eights::{WIDE, all_corners, column, eight, eight_mut, gathered, vector, vectors};
+use super::eights::{WIDE, all_corners, at_rest, column, eight, eight_mut, gathered, vector, vectors};
 use super::fold::{Bend, Fold};
 use super::membrane::{Cell, Strain};
 use super::solver::{Step, add_all, add_pair, all_at, curve, moment};
@@ -98,13 +98,7 @@ impl Resist<'_> {
         };
         let Some([a, b, c]) = gathered(like, self.p, corners) else { return false };
         let (e, f) = (b - a, c - a);
-        let inverse = [
-            column!(like, cells, |cell| cell.inverse[0]),
-            column!(like, cells, |cell| cell.inverse[1]),
-            column!(like, cells, |cell| cell.inverse[2]),
-            column!(like, cells, |cell| cell.inverse[3]),
-        ];
-        let area = column!(like, cells, |cell| cell.area);
+        let (inverse, area) = at_rest(like, cells);
         let (du, dv) = (e * inverse[0] + f * inverse[1], e * inverse[2] + f * inverse[3]);
         let all = &*strains;
         let u = vectors!(like, all, |strain| strain.along[0]);

@@ -1,32 +1,24 @@
-//! One graph's part of a shell's system: products, and sweeps of Gauss and Seidel's method.
+//! A coarser graph's part of a shell's system: sweeps of Gauss and Seidel's method.
 
 use super::mesh::Graph;
-use super::plate::Plate;
 use glam::{Mat3, Vec3};
 use wide::f32x4;
 
 /// The numbers of a block: its columns one behind the other, and one more, so that four can be taken from where the last column begins.
 pub(super) const BLOCK: usize = 10;
-/// The share of what bending does to a particle that it does to its group: what goes on as one bends little.
-const SHARE: f32 = 0.125;
 
 /// A vector, and some number behind it.
 pub(super) type Quad = [f32; 4];
 
-/// One graph's part of the system.
+/// A coarser graph's part of the system.
 #[derive(Default)]
 pub(super) struct Level<'m> {
     pub(super) graph: Graph<'m>,
     /// The blocks of its links.
     pub(super) blocks: &'m mut [f32],
-    /// Those of its rows with themselves; when all is known their inverses, zero for what does not move.
-    pub(super) diagonal: &'m mut [f32],
-    /// The same of the finest before walls press, not inverted; and what is left of that where all go the same way.
+    /// Those of its rows with themselves before walls press; with these their inverses, zero for what does not move.
     pub(super) whole: &'m mut [f32],
-    pub(super) alone: &'m mut [f32],
-    /// How the finest bends beyond what is in blocks, and so many times that: bending stiffness × h².
-    pub(super) plate: Plate<'m>,
-    pub(super) bending: f32,
+    pub(super) inverse: &'m mut [f32],
     /// The right-hand side and the solution.
     pub(super) r: &'m mut [Quad],
     pub(super) x: &'m mut [Quad],
@@ -56,62 +48,21 @@ impl Level<'_> {
         }
     }
 
-    /// Sums up blocks for the next graph. Groups that go as one would bend sharply between each other: how they do is left out, and
-    /// what each does to itself is less.
+    /// Sums up blocks for the next graph.
     #[inline(always)]
     pub(super) fn sum_into(&self, coarse: &mut Level<'_>) {
         let blocks = self.blocks.as_chunks::<BLOCK>().0;
         for (row, &into) in self.graph.into.iter().enumerate() {
-            let own = self.plate.own.get(row).map_or(0.0, |own| own * ((SHARE - 1.0) * self.bending));
-            add(coarse.diagonal, into as usize, block(self.diagonal, row), own);
+            add(coarse.whole, into as usize, block(self.whole, row));
             for link in self.graph.range(row) {
                 let (Some(&other), Some(numbers)) = (self.graph.links.get(link), blocks.get(link)) else { continue };
                 let Some(&other) = self.graph.into.get(other as usize) else { continue };
-                let near = self.plate.near.get(link).map_or(0.0, |near| -near * self.bending);
                 if other == into {
-                    add(coarse.diagonal, into as usize, numbers, near);
+                    add(coarse.whole, into as usize, numbers);
                 } else if let Some(link) = coarse.graph.link(into as usize, other) {
-                    add(coarse.blocks, link, numbers, near);
+                    add(coarse.blocks, link, numbers);
                 }
             }
-        }
-    }
-
-    /// q = A p, by how far others go beside each: what is stiff would round to more than what is light.
-    #[inline(always)]
-    pub(super) fn apply(&mut self, p: &[Vec3], q: &mut [Vec3]) {
-        for (x, p) in self.x.iter_mut().zip(p) {
-            *x = [p.x, p.y, p.z, 0.0];
-        }
-        let (x, alone) = (&*self.x, self.alone.as_chunks::<BLOCK>().0);
-        for ((row, (q, own)), (links, blocks)) in q.iter_mut().zip(x).enumerate().zip(self.rows()) {
-            let mut sum = alone.get(row).map_or(f32x4::ZERO, |alone| times(alone, *own));
-            let own = f32x4::new(*own);
-            for (&other, block) in links.iter().zip(blocks) {
-                let Some(&x) = x.get(other as usize) else { break };
-                sum += times(block, (f32x4::new(x) - own).to_array());
-            }
-            let [x, y, z, _] = sum.to_array();
-            *q = Vec3::new(x, y, z);
-        }
-        if self.bending > 0.0 {
-            self.bend(q);
-        }
-    }
-
-    /// Adds what bending does beyond what is in blocks.
-    #[inline(always)]
-    fn bend(&self, q: &mut [Vec3]) {
-        let (x, bending) = (&*self.x, f32x4::splat(self.bending));
-        for ((q, own), (links, numbers)) in q.iter_mut().zip(x).zip(self.plate.rows()) {
-            let own = f32x4::new(*own);
-            let mut sum = f32x4::ZERO;
-            for (&other, &number) in links.iter().zip(numbers) {
-                let Some(&x) = x.get(other as usize) else { break };
-                sum += (f32x4::new(x) - own) * f32x4::splat(number);
-            }
-            let [x, y, z, _] = (sum * bending).to_array();
-            *q += Vec3::new(x, y, z);
         }
     }
 
@@ -119,7 +70,7 @@ impl Level<'_> {
     #[inline(always)]
     pub(super) fn forth(&mut self) {
         let x = core::mem::take(&mut self.x);
-        let inverse = self.diagonal.as_chunks::<BLOCK>().0;
+        let inverse = self.inverse.as_chunks::<BLOCK>().0;
         for (((row, &r), inverse), (links, blocks)) in self.r.iter().enumerate().zip(inverse).zip(self.rows()) {
             let mut left = f32x4::new(r);
             for (&other, block) in links.iter().zip(blocks) {
@@ -148,17 +99,17 @@ impl Level<'_> {
         }
     }
 
-    /// Adds the next graph's solution so many times, and sweeps back.
+    /// Adds the next graph's solution, and sweeps back.
     #[inline(always)]
-    pub(super) fn back(&mut self, next: Option<&[Quad]>, further: f32) {
+    pub(super) fn back(&mut self, next: Option<&[Quad]>) {
         let x = core::mem::take(&mut self.x);
         if let Some(next) = next {
             for (x, &into) in x.iter_mut().zip(self.graph.into) {
                 let next = next.get(into as usize).copied().unwrap_or_default();
-                *x = (f32x4::new(*x) + f32x4::new(next) * f32x4::splat(further)).to_array();
+                *x = (f32x4::new(*x) + f32x4::new(next)).to_array();
             }
         }
-        let inverse = self.diagonal.as_chunks::<BLOCK>().0;
+        let inverse = self.inverse.as_chunks::<BLOCK>().0;
         for (((row, &r), inverse), (links, blocks)) in self.r.iter().enumerate().zip(inverse).zip(self.rows()).rev() {
             let mut left = f32x4::new(r);
             for (&other, block) in links.iter().zip(blocks) {
@@ -183,12 +134,11 @@ impl Level<'_> {
     }
 }
 
-/// Adds to a block, and so much for each direction.
+/// Adds to a block.
 #[inline(always)]
-fn add(blocks: &mut [f32], number: usize, numbers: &[f32; BLOCK], all: f32) {
+pub(super) fn add(blocks: &mut [f32], number: usize, numbers: &[f32; BLOCK]) {
     if let Some(block) = blocks.get_mut(BLOCK * number..BLOCK * (number + 1)) {
         block.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += number);
-        [0, 4, 8].into_iter().for_each(|i| block[i] += all);
     }
 }
 

@@ -19,16 +19,20 @@ impl Solver<'_> {
     pub(super) fn tighten(&mut self, bodies: &Bodies<'_>) {
         let Vectors { shift, p, .. } = &mut self.vectors;
         p.copy_from_slice(shift);
-        for _ in 0..PASSES {
-            if !lanes::run(Tighten { solver: self, bodies }) {
+        self.vectors.stamps().fill(0);
+        let eights = self.triangles.len().div_ceil(LANES) as u32;
+        for pass in 0..PASSES {
+            if !lanes::run(Tighten { solver: self, bodies, before: pass * eights }) {
                 return;
             }
-            walls::keep(self.walls, bodies, self.vectors.shift);
+            let Vectors { shift, q, .. } = &mut self.vectors;
+            let stamps = bytemuck::cast_slice_mut::<_, u32>(q);
+            walls::keep(self.walls, bodies, shift, |number| stamps[number] = (pass + 1) * eights);
         }
     }
 
-    /// Shortens the edges of a triangle; tells whether it had to.
-    fn shorten(&mut self, i: usize, bodies: &Bodies<'_>) -> bool {
+    /// Shortens the edges of a triangle, and stamps who goes with it; tells whether it had to.
+    fn shorten(&mut self, i: usize, bodies: &Bodies<'_>, stamp: u32) -> bool {
         let (Some(&corners), Some(cell)) = (self.triangles.get(i), self.cells.get(i)) else { return false };
         if !(cell.area > 0.0) {
             return false;
@@ -36,7 +40,11 @@ impl Solver<'_> {
         let mut some = false;
         for side in 0..3 {
             let edge = [corners[side] as usize, corners[(side + 1) % 3] as usize];
-            some |= self.shorten_edge(edge, |this| this.cells.get(i).map_or(0.0, |cell| cell.rest(side)), bodies);
+            if self.shorten_edge(edge, |this| this.cells.get(i).map_or(0.0, |cell| cell.rest(side)), bodies) {
+                some = true;
+                let stamps = self.vectors.stamps();
+                edge.into_iter().for_each(|end| stamps[end] = stamp);
+            }
         }
         some
     }
@@ -69,10 +77,13 @@ impl Solver<'_> {
     }
 }
 
-/// One pass over all triangles; tells whether an edge had to be shortened. Of eight side by side that have none nobody is asked.
+/// One pass over all triangles; tells whether an edge had to be shortened. Of eight side by side that have none nobody is asked, nor of those whose
+/// corners have not gone since they were asked last.
 struct Tighten<'a, 's, 'm, 'b> {
     solver: &'a mut Solver<'m>,
     bodies: &'s Bodies<'b>,
+    /// The eights that passes before this one have been through.
+    before: u32,
 }
 
 impl Kernel for Tighten<'_, '_, '_, '_> {
@@ -81,10 +92,15 @@ impl Kernel for Tighten<'_, '_, '_, '_> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> bool {
         let (count, mut some) = (self.solver.triangles.len(), false);
-        for first in (0..count).step_by(LANES) {
+        let eights = count.div_ceil(LANES) as u32;
+        for (number, first) in (0..count).step_by(LANES).enumerate() {
+            let stamp = self.before + number as u32 + 1;
+            if self.before > 0 && self.stand_since(stamp - eights, first) {
+                continue;
+            }
             if !(WIDE && self.none_of_eight(like, first)) {
                 for i in first..count.min(first + LANES) {
-                    some |= self.solver.shorten(i, self.bodies);
+                    some |= self.solver.shorten(i, self.bodies, stamp);
                 }
             }
         }
@@ -93,6 +109,14 @@ impl Kernel for Tighten<'_, '_, '_, '_> {
 }
 
 impl Tighten<'_, '_, '_, '_> {
+    /// Tells whether no corner of eight triangles has gone since then.
+    fn stand_since(&self, stamp: u32, first: usize) -> bool {
+        let Solver { triangles, ref vectors, .. } = *self.solver;
+        let stamps = bytemuck::cast_slice::<_, u32>(&*vectors.q);
+        let eight = triangles.get(first..triangles.len().min(first + LANES)).unwrap_or(&[]);
+        eight.as_flattened().iter().all(|&corner| stamps.get(corner as usize).is_none_or(|&last| last < stamp))
+    }
+
     /// Tells whether there are eight, all of them there, and none has an edge to be shortened: by the operations of `shorten_edge`.
     #[inline(always)]
     fn none_of_eight<F: Eight>(&self, like: F, first: usize) -> bool {

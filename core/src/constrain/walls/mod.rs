@@ -7,7 +7,7 @@ mod solve;
 
 pub(super) use follow::follow;
 pub(super) use settle::settle;
-pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep};
+pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list};
 
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};

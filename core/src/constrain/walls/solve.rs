@@ -11,9 +11,18 @@ const SETTLED: f32 = 0.1;
 /// The most that a particle is braked by, in its own masses.
 const MOST: f32 = 1e3;
 
-/// Takes of the forces that are left what walls bear, so that what remains is what moves particles.
-pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
-    for (wall, left) in walls.iter_mut().zip(left).filter(|(wall, _)| wall.state > NEAR) {
+/// Lists the walls that press, and tells how many there are.
+pub(in crate::constrain) fn list(walls: &[Wall], pressing: &mut [u32]) -> usize {
+    let all = walls.iter().enumerate().filter(|(_, wall)| wall.presses());
+    pressing.iter_mut().zip(all).map(|(to, (number, _))| *to = number as u32).count()
+}
+
+/// Takes of the forces that are left what walls bear, of which those that press are listed, so that what remains is what moves particles.
+pub(in crate::constrain) fn hold(walls: &mut [Wall], pressing: &[u32], left: &mut [Vec3]) {
+    for &number in pressing {
+        let (Some(wall), Some(left)) = (walls.get_mut(number as usize), left.get_mut(number as usize)) else {
+            continue;
+        };
         let borne = if wall.state == STICKS { *left } else { wall.normal * left.dot(wall.normal) };
         wall.held += borne;
         *left -= borne;
@@ -21,28 +30,42 @@ pub(in crate::constrain) fn hold(walls: &mut [Wall], left: &mut [Vec3]) {
 }
 
 /// Leaves of directions what walls let pass.
-pub(in crate::constrain) fn filter(walls: &[Wall], directions: &mut [Vec3]) {
-    for (wall, p) in walls.iter().zip(directions).filter(|(wall, _)| wall.state > NEAR) {
+pub(in crate::constrain) fn filter(walls: &[Wall], pressing: &[u32], directions: &mut [Vec3]) {
+    for &number in pressing {
+        let (Some(wall), Some(p)) = (walls.get(number as usize), directions.get_mut(number as usize)) else { continue };
         *p = if wall.state == STICKS { Vec3::ZERO } else { aside(*p, wall.normal) };
     }
 }
 
 /// Adds how walls brake particles that go `p` along them.
-pub(in crate::constrain) fn brake(walls: &[Wall], p: &[Vec3], q: &mut [Vec3]) {
-    for ((wall, &p), q) in walls.iter().zip(p).zip(q).filter(|((wall, _), _)| wall.state == SLIDES) {
-        if wall.brake > 0.0 {
+pub(in crate::constrain) fn brake(walls: &[Wall], pressing: &[u32], p: &[Vec3], q: &mut [Vec3]) {
+    for &number in pressing {
+        let number = number as usize;
+        let (Some(wall), Some(&p), Some(q)) = (walls.get(number), p.get(number), q.get_mut(number)) else { continue };
+        if wall.state == SLIDES && wall.brake > 0.0 {
             *q += aside(p, wall.normal) * wall.brake;
         }
     }
 }
 
 /// How far particles have to be moved besides to be where walls want them; tells whether anybody has to.
-pub(in crate::constrain) fn impose(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], by: &mut [Vec3]) -> bool {
+pub(in crate::constrain) fn impose(
+    walls: &mut [Wall],
+    pressing: &[u32],
+    bodies: &Bodies<'_>,
+    shift: &[Vec3],
+    by: &mut [Vec3],
+) -> bool {
     let h = bodies.substep.seconds();
     by.fill(Vec3::ZERO);
     let mut some = false;
-    for ((wall, &shift), by) in walls.iter_mut().zip(shift).zip(by) {
-        if wall.state <= NEAR || wall.fresh == 0 {
+    for &number in pressing {
+        let number = number as usize;
+        let (Some(wall), Some(&shift), Some(by)) = (walls.get_mut(number), shift.get(number), by.get_mut(number))
+        else {
+            continue;
+        };
+        if wall.fresh == 0 {
             continue;
         }
         wall.fresh = 0;
@@ -140,17 +163,24 @@ pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weig
             *shift += wall.grip.hold(&wall.touch, slid / h, pressed) * h;
         }
     }
-    keep(walls, bodies, shifts);
+    keep(walls, bodies, shifts, |_| ());
 }
 
-/// Moves out whoever is still behind a wall, or again.
-pub(in crate::constrain) fn keep(walls: &mut [Wall], bodies: &Bodies<'_>, shifts: &mut [Vec3]) {
+/// Moves out whoever is still behind a wall, or again, and tells who that is.
+pub(in crate::constrain) fn keep(
+    walls: &mut [Wall],
+    bodies: &Bodies<'_>,
+    shifts: &mut [Vec3],
+    mut tell: impl FnMut(usize),
+) {
     let h = bodies.substep.seconds();
-    for (wall, shift) in walls.iter_mut().zip(shifts).filter(|(wall, _)| wall.state >= NEAR) {
+    for (number, (wall, shift)) in walls.iter_mut().zip(shifts).enumerate().filter(|(_, (wall, _))| wall.state >= NEAR)
+    {
         let missing = wall.offset - (bodies.position[wall.row as usize] + *shift).dot(wall.normal);
         if missing > 0.0 {
             *shift += wall.normal * missing;
             wall.touch.begin(wall.touch.pressed() + missing / h);
+            tell(number);
         }
     }
 }
