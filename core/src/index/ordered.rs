@@ -24,6 +24,8 @@ struct Crowd {
     keys: [[u64; MOST]; 2],
     slots: [u32; MOST],
     x: [[f32; MOST]; 3],
+    /// The room in which ways to them lead through the sides, if they do.
+    room: Option<Room>,
     /// Where in this order the points of the group are.
     own: [usize; GROUP],
     /// The neighbours of one point of the group, by their numbers in this order, then by their slots.
@@ -72,6 +74,7 @@ impl Crowd {
             keys: [[0; MOST]; 2],
             slots: [0; MOST],
             x: [[0.0; MOST]; 3],
+            room: None,
             own: [0; GROUP],
             found: [0; MOST + LANES],
         }
@@ -80,11 +83,10 @@ impl Crowd {
     /// Takes what is near a group, in ascending order of rows, if there is room for it.
     fn take(&mut self, sorted: &Sorted<'_>, near: &Near, square: f32) -> bool {
         let Some(len) = self.collect(sorted, near, square) else { return false };
-        let (order, [low, high]) = (sorted.order(), sorted.bounds(near.group.clone()));
-        let (center, image) = (0.5 * (low + high), sorted.domain.image_of_all());
-        let image_near = |center: Vec3, place: Vec3| match image {
-            Image::Nearest(sides) => center + Room::new(Vec3::ZERO, sides).nearest(place - center),
-            _ => place,
+        let order = sorted.order();
+        self.room = match sorted.domain.image_of_all() {
+            Image::Nearest(sides) => Some(Room::new(Vec3::ZERO, sides)),
+            _ => None,
         };
         for (key, &slot) in self.keys[0].iter_mut().zip(&self.found[..len]) {
             *key = u64::from(order[slot as usize]) << 32 | u64::from(slot);
@@ -92,7 +94,7 @@ impl Crowd {
         let keys = put_in_order(&mut self.keys, len, sorted.rows);
         for (at, key) in keys.iter().enumerate() {
             let slot = *key as u32;
-            let place = image_near(center, sorted.point(slot as usize));
+            let place = sorted.point(slot as usize);
             self.slots[at] = slot;
             (self.x[0][at], self.x[1][at], self.x[2][at]) = (place.x, place.y, place.z);
             if let Some(own) = self.own.get_mut((slot as usize).wrapping_sub(near.group.start)) {
@@ -153,9 +155,15 @@ impl Kernel for Find<'_> {
         let Self { crowd, center, square } = self;
         let [x, y, z] = [0, 1, 2].map(|axis| crowd.x[axis].as_chunks::<LANES>().0);
         let (center, square) = ([like.all(center.x), like.all(center.y), like.all(center.z)], like.all(square));
+        let sides = crowd.room.as_ref().map(|room| room.side_by_side(like));
         let (mut first, mut len) = (0, 0);
         for ((x, y), z) in x.iter().zip(y).zip(z).take(crowd.len.div_ceil(LANES)) {
-            let [x, y, z] = [like.of(*x) - center[0], like.of(*y) - center[1], like.of(*z) - center[2]];
+            let ways = [like.of(*x) - center[0], like.of(*y) - center[1], like.of(*z) - center[2]];
+            let [x, y, z] = sides.map_or(
+                ways,
+                #[inline(always)]
+                |sides| sides.nearest(ways),
+            );
             let hits = (x * x + y * y + z * z).simd_le(square).to_bitmask();
             put_hits(&mut crowd.found, &mut len, hits, first);
             first += LANES as u32;

@@ -161,3 +161,11 @@ fn senseless_sides_are_open() {
         }
     }
 }
+
+/// Points in one place, in a room whose coordinates round: a detour by an image of theirs would part them.
+#[test]
+fn who_is_in_one_place_is_near_through_no_image() {
+    let torus =
+        Torus { low: Vec3::new(-0.3, 7.1, 0.01), sides: Vec3::new(0.0, 1.0, 0.0), n: 16, seed: 11546556184628893228 };
+    torus.check(&[0.0], 0.0);
+}
