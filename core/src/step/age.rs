@@ -13,7 +13,7 @@ impl Workspace<'_> {
     pub(super) fn age(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2]) {
         let Some(code) = scene.materials.code().filter(|code| (code.kept)(scene.materials) > 0) else { return };
         let (len, capacity) = (self.len(), self.capacity());
-        self.status.inertias = Inertias::Various;
+        self.status.inertias = Inertias::VARIOUS;
         let m = &mut self.memory;
         let rows = Ageing {
             during: [now, now + dt],

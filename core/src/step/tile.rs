@@ -2,7 +2,6 @@
 
 use super::field::Attributes;
 use super::substeps::Carried;
-use super::workspace::Inertias;
 use super::{Status, TILED, Workspace};
 use crate::collide::each_by_itself;
 use crate::custom::CustomColumns;
@@ -154,7 +153,7 @@ impl Workspace<'_> {
             ..State::EMPTY
         };
         let (inverse_mass, elasticity) = (m.inverse_mass.read(), m.elasticity.read());
-        let are_alike = matches!(self.status.inertias, Inertias::Same(_));
+        let are_alike = self.status.inertias.are_alike();
         let attributes = Attributes { lives, inverse_mass, elasticity, are_alike };
         Tile {
             scene,

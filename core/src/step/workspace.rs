@@ -53,26 +53,43 @@ pub(crate) struct Status {
     pub(crate) totals: Report,
 }
 
-/// Masses, drags, and who is fixed, of all that have come since a start.
+/// The mass and the drag of the first that has come since a start, whether it is fixed, and who is like it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) enum Inertias {
-    /// Nobody has come.
+pub(crate) struct Inertias {
+    likeness: Likeness,
+    mass: f32,
+    drag: f32,
+    fixed: bool,
+}
+
+/// Who is like the first. Nobody has come is the first of these, so that an empty system is nothing but zeros.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Likeness {
     #[default]
-    Unknown,
-    /// All have the same.
-    Same((f32, f32, bool)),
-    /// They may differ.
-    Various,
+    Nobody,
+    All,
+    Some,
 }
 
 impl Inertias {
+    const UNKNOWN: Self = Self { likeness: Likeness::Nobody, mass: 0.0, drag: 0.0, fixed: false };
+
+    /// They change, each by itself.
+    pub(crate) const VARIOUS: Self = Self { likeness: Likeness::Some, ..Self::UNKNOWN };
+
+    /// Tells whether all are known to have the same.
+    pub(crate) fn are_alike(&self) -> bool {
+        self.likeness == Likeness::All
+    }
+
     /// Another one comes.
     pub(crate) fn add(&mut self, &Particle { mass, drag, fixed, .. }: &Particle) {
-        match *self {
-            Self::Unknown => *self = Self::Same((mass, drag, fixed)),
-            Self::Same((m, k, is_fixed))
-                if m.to_bits() == mass.to_bits() && k.to_bits() == drag.to_bits() && is_fixed == fixed => {}
-            _ => *self = Self::Various,
+        let is_like =
+            self.mass.to_bits() == mass.to_bits() && self.drag.to_bits() == drag.to_bits() && self.fixed == fixed;
+        match self.likeness {
+            Likeness::Nobody => *self = Self { likeness: Likeness::All, mass, drag, fixed },
+            Likeness::All if !is_like => self.likeness = Likeness::Some,
+            _ => {}
         }
     }
 }
@@ -91,7 +108,7 @@ impl Status {
         changes: 0,
         kept: Words::NONE,
         time: Time::ZERO,
-        inertias: Inertias::Unknown,
+        inertias: Inertias::UNKNOWN,
         ends_before_never: Time::ZERO,
         hint: Time::ZERO,
         seed: 0,
