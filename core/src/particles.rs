@@ -106,13 +106,13 @@ impl Id {
     }
 }
 
-/// There is no room for another particle.
+/// There is no room for another particle, or none for one like it: the memory holds for all particles what it has otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full;
 
 impl core::fmt::Display for Full {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the system is full: no room for another particle")
+        f.write_str("the system is full: no room for another particle, or none for one like it")
     }
 }
 

@@ -1,6 +1,6 @@
 //! Memory that holds for all particles what they have in common, and not of each.
 
-use pointmass::emit::Births;
+use pointmass::emit::{Births, Burst};
 use pointmass::force::Uniform;
 use pointmass::material::{Curve, Life, Over, Varying};
 use pointmass::shape::{Plane, Sphere};
@@ -244,6 +244,22 @@ fn who_is_born_otherwise_all_the_same_is_refused_and_counted() {
     system.start(&scene, 1).expect("it does not tell before");
     let report = system.step(&scene, Time::SECOND);
     assert_eq!((report.born, report.refused, system.len()), (12, 12, 12));
+}
+
+/// A scene that was not the one of the start: as many births as there would be are counted at once, and not tried one by one.
+#[test]
+fn emitters_of_others_are_counted_in_no_time() {
+    let drops = emitter();
+    let others = Emitter {
+        radius: Varied::exactly(1.0),
+        rate: 4e9,
+        burst: Some(Burst { count: u32::MAX, at: 0.0, every: 1e-3 }),
+        ..emitter()
+    };
+    let mut system = System::with(Alike::<Drop, 40, 2, 1>::new());
+    system.start(&Scene { emitters: &drops, ..Scene::EMPTY }, 1).expect("it fits");
+    let report = system.step(&Scene { emitters: &others, ..Scene::EMPTY }, Time::SECOND);
+    assert_eq!((report.born, report.refused), (0, 4_000_000_000 + 1000 * u64::from(u32::MAX)));
 }
 
 #[test]

@@ -221,6 +221,27 @@ fn who_goes_round_in_a_step_meets_what_is_on_the_way() {
 }
 
 /// A chain that is closed through a side holds what presses on it: what is pulled to one side by what goes round is at rest.
+/// Whoever parts so fast that another image of the other is nearer in the end has met nobody.
+#[test]
+fn who_parts_fast_meets_no_image() {
+    let room = Room::new(Vec3::ZERO, Vec3::ONE);
+    let index = Periodic { room, index: () };
+    for (x, way) in [0.3, 0.9].into_iter().flat_map(|x| [0.35, 0.45, 0.55, 0.65, 0.75].map(|way| (x, way))) {
+        for towards in [Vec3::X, Vec3::new(0.6, 0.8, 0.0)] {
+            let ball = |place, speed| Particle { position: place, velocity: speed, radius: 0.05, ..Particle::REST };
+            let at = Vec3::splat(x);
+            let start = [ball(at, towards * (-0.5 * way)), ball(at + towards * 0.1005, towards * (0.5 * way))];
+            let contacts = Contacts::default();
+            let scene = Scene { start: &start, constraints: &contacts, index: &index, ..Scene::EMPTY };
+            let system = run(&scene, 1.0, 1);
+            for (row, ball) in start.iter().enumerate() {
+                let apart = room.between(system.particles().position[row], ball.position + ball.velocity);
+                assert!(apart.length() < 1e-5, "{x} {way} {towards}: {apart}");
+            }
+        }
+    }
+}
+
 #[test]
 fn chains_close_through_a_side() {
     let room = Room::new(Vec3::X * -7.0, Vec3::X * 4.0);

@@ -24,11 +24,10 @@ pub(super) fn first_touch_of_images(
     };
     let (hull, sides, wide) = (path.hull(0.0), room.sides(), reach + room.slack());
     let (mut first, mut curved) = (None::<(f32, Vec3)>, false);
-    let [x, y, z] = [0, 1, 2].map(|axis| {
-        let (met, all) = images([hull.min[axis] - wide, hull.max[axis] + wide], sides[axis]);
-        curved |= !all;
-        met
-    });
+    let met = [0, 1, 2].map(|axis| images([hull.min[axis] - wide, hull.max[axis] + wide], sides[axis]));
+    let is_any = met.iter().all(|(met, _)| !met.is_empty());
+    curved |= is_any && met.iter().any(|(_, all)| !all);
+    let [x, y, z] = met.map(|(met, _)| met);
     for (x, y, z) in x.flat_map(|x| y.clone().map(move |y| (x, y))).flat_map(|(x, y)| z.clone().map(move |z| (x, y, z)))
     {
         let image = sides * Vec3::new(x as f32, y as f32, z as f32);

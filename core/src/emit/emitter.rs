@@ -179,7 +179,9 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
             let mut due = births.due(number, self.rate, first, last);
             while !births.is_full() {
                 let Some(at) = due.next() else { return };
-                self.bear(births, number, at);
+                if !self.bear(births, number, at) {
+                    break;
+                }
             }
             births.refuse(number, due.left());
         }
@@ -259,15 +261,16 @@ impl<S: Surface, M: Script> Emitter<S, M> {
             if at < from || at >= to || (every == 0 && index > 0) {
                 return;
             }
+            let mut fits = true;
             for given in 0..burst.count {
-                if births.is_full() {
+                if births.is_full() || !fits {
                     births.refuse(number, u64::from(burst.count - given));
                     break;
                 }
-                self.bear(births, number, at);
+                fits = self.bear(births, number, at);
             }
             // Once nothing fits, what is left of this step's bursts is only counted.
-            if births.is_full() && every > 0 {
+            if (births.is_full() || !fits) && every > 0 {
                 let (rest, _) = divide(u128::from(to.ticks() - 1 - ticks), every);
                 births.refuse(number, rest.saturating_mul(u64::from(burst.count)));
                 return;
@@ -276,17 +279,16 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         }
     }
 
-    /// One birth, if it comes to one.
-    fn bear(&self, births: &mut Births<'_>, number: usize, at: Time) {
-        match self.where_sparse {
-            None => {
-                let _counted = births.give(number, at, |stream| self.newborn(stream, at));
-            }
-            Some(WhereSparse { radius, fewest }) => births.offer(number, at, |stream, births| {
-                let newborn = self.newborn(stream, at);
-                (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
-            }),
-        }
+    /// One birth, if it comes to one. False if it was refused: so will those be that are like it.
+    fn bear(&self, births: &mut Births<'_>, number: usize, at: Time) -> bool {
+        let Some(WhereSparse { radius, fewest }) = self.where_sparse else {
+            return births.give(number, at, |stream| self.newborn(stream, at)).is_ok();
+        };
+        births.offer(number, at, |stream, births| {
+            let newborn = self.newborn(stream, at);
+            (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
+        });
+        true
     }
 
     /// A place inside the shape: the first that falls there of several in its bounding box.

@@ -7,7 +7,7 @@ use core::ops::Deref;
 pub enum Column<'a, T> {
     /// One entry a row.
     Own(&'a mut [T]),
-    /// What all have, as often as there are rows: only read, so it may lie in a chip's flash, and not in its memory.
+    /// What all have, as often as there are rows, and equal all over: only read, so it may lie in a chip's flash, and not in its memory.
     Common(&'a [T]),
 }
 
@@ -56,7 +56,7 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
                 rows[row] = value;
                 true
             }
-            Self::Common(rows) => rows.first() == Some(&value),
+            Self::Common(rows) => rows.get(row) == Some(&value),
         }
     }
 

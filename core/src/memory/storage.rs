@@ -183,7 +183,8 @@ macro_rules! storage {
         }
 
         /// Memory in the value itself for particles that are alike: those attributes that [`Common`] has of all are not kept of
-        /// each, which takes 57 bytes a particle where [`Inline`] takes 91 (both and the columns to work with). There are no springs.
+        /// each, which takes 57 bytes a particle where [`Inline`] takes 91, besides the columns to work with. There are no springs. What all have lies in
+        /// flash, as often as there are rows: up to 34 bytes a particle, less where several attributes have one value.
         ///
         /// A scene that begins with other particles, or whose emitters would bear others, is refused by
         /// [`start`](crate::System::start) with the name of the attribute; what is born otherwise all the same is refused and counted.

@@ -3,7 +3,7 @@
 use super::numbers::{Checked, finite, zero_or_more};
 use super::{SceneError, SceneFile};
 use crate::constrain::{ConstraintKind, Distance, Rope};
-use crate::force::{Force, ForceKind};
+use crate::force::{Force, ForceKind, Spring};
 use crate::index::Room;
 use crate::math::max;
 use alloc::format;
@@ -70,7 +70,9 @@ impl SceneFile {
             _ => 0.0,
         };
         let constraints = self.constraints.iter().map(bound).enumerate().map(|(i, length)| ("constraints", i, length));
-        let springs = self.springs.iter().enumerate().map(|(i, spring)| ("springs", i, spring.rest_length));
+        let longest =
+            |spring: &Spring| spring.rest_length * (1.0 + spring.drive.map_or(0.0, |drive| drive.amplitude.abs()));
+        let springs = self.springs.iter().enumerate().map(|(i, spring)| ("springs", i, longest(spring)));
         for (name, i, length) in constraints.chain(springs) {
             if !(length < half) {
                 let message = format!(

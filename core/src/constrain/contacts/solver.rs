@@ -184,8 +184,9 @@ impl<'a> Pass<'a> {
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
             (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance)
         } else if self.fast && square > 0.0 {
-            let Some(normal) = passed(between(self.room, self.x0[b], self.x0[a]), d, reach) else { return };
-            (normal, reach - d.dot(normal))
+            let (from, to) = self.way(a, b, d);
+            let Some(normal) = passed(from, to, reach) else { return };
+            (normal, reach - to.dot(normal))
         } else {
             return;
         };
@@ -347,6 +348,14 @@ impl<'a> Pass<'a> {
             let touched = gap.abs() <= self.slack(row, self.radius[row]);
             self.keep(row, face.velocity, touched && self.v0[row] == face.velocity, way);
         }
+    }
+
+    /// The way from the second of two to the first when the sub-step began, and now that it is `d`: to the same image, though another may be nearer
+    /// by now.
+    fn way(&self, a: usize, b: usize, d: Vec3) -> (Vec3, Vec3) {
+        let from = between(self.room, self.x0[b], self.x0[a]);
+        let went = |row: usize| self.position[row] - self.x0[row];
+        (from, if self.room.is_some() { from + (went(a) - went(b)) } else { d })
     }
 
     /// The way from the second of two to the first.

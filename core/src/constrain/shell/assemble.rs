@@ -131,9 +131,12 @@ impl Membranes<'_, '_, '_, '_> {
             [scale * like.all(warp) * rate, scale * like.all(weft) * rate, scale * like.all(params.shear) * rate];
         let taut = like.all(0.25) * tension * area * square;
         let numbers = self.finest.blocks.as_flattened_mut().as_flattened_mut();
-        for side in 0..3 {
-            let block = block(stress, taut, held[side], [gain[side], gain[(side + 1) % 3]], [u, v]);
-            for (lane, places) in places.iter().enumerate() {
+        let blocks = [0, 1, 2].map(
+            #[inline(always)]
+            |side| block(stress, taut, held[side], [gain[side], gain[(side + 1) % 3]], [u, v]),
+        );
+        for (lane, places) in places.iter().enumerate() {
+            for (side, block) in blocks.iter().enumerate() {
                 let [mut there, mut back] = [[0.0; 9]; 2];
                 for (number, lanes) in block.iter().enumerate() {
                     there[number] = lanes[lane];

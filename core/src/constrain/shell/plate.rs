@@ -64,7 +64,7 @@ pub(super) fn words(room: &Room) -> usize {
 
 /// Entries of those that bend together: there is room for more links than there are most often.
 fn entries(room: &Room) -> usize {
-    room.far / LANES + room.far / 32 + 4 * room.rows[0].div_ceil(LANES).min(LANES) + 16
+    room.far / LANES + room.far / 16 + 4 * room.rows[0].div_ceil(LANES).min(LANES) + 16
 }
 
 /// Words that say who bends together.

@@ -32,7 +32,7 @@ pub(super) struct Strips<'m> {
 
 /// Entries for so many links: rows with fewer than their neighbours leave places empty.
 pub(super) fn entries(links: usize) -> usize {
-    links / 8 + links / 16 + links / 32 + 16
+    links / 4 + links / 8 + 16
 }
 
 /// Words for so many rows and entries.
