@@ -4,7 +4,7 @@
 //! line and the npm package run.
 
 use pointmass::scene::InlineScene;
-use pointmass::{Inline, Slices, Storage, System, Time};
+use pointmass::{Inline, System, Time};
 
 /// Everything that the scenes need, none of it on the stack: a microbit has 16 KiB in all.
 pub(crate) struct Memory {
@@ -33,7 +33,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     for (name, text) in SCENES {
         let read = memory.scene.read(text);
         let scene = memory.scene.scene();
-        let mut system: System<Slices<'_>> = System::with(memory.system.slices());
+        let mut system = System::with(&mut memory.system);
         if read.is_ok() && system.start(&scene, 1).is_ok() {
             for frame in 1..=600 {
                 system.step(&scene, Time::frame(frame, 60) - system.time());
