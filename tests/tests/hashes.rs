@@ -2,6 +2,8 @@
 
 #[path = "../firmware/src/bonds.rs"]
 mod bonds;
+#[path = "../firmware/src/cloth.rs"]
+mod cloth;
 #[path = "../firmware/src/contacts.rs"]
 mod contacts;
 #[path = "../firmware/src/drawing.rs"]

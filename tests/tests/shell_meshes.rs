@@ -1,7 +1,7 @@
 //! Shells of any mesh: how few iterations they take, and what they keep in one piece and in several, whatever the order of their particles.
 
 use pointmass::constrain::{Hinge, Shell, ShellParams, mesh_hinges};
-use pointmass::{Gravity, Measures, Method, Particle, Scene, Sheet, Time, Vec3};
+use pointmass::{Constraint, Effort, Gravity, Measures, Method, Particle, Report, Scene, Sheet, Time, Vec3};
 use pointmass_tests::points::shuffle;
 use pointmass_tests::{Random, gap, icosahedron, often, started};
 
@@ -228,5 +228,159 @@ fn the_order_of_particles_does_not_matter() {
         for (a, b) in run(&order, extra).iter().zip(&plain) {
             assert!(a.distance(*b) < 2e-3, "{extra}: {a}, not {b}");
         }
+    }
+}
+
+/// Rings around a hub of so many spokes, each a little farther out and uneven.
+fn wheel(spokes: u32, rings: u32, random: &mut Random) -> Mesh {
+    let mut places = vec![Vec3::ZERO];
+    for ring in 1..=rings {
+        for i in 0..spokes {
+            let (sin, cos) = (i as f32 * std::f32::consts::TAU / spokes as f32).sin_cos();
+            places.push(Vec3::new(cos, 0.0, sin) * (ring as f32 / rings as f32) + random.vector(0.1 / spokes as f32));
+        }
+    }
+    let mut triangles = vec![];
+    for i in 0..spokes {
+        let [this, next] = [1 + i, 1 + (i + 1) % spokes];
+        triangles.push([0, next, this]);
+        for ring in 1..rings {
+            let [a, b] = [this, next].map(|number| number + (ring - 1) * spokes);
+            triangles.extend([[a, b, b + spokes], [a, b + spokes, a + spokes]]);
+        }
+    }
+    (places, triangles)
+}
+
+/// A sheet whose particles are off their places, and many of whose edges lead across.
+fn uneven(cells: u32, random: &mut Random) -> Mesh {
+    let (mut places, mut triangles) = sheet([cells; 2], Vec3::ZERO);
+    places.iter_mut().for_each(|place| *place += random.vector(0.25 / cells as f32) * Vec3::new(1.0, 0.2, 1.0));
+    let area = |places: &[Vec3], [a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| places[corner as usize]);
+        (b - a).cross(c - a).y
+    };
+    for _ in 0..4 * cells * cells {
+        let face = (random.vector(0.5).x + 0.5) * triangles.len() as f32;
+        let face = (face as usize).min(triangles.len() - 1);
+        let [a, b, c] = triangles[face];
+        let across = |&other: &usize| other != face && triangles[other].contains(&a) && triangles[other].contains(&b);
+        let Some(other) = (0..triangles.len()).find(across) else { continue };
+        let Some(&d) = triangles[other].iter().find(|&&corner| corner != a && corner != b) else { continue };
+        let flipped = [[c, a, d], [c, d, b]];
+        let least = 0.2 / (cells * cells) as f32;
+        let sign = area(&places, [a, b, c]).signum();
+        if flipped.iter().all(|&corners| area(&places, corners) * sign > least) {
+            [triangles[face], triangles[other]] = flipped;
+        }
+    }
+    (places, triangles)
+}
+
+/// Meshes of many kinds that lie in a plane at first, and their names.
+fn of_all_kinds(random: &mut Random) -> Vec<(String, Mesh)> {
+    let mut all: Vec<(String, Mesh)> = [(3, 7), (5, 4), (8, 2), (13, 2), (24, 2), (40, 1), (40, 3), (300, 2)]
+        .into_iter()
+        .map(|(spokes, rings)| (format!("{spokes} spokes, {rings} rings"), wheel(spokes, rings, random)))
+        .collect();
+    all.push(("700 spokes, 1 ring".into(), wheel(700, 1, random)));
+    all.extend([6, 11, 19].map(|cells| (format!("uneven, {cells} cells"), uneven(cells, random))));
+    all.push(("needles".into(), needles()));
+    all.push(("strip".into(), sheet([30, 1], Vec3::ZERO)));
+    let (mut places, mut triangles) = sheet([7, 6], Vec3::ZERO);
+    for corner in [Vec3::X * 3.0, Vec3::Z * 4.0] {
+        let first = places.len() as u32;
+        let (more, faces) = sheet([4, 5], corner);
+        places.extend(more);
+        triangles.extend(faces.into_iter().map(|corners| corners.map(|corner| corner + first)));
+    }
+    all.push(("three pieces".into(), (places, triangles)));
+    let (mut places, mut triangles) = sheet([8, 8], Vec3::ZERO);
+    let fins = [[10u32, 11], [40, 41], [30, 39]];
+    for [a, b] in fins {
+        places.push((places[a as usize] + places[b as usize]) * 0.5 + Vec3::Y * 0.1);
+        triangles.push([a, b, places.len() as u32 - 1]);
+    }
+    all.push(("edges of three triangles".into(), (places, triangles)));
+    let (places, mut triangles) = sheet([8, 8], Vec3::ZERO);
+    triangles.extend(triangles.clone().into_iter().step_by(5));
+    all.push(("triangles twice".into(), (places, triangles)));
+    let (mut places, triangles) = sheet([5, 5], Vec3::ZERO);
+    places.extend((0..200).map(|i| Vec3::new(i as f32, 5.0, 0.0)));
+    all.push(("in no triangle".into(), shuffled((places, triangles), random)));
+    let (places, mut triangles) = sheet([12, 12], Vec3::ZERO);
+    let mut number = 0;
+    triangles.retain(|_| {
+        number += 1;
+        number % 24 < 4 || number % 24 > 9 || number / 24 % 4 < 2
+    });
+    all.push(("holes".into(), (places, triangles)));
+    all
+}
+
+/// How many times as long as high the most slender triangle is.
+fn slenderness((places, triangles): &Mesh) -> f32 {
+    let of = |&corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| places[corner as usize]);
+        let longest = [b - a, c - b, a - c].into_iter().map(Vec3::length_squared).fold(0.0, f32::max);
+        longest / (b - a).cross(c - a).length()
+    };
+    triangles.iter().map(of).fold(0.0, f32::max)
+}
+
+/// Where a mesh is that hangs from its first particle for a while, and with what effort; with hinges that are none, there is no room for graphs.
+fn hung(mesh: &Mesh, params: ShellParams, substeps: u32, extra: usize) -> (Vec<Vec3>, Report) {
+    let mut start = start(&mesh.0, 0.2 / mesh.0.len() as f32, |x| Vec3::new(0.3 * x.z, 0.2 * x.x, -0.3));
+    start[0].fixed = true;
+    let mut shell = shell(mesh, params);
+    let none = Hinge { edge: [0; 2], far: [0; 2], faces: [0; 2] };
+    shell.hinges.extend(std::iter::repeat_n(none, extra));
+    let scene = Scene { start: &start, forces: &DOWN, constraints: &shell, substeps, ..Scene::EMPTY };
+    let mut system = started(&scene, start.len(), 0);
+    for frame in 1..=5 {
+        system.step_to(&scene, Time::frame(frame, 60));
+    }
+    (system.particles().position.to_vec(), *system.totals())
+}
+
+/// By graphs, whatever the mesh, it takes few iterations to what masses alone lead to as well; and where there is no room for graphs, that is counted.
+#[test]
+fn meshes_of_all_kinds_are_solved_in_few_iterations() {
+    let mut random = Random::new(4711);
+    for (name, mesh) in of_all_kinds(&mut random) {
+        for (stretch, bending, substeps) in [(100.0, 1e-6, 6), (500.0, 1e-5, 3)] {
+            let params = params(stretch, bending);
+            let (places, report) = hung(&mesh, params, substeps, 0);
+            let effort = report.effort;
+            assert_eq!((report.caps.graphs, effort.capped), (0, 0), "{name}, {stretch} N/m: {effort:?}");
+            let mean = |effort: &Effort| effort.iterations as f64 / effort.solves as f64;
+            let (by_masses, masses) = hung(&mesh, params, substeps, 8);
+            assert_eq!(masses.caps.graphs, u64::from(5 * substeps), "{name}");
+            let (few, many) = (mean(&effort), mean(&masses.effort));
+            // Needles, as there are where hundreds of spokes meet, are stiff beyond what groups of particles tell.
+            let most = if slenderness(&mesh) > 30.0 { f64::max(0.5 * many, 30.0) } else { 30.0 };
+            let off = places.iter().zip(&by_masses).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+            println!("{name}, {stretch} N/m: {few:.1} iterations, by masses {many:.1}, off by {off:.1e} m");
+            assert!(few < most, "{name}, {stretch} N/m: {few} iterations, by masses {many}");
+            assert!(off < 2e-4, "{name}, {stretch} N/m: {off} m");
+        }
+    }
+}
+
+/// Words of 32 bits, for each particle: what is kept and what is worked with. Printed, as they are what decides which chip it runs on.
+#[test]
+fn shells_ask_for_few_words_a_particle() {
+    for (cells, most) in [(16u32, [300, 350]), (64, [300, 350]), (128, [300, 350])] {
+        let mesh = sheet([cells; 2], Vec3::ZERO);
+        let demand = shell(&mesh, params(500.0, 1e-5)).demand();
+        let words =
+            [demand.kept, demand.scratch, demand.step].map(|words| words.of(mesh.0.len()) as f64 / mesh.0.len() as f64);
+        println!(
+            "{cells}²: {:.0} bytes kept a particle, {:.0} to work with, {:.0} for walls",
+            4.0 * words[0],
+            4.0 * words[1],
+            4.0 * words[2]
+        );
+        assert!(words[0] < most[0] as f64 && words[1] < most[1] as f64, "{cells}: {words:?}");
     }
 }

@@ -114,13 +114,14 @@ impl Summary {
         push_counts(&mut rows, "hits", &[("", *hits)]);
         push_counts(&mut rows, "contacts", &[("", *contacts)]);
         push_counts(&mut rows, "broken", &[("springs", *broken)]);
-        let Caps { bounces, chords, springs, contacts, stalled, insufficient_memory } = *caps;
+        let Caps { bounces, chords, springs, contacts, stalled, graphs, insufficient_memory } = *caps;
         let caps = [
             ("paths with too many bounces", bounces),
             ("paths with too many chords", chords),
             ("springs without an end", springs),
             ("contacts without room", contacts),
             ("steps of particles lost to rounding", stalled),
+            ("solutions of shells without graphs", graphs),
             ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);

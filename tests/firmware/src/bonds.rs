@@ -1,8 +1,9 @@
 //! What holds together, computed alike by every target: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! A rope that hangs from a nail, a ring of soft links, a die, a jelly, a sheet, two boxes and a bent wire are thrown onto the floor, one
-//! after the other, and all but the wire at once.
+//! after the other, and all but the wire at once; then two cloths of an uneven mesh.
 
+use crate::cloth;
 use crate::drawing::{hash_bodies, hash_strands, hash_surface};
 use pointmass::constrain::{
     Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams, StrandParams,
@@ -41,6 +42,7 @@ const KEPT: usize = 25;
 pub(crate) struct Memory {
     start: [Particle; PARTICLES],
     system: System<Inline<PARTICLES, 0, 0, COLUMNS, KEPT>>,
+    cloth: cloth::Memory,
 }
 
 impl Memory {
@@ -48,6 +50,7 @@ impl Memory {
         Self {
             start: [Particle { mass: 0.0, elasticity: 0.0, ..Particle::REST }; PARTICLES],
             system: System::with(Inline::new()),
+            cloth: cloth::Memory::new(),
         }
     }
 }
@@ -55,7 +58,7 @@ impl Memory {
 /// Calls `out` with the name of each and the hash after a second and a half; and with those of boxes, a surface and a strand as they are drawn
 /// then.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
-    let Memory { start, system } = memory;
+    let Memory { start, system, cloth } = memory;
     throw(start);
     let rope = Rope { damping: 0.02, ..Rope::rigid(ROPE, [0.1]) };
     let ring = Rope { compliance: 1e-4, closed: true, ..Rope::rigid(RING, [0.12]) };
@@ -119,6 +122,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         };
         out(drawn, hash.finish());
     }
+    cloth::run(cloth, out);
 }
 
 /// A sheet of stiff paper.

@@ -15,6 +15,8 @@ use cortex_m as _;
 #[cfg(roomy)]
 mod bonds;
 #[cfg(roomy)]
+mod cloth;
+#[cfg(roomy)]
 mod contacts;
 #[cfg(roomy)]
 mod drawing;

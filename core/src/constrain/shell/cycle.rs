@@ -27,7 +27,12 @@ pub(super) struct Levels<'m> {
 /// Words for all of them.
 pub(super) fn words(room: &Room) -> usize {
     let ([fine, coarse], [links, others]) = (room.rows, room.links);
-    if fine == 0 { 0 } else { finest::words(fine, strips::entries(links)) + BLOCK * (others + 2 * coarse) + 8 * coarse }
+    if fine == 0 {
+        return 0;
+    }
+    let finest = finest::words(fine, strips::entries(fine, links));
+    let blocks = (others + 2 * coarse).saturating_mul(BLOCK);
+    finest.saturating_add(blocks).saturating_add(coarse.saturating_mul(8))
 }
 
 impl<'m> Levels<'m> {

@@ -38,7 +38,8 @@ pub(super) struct Finest<'m> {
 
 /// Words for so many rows and entries.
 pub(super) fn words(rows: usize, entries: usize) -> usize {
-    rows.div_ceil(LANES) * LANES * (1 + 2 * 6 + 9 + 2 * 3) + 9 * LANES * entries
+    let own = rows.div_ceil(LANES).saturating_mul(LANES * (1 + 2 * 6 + 9 + 2 * 3));
+    entries.saturating_mul(9 * LANES).saturating_add(own)
 }
 
 /// Who is linked with whom, and what becomes of that.
@@ -56,13 +57,17 @@ pub(super) const WITHIN: u32 = 1 << 31;
 
 /// Words for what is known of links.
 pub(super) fn pattern(room: &Room, triangles: usize) -> usize {
-    let ([rows, _], entries) = (room.rows, strips::entries(room.links[0]));
-    if rows == 0 { 0 } else { strips::words(rows, entries) + LANES * entries + 6 * triangles }
+    let ([rows, _], entries) = (room.rows, strips::entries(room.rows[0], room.links[0]));
+    if rows == 0 {
+        return 0;
+    }
+    let sums = entries.saturating_mul(LANES);
+    strips::words(rows, entries).saturating_add(sums).saturating_add(triangles.saturating_mul(6))
 }
 
 impl<'m> Links<'m> {
     pub(super) fn of(room: &Room, triangles: usize, words: &'m [u32]) -> Self {
-        let ([rows, _], entries) = (room.rows, strips::entries(room.links[0]));
+        let ([rows, _], entries) = (room.rows, strips::entries(room.rows[0], room.links[0]));
         if words.len() < pattern(room, triangles) || rows == 0 {
             return Self::default();
         }
@@ -76,10 +81,18 @@ impl<'m> Links<'m> {
     }
 
     /// Makes them; tells whether there is room.
-    pub(super) fn make(room: &Room, graphs: &[Graph<'_>], triangles: &[[u32; 3]], words: &mut [u32]) -> Option<()> {
-        let (&[fine, coarse, ..], entries) = (graphs, strips::entries(room.links[0])) else { return None };
+    pub(super) fn make(
+        room: &Room,
+        graphs: &[Graph<'_>],
+        triangles: &[[u32; 3]],
+        words: &mut [u32],
+        work: &mut [u32],
+    ) -> Option<()> {
+        let (&[fine, coarse, ..], entries) = (graphs, strips::entries(room.rows[0], room.links[0])) else {
+            return None;
+        };
         let (head, rest) = words.split_at_mut_checked(strips::words(room.rows[0], entries))?;
-        Strips::make(&fine, entries, head)?;
+        Strips::make(&fine, entries, head, work)?;
         let strips = Strips::of(room.rows[0], entries, head);
         let (sums, edges) = rest.split_at_mut_checked(LANES * entries)?;
         let (sums, edges): (&mut [[u32; LANES]], &mut [[u32; 6]]) =
@@ -134,6 +147,11 @@ impl Kernel for Product<'_, '_> {
             let range = strips.range(strip);
             for (entry, block) in range.clone().zip(blocks.get(range).unwrap_or(&[])) {
                 sum = sum + times(like, block, strips.vectors(like, x, entry) - own);
+            }
+            for entry in strips.mixed(strip) {
+                let (Some(block), owners) = (blocks.get(entry), strips.owners(entry)) else { return };
+                let ways = strips.vectors(like, x, entry) - owners.lent(like, own);
+                sum = owners.add(like, sum, times(like, block, ways));
             }
             if *bending > 0.0 {
                 sum = sum + plate.bend(like, x, strip, own) * like.all(*bending);
@@ -231,6 +249,7 @@ impl Finest<'_> {
                     left = left - times(like, block, strips.vectors(like, shared(&x), entry));
                 }
             }
+            left = less_mixed(like, left, (strips, blocks), shared(&x), strip, false);
             put(&mut x, LANES * strip, own_times(like, inverse, left));
         }
     }
@@ -257,6 +276,7 @@ impl Finest<'_> {
                 }
                 left = left - times(like, block, others);
             }
+            left = less_mixed(like, left, (&self.links.strips, self.blocks), x, strip, true);
             for (row, left) in self.links.strips.rows(strip).into_iter().zip(left.rows()) {
                 if let Some(next) = self.into.get(row).and_then(|&group| next.get_mut(group as usize)) {
                     next.iter_mut().zip(left).for_each(|(next, left)| *next += left);
@@ -288,11 +308,33 @@ impl Finest<'_> {
             for (entry, block) in range.clone().zip(blocks.get(range).unwrap_or(&[])) {
                 left = left - times(like, block, strips.vectors(like, shared(&x), entry));
             }
+            left = less_mixed(like, left, (strips, blocks), shared(&x), strip, false);
             let own = own_times(like, inverse, left);
             put(&mut x, LANES * strip, own);
             save(z, &strips.rows(strip), own);
         }
     }
+}
+
+/// Takes from what is left of a strip's rows what its mixed entries do to them, or only that by rows that are not of earlier strips.
+#[inline(always)]
+fn less_mixed<F: Eight>(
+    like: F,
+    mut left: Vectors<F>,
+    (strips, blocks): (&Strips<'_>, &[Block]),
+    x: [&[f32]; 3],
+    strip: usize,
+    later: bool,
+) -> Vectors<F> {
+    for entry in strips.mixed(strip) {
+        let Some(block) = blocks.get(entry) else { break };
+        let mut others = strips.vectors(like, x, entry);
+        if later {
+            others = others.masked(mask_of(like, !strips.below(entry)));
+        }
+        left = strips.owners(entry).add(like, left, -times(like, block, others));
+    }
+    left
 }
 
 /// Three columns of so many numbers together.

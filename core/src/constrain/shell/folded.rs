@@ -46,11 +46,21 @@ impl Kernel for Settle<'_, '_> {
                 for (i, &number) in UPPER.iter().enumerate() {
                     sum[i] = sum[i] - like.of(block[number]);
                 }
-                let near = plate.near.get(entry).map_or(zero, |near| like.of(*near)) * bending;
+                let near = plate.near_of(like, entry) * bending;
                 for (i, number) in block.iter_mut().enumerate() {
-                    let own = like.of(*number);
-                    left[i] = left[i] - (own & not(both));
-                    *number = ((own + if i % 4 == 0 { near } else { zero }) & both).to_array();
+                    left[i] = left[i] - settled(like, number, i, near, both);
+                }
+            }
+            for entry in links.strips.mixed(strip) {
+                let (Some(block), owners) = (blocks.get_mut(entry), links.strips.owners(entry)) else { return };
+                let both = links.strips.numbers(like, weight, entry).simd_gt(zero)
+                    & owners.lent_number(like, own).simd_gt(zero);
+                for (i, &number) in UPPER.iter().enumerate() {
+                    sum[i] = owners.add_number(like, sum[i], zero - like.of(block[number]));
+                }
+                let near = plate.near_of(like, entry) * bending;
+                for (i, number) in block.iter_mut().enumerate() {
+                    left[i] = owners.add_number(like, left[i], zero - settled(like, number, i, near, both));
                 }
             }
             let mass = one / own;
@@ -69,6 +79,14 @@ impl Kernel for Settle<'_, '_> {
     }
 }
 
+/// Adds to a number of blocks what bends along edges, zero where one of both does not move, and tells what it was there.
+#[inline(always)]
+fn settled<F: Eight>(like: F, number: &mut [f32; LANES], i: usize, near: F, both: F) -> F {
+    let own = like.of(*number);
+    *number = ((own + if i % 4 == 0 { near } else { like.all(0.0) }) & both).to_array();
+    own & not(both)
+}
+
 /// Sums up the finest's blocks for the next graph. Groups that go as one would bend sharply between each other: how they do is left out, and
 /// what each does to itself is less.
 pub(super) struct Sum<'a, 'm> {
@@ -83,7 +101,7 @@ impl Kernel for Sum<'_, '_> {
     fn run<F: Eight>(self, like: F) {
         let Self { finest, next } = self;
         let Finest { links, blocks, whole, plate, bending, into, .. } = finest;
-        let (bending, zero) = (like.all(*bending), like.all(0.0));
+        let bending = like.all(*bending);
         let share = like.all(SHARE - 1.0);
         for (strip, whole) in whole.iter().enumerate() {
             let [own, _] = plate.of_strip(like, strip);
@@ -98,9 +116,9 @@ impl Kernel for Sum<'_, '_> {
                     add(next.whole, group as usize, block);
                 }
             }
-            for entry in links.strips.range(strip) {
+            for entry in links.strips.all(strip) {
                 let (Some(block), Some(sums)) = (blocks.get(entry), links.sums.get(entry)) else { return };
-                let near = plate.near.get(entry).map_or(zero, |near| like.of(*near)) * bending;
+                let near = plate.near_of(like, entry) * bending;
                 let [a, b, c, d, e, f, g, h, i] = block.map(
                     #[inline(always)]
                     |lanes| like.of(lanes),
@@ -147,7 +165,7 @@ impl Finest<'_> {
     pub(super) fn soften(&mut self) {
         for (strip, (own, soft)) in self.inverse.iter_mut().zip(&mut *self.soft).enumerate() {
             *soft = [0.0; LANES];
-            for entry in self.links.strips.range(strip) {
+            for entry in self.links.strips.all(strip) {
                 let within = self.links.strips.within(entry);
                 if within == 0 {
                     continue;
@@ -155,8 +173,9 @@ impl Finest<'_> {
                 let Some(block) = self.blocks.get(entry) else { return };
                 for lane in (0..LANES).filter(|lane| within & 1 << lane != 0) {
                     let held = 0.5 * sqrt(block.iter().map(|lanes| lanes[lane] * lanes[lane]).sum());
-                    soft[lane] += held;
-                    DIAGONAL.into_iter().for_each(|i| own[i][lane] += held);
+                    let row = self.links.strips.owner(entry, lane);
+                    soft[row] += held;
+                    DIAGONAL.into_iter().for_each(|i| own[i][row] += held);
                 }
             }
         }

@@ -25,12 +25,15 @@ pub(super) struct Room {
     pub(super) far: usize,
 }
 
+/// Tells whether shells of so many particles, triangles and hinges are to be solved by graphs.
+pub(super) fn asked([particles, triangles, _]: [usize; 3]) -> bool {
+    particles >= LEAST && triangles > 0
+}
+
 impl Room {
     pub(super) fn of([particles, triangles, hinges]: [usize; 3]) -> Self {
-        if particles < LEAST
-            || triangles == 0
-            || [particles, triangles, hinges].iter().any(|&of| of > NONE as usize / 64)
-        {
+        let all = [particles, triangles, hinges];
+        if !asked(all) || all.iter().any(|&of| of > NONE as usize / 64) {
             return Self { rows: [0; 2], links: [0; 2], far: 0 };
         }
         // A hinge is an edge that two triangles share.

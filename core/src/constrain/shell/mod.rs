@@ -210,7 +210,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         mesh::make(&room, self.triangles.as_ref(), graphs, work);
         let all = Graph::all(graphs);
         if all[0].rows() > 0 {
-            let made = Links::make(&room, &all, self.triangles.as_ref(), links)
+            let made = Links::make(&room, &all, self.triangles.as_ref(), links, work)
                 .and_then(|()| plate::find(&room, &self.shape(&[], &[]), plate, work));
             if made.is_none() {
                 // Without room for all that hangs or bends together everything goes triangle by triangle.
@@ -262,16 +262,22 @@ where
 {
     fn demand(&self) -> Demand {
         let [particles, triangles, hinges] = self.counts();
-        let sum = |parts: [usize; 3]| parts.into_iter().fold(0, usize::saturating_add);
+        let sum = |parts: &[usize]| parts.iter().copied().fold(0, usize::saturating_add);
         let room = Room::of(self.counts());
-        let kept = sum([
-            1 + room.words() + finest::pattern(&room, triangles) + plate::words(&room) + 3 * room.rows[0],
+        let kept = sum(&[
+            1 + room.words(),
+            finest::pattern(&room, triangles),
+            plate::words(&room),
+            3 * room.rows[0],
             triangles.saturating_mul(KEPT[0]),
             hinges.saturating_mul(KEPT[1]),
         ]);
-        let work =
-            sum([triangles.saturating_mul(WORK[0]), hinges.saturating_mul(WORK[1]), particles.saturating_mul(WORK[2])]);
-        let work = work.saturating_add(cycle::words(&room));
+        let work = sum(&[
+            triangles.saturating_mul(WORK[0]),
+            hinges.saturating_mul(WORK[1]),
+            particles.saturating_mul(WORK[2]),
+        ]);
+        let work = work.saturating_add(cycle::words(&room)).max(plate::scratch(&room, self.counts()));
         let words = |fixed| Words { per_row: 0, fixed };
         let step = particles.saturating_mul(walls::WORDS);
         Demand { kept: words(kept), step: words(step), scratch: words(work), ..Demand::NONE }
@@ -302,6 +308,7 @@ where
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
+        bodies.report.caps.graphs += u64::from(mesh::asked(self.counts()) && levels.is_empty());
         let mut solver = Solver {
             params: &self.params,
             step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },

@@ -14,6 +14,8 @@ use crate::memory::take;
 /// Hinges of a triangle, and corners that they have together, at the most.
 const SIDES: usize = 3;
 const PATCH: usize = 4 * SIDES;
+/// Triangles before another that are asked whether it is the same.
+const ASKED: usize = 64;
 /// The most that a thin shell resists bending, in its triangles, as a share of stretching.
 const THIN: f32 = 0.05;
 /// What a particle is: it moves, it is fixed, it is not there. Nothing is known of it before that is set.
@@ -58,13 +60,22 @@ pub(super) struct Shape<'s> {
 pub(super) fn words(room: &Room) -> usize {
     let [rows, _] = room.rows;
     let padded = LANES * rows.div_ceil(LANES);
-    let near = LANES * strips::entries(room.links[0]);
-    if rows == 0 { 0 } else { rows + 1 + 2 * padded + near + pattern(room) + LANES * entries(room) }
+    let near = strips::entries(rows, room.links[0]).saturating_mul(LANES);
+    let numbers = entries(room).saturating_mul(LANES);
+    let own = (2 * padded).saturating_add(rows + 1);
+    if rows == 0 { 0 } else { own.saturating_add(near).saturating_add(pattern(room)).saturating_add(numbers) }
 }
 
-/// Entries of those that bend together: there is room for more links than there are most often.
+/// Entries of those that bend together.
 fn entries(room: &Room) -> usize {
-    room.far / LANES + room.far / 16 + 4 * room.rows[0].div_ceil(LANES).min(LANES) + 16
+    strips::entries(room.rows[0], room.far)
+}
+
+/// Words to find that with.
+pub(super) fn scratch(room: &Room, [_, triangles, hinges]: [usize; 3]) -> usize {
+    let [rows, _] = room.rows;
+    let corners = hinges.saturating_mul(10).saturating_add(triangles).saturating_add(2 * rows);
+    if rows == 0 { 0 } else { corners.saturating_add(room.far).saturating_add(strips::KEYS + 5) }
 }
 
 /// Words that say who bends together.
@@ -82,7 +93,7 @@ impl<'m> Plate<'m> {
         let roll = take(&mut rest, rows);
         let padded = LANES * rows.div_ceil(LANES);
         let [steepest, own, alone] = [1, padded, padded].map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
-        let lanes = [strips::entries(room.links[0]), entries(room)].map(|entries| LANES * entries);
+        let lanes = [strips::entries(rows, room.links[0]), entries(room)].map(|entries| entries.saturating_mul(LANES));
         let [near, numbers] = lanes.map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
         Self { roll, steepest, own, near, alone, links, numbers }
     }
@@ -95,6 +106,11 @@ impl<'m> Plate<'m> {
         for (entry, numbers) in range.clone().zip(self.numbers.get(range).unwrap_or(&[])) {
             sum = sum + (self.links.vectors(like, x, entry) - own) * like.of(*numbers);
         }
+        for entry in self.links.mixed(strip) {
+            let (Some(numbers), owners) = (self.numbers.get(entry), self.links.owners(entry)) else { break };
+            let ways = self.links.vectors(like, x, entry) - owners.lent(like, own);
+            sum = owners.add(like, sum, ways * like.of(*numbers));
+        }
         sum
     }
 
@@ -102,6 +118,16 @@ impl<'m> Plate<'m> {
     #[inline(always)]
     pub(super) fn of_strip<F: Eight>(&self, like: F, strip: usize) -> [F; 2] {
         [eight_of(like, self.own, LANES * strip), eight_of(like, self.alone, LANES * strip)]
+    }
+
+    /// What edges along the links of an entry resist by bending.
+    #[inline(always)]
+    pub(super) fn near_of<F: Eight>(&self, like: F, entry: usize) -> F {
+        self.near.get(entry).map_or(
+            like.all(0.0),
+            #[inline(always)]
+            |near| like.of(*near),
+        )
     }
 
     /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon
@@ -212,6 +238,7 @@ impl<'m> Plate<'m> {
 /// Finds who bends together: all corners of the hinges of each triangle. Tells whether there is room.
 pub(super) fn find(room: &Room, shape: &Shape<'_>, words: &mut [u32], work: &mut [u32]) -> Option<()> {
     let (rows, mut rest) = (room.rows[0], work);
+    let keys = take(&mut rest, strips::KEYS);
     let (starts, links) = (take(&mut rest, rows + 1), take(&mut rest, room.far));
     let corners = shape.hinges.iter().flat_map(|hinge| {
         hinge.corners().into_iter().flat_map(|corner| hinge.faces.map(|face| (corner as usize, face)))
@@ -222,7 +249,8 @@ pub(super) fn find(room: &Room, shape: &Shape<'_>, words: &mut [u32], work: &mut
     let made = link(starts, links, |row, add| {
         let faces = faces.get(begin[row] as usize..begin[row + 1] as usize)?;
         for (i, &face) in faces.iter().enumerate() {
-            if faces[..i].contains(&face) {
+            // Those of a hub are too many to ask for all: what is added twice is there once.
+            if faces[i.saturating_sub(ASKED)..i].contains(&face) {
                 continue;
             }
             let face = face as usize;
@@ -237,7 +265,7 @@ pub(super) fn find(room: &Room, shape: &Shape<'_>, words: &mut [u32], work: &mut
         }
         Some(())
     })?;
-    Strips::make(&Graph { starts, links: &links[..made], into: &[] }, entries(room), words)
+    Strips::make(&Graph { starts, links: &links[..made], into: &[] }, entries(room), words, keys)
 }
 
 impl Shape<'_> {
