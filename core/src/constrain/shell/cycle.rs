@@ -175,3 +175,24 @@ impl<'m> Levels<'m> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{mesh::Room, plate};
+    use super::*;
+
+    /// What does not fit an address is not taken for something small: `start` refuses it.
+    #[test]
+    fn words_of_the_largest_shells_do_not_wrap() {
+        let mut last = [0; 3];
+        for bits in 4..=26 {
+            let counts = [1 << bits, 2 << bits, 3 << bits].map(|count: usize| count.min(u32::MAX as usize / 64));
+            let room = Room::of(counts);
+            let all = [words(&room), finest::pattern(&room, counts[1]), plate::words(&room)];
+            for (now, before) in all.iter().zip(last) {
+                assert!(*now > before || *now == usize::MAX, "{counts:?}: {all:?} after {last:?}");
+            }
+            last = all;
+        }
+    }
+}

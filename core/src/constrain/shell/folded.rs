@@ -83,7 +83,7 @@ impl Kernel for Settle<'_, '_> {
 #[inline(always)]
 fn settled<F: Eight>(like: F, number: &mut [f32; LANES], i: usize, near: F, both: F) -> F {
     let own = like.of(*number);
-    *number = ((own + if i % 4 == 0 { near } else { like.all(0.0) }) & both).to_array();
+    *number = ((own + if i.is_multiple_of(4) { near } else { like.all(0.0) }) & both).to_array();
     own & not(both)
 }
 

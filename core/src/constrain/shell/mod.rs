@@ -81,10 +81,10 @@ impl ShellParams {
 /// From 16 particles on, a cycle through coarser meshes of groups of particles (algebraic multigrid by plain aggregation: Vaněk, Mandel and
 /// Brezina, Computing 56, 1996; symmetric Gauss-Seidel sweeps) goes before each iteration, so that about ten are enough however fine and stiff it
 /// is; where bending resists more than stretching, some dozens. They end where what is left is 0.3 % of the whole in the norm of energy (a tenth
-/// of that below 1,024 particles, and where rough scenery presses), or 0.01 % of the residual of fewer than 16 particles. Where a few particles of a
-/// mesh have many times the neighbours of the others, as the hub of a wheel of hundreds of spokes, there is no room for graphs, and it takes dozens
-/// of iterations and more. Iterations are counted in [`Effort`](crate::Effort), and what is cut off after 400 of them as capped: it
-/// is then softer for a while.
+/// of that below 1,024 particles, and where rough scenery presses), or 0.01 % of the residual of fewer than 16 particles. Needles, as there are where
+/// hundreds of spokes meet in a hub, take several times as many. Iterations are counted in [`Effort`](crate::Effort), and what is cut off after
+/// 400 of them as capped: it is then softer for a while. Of a mesh whose hinges are there twice, or are not edges of two of its triangles, there may be no
+/// room for graphs: it takes dozens of iterations and more, and that is counted in [`Caps`](crate::Caps).
 ///
 /// Where particles meet the scenery in a sub-step, that presses and brakes them while the material is solved (an active set of planes, one a
 /// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches little

@@ -308,15 +308,11 @@ impl Plan {
             // Where few go together, each has its own places: as many as whoever has most.
             (runs, others) = (0, all);
         }
-        let (mut plain, mut mixed) = (most(&others), 0);
-        for fewer in 0..plain {
-            let left: usize = others.iter().map(|count| count.saturating_sub(fewer)).sum();
-            let entries = left.div_ceil(LANES);
-            if fewer + WORTH * entries < plain + WORTH * mixed {
-                (plain, mixed) = (fewer, entries);
-            }
-        }
-        Self { runs, plain, mixed }
+        let mixed = |plain: usize| others.iter().map(|&count| usize::saturating_sub(count, plain)).sum::<usize>();
+        let cost = |&plain: &usize| plain + WORTH * mixed(plain).div_ceil(LANES);
+        // The most of those that cost the same.
+        let plain = (0..=most(&others)).rev().min_by_key(cost).unwrap_or(0);
+        Self { runs, plain, mixed: mixed(plain).div_ceil(LANES) }
     }
 }
 
