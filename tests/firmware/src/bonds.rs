@@ -88,16 +88,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     ];
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     for (name, constraints) in bonds {
-        let scene = Scene {
-            start,
-            forces: &(Gravity::EARTH, Drag {}),
-            colliders: &floor,
-            constraints,
-            substeps: 6,
-            integrator: &Verlet,
-            index: &Structure::Grid,
-            ..Scene::EMPTY
-        };
+        let scene = above(&floor, start, constraints);
         system.start(&scene, 1).expect("there is memory for it");
         for frame in 1..=90 {
             system.step(&scene, Time::frame(frame, 60) - system.time());
@@ -123,6 +114,20 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         out(drawn, hash.finish());
     }
     cloth::run(cloth, out);
+}
+
+/// Particles in air that fall on a floor.
+fn above<'s>(floor: &'s Plane, start: &'s [Particle], constraints: &'s dyn Constraint) -> Scene<'s> {
+    Scene {
+        start,
+        forces: &(Gravity::EARTH, Drag {}),
+        colliders: floor,
+        constraints,
+        substeps: 6,
+        integrator: &Verlet,
+        index: &Structure::Grid,
+        ..Scene::EMPTY
+    }
 }
 
 /// A sheet of stiff paper.
