@@ -11,6 +11,8 @@ const SPOKES: usize = 18;
 const TAIL: usize = 6;
 /// The hub, both rings, the fin's corner, the tail, and one in no triangle.
 const PARTICLES: usize = 1 + 2 * SPOKES + 1 + TAIL + 1;
+/// The first of the outer ring, and the corner of the fin.
+const OUTER: usize = 1 + SPOKES;
 const FIN: usize = 1 + 2 * SPOKES;
 const TRIANGLES: usize = 3 * SPOKES + 1 + TAIL + 1;
 const HINGES: usize = 3 * TRIANGLES / 2;
@@ -93,7 +95,7 @@ fn lay(start: &mut [Particle]) {
             0 => middle,
             1..=SPOKES => middle + round(i - 1, 0.2 + 0.03 * odd),
             FIN => middle + Vec3::new(0.15, 0.2, 0.12),
-            0..FIN => middle + round(i - 1 - SPOKES, 0.4 + 0.05 * odd),
+            OUTER..FIN => middle + round(i - OUTER, 0.4 + 0.05 * odd),
             _ => middle + Vec3::new(0.55 + 0.06 * (i - FIN) as f32, 0.15, if i % 2 == 0 { 0.05 } else { -0.05 }),
         };
         *place = Particle {
@@ -103,7 +105,7 @@ fn lay(start: &mut [Particle]) {
             mass: 0.002 + 0.001 * odd,
             drag: 0.001 * odd,
             material: Some(0),
-            fixed: i == 1 + SPOKES,
+            fixed: i == OUTER,
             ..Particle::REST
         };
     }
@@ -120,7 +122,7 @@ fn mesh(triangles: &mut [[u32; 3]; TRIANGLES]) {
     let rest = &mut triangles[3 * SPOKES..];
     rest[0] = [1, 2, FIN as u32];
     // From two of the outer ring on.
-    let mut last = [1 + SPOKES as u32, 2 + SPOKES as u32];
+    let mut last = [OUTER as u32, OUTER as u32 + 1];
     for (i, corners) in rest[1..=TAIL].iter_mut().enumerate() {
         let next = (FIN + 1 + i) as u32;
         *corners = if i % 2 == 0 { [last[0], last[1], next] } else { [last[1], last[0], next] };
