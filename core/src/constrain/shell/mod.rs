@@ -141,7 +141,7 @@ pub struct Shell<P, T, H> {
 
 /// The words that it keeps of each triangle and each fold, and works with; and with each particle.
 const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<Bend>() / 4];
-const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 15];
+const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 18];
 
 impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     /// The numbers of its particles, triangles and hinges.
@@ -302,6 +302,8 @@ where
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
+        let walls = walls::of(share.step, particles);
+        walls::gather(walls, self.particles.as_ref(), bodies);
         let mut solver = Solver {
             params: &self.params,
             step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },
@@ -313,14 +315,12 @@ where
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
             thin: false,
-            walls: &mut [],
+            walls,
             last,
         };
-        solver.linearise(bodies);
-        let walls = walls::of(share.step, particles);
-        walls::gather(walls, self.particles.as_ref(), bodies);
-        solver.walls = walls;
         solver.list_walls();
+        solver.meet(bodies);
+        solver.linearise(bodies);
         solver.assemble(&mut levels);
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);
