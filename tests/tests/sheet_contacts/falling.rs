@@ -176,6 +176,50 @@ fn what_falls_on_scenery_stretches_no_more_than_its_material_does() {
     keeps_its_strain(&cases(7), 10);
 }
 
+/// How far a sheet that falls along a slope that holds it comes to lie from where its way met that, at the most.
+fn astray([slope, speed, gap, friction]: [f32; 4], substeps: u32, method: Method) -> f32 {
+    let (sin, cos) = slope.sin_cos();
+    let plane = Plane { point: Vec3::ZERO, normal: Vec3::new(-sin, cos, 0.0) };
+    let params = ShellParams { stretch: [1000.0; 2], shear: 400.0, bending: 1e-5, damping: 2e-3 };
+    let mut cloths = Cloths::default();
+    let sides = [Vec3::new(cos, sin, 0.0), Vec3::Z];
+    cloths.add(&square(plane.normal * gap, sides, 6), params, |x| x, Vec3::NEG_Y * speed);
+    cloths.start.iter_mut().for_each(|particle| particle.material = Some(0));
+    let materials =
+        [ContactMaterial { friction: Some(Friction { static_: friction, kinetic: friction }), elasticity: None }];
+    let scene = Scene {
+        start: &cloths.start,
+        forces: &Gravity { acceleration: Vec3::NEG_Y * G },
+        colliders: &plane,
+        materials: &materials,
+        constraints: &&cloths.shells[..],
+        substeps,
+        integrator: method.integrator(),
+        ..Scene::EMPTY
+    };
+    let mut system = started(&scene, cloths.start.len(), 0);
+    for frame in 1..=4 {
+        system.step_to(&scene, Time::frame(frame, 60));
+    }
+    let down = Vec3::NEG_Y * (gap / cos);
+    let off =
+        cloths.start.iter().zip(system.particles().position).map(|(from, &x)| (x - from.position - down).length());
+    off.fold(0.0, f32::max)
+}
+
+#[test]
+fn what_hits_a_slope_that_holds_it_lies_where_it_hit() {
+    let falls = [[0.5, 3.0, 0.0131, 10.0], [0.9, 8.0, 0.031, 10.0], [0.3, 3.0, 0.02, 1.0], [0.0, 1.0, 0.005, 1.0]];
+    for fall in falls {
+        for substeps in [1, 2, 5, 20] {
+            for method in [Method::Symplectic, Method::Verlet, Method::Rk4] {
+                let off = astray(fall, substeps, method);
+                assert!(off < 1e-5, "{fall:?}, {substeps} sub-steps, {method:?}: {off} m");
+            }
+        }
+    }
+}
+
 #[test]
 #[ignore = "long: minutes"]
 fn large_sheets_that_fall_stretch_no_more_than_their_material_does() {

@@ -141,7 +141,7 @@ pub struct Shell<P, T, H> {
 
 /// The words that it keeps of each triangle and each fold, and works with; and with each particle.
 const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<Bend>() / 4];
-const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 15];
+const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 18];
 
 impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     /// The numbers of its particles, triangles and hinges.
@@ -309,6 +309,8 @@ where
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
         bodies.report.caps.graphs += u64::from(mesh::asked(self.counts()) && levels.is_empty());
+        let walls = walls::of(share.step, particles);
+        walls::gather(walls, self.particles.as_ref(), bodies);
         let mut solver = Solver {
             params: &self.params,
             step: Step { h, lag: self.params.damping, rate: 1.0 + self.params.damping / h },
@@ -320,14 +322,12 @@ where
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
             thin: false,
-            walls: &mut [],
+            walls,
             last,
         };
-        solver.linearise(bodies);
-        let walls = walls::of(share.step, particles);
-        walls::gather(walls, self.particles.as_ref(), bodies);
-        solver.walls = walls;
         solver.list_walls();
+        solver.meet(bodies);
+        solver.linearise(bodies);
         solver.assemble(&mut levels);
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);

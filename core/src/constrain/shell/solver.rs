@@ -60,6 +60,8 @@ pub(super) struct Vectors<'m> {
     pub(super) r: &'m mut [Vec3],
     pub(super) p: &'m mut [Vec3],
     pub(super) q: &'m mut [Vec3],
+    /// How far walls have moved them before anything is solved \[m\].
+    met: &'m mut [Vec3],
     /// Who is pressed by a wall, and how many that are.
     pressing: &'m mut [u32],
     pressed: usize,
@@ -73,7 +75,7 @@ impl<'m> Vectors<'m> {
         let rows = take(&mut rest, count);
         let weight: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, count));
         let pressing = take(&mut rest, count);
-        let [shift, r, p, q] = core::array::from_fn(|_| super::whole(take(&mut rest, 3 * count)));
+        let [shift, r, p, q, met] = core::array::from_fn(|_| super::whole(take(&mut rest, 3 * count)));
         for ((row, weight), &number) in rows.iter_mut().zip(&mut *weight).zip(particles) {
             let found = bodies.row_of_start(number);
             let sound = |row: usize| bodies.position[row].is_finite() && bodies.velocity[row].is_finite();
@@ -84,7 +86,8 @@ impl<'m> Vectors<'m> {
         }
         shift.fill(Vec3::ZERO);
         r.fill(Vec3::ZERO);
-        Self { rows, weight, shift, r, p, q, pressing, pressed: 0 }
+        met.fill(Vec3::ZERO);
+        Self { rows, weight, shift, r, p, q, met, pressing, pressed: 0 }
     }
 
     /// The rows of some particles, if all are there.
@@ -185,6 +188,24 @@ impl Solver<'_> {
         }
     }
 
+    /// Moves particles to the walls that press them, so that forces are those of where these leave them: the strain of an edge that a wall turns far
+    /// is not what the directions of the beginning tell.
+    pub(super) fn meet(&mut self, bodies: &mut Bodies<'_>) {
+        let Vectors { weight, r, met, pressing, pressed, .. } = &mut self.vectors;
+        walls::meet(self.walls, &pressing[..*pressed], bodies, weight, r, met);
+    }
+
+    /// Counts what walls have moved as shifts, where all of them have let go: what is left alone keeps both momenta.
+    fn part(&mut self, bodies: &mut Bodies<'_>) {
+        let Vectors { rows, shift, met, .. } = &mut self.vectors;
+        for ((&row, shift), met) in rows.iter().zip(&mut **shift).zip(&**met) {
+            if *met != Vec3::ZERO {
+                bodies.shift(row as usize, -*met);
+                *shift += *met;
+            }
+        }
+    }
+
     /// Lists the walls that press.
     pub(super) fn list_walls(&mut self) {
         self.vectors.pressed = walls::list(self.walls, self.vectors.pressing);
@@ -221,6 +242,7 @@ impl Solver<'_> {
             *last = if shift.is_finite() { shift } else { Vec3::ZERO };
         }
         if self.vectors.pressed == 0 {
+            self.part(bodies);
             let Vectors { rows, weight, shift, .. } = &mut self.vectors;
             levels.rid_of_drift(
                 rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),

@@ -7,7 +7,7 @@ mod solve;
 
 pub(super) use follow::follow;
 pub(super) use settle::settle;
-pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list};
+pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, meet};
 
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};
@@ -56,6 +56,8 @@ pub(super) struct Wall {
     /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\].
     held: Vec3,
     brake: f32,
+    /// Where its particle is held if friction can: where it comes to touch \[m\].
+    stuck: Vec3,
     touch: Touch,
     grip: Grip,
 }
@@ -187,9 +189,26 @@ impl Wall {
             most = missing;
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
             let approach = (bodies.velocity[row] - velocity).dot(normal);
+            // Friction does not act on the way there: whoever were held where that begins would be held beside where he hits a slope.
+            let (there, far) = (from + velocity * h, distance - keep - slack);
+            let share = if far > 0.0 && missing > 0.0 { far / (far + missing) } else { 0.0 };
+            let stuck = there + (to - there) * share;
             let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
-            *self =
-                Self { state, normal, offset, velocity, distance, slack, approach, held, brake, touch, grip, ..*self };
+            *self = Self {
+                state,
+                normal,
+                offset,
+                velocity,
+                distance,
+                slack,
+                approach,
+                held,
+                brake,
+                stuck,
+                touch,
+                grip,
+                ..*self
+            };
         });
         if self.state == NEAR {
             self.touch.begin(0.0);

@@ -48,6 +48,28 @@ pub(in crate::constrain) fn brake(walls: &[Wall], pressing: &[u32], p: &[Vec3], 
     }
 }
 
+/// Moves particles to where walls that press want them, notes how far, and takes what that is of the forces that are `left` \[kg m\].
+pub(in crate::constrain) fn meet(
+    walls: &mut [Wall],
+    pressing: &[u32],
+    bodies: &mut Bodies<'_>,
+    weight: &[f32],
+    left: &mut [Vec3],
+    met: &mut [Vec3],
+) {
+    for &number in pressing {
+        let number = number as usize;
+        let (Some(wall), Some(&weight)) = (walls.get_mut(number), weight.get(number)) else { continue };
+        let (Some(left), Some(met)) = (left.get_mut(number), met.get_mut(number)) else { continue };
+        let by = wall.missing(bodies, Vec3::ZERO);
+        if weight > 0.0 && by.is_finite() {
+            bodies.shift(wall.row as usize, by);
+            *left -= by / weight;
+            (*met, wall.fresh) = (by, 0);
+        }
+    }
+}
+
 /// How far particles have to be moved besides to be where walls want them; tells whether anybody has to.
 pub(in crate::constrain) fn impose(
     walls: &mut [Wall],
@@ -56,7 +78,6 @@ pub(in crate::constrain) fn impose(
     shift: &[Vec3],
     by: &mut [Vec3],
 ) -> bool {
-    let h = bodies.substep.seconds();
     by.fill(Vec3::ZERO);
     let mut some = false;
     for &number in pressing {
@@ -70,10 +91,7 @@ pub(in crate::constrain) fn impose(
         }
         wall.fresh = 0;
         some = true;
-        let row = wall.row as usize;
-        let now = bodies.position[row] + shift;
-        let to = if wall.state == STICKS { bodies.before[0][row] + wall.velocity * h } else { now };
-        *by = to + wall.normal * (wall.offset - to.dot(wall.normal)) - now;
+        *by = wall.missing(bodies, shift);
     }
     some
 }
@@ -111,11 +129,16 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
 }
 
 impl Wall {
-    /// How far its particle has gone along it in the sub-step.
+    /// The way from where its particle has been moved to where it wants it.
+    fn missing(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
+        let now = bodies.position[self.row as usize] + shift;
+        let to = if self.state == STICKS { self.stuck } else { now };
+        to + self.normal * (self.offset - to.dot(self.normal)) - now
+    }
+
+    /// How far its particle has gone along it since it touched it.
     fn slid(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
-        let row = self.row as usize;
-        let way = bodies.position[row] + shift - bodies.before[0][row] - self.velocity * bodies.substep.seconds();
-        aside(way, self.normal)
+        aside(bodies.position[self.row as usize] + shift - self.stuck, self.normal)
     }
 
     /// Brakes a particle that slides in proportion to how far it does, so that friction never drives it; tells whether that is other than before.
