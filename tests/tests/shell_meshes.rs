@@ -192,7 +192,9 @@ fn pieces_of_one_shell_do_not_feel_each_other() {
         assert!(drift < 2e-5, "{method}, {stretch} N/m: {drift}");
         for row in pieces[1].clone() {
             let gone = (x[row] - start[row].position).length();
-            assert!(gone < 1e-5 && v[row].length() < 1e-4, "{method}, {stretch} N/m: {gone}, {}", v[row]);
+            // Speeds too small to move a place of that many digits in a sub-step are none.
+            let still = (f32::EPSILON * x[row].length() * 60.0 * substeps as f32).max(1e-4);
+            assert!(gone < 1e-5 && v[row].length() < still, "{method}, {stretch} N/m: {gone}, {}", v[row]);
         }
         assert!(x[pieces[2].start] == start[pieces[2].start].position);
     }
