@@ -219,6 +219,7 @@ fn springs_fabrics_and_forces_that_are_wrong() {
     };
     let (two, soft) = (sheet("[2, 2]"), r#""structural": {"ks": 1}"#);
     let far = two.replace("[1, 0, 0]", "[3e38, 0, 0]").replace("\"corner\": [0", "\"corner\": [3e38");
+    let thin = two.replace("[0, 0, 1]", "[2, 0, 0]");
     let force = |force: &str| format!(r#"{{"particles": [{{}}], "forces": [{{{force}}}]}}"#);
     let cases = [
         (run(r#""dt": 1e30"#), "a.json:run.dt: has to be from 1e-9 s to below 2^31 s, not 1e30 s"),
@@ -236,6 +237,7 @@ fn springs_fabrics_and_forces_that_are_wrong() {
         (cloth(&two, soft, r#"1, "fixed": [9]"#), "a.json:cloths[0].fixed: particle 9 is out of range; there are 9,"),
         (cloth(&two, soft, r#"1, "breaks_at": 1"#), "a.json:cloths[0].breaks_at: has to be above one, a length over"),
         (cloth(&far, soft, "1"), "a.json:cloths[0].form: reaches beyond the range of a 32-bit float"),
+        (cloth(&thin, soft, "1"), "a.json:cloths[0].form: its sides have to be longer than zero and not parallel"),
         (cloth(&sheet("[1000000, 1000000]"), soft, "1"), "a.json:cloths[0].form: makes 1000002000001 particles; "),
         (cloth(&sheet("[8000, 8000]"), soft, "1"), "a.json:cloths[0].form: makes 64016001 particles; "),
         (cloth(&sheet("[4294967295, 4294967295]"), soft, "1"), "a.json:cloths[0].form: makes 18446744073709551615 "),

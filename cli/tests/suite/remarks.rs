@@ -51,6 +51,28 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
                 .into(),
             "a.json:contacts.force.friction.static: 0 is below kinetic, 1",
         ),
+        (
+            r#"{"particles": [{}, {}], "constraints": [{"distance": {"ends": [1, 1], "length": 1}}]}"#.into(),
+            "a.json:constraints[0].distance.ends: it holds particle 1 to itself",
+        ),
+        (
+            r#"{"strands": [{"form": {"curve": [[0, 0, 0], [0, 1, 0]]}, "segments": 2, "radius": 1e-3, "young": 1e6, "density": 1000,
+                "motion": {"keys": [{"time": 0}, {"time": 1, "place": [1, 0, 0]}]}}]}"#
+                .into(),
+            "a.json:strands[0].motion: none of its points is fixed",
+        ),
+        (
+            format!(r#"{{"particles": [{{}}], "sinks": [{{{shape}, "intensity": 1, "ca": 0, "la": 0, "qa": 0}}]}}"#),
+            "a.json:sinks[0].intensity: it divides by ca, la and qa",
+        ),
+        (
+            r#"{"particles": [{}], "reapers": [{"dense": {"radius": 0, "most": 1}}]}"#.into(),
+            "a.json:reapers[0].dense.radius: nobody is within 0 m",
+        ),
+        (
+            r#"{"particles": [{}], "goals": [{"shape": {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}}, "arrive": 1}]}"#.into(),
+            "a.json:goals[0].shape: a plane is infinite",
+        ),
     ] {
         folder.write("a.json", &text);
         warned(&folder, "a.json", &[words]);

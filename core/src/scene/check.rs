@@ -212,7 +212,7 @@ impl SceneFile {
         if emitter.inside && is_open {
             return Err(SceneError::value(
                 format!("{at}.inside"),
-                "needs a closed shape: box, sphere, cylinder, cone or mesh",
+                "needs a closed shape: box, sphere, cylinder, cone, capsule or mesh",
             ));
         }
         if let Some(burst) = &emitter.burst {

@@ -325,6 +325,9 @@ impl SceneFile {
             if matches!(&cloth.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
                 return refuse("form", "corner and sides have to be finite");
             }
+            if matches!(&cloth.form, Form::Sheet(sheet) if !(length(sheet.sides[0].cross(sheet.sides[1])) > 0.0)) {
+                return refuse("form", "its sides have to be longer than zero and not parallel: they span no area");
+            }
             let more = cloth.count().unwrap_or(0);
             count = count.saturating_add(more);
             if count > MOST {

@@ -1,9 +1,11 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::Response;
-use super::SceneFile;
+use super::{Growth, Response, SceneFile};
+use crate::constrain::ConstraintKind;
 use crate::emit::{Spread, Varied};
 use crate::force::Friction;
+use crate::reap::ReaperKind;
+use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -51,7 +53,38 @@ impl SceneFile {
             let friction = material.contact.friction.unwrap_or(Friction::NONE);
             add(format_args!("materials[{i}].contact.friction.static"), odd_friction(friction));
         }
+        self.add_idle(&mut add);
         remarks
+    }
+
+    /// Remarks on parts that do nothing.
+    fn add_idle(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, constraint) in self.constraints.iter().enumerate() {
+            let ConstraintKind::Distance(distance) = constraint else { continue };
+            let [a, b] = distance.ends;
+            let itself = (a == b).then(|| format!("it holds particle {a} to itself, so it does nothing"));
+            add(format_args!("constraints[{i}].distance.ends"), itself);
+        }
+        for (i, tuft) in self.strands.iter().enumerate() {
+            let loose = tuft.motion.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
+            let nothing = || "none of its points is fixed, so nothing follows it".into();
+            add(format_args!("strands[{i}].motion"), loose.then(nothing));
+        }
+        for (i, sink) in self.sinks.iter().enumerate() {
+            let idle = sink.intensity != 0.0 && [sink.ca, sink.la, sink.qa] == [0.0; 3];
+            let nothing = || "it divides by ca, la and qa, which are all zero, so it pulls nobody".into();
+            add(format_args!("sinks[{i}].intensity"), idle.then(nothing));
+        }
+        for (i, reaper) in self.reapers.iter().enumerate() {
+            let narrow = matches!(reaper, ReaperKind::Dense(dense) if dense.radius == 0.0);
+            let nobody = || "nobody is within 0 m of another who is not in the same place".into();
+            add(format_args!("reapers[{i}].dense.radius"), narrow.then(nobody));
+        }
+        for (i, goal) in self.goals.iter().enumerate() {
+            let infinite = matches!(goal.shape, Shape::Plane(_));
+            let point = || "a plane is infinite, so all are led to its one point".into();
+            add(format_args!("goals[{i}].shape"), infinite.then(point));
+        }
     }
 }
 
