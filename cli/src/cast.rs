@@ -1,6 +1,5 @@
 //! The moving things, as the renderer sees them: particles in the looks of their materials, or in a style of the lecture's.
 
-use crate::draw::{self, Billboard, Dot, Piece, Surface, shapes};
 use crate::show::{Show, lines};
 use crate::shutter::Shutter;
 use crate::stage::{look, moves, tessellate};
@@ -15,6 +14,7 @@ use pointmass::draw::{
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
 use pointmass::{Color, ConstraintKind, Heap, RigidBodies, RigidBox, System, Time};
+use pointmass_draw::{self as draw, Billboard, Dot, Piece, Surface, shapes};
 use std::collections::HashMap;
 
 /// The part of the picture's width that a point without a size of its own takes up in the middle of the scene.

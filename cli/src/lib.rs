@@ -1,15 +1,15 @@
 //! The library behind the `pointmass` binary: one module a command, which has its arguments beside it.
 //!
 //! The commands are `run`, `render`, `convert`, `check`, `compare` and `lab`. They share `load` (scenes and meshes from disk), `world` (a scene
-//! in motion), `schedule` (when steps end), `substeps` (how they are divided), `record` (state to files), `draw` (state to pictures), `viewpoint`
-//! (from where), `report` (findings to a terminal, a page or a table) and `outcome` (what went wrong).
+//! in motion), `schedule` (when steps end), `substeps` (how they are divided), `record` (state to files), `stage` and `cast` (state to what
+//! `pointmass_draw` draws), `film` (pictures to files), `viewpoint` (from where), `report` (findings to a terminal, a page or a table) and `outcome` (what went wrong).
 
 mod cast;
 mod check;
 pub mod compare;
 mod convert;
-pub mod draw;
 mod fault;
+mod film;
 mod formats;
 mod lab;
 pub mod load;

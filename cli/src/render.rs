@@ -1,7 +1,7 @@
 //! `pointmass render`: steps a scene and draws it.
 
 use crate::cast::{Cast, Memory, Seen};
-use crate::draw::{Camera, Exposure, Flipbook, Moving, Piece, Renderer, Sink, Stage, develop};
+use crate::film::Sink;
 use crate::formats::{PictureFormat, pictures as format};
 use crate::outcome::{Failure, Outcome, print, tell, warn};
 use crate::parse::number;
@@ -15,6 +15,7 @@ use image::RgbImage;
 use indicatif::DecimalBytes;
 use pointmass::Time;
 use pointmass::scene::{Model, SceneFile};
+use pointmass_draw::{Camera, Exposure, Flipbook, Moving, Piece, Renderer, Stage, develop};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::fs;

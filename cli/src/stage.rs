@@ -1,6 +1,5 @@
 //! A scene as the renderer sees it: scenery, and what moves.
 
-use crate::draw::{self, Background, Flipbook, Line, Piece, Stage, Surface, shapes};
 use crate::outcome::{Failure, Outcome};
 use crate::show::Show;
 use crate::style::Style;
@@ -11,6 +10,7 @@ use pointmass::material::Blend;
 use pointmass::motion::Script;
 use pointmass::scene::{Camera, Fog, Light, Material, Model, SceneFile, Sky, Solid};
 use pointmass::shape::{Aabb, Affine, HeightField, MeshBuf, Shape, Surface as _};
+use pointmass_draw::{self as draw, Background, Flipbook, Line, Piece, Stage, Surface, shapes};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Where a film is seen from.
 
-use crate::draw::Camera;
 use crate::parse::number;
 use glam::{Quat, Vec3};
 use pointmass::shape::Aabb;
 use pointmass::{Heap, System};
+use pointmass_draw::Camera;
 use std::f64::consts::TAU;
 
 /// How a film is looked at.

@@ -76,7 +76,7 @@ impl Beam {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::Camera;
+    use crate::Camera;
 
     fn red(light: Light, place: Vec3) -> Option<f32> {
         let lens = Lens::new(&Camera::default(), 64, 48);

@@ -2,7 +2,7 @@
 
 use super::super::*;
 use super::{HEIGHT, WIDTH, board, boards, dot, encoded, frame, glowing, linear, middle, plain, stage, wall};
-use crate::draw::eye::Eye;
+use crate::eye::Eye;
 use glam::{Vec2, Vec3};
 use image::RgbImage;
 use pointmass::draw::Line;

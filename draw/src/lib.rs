@@ -5,14 +5,15 @@
 //! 1. Describe the unmoving part of the scene as a [`Stage`]: a [`Camera`], some [`Light`]s, and
 //!    [`Piece`]s made of [`Surface`]s ([`shapes`] makes the usual ones).
 //! 2. Hand it to [`Renderer::new`], which draws it once, carefully, with antialiasing and shadows.
-//! 3. For every frame call [`Renderer::frame`] with what moves ([`Moving`]), and give the
-//!    picture to a [`Sink`], which writes a film, a PNG or a numbered sequence.
+//! 3. For every frame call [`Renderer::frame`] with what moves ([`Moving`]), which gives a picture.
 //!
 //! Colours are written as people write them in scene files and see them on a screen (sRGB, 0 to 1
 //! or 0 to 255). They are decoded on the way in, and all arithmetic happens in linear light.
 //!
 //! The same stage and dots give the same bytes, whenever and on however many threads they are drawn.
 //! Anything with a coordinate that is not finite is left out of the picture.
+//!
+#![doc = include_str!("../README.md")]
 
 mod air;
 mod backdrop;
@@ -34,7 +35,6 @@ mod render;
 mod segments;
 mod shade;
 pub mod shapes;
-mod sink;
 mod sky;
 mod sprite;
 mod stage;
@@ -47,7 +47,6 @@ pub use camera::Camera;
 pub use canvas::Exposure;
 pub use picture::Flipbook;
 pub use render::{Renderer, develop};
-pub use sink::Sink;
 pub use sky::Background;
 pub use stage::{Billboard, Dot, Light, Line, Material, Moving, Piece, Stage};
 pub use surface::Surface;

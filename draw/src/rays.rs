@@ -297,7 +297,7 @@ impl Wall {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::{Camera, Material, Piece, Stage, shapes};
+    use crate::{Camera, Material, Piece, Stage, shapes};
 
     fn rays(piece: Piece) -> Rays {
         // The default camera's view coordinates are the world's.

@@ -175,7 +175,7 @@ fn within(low: f32, high: f32, first: usize, end: usize) -> std::ops::Range<usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::Camera;
+    use crate::Camera;
 
     const SIZE: usize = 16;
 

@@ -82,7 +82,7 @@ fn cut(polygon: &[Vertex], plane: (Vec3, f32)) -> Vec<Vertex> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::Camera;
+    use crate::Camera;
 
     fn polygon(places: [Vec3; 3]) -> Vec<Vertex> {
         places.map(|place| Vertex { place, normal: Vec3::Y, tint: Vec3::ONE }).to_vec()

@@ -62,7 +62,7 @@ fn cofactors(m: Mat3) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::shapes;
+    use crate::shapes;
 
     #[test]
     fn normals_stay_square_to_the_surface() {
