@@ -4,8 +4,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pointmass::rays::Structure;
-use pointmass_cli::compare::{Query, Surface, Workload};
-use pointmass_cli::meshes::Made;
+use pointmass_cli::compare::{Made, Query, Surface, Workload};
 use std::hint::black_box;
 
 const TRIANGLES: usize = 60_000;

@@ -3,9 +3,9 @@
 use crate::formats::{SceneFormat, named};
 use crate::load::{self, Reading};
 use crate::outcome::{Failure, Outcome, warn};
-use crate::whole::{Outs, existing_folder_of};
 use pointmass::scene::{SceneFile, write_scn};
 use pointmass::shape::Shape;
+use pointmass_files::whole::{Outs, existing_folder_of};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `convert`.

@@ -1,9 +1,10 @@
 //! Formats of files, by the end of their names, and of what is said on standard output.
 
 use crate::outcome::{Failure, Outcome};
-use crate::pattern::Pattern;
-use crate::whole::STANDARD;
 use clap::ValueEnum;
+pub(crate) use pointmass_files::formats::{EventsFormat, PointsFormat, RecordFormat};
+use pointmass_files::pattern::Pattern;
+use pointmass_files::whole::STANDARD;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -16,41 +17,6 @@ pub(crate) enum SceneFormat {
     Json,
 }
 
-/// A format of recordings.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum RecordFormat {
-    /// A table with a head line.
-    Csv,
-    /// The same, each line a JSON object.
-    Jsonl,
-    /// Each record a line of JSON, with a list for each column.
-    #[value(skip)]
-    Frames,
-    /// Atoms, all records in one file.
-    Xyz,
-    /// Arrays for NumPy, one a column and record, in one archive.
-    Npz,
-    /// The same, one file each.
-    Npy,
-    /// Points, faces and edges, one file a record.
-    Ply,
-    /// The same as text.
-    Obj,
-    /// The same for ParaView, with an index of the records (.pvd).
-    Vtp,
-    /// The same for viewers, all records in one animation.
-    Glb,
-    /// The same as text.
-    Gltf,
-}
-
-impl RecordFormat {
-    /// Tells whether one file can hold all records.
-    pub(crate) fn holds_many(self) -> bool {
-        !matches!(self, Self::Npy | Self::Ply | Self::Obj | Self::Vtp)
-    }
-}
-
 /// The unit that a line of `.jsonl` holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Line {
@@ -58,15 +24,6 @@ pub(crate) enum Line {
     Particle,
     /// A record, with a list for each column
     Record,
-}
-
-/// A format of events.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum EventsFormat {
-    /// A table with a head line.
-    Csv,
-    /// The same, each line a JSON object.
-    Jsonl,
 }
 
 /// A format of pictures.
@@ -84,19 +41,6 @@ pub(crate) enum PictureFormat {
     Y4m,
     /// A picture, or one of many.
     Png,
-}
-
-/// A format of points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PointsFormat {
-    /// A table, with or without a head line.
-    Csv,
-    /// Point clouds and meshes, text or binary.
-    Ply,
-    /// Atoms, or lines of three numbers.
-    Xyz,
-    /// An array as NumPy saves it.
-    Npy,
 }
 
 /// A format of studies.

@@ -1,24 +1,19 @@
 //! The library behind the `pointmass` binary: one module a command, which has its arguments beside it.
 //!
-//! The commands are `run`, `render`, `convert`, `check`, `compare` and `lab`. They share `load` (scenes and meshes from disk), `world` (a scene
-//! in motion), `schedule` (when steps end), `substeps` (how they are divided), `record` (state to files), `stage` and `cast` (state to what
-//! `pointmass_draw` draws), `film` (pictures to files), `viewpoint` (from where), `report` (findings to a terminal, a page or a table) and `outcome` (what went wrong).
+//! The commands are `run`, `render`, `convert`, `check`, `compare` and `lab`. They share `load` (scenes from disk), `world` (a scene
+//! in motion), `schedule` (when steps end), `substeps` (how they are divided), `stage` and `cast` (state to what `pointmass_draw` draws), `viewpoint`
+//! (from where), `report` (findings to a terminal, a page or a table) and `outcome` (what went wrong). `pointmass_files` reads meshes and points, and writes recordings and films.
 
 mod cast;
 mod check;
 pub mod compare;
 mod convert;
-mod fault;
-mod film;
 mod formats;
 mod lab;
 pub mod load;
-pub mod meshes;
 mod outcome;
 mod parse;
-mod pattern;
 mod progress;
-mod record;
 mod render;
 mod report;
 mod run;
@@ -30,9 +25,7 @@ mod stall;
 mod statistics;
 mod style;
 mod substeps;
-mod temporary;
 mod viewpoint;
-mod whole;
 mod world;
 
 pub use outcome::{Failure, Outcome};
@@ -88,7 +81,7 @@ enum Command {
 /// Runs the command: parses its arguments, does what they say, and turns the outcome into an exit code.
 #[must_use]
 pub fn main(peers: compare::Peers) -> ExitCode {
-    temporary::clean_up_when_interrupted();
+    pointmass_files::temporary::clean_up_when_interrupted();
     let args = Args::try_parse().unwrap_or_else(|error| refuse(&error));
     let outcome = match &args.command {
         Command::Run(args) => run::run(args),

@@ -1,7 +1,6 @@
 //! `pointmass render`: steps a scene and draws it.
 
 use crate::cast::{Cast, Memory, Seen};
-use crate::film::Sink;
 use crate::formats::{PictureFormat, pictures as format};
 use crate::outcome::{Failure, Outcome, print, tell, warn};
 use crate::parse::number;
@@ -16,6 +15,7 @@ use indicatif::DecimalBytes;
 use pointmass::Time;
 use pointmass::scene::{Model, SceneFile};
 use pointmass_draw::{Camera, Exposure, Flipbook, Moving, Piece, Renderer, Stage, develop};
+use pointmass_files::film::Sink;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::fs;

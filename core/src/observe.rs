@@ -139,6 +139,45 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
+/// Whoever is lent watches as its owner would.
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn attention(&self) -> Attention {
+        (**self).attention()
+    }
+
+    fn after(&mut self, phase: Phase, state: &State<'_>) {
+        (**self).after(phase, state);
+    }
+
+    fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
+        (**self).write(state, custom);
+    }
+
+    fn hit(&mut self, hit: &Impact) {
+        (**self).hit(hit);
+    }
+
+    fn touched(&mut self, touch: &Impact) {
+        (**self).touched(touch);
+    }
+
+    fn slid(&mut self, slide: &Sliding) {
+        (**self).slid(slide);
+    }
+
+    fn born(&mut self, birth: &LifeEvent) {
+        (**self).born(birth);
+    }
+
+    fn died(&mut self, death: &LifeEvent, cause: Cause) {
+        (**self).died(death, cause);
+    }
+
+    fn refused(&mut self, count: u64, time: Time) {
+        (**self).refused(count, time);
+    }
+}
+
 /// The parts of a step that an observer wants to know of: each of these is more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Attention {

@@ -37,11 +37,11 @@ use crate::report::page::Page;
 use crate::report::plot::all;
 use crate::report::terminal::Terminal;
 use crate::stall;
-use crate::whole::Outs;
 use modes::Spectrum;
 use plot::Scenery;
 use pointmass::Method;
 use pointmass::scene::Model;
+use pointmass_files::whole::Outs;
 use std::path::PathBuf;
 use study::Study;
 

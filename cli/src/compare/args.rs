@@ -1,11 +1,11 @@
 //! The arguments of `compare`.
 
 use super::distribution::Distribution;
+use super::rays::Made;
 use super::study::Subject;
 use super::workload::Workload;
 use crate::formats::{PointsFormat, StudyFormat, named};
 use crate::load::Reading;
-use crate::meshes::Made;
 use crate::outcome::{Failure, Outcome};
 use crate::parse::{chosen, number, seconds, sorted, whole};
 use pointmass::index::Structure;

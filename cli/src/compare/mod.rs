@@ -15,7 +15,6 @@ mod foreign;
 mod gauge;
 mod measure;
 mod peers;
-mod points;
 mod radius;
 mod rays;
 mod report;
@@ -31,7 +30,7 @@ mod workload;
 
 pub(crate) use args::Compare;
 pub use peers::{FirstHit, Peer, Peers, RayPeer};
-pub use rays::{Query, Surface};
+pub use rays::{Made, Query, Surface};
 pub use workload::Workload;
 
 use crate::formats::{StudyFormat, json};
@@ -42,10 +41,10 @@ use crate::report::plot;
 use crate::report::terminal::Terminal;
 use crate::report::words::{digits, thousands};
 use crate::statistics::Summary;
-use crate::whole::Outs;
 use bench::Bench;
 use entrant::Entrant;
 use foreign::Foreign;
+use pointmass_files::whole::Outs;
 use study::{Case, Study, Subject};
 
 /// Compares as the arguments say, `peers` beside our structures where they ask for it. Files are written whole, at the

@@ -2,16 +2,17 @@
 
 use super::args::Compare;
 use super::distribution::Distribution;
-use super::points;
 use super::sample::sample;
-use crate::fault::excerpt;
 use crate::outcome::{Failure, Outcome};
 use crate::parse::sorted;
 use crate::progress::Progress;
 use crate::report::words::thousands;
-use crate::schedule::{Schedule, nanoseconds};
+use crate::schedule::Schedule;
 use crate::world::{Settings, World};
 use pointmass::Vec3;
+use pointmass_files::instant::nanoseconds;
+use pointmass_files::outcome::excerpt;
+use pointmass_files::points;
 
 /// The numbers of points that are made up if nobody says.
 const SIZES: [usize; 3] = [1000, 10_000, 100_000];

@@ -24,7 +24,7 @@ use crate::report::origin::Origin;
 use crate::report::page::Page;
 use crate::report::plot;
 use crate::report::terminal::Terminal;
-use crate::whole::Outs;
+use pointmass_files::whole::Outs;
 use problem::Problem;
 use study::{Bench, Case, Study, contestants};
 

@@ -7,12 +7,11 @@ mod summary;
 use crate::formats::{EventsFormat, Line, RecordFormat, Said, events, line, recording};
 use crate::outcome::{Outcome, mention, print, warn};
 use crate::progress::Progress;
-use crate::record::Both;
 use crate::schedule::Schedule;
 use crate::stall;
-use crate::whole::is_standard;
 use crate::world::{Settings, World};
 use pointmass::Ledger;
+use pointmass_files::whole::is_standard;
 use recordings::Recordings;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -75,7 +74,7 @@ pub(crate) fn run(args: &Run) -> Outcome {
         let begun = Instant::now();
         let end = schedule.end(step);
         match (&mut ledger, recordings.notes()) {
-            (Some(ledger), Some(notes)) => world.step_observed(end, &mut Both(ledger, notes)),
+            (Some(ledger), Some(notes)) => world.step_observed(end, &mut (ledger, notes)),
             (Some(ledger), None) => world.step_observed(end, ledger),
             (None, Some(notes)) => world.step_observed(end, notes),
             (None, None) => world.step_to(end),

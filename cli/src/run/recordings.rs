@@ -2,10 +2,11 @@
 
 use super::Run;
 use crate::formats::{Line, RecordFormat};
+use crate::load::{Disk, name};
 use crate::outcome::{Failure, Outcome};
-use crate::record::{Chronicle, Frame, Notes, Plan, Recorder};
-use crate::whole::{is_standard, publish};
 use crate::world::World;
+use pointmass_files::record::{Chronicle, Frame, Notes, Plan, Recorder};
+use pointmass_files::whole::{is_standard, publish};
 use std::path::PathBuf;
 
 /// The recordings of a run, in the making. Dropped, they are gone.
@@ -26,7 +27,7 @@ impl Recordings {
             RecordFormat::Jsonl if args.line == Line::Record => Recorder::create(path, RecordFormat::Frames),
             format => Recorder::create(path, format),
         };
-        let plan = || Plan::of(&world.file, &world.model, &args.world.scene);
+        let plan = || Plan::of(&world.file, &world.model, &name(&args.world.scene), &mut Disk);
         let plan = (!args.out.is_empty()).then(plan).transpose()?;
         let chronicle = args.events.as_ref().map(|(path, format)| Chronicle::create(path, *format)).transpose()?;
         Ok(Self { plan, recorders: args.out.iter().map(recorder).collect::<Outcome<_>>()?, chronicle })

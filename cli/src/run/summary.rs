@@ -1,11 +1,11 @@
 //! The summary of a run, for people and for programs.
 
 use super::groups::GroupError;
-use crate::schedule::nanoseconds;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
 use pointmass::force::Entry;
 use pointmass::{Books, Caps, Energy, Measures, Report};
+use pointmass_files::instant::nanoseconds;
 use serde::Serialize;
 use std::fmt::Write;
 

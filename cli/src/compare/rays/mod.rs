@@ -4,6 +4,7 @@
 //! clock, once `verify` has held their answers against every triangle.
 
 mod bench;
+mod made;
 mod query;
 mod surface;
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod tests;
 mod tracer;
 mod verify;
 
+pub use made::Made;
 pub use query::Query;
 pub use surface::Surface;
 

@@ -1,12 +1,13 @@
 //! Where triangles come from: made up, or a file.
 
 use super::super::args::Compare;
-use crate::fault::excerpt;
-use crate::meshes::{self, Made, MeshData};
+use super::made::Made;
 use crate::outcome::{Failure, Outcome};
 use crate::parse::sorted;
 use crate::report::words::thousands;
 use pointmass::shape::{MeshBuf, Surface as _};
+use pointmass_files::meshes::{self, MeshData};
+use pointmass_files::outcome::excerpt;
 use std::path::Path;
 
 /// About how many triangles are made up if nobody says: as many as the Stanford bunny has, roughly.

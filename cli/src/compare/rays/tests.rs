@@ -2,15 +2,16 @@
 
 use super::super::contender::Build;
 use super::super::workload::Workload;
+use super::made::Made;
 use super::query::Query;
 use super::surface::Surface;
 use super::tracer::{Answers, Entrant, Own, Tracer};
 use super::verify::Expected;
-use crate::meshes::{Made, MeshData};
 use crate::outcome::Outcome;
 use pointmass::rays::{Cost, Structure};
 use pointmass::shape::{Collider, Hit, Surface as _, Triangle};
 use pointmass::{Vec3, math};
+use pointmass_files::meshes::MeshData;
 
 fn made(made: Made, triangles: usize) -> Surface {
     Surface::made(made, triangles).expect("a mesh")

@@ -1,14 +1,12 @@
 //! The columns that a recording holds of each particle, decided by the scene, so that they are the same in every record.
 
-use crate::load::{Disk, name};
 use crate::outcome::{Failure, Outcome};
 use pointmass::scene::{Files, Form, Model, SceneFile, beside};
 use pointmass::{Particle, Varied};
-use std::path::Path;
 
 /// The plan of a recording.
 #[derive(Debug)]
-pub(crate) struct Plan {
+pub struct Plan {
     /// True if some particles have a radius.
     pub(super) radius: bool,
     /// True if some particles die of age.
@@ -32,8 +30,11 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// The plan for a scene, whose cloths may be meshes in files beside it.
-    pub(crate) fn of(file: &SceneFile, model: &Model, scene: &Path) -> Outcome<Self> {
+    /// The plan for a scene, whose cloths may be meshes in files beside it, by its name.
+    ///
+    /// # Errors
+    /// If such a mesh cannot be read any more.
+    pub fn of(file: &SceneFile, model: &Model, scene: &str, files: &mut dyn Files) -> Outcome<Self> {
         let any = |has: &dyn Fn(&Particle) -> bool| model.particles.iter().any(has);
         let emitters = &model.emitters;
         let usual = Particle::REST.elasticity;
@@ -54,17 +55,17 @@ impl Plan {
             triangles: Vec::new(),
             edges: vec![true; model.springs.len()],
         };
-        plan.weave(file, model, scene)?;
+        plan.weave(file, model, scene, files)?;
         Ok(plan)
     }
 
     /// Puts in the triangles of cloths, in place of their springs.
-    fn weave(&mut self, file: &SceneFile, model: &Model, scene: &Path) -> Outcome {
+    fn weave(&mut self, file: &SceneFile, model: &Model, scene: &str, files: &mut dyn Files) -> Outcome {
         let ends = model.cloths.iter().skip(1).map(|&[_, spring]| spring).chain([model.springs.len()]);
         for ((cloth, &[first, spring]), end) in file.cloths.iter().zip(&model.cloths).zip(ends) {
             let triangles: Vec<_> = match &cloth.form {
                 Form::Sheet(sheet) => sheet.triangles().collect(),
-                Form::Mesh(mesh) => Disk.mesh(&beside(&name(scene), mesh)).map_err(Failure::new)?.triangles().to_vec(),
+                Form::Mesh(mesh) => files.mesh(&beside(scene, mesh)).map_err(Failure::new)?.triangles().to_vec(),
             };
             self.edges[spring..end].fill(triangles.is_empty());
             self.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| first as u32 + corner)));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// A file name with a place for a number, such as `%04d.png`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Pattern {
+pub struct Pattern {
     before: String,
     digits: usize,
     after: String,
@@ -12,7 +12,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// Reads the last part of a path; `None` if it has no place for a number.
-    pub(crate) fn parse(path: &Path) -> Result<Option<Self>, String> {
+    pub fn parse(path: &Path) -> Result<Option<Self>, String> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let Some((before, rest)) = name.split_once('%') else { return Ok(None) };
         let place = rest.split_once('d').filter(|(_, after)| !after.contains('%'));
@@ -23,13 +23,13 @@ impl Pattern {
     }
 
     /// The name of a path with a number of six digits before its end: `a.ply` becomes `a_000000.ply`.
-    pub(crate) fn numbered(path: &Path) -> Self {
+    pub fn numbered(path: &Path) -> Self {
         let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         Self { before: part(path.file_stem()) + "_", digits: 6, after: format!(".{}", part(path.extension())) }
     }
 
     /// The name of what all files of the pattern have in common, with another end: `a_%04d.vtp` becomes `a.pvd`.
-    pub(crate) fn common(&self, extension: &str) -> String {
+    pub fn common(&self, extension: &str) -> String {
         let after = Path::new(&self.after).file_stem().unwrap_or_default().to_string_lossy();
         let after = if after.starts_with('.') { "".into() } else { after };
         let name = format!("{}{after}", self.before);
@@ -40,7 +40,7 @@ impl Pattern {
     }
 
     /// The name with a number in its place.
-    pub(crate) fn name(&self, number: usize) -> String {
+    pub fn name(&self, number: usize) -> String {
         let Self { before, digits, after } = self;
         format!("{before}{number:0digits$}{after}")
     }

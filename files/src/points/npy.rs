@@ -5,7 +5,7 @@
 //! Python literals with them.
 
 use super::{Fault, MOST, Rows};
-use crate::fault::excerpt;
+use crate::outcome::excerpt;
 use std::io::{BufRead, ErrorKind};
 
 const MAGIC: &[u8] = b"\x93NUMPY";

@@ -40,27 +40,6 @@ impl From<std::io::Error> for Fault {
     }
 }
 
-/// A piece of the file, or of a library's message, on one line and cut where it is long.
-pub(crate) fn excerpt(piece: &str) -> String {
-    const LONGEST: usize = 120;
-    let mut line = String::new();
-    for word in piece.split_whitespace() {
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        // A file may be one endless word, or an endless line of them.
-        line.extend(
-            word.chars().take(LONGEST + 1).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }),
-        );
-        if let Some((end, _)) = line.char_indices().nth(LONGEST) {
-            line.truncate(end);
-            line.push('…');
-            break;
-        }
-    }
-    line
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,12 +48,5 @@ mod tests {
     fn a_fault_names_file_and_line() {
         assert_eq!(Fault::at(3, "is odd").of("cube.off").to_string(), "cube.off:3: is odd");
         assert_eq!(Fault::new("is odd").of("cube.stl").to_string(), "cube.stl: is odd");
-    }
-
-    #[test]
-    fn an_excerpt_is_short_and_on_one_line() {
-        assert_eq!(excerpt("one\n\ttwo \u{7}"), "one two \u{fffd}");
-        assert_eq!(excerpt(&"ä".repeat(500)), format!("{}…", "ä".repeat(120)));
-        assert_eq!(excerpt(&"a ".repeat(500)).chars().count(), 121);
     }
 }

@@ -58,7 +58,7 @@ fn remove(path: &Path) {
 
 /// From now on, an interrupt removes what is temporary, and ends the program with 128 plus the signal's number.
 #[cfg(unix)]
-pub(crate) fn clean_up_when_interrupted() {
+pub fn clean_up_when_interrupted() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // What `nohup` starts outlives its terminal.
     let wanted = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| signal != SIGHUP || !is_ignored(SIGHUP));
@@ -77,7 +77,7 @@ pub(crate) fn clean_up_when_interrupted() {
 }
 
 #[cfg(not(unix))]
-pub(crate) fn clean_up_when_interrupted() {}
+pub fn clean_up_when_interrupted() {}
 
 /// Whether the program was started with a signal turned off; only Linux tells without unsafe code.
 #[cfg(unix)]

@@ -32,7 +32,7 @@ use video::{Packing, Video};
 ///
 /// Errors are sentences that name the file and say what to do.
 #[derive(Debug)]
-pub(crate) struct Sink {
+pub struct Sink {
     film: Box<dyn Film>,
     path: PathBuf,
     size: Size,
@@ -66,7 +66,7 @@ impl Sink {
     ///   created if it is missing.
     ///
     /// There are `fps` frames to a second, and `frames` in all.
-    pub(crate) fn create(path: &Path, fps: f64, frames: u32) -> Outcome<Self> {
+    pub fn create(path: &Path, fps: f64, frames: u32) -> Outcome<Self> {
         if !(fps.is_finite() && fps > 0.0) {
             return Err(cannot_write(path, format!("{fps} frames per second make no film")));
         }
@@ -93,23 +93,23 @@ impl Sink {
     }
 
     /// Whether only the last frame counts, so that the others need not be drawn.
-    pub(crate) fn keeps_only_last(&self) -> bool {
+    pub fn keeps_only_last(&self) -> bool {
         self.film.keeps_only_last()
     }
 
     /// Tells whether nobody reads what is written any more, so that no further frame need be drawn.
-    pub(crate) fn is_abandoned(&self) -> bool {
+    pub fn is_abandoned(&self) -> bool {
         self.film.is_abandoned()
     }
 
     /// Takes the next frame. All frames must have the same size.
-    pub(crate) fn push(&mut self, frame: &RgbImage) -> Outcome {
+    pub fn push(&mut self, frame: &RgbImage) -> Outcome {
         self.size.check(frame, &self.path)?;
         self.film.push(frame)
     }
 
     /// Completes what is written and gives it its name. It is an error if there was no frame.
-    pub(crate) fn finish(self) -> Outcome {
+    pub fn finish(self) -> Outcome {
         self.film.finish()
     }
 }

@@ -11,8 +11,9 @@ mod ply;
 mod tests;
 mod xyz;
 
-use crate::fault::{Fault, excerpt};
+use crate::fault::Fault;
 use crate::formats::PointsFormat;
+use crate::outcome::excerpt;
 use crate::outcome::{Failure, Outcome};
 use pointmass::Vec3;
 use std::fs::File;
@@ -26,17 +27,17 @@ const LONGEST: u64 = 1 << 20;
 
 /// Points, and what was met on the way to them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Cloud {
+pub struct Cloud {
     /// All of them finite.
-    pub(crate) points: Vec<Vec3>,
+    pub points: Vec<Vec3>,
     /// Where the file has what is the origin here.
-    pub(crate) origin: [f64; 3],
+    pub origin: [f64; 3],
     /// Rows left out because they are not finite.
-    pub(crate) skipped: usize,
+    pub skipped: usize,
     /// Records that came before, of a file that has several; only the last is kept.
-    pub(crate) earlier: usize,
+    pub earlier: usize,
     /// The columns that were taken as x, y and z, from 1 on, where no head names them.
-    pub(crate) columns: Vec<usize>,
+    pub columns: Vec<usize>,
 }
 
 /// Rows as they are read, before they are rounded.
@@ -98,7 +99,7 @@ fn origin(coordinates: impl Iterator<Item = f64> + Clone) -> f64 {
 /// # Errors
 /// If it cannot be read, is not in the format, or has fewer than two finite points; with the row's number where there is
 /// one.
-pub(crate) fn load(path: &Path, format: PointsFormat) -> Outcome<Cloud> {
+pub fn load(path: &Path, format: PointsFormat) -> Outcome<Cloud> {
     if path.is_dir() {
         return Err(Failure::new(format!("{}: is a directory, expected a file of points", path.display())));
     }

@@ -7,7 +7,8 @@
 
 use super::MeshData;
 use super::text;
-use crate::fault::{Fault, excerpt};
+use crate::fault::Fault;
+use crate::outcome::excerpt;
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
     let text = text::decode(bytes);

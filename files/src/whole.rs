@@ -10,16 +10,16 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// The name by which standard output goes.
-pub(crate) const STANDARD: &str = "-";
+pub const STANDARD: &str = "-";
 
 /// Whether a path is standard output, or standard input.
-pub(crate) fn is_standard(path: &Path) -> bool {
+pub fn is_standard(path: &Path) -> bool {
     path == Path::new(STANDARD)
 }
 
 /// A file in the making. Dropped, it is gone.
 #[derive(Debug)]
-pub(crate) struct WholeFile {
+pub struct WholeFile {
     path: PathBuf,
     file: BufWriter<File>,
     temporary: Temporary,
@@ -28,7 +28,7 @@ pub(crate) struct WholeFile {
 
 impl WholeFile {
     /// Begins a file under a passing name in the folder of `path`, or of what that links to.
-    pub(crate) fn create(path: &Path) -> Outcome<Self> {
+    pub fn create(path: &Path) -> Outcome<Self> {
         let target = target_of(path)?;
         let path = if is_standard(path) { Path::new("standard output") } else { path };
         // Nothing can lie beside a pipe in /dev.
@@ -44,29 +44,29 @@ impl WholeFile {
     }
 
     /// The name that the file will have.
-    pub(crate) fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// The name that it has until it is complete, for programs that write it.
-    pub(crate) fn passing(&self) -> &Path {
+    pub fn passing(&self) -> &Path {
         self.temporary.path()
     }
 
     /// Opens the file once more, for those who have to own what they write to.
-    pub(crate) fn reopen(&self) -> io::Result<File> {
+    pub fn reopen(&self) -> io::Result<File> {
         self.file.get_ref().try_clone()
     }
 
     /// Nothing more is going to be written.
-    pub(crate) fn close(self) -> Outcome<Written> {
+    pub fn close(self) -> Outcome<Written> {
         let Self { path, file, temporary, target } = self;
         file.into_inner().map_err(|error| Failure::io(&path, error.error()))?;
         Ok(Written { passing: temporary.path().to_path_buf(), target, path, _kept: vec![temporary] })
     }
 
     /// Gives the file its name, in place of any older file that has it.
-    pub(crate) fn complete(self) -> Outcome {
+    pub fn complete(self) -> Outcome {
         publish(&[self.close()?])
     }
 }
@@ -83,7 +83,7 @@ impl Write for WholeFile {
 
 /// A file that is complete and waits for its name. Dropped, it is gone.
 #[derive(Debug)]
-pub(crate) struct Written {
+pub struct Written {
     /// Its passing name.
     passing: PathBuf,
     /// Where it will be.
@@ -150,7 +150,7 @@ impl Series {
 }
 
 /// Gives all of them their names, or none of them if one cannot be written or something is in its way.
-pub(crate) fn publish(files: &[Written]) -> Outcome {
+pub fn publish(files: &[Written]) -> Outcome {
     let fail = |file: &Written, error: &io::Error| Failure::io(&file.path, error);
     for file in files {
         file.prepare().map_err(|error| fail(file, &error))?;
@@ -203,11 +203,11 @@ impl Written {
 
 /// The files that a command was asked to write, each in a format.
 #[derive(Debug)]
-pub(crate) struct Outs<F>(Vec<(WholeFile, F)>);
+pub struct Outs<F>(Vec<(WholeFile, F)>);
 
 impl<F: Copy> Outs<F> {
     /// Begins all of them, but none in place of what is `read`.
-    pub(crate) fn create<'a>(outs: &[(PathBuf, F)], read: impl IntoIterator<Item = &'a PathBuf>) -> Outcome<Self> {
+    pub fn create<'a>(outs: &[(PathBuf, F)], read: impl IntoIterator<Item = &'a PathBuf>) -> Outcome<Self> {
         let read: Vec<_> = read.into_iter().filter_map(|path| path.canonicalize().ok()).collect();
         let is_read = |path: &Path| path.canonicalize().is_ok_and(|path| read.contains(&path));
         if let Some((path, _)) = outs.iter().find(|(path, _)| is_read(path)) {
@@ -218,7 +218,7 @@ impl<F: Copy> Outs<F> {
     }
 
     /// Writes all of them, and then gives them their names.
-    pub(crate) fn write(self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
+    pub fn write(self, text: impl Fn(F) -> Outcome<String>) -> Outcome {
         let write = |(mut file, format): (WholeFile, F)| {
             let written = file.write_all(text(format)?.as_bytes());
             written.map_err(|error| Failure::io(file.path(), &error))?;
@@ -266,12 +266,12 @@ fn is_special(path: &Path) -> bool {
 }
 
 /// The folder a path is in, as it is named.
-pub(crate) fn folder_of(path: &Path) -> &Path {
+pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// The folder a path is in, which has to exist.
-pub(crate) fn existing_folder_of(path: &Path) -> Outcome<&Path> {
+pub fn existing_folder_of(path: &Path) -> Outcome<&Path> {
     let folder = folder_of(path);
     if folder.is_dir() {
         return Ok(folder);

@@ -1,10 +1,10 @@
 //! Meshes that are made up, the same everywhere: what benches, comparisons and tests use where no file is given.
 
-use super::MeshData;
 use clap::ValueEnum;
 use pointmass::Vec3;
 use pointmass::math::{sin_cos_turns, unit};
 use pointmass::rng::Stream;
+use pointmass_files::meshes::MeshData;
 
 /// A surface to be made of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]

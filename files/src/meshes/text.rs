@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::str::SplitWhitespace;
 
-use crate::fault::{Fault, excerpt};
+use crate::fault::Fault;
+use crate::outcome::excerpt;
 
 /// The file as text: without a byte order mark, and with a replacement for what isn't UTF-8.
 ///

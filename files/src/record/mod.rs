@@ -12,9 +12,9 @@ mod table;
 mod vtk;
 mod xyz;
 
-pub(crate) use events::{Both, Chronicle, Notes};
-pub(crate) use frame::Frame;
-pub(crate) use plan::Plan;
+pub use events::{Chronicle, Notes};
+pub use frame::Frame;
+pub use plan::Plan;
 
 use crate::formats::RecordFormat;
 use crate::outcome::{Failure, Outcome};
@@ -26,7 +26,7 @@ use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 /// A recording in the making. Dropped, it is gone.
-pub(crate) struct Recorder {
+pub struct Recorder {
     path: PathBuf,
     sink: Box<dyn Sink>,
 }
@@ -54,7 +54,7 @@ type Out = BufWriter<File>;
 
 impl Recorder {
     /// Begins a recording: in one file if the format can hold many records and the name has no place for a number.
-    pub(crate) fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
+    pub fn create(path: &Path, format: RecordFormat) -> Outcome<Self> {
         let pattern = Pattern::parse(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
         let sink: Box<dyn Sink> = match pattern {
             None if format.holds_many() => Box::new(Together::create(path, format)?),
@@ -65,23 +65,21 @@ impl Recorder {
     }
 
     /// Takes a record.
-    pub(crate) fn record(&mut self, frame: &Frame) -> Outcome {
+    pub fn record(&mut self, frame: &Frame) -> Outcome {
         self.sink.record(frame).map_err(|error| Failure::io(&self.path, &error))
     }
 
     /// The files that were recorded, to be put where they belong.
-    pub(crate) fn close(self) -> Outcome<Vec<Written>> {
+    pub fn close(self) -> Outcome<Vec<Written>> {
         self.sink.close()
     }
 }
 
 /// The failure to write many files to standard output.
 fn one_stream(format: RecordFormat) -> Failure {
-    use clap::ValueEnum;
-    let name = |format: &RecordFormat| format.to_possible_value().map(|value| value.get_name().to_string());
-    let many: Vec<_> = RecordFormat::value_variants().iter().filter(|other| other.holds_many()).collect();
-    let many: Vec<_> = many.into_iter().filter_map(name).collect();
-    let (name, many) = (name(&format).unwrap_or_default(), many.join(", "));
+    let many: Vec<_> =
+        RecordFormat::ALL.into_iter().filter(|other| other.holds_many()).map(RecordFormat::name).collect();
+    let (name, many) = (format.name(), many.join(", "));
     Failure::new(format!("standard output: {name} is one file a record; choose --format {many}, or name a file"))
 }
 

@@ -11,7 +11,8 @@ use ply_rs_bw::ply::Property;
 
 use super::MeshData;
 use super::text;
-use crate::fault::{Fault, excerpt};
+use crate::fault::Fault;
+use crate::outcome::excerpt;
 use elements::Face;
 pub(crate) use elements::{Point, Skipped};
 pub(crate) use header::split;

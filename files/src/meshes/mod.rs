@@ -1,9 +1,8 @@
-//! Triangle meshes from files: OFF, OBJ, STL, PLY and the ink of PNG, told apart by the file's extension; and some that are made up.
+//! Triangle meshes from files: OFF, OBJ, STL, PLY and the ink of PNG, told apart by the file's extension.
 //!
 //! Whatever the bytes are, the answer is a mesh or one line saying what is wrong with the file: nothing here panics,
 //! and nothing is allocated because a header promises it.
 
-mod made;
 mod obj;
 mod off;
 mod picture;
@@ -12,8 +11,6 @@ mod stl;
 #[cfg(test)]
 mod tests;
 mod text;
-
-pub use made::Made;
 
 use crate::fault::Fault;
 use crate::outcome::{Outcome, hint};

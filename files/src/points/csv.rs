@@ -4,7 +4,7 @@
 //! empty line, and the second half of a Windows line end, to the row before.
 
 use super::{Fault, Lines, Rows, number};
-use crate::fault::excerpt;
+use crate::outcome::excerpt;
 use std::io::BufRead;
 
 /// The names of columns of coordinates, by axis, the likeliest first; units in brackets may follow.

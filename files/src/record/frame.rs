@@ -1,7 +1,7 @@
 //! The state of all particles at an instant, column by column.
 
 use super::plan::Plan;
-use crate::schedule::nanoseconds;
+use crate::instant::nanoseconds;
 use pointmass::draw::appearance;
 use pointmass::force::Springs;
 use pointmass::{Color, Columns, Heap, Scene, System, Time, Vec3, WHITE};
@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The state after a step, by id.
 #[derive(Debug)]
-pub(crate) struct Frame {
+pub struct Frame {
     /// How many steps have been made.
     pub(super) step: u64,
     /// The instant \[s\].
@@ -120,7 +120,7 @@ impl Value {
 
 impl Frame {
     /// The frame of a system after so many steps.
-    pub(crate) fn of(step: u64, system: &System<Heap>, scene: &Scene<'_>, plan: &Plan) -> Self {
+    pub fn of(step: u64, system: &System<Heap>, scene: &Scene<'_>, plan: &Plan) -> Self {
         let serial = system.particles().serial;
         let mut order: Vec<usize> = (0..serial.len()).collect();
         order.sort_unstable_by_key(|&row| serial[row]);

@@ -1,21 +1,20 @@
 //! The events in the lives of particles, one line an event: births, hits, touches, deaths.
 
 use crate::formats::EventsFormat;
+use crate::instant::nanoseconds;
 use crate::outcome::{Failure, Outcome};
-use crate::schedule::nanoseconds;
 use crate::whole::{WholeFile, Written};
-use pointmass::force::State;
-use pointmass::{Attention, Cause, CustomColumnsMut, Impact, LifeEvent, Observer, Phase, Sliding, Time, Vec3};
+use pointmass::{Attention, Cause, Impact, LifeEvent, Observer, Time, Vec3};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
 
 /// A file of events in the making. Dropped, it is gone.
-pub(crate) struct Chronicle {
+pub struct Chronicle {
     lines: Lines,
     path: std::path::PathBuf,
     /// The events of a step, in the order in which they were found.
-    pub(crate) notes: Notes,
+    pub notes: Notes,
 }
 
 /// The lines of a table, or of objects.
@@ -26,7 +25,7 @@ enum Lines {
 
 /// The events of a step; watches it.
 #[derive(Debug, Default)]
-pub(crate) struct Notes(Vec<Line>);
+pub struct Notes(Vec<Line>);
 
 /// An event.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
@@ -68,7 +67,7 @@ const HEAD: [&str; 17] = [
 
 impl Chronicle {
     /// Begins a file.
-    pub(crate) fn create(path: &Path, format: EventsFormat) -> Outcome<Self> {
+    pub fn create(path: &Path, format: EventsFormat) -> Outcome<Self> {
         let file = WholeFile::create(path)?;
         let mut lines = match format {
             EventsFormat::Csv => Lines::Csv(Box::new(csv::WriterBuilder::new().has_headers(false).from_writer(file))),
@@ -81,7 +80,7 @@ impl Chronicle {
     }
 
     /// Writes what happened in a step, in the order of instants.
-    pub(crate) fn write(&mut self, step: u64) -> Outcome {
+    pub fn write(&mut self, step: u64) -> Outcome {
         let Notes(notes) = &mut self.notes;
         notes.sort_by(|a, b| a.time.total_cmp(&b.time));
         for line in notes.drain(..).map(|line| Line { step, ..line }) {
@@ -91,7 +90,7 @@ impl Chronicle {
     }
 
     /// Nothing more is going to be written.
-    pub(crate) fn close(self) -> Outcome<Written> {
+    pub fn close(self) -> Outcome<Written> {
         match self.lines {
             Lines::Csv(table) => table.into_inner().map_err(|error| Failure::io(&self.path, error.error()))?.close(),
             Lines::Jsonl(file) => file.close(),
@@ -156,35 +155,5 @@ impl Observer for Notes {
 
     fn refused(&mut self, count: u64, time: Time) {
         self.0.push(Line { count: Some(count), ..Line::new("refused", time, Vec3::ZERO, Vec3::ZERO) });
-    }
-}
-
-/// Two who watch the same step.
-pub(crate) struct Both<'a>(pub(crate) &'a mut dyn Observer, pub(crate) &'a mut dyn Observer);
-
-/// The calls that both are told of.
-macro_rules! both {
-    ($($event:ident($($what:ident: $of:ty),+))+) => {$(
-        fn $event(&mut self, $($what: $of),+) {
-            self.0.$event($($what),+);
-            self.1.$event($($what),+);
-        }
-    )+};
-}
-
-impl Observer for Both<'_> {
-    fn attention(&self) -> Attention {
-        self.0.attention().max(self.1.attention())
-    }
-
-    both! {
-        after(phase: Phase, state: &State<'_>)
-        write(state: &State<'_>, custom: &mut CustomColumnsMut<'_>)
-        hit(hit: &Impact)
-        touched(touch: &Impact)
-        slid(slide: &Sliding)
-        born(birth: &LifeEvent)
-        died(death: &LifeEvent, cause: Cause)
-        refused(count: u64, time: Time)
     }
 }
