@@ -33,6 +33,20 @@ impl<E: std::error::Error> From<E> for Failure {
     }
 }
 
+/// For those who collect errors of all kinds. It is none itself, so that it can take in every error.
+impl From<Failure> for Box<dyn std::error::Error> {
+    fn from(failure: Failure) -> Self {
+        failure.to_string().into()
+    }
+}
+
+/// The same for those that pass from thread to thread.
+impl From<Failure> for Box<dyn std::error::Error + Send + Sync> {
+    fn from(failure: Failure) -> Self {
+        failure.to_string().into()
+    }
+}
+
 /// Which file may be meant where there is none.
 pub fn hint(path: &Path, error: &std::io::Error) -> String {
     let is_missing = error.kind() == std::io::ErrorKind::NotFound;
