@@ -116,7 +116,6 @@ impl Scene<'_> {
             custom: self.custom.count(),
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
             start: self.needs_start(),
-            before: constrained || self.pieces() > 1,
             constrained,
             constraints: self.constraints.demand(),
             trees: needs.tree_columns(),
@@ -170,7 +169,7 @@ impl Scene<'_> {
     }
 
     pub(crate) fn needs_start(&self) -> bool {
-        self.integrator.needs_start() || self.is_swept()
+        self.integrator.needs_start() || self.is_swept() || !self.constraints.is_empty()
     }
 
     /// Tells whether a step can be made in memory of size `have`: all but the particles must fit.
