@@ -129,7 +129,8 @@ fn no_ground_gives_energy() {
     let mut random = Random::new(77);
     let mut failures = vec![];
     let heights: Vec<f32> = (0..81).map(|_| random.between(0.0, 0.2)).collect();
-    for round in 0..pointmass_tests::often(64).max(8) {
+    let rounds = std::env::var("ROUNDS").map_or(8, |x| x.parse().unwrap());
+    for round in 0..rounds {
         let scale = [1.0, 0.05, 20.0][round % 3];
         let high: Vec<f32> = heights.iter().map(|height| height * scale).collect();
         // Times go by the root of the size.
@@ -167,8 +168,10 @@ fn no_ground_gives_energy() {
             let scale_of_all = 0.2 * 9.8 * 0.9 * f64::from(scale) * start.len() as f64 / 64.0;
             let own = risen(&free, span, drift) / scale_of_all;
             let more = risen(&scene, span, drift) / scale_of_all - own;
-            if !(more < 0.01) && own.is_finite() {
-                failures.push(format!("{} on {at}, {}, {substeps} sub-steps, e {elasticity}, mu {mu}, drift {drift}, scale {scale}: {own} {more}", thing.name, method.name()));
+            let one = if !(more < 0.01) && own < 0.1 { let span = [step / f64::from(substeps), 1.2 * pace].map(Time::from_seconds_f64); risen(&Scene { substeps: 1, ..scene }, span, drift) / scale_of_all } else { 0.0 };
+            // A method may not stand undamped springs at all.
+            if !(more < 0.01) && own < 0.1 {
+                failures.push(format!("{} on {at}, {}, {substeps} sub-steps, e {elasticity}, mu {mu}, drift {drift}, scale {scale}: {own} {more} steps {one}", thing.name, method.name()));
             }
         }
     }
