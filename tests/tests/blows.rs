@@ -9,7 +9,13 @@ use pointmass_tests::{Random, often, started};
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
 
 /// A body of 0.2 kg and some 0.2 m: a box of any sides, or a stone; with its particles, as they are thrown.
-fn body(random: &mut Random, hull: Option<&HullBuf>, at: Vec3, first: u32, elasticity: f32) -> (RigidBox, [Particle; 8]) {
+fn body(
+    random: &mut Random,
+    hull: Option<&HullBuf>,
+    at: Vec3,
+    first: u32,
+    elasticity: f32,
+) -> (RigidBox, [Particle; 8]) {
     let half = Vec3::new(random.between(0.05, 0.15), random.between(0.05, 0.15), random.between(0.05, 0.15));
     let turn = [random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0), 0.5];
     let of = hull.map_or(RigidBox::new(half, at, first), |hull| RigidBox::with_hull(&hull.lend(), 0, at, first));

@@ -5,8 +5,8 @@ use pointmass::force::{Coulomb, Friction};
 use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Collider, Cuboid, HeightField, MeshBuf, Moving, Plane, Sphere};
 use pointmass::{
-    ClothSprings, Constraint, ContactMaterial, Force, Gravity, Heap, Measures, Method, Particle, Report, Scene,
-    Sheet, Spring, SpringParams, System, Time, Vec3,
+    ClothSprings, Constraint, ContactMaterial, Force, Gravity, Heap, Measures, Method, Particle, Report, Scene, Sheet,
+    Spring, SpringParams, System, Time, Vec3,
 };
 use pointmass_tests::{Random, started};
 
@@ -39,13 +39,8 @@ fn things(random: &mut Random, scale: f32) -> Vec<Thing> {
     // Things of all sizes weigh as much; their stiffness is such that they are alike, in times that go by the root of the size.
     let damping = if random.unit() < 0.5 { 0.0 } else { 1e-3 };
     let knot = Particle { mass: 0.2 / 64.0, drag: 0.0, ..Particle::REST };
-    let thing = |name, start, springs, bond: Box<dyn Constraint>| Thing {
-        name,
-        start,
-        springs,
-        bond,
-        forces: Box::new(DOWN),
-    };
+    let thing =
+        |name, start, springs, bond: Box<dyn Constraint>| Thing { name, start, springs, bond, forces: Box::new(DOWN) };
     let net = |random: &mut Random| {
         let sheet = sheet(random, scale);
         let params = StrainLimitParams { shear: Some(0.3), warp: Some([0.8, 1.1]), ..StrainLimitParams::default() };
@@ -62,13 +57,20 @@ fn things(random: &mut Random, scale: f32) -> Vec<Thing> {
     };
     let numbers: Vec<u32> = (0..12).collect();
     let rope = Rope::string(numbers.clone(), vec![scale / 12.0]);
-    let params = StrandParams { stretch: Some(20.0), bending: [1e-3 * scale * scale; 2], twisting: 1e-3 * scale * scale, damping: 0.0 };
+    let params = StrandParams {
+        stretch: Some(20.0),
+        bending: [1e-3 * scale * scale; 2],
+        twisting: 1e-3 * scale * scale,
+        damping: 0.0,
+    };
     let strand = Strands::of(numbers.clone(), vec![12], params);
-    let cluster = ShapeMatching { compliance: 1e-3 * scale, damping: 0.1 / scale.sqrt(), ..ShapeMatching::rigid(numbers) };
+    let cluster =
+        ShapeMatching { compliance: 1e-3 * scale, damping: 0.1 / scale.sqrt(), ..ShapeMatching::rigid(numbers) };
     let place = |random: &mut Random| Vec3::Y * (0.9 * scale) + random.vector(0.3 * scale);
     let pile: Vec<_> = (0..12).map(|_| Particle { position: place(random), ..knot }).collect();
-    let charges: Vec<_> =
-        (0..12).map(|i| Particle { position: place(random), charge: scale * if i % 3 == 0 { -2e-7 } else { 1e-7 }, ..knot }).collect();
+    let charges: Vec<_> = (0..12)
+        .map(|i| Particle { position: place(random), charge: scale * if i % 3 == 0 { -2e-7 } else { 1e-7 }, ..knot })
+        .collect();
     let coulomb = Coulomb { softening: 0.05 * scale, ..Coulomb::default() };
     vec![
         thing("net", plain, springs, Box::new(())),
@@ -142,10 +144,8 @@ fn no_ground_gives_energy() {
             let method = methods[random.word() as usize % methods.len()];
             let substeps = [1, 2, 5, 10, 30][random.word() as usize % 5];
             let (elasticity, mu) = (random.unit(), random.unit());
-            let material = [ContactMaterial {
-                elasticity: None,
-                friction: Some(Friction { static_: mu, kinetic: 0.8 * mu }),
-            }];
+            let material =
+                [ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: 0.8 * mu }) }];
             let drift = if random.unit() < 0.3 { random.vector(1.0) * pace as f32 } else { Vec3::ZERO };
             let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
             let moving = Moving::new(&**ground, &all, Motion { drift, ..Motion::STILL });
@@ -161,14 +161,47 @@ fn no_ground_gives_energy() {
                 substeps,
                 ..Scene::EMPTY
             };
-            let scene = if drift == Vec3::ZERO { Scene { colliders: &**ground, ..free } } else { Scene { colliders: &moving, ..free } };
+            let scene = if drift == Vec3::ZERO {
+                Scene { colliders: &**ground, ..free }
+            } else {
+                Scene { colliders: &moving, ..free }
+            };
             // Sub-steps of 1/600 s at the most, steps of 1/15 s.
             let step = (f64::from(substeps) / 600.0).min(1.0 / 15.0) * pace;
             let span = [step, 1.2 * pace].map(Time::from_seconds_f64);
             let scale_of_all = 0.2 * 9.8 * 0.9 * f64::from(scale) * start.len() as f64 / 64.0;
             let own = risen(&free, span, drift) / scale_of_all;
             let more = risen(&scene, span, drift) / scale_of_all - own;
-            let one = if !(more < 0.01) && own < 0.1 { let span = [step / f64::from(substeps), 1.2 * pace].map(Time::from_seconds_f64); risen(&Scene { substeps: 1, ..scene }, span, drift) / scale_of_all } else { 0.0 };
+            let one = if !(more < 0.01) && own < 0.1 {
+                let span = [step / f64::from(substeps), 1.2 * pace].map(Time::from_seconds_f64);
+                risen(&Scene { substeps: 1, ..scene }, span, drift) / scale_of_all
+            } else {
+                0.0
+            };
+            if !(more < 0.01) && own < 0.1 && std::env::var("TRACE").is_ok() {
+                let (h, scene) = (Time::from_seconds_f64(step / f64::from(substeps)), Scene { substeps: 1, ..scene });
+                let mut system = started(&scene, scene.start.len(), 1);
+                let mut last = energy(&system, &scene, drift);
+                println!("{} {h:?}", thing.name);
+                for i in 0..(1.2 * pace / h.seconds_f64()) as u32 {
+                    let report = system.step(&scene, h);
+                    let now = energy(&system, &scene, drift);
+                    if (now - last) / scale_of_all > 0.003 {
+                        let springs =
+                            Measures::of(&system, &Scene { forces: &(), ..scene }).energy.potential / scale_of_all;
+                        let fast =
+                            system.particles().velocity.iter().map(|v| (*v - drift).length()).fold(0.0, f32::max);
+                        println!(
+                            "{i}: {} + {} springs {springs} fast {fast} hits {} capped {}",
+                            last / scale_of_all,
+                            (now - last) / scale_of_all,
+                            report.hits,
+                            report.effort.capped
+                        );
+                    }
+                    last = now;
+                }
+            }
             // A method may not stand undamped springs at all.
             if !(more < 0.01) && own < 0.1 {
                 failures.push(format!("{} on {at}, {}, {substeps} sub-steps, e {elasticity}, mu {mu}, drift {drift}, scale {scale}: {own} {more} steps {one}", thing.name, method.name()));
@@ -207,7 +240,8 @@ fn so_many_sub_steps_are_as_many_steps() {
                 };
                 let short = Time::from_ticks(1 << 23);
                 let one = outcome(&scene, short, 384);
-                let many = outcome(&Scene { substeps, ..scene }, Time::from_ticks(u64::from(substeps) << 23), 384 / substeps);
+                let many =
+                    outcome(&Scene { substeps, ..scene }, Time::from_ticks(u64::from(substeps) << 23), 384 / substeps);
                 assert_eq!(one, many, "{} on {at}, {}, {substeps}", thing.name, method.name());
                 assert!(one.1[0] > 0, "it falls that far");
             }

@@ -423,7 +423,7 @@ impl TileSweep<'_, '_> {
         }
         let (walls, known): (&dyn Collider, _) =
             if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
-        let before = report.hits;
+        let before = report.hits + report.caps.bounces;
         let sweep = Sweep {
             scene,
             walls,
@@ -450,7 +450,11 @@ impl TileSweep<'_, '_> {
             _ => { sweep }.travel(&path, is_newborn, may_lie),
         };
         let Some(end) = arrival else { return };
-        if is_kept && end.pending_death == PendingDeath::Lives && report.hits == before {
+        // Whom constraints have moved keeps the velocity that they leave it, which is not that of the straight way, where it meets nothing.
+        if mark & SHIFTED != 0
+            && end.pending_death == PendingDeath::Lives
+            && report.hits + report.caps.bounces == before
+        {
             return;
         }
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =

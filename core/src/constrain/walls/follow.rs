@@ -22,8 +22,7 @@ pub(in crate::constrain) fn follow(walls: &[Wall], bodies: &mut Bodies<'_>) {
         let around = Aabb { min: low(from, to) - radius, max: high(from, to) + radius };
         // What touches sinks in by its radius at the most.
         let way = Segment { from, to, radius: 0.5 * radius, during: bodies.substep.during };
-        let passes =
-            || !far(wall) && bodies.colliders.may_touch(&around) && bodies.colliders.first_hit(&way).is_some();
+        let passes = || !far(wall) && bodies.colliders.may_touch(&around) && bodies.colliders.first_hit(&way).is_some();
         if !passes() {
             bodies.mark_followed(row);
         }
