@@ -89,7 +89,10 @@ impl Tile<'_> {
         for (row, death) in self.pending_death.iter().enumerate() {
             let is_bound = row < self.old && marks.get(row).is_some_and(|mark| mark & SHIFTED != 0);
             if *death != PendingDeath::Lives && !is_bound {
-                (self.position[row], self.velocity[row]) = (x[row], v[row]);
+                // As numbers: to a chip a copy of vectors that might overlap would be code of its own.
+                let ([x, y, z], [u, v, w]) = (x[row].to_array(), v[row].to_array());
+                self.position[row] = Vec3::new(x, y, z);
+                self.velocity[row] = Vec3::new(u, v, w);
             }
         }
     }
