@@ -213,8 +213,7 @@ impl Body {
         let (to, velocity) = (bodies.position[row], bodies.velocity[row]);
         if self.moves() && (to + velocity).is_finite() {
             self.velocity = velocity + Vec3::ZERO;
-            // Nobody asks what drives a ball: what forces give it counts at once.
-            self.blow.begun = max(self.blow.begun, self.vigour());
+            self.count_forces();
             self.drift = to - self.center - velocity * bodies.substep.seconds();
         }
     }
@@ -349,11 +348,6 @@ impl Body {
         self.before = [self.velocity, self.omega];
         self.pressed = 0;
         self.blow.begun = self.vigour();
-    }
-
-    /// Its kinetic energy over its mass \[m²/s²\].
-    pub(super) fn vigour(&self) -> f32 {
-        0.5 * (self.velocity.dot(self.velocity) + self.omega.dot(self.spin))
     }
 
     /// Takes in what has been done to its particles in a sub-step of so many seconds: what [`gather`](Self::gather) sums up.

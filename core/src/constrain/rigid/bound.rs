@@ -21,6 +21,18 @@ pub(super) struct Blow {
     square: f32,
 }
 
+impl Body {
+    /// Its kinetic energy over its mass \[m²/s²\].
+    pub(super) fn vigour(&self) -> f32 {
+        0.5 * (self.velocity.dot(self.velocity) + self.omega.dot(self.spin))
+    }
+
+    /// Counts what forces have given a ball, whose drive nobody knows, to what it began with.
+    pub(super) fn count_forces(&mut self) {
+        self.blow.begun = max(self.blow.begun, self.vigour());
+    }
+}
+
 /// Takes back from what a blow has made of how bodies move, while these do not know it yet, what it has given.
 pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
     // Colours have done their work.
