@@ -44,6 +44,8 @@ pub struct Ledger<'a> {
     powers: Vec<Entry>,
     /// The energy that hits and friction have taken since the last phase, and the work of scenery that moves.
     struck: [f64; 3],
+    /// The energy of the newborn when they were last seen on their way through the step.
+    newborn: f64,
 }
 
 /// The old particles at an instant.
@@ -146,6 +148,7 @@ impl<'a> Ledger<'a> {
             from: Snapshot::default(),
             powers: Vec::new(),
             struck: [0.0; 3],
+            newborn: 0.0,
         }
     }
 
@@ -185,6 +188,24 @@ impl<'a> Ledger<'a> {
         self.old = state.position.len();
         self.from.set(state);
         self.powers = self.powers(state);
+    }
+
+    /// Begins the way of the old through a sub-step that may follow.
+    fn go_on(&mut self, state: &State<'_>) {
+        let old = first(state, self.old);
+        if old.position.len() < state.position.len() {
+            let newborn = self.energy - energy(&self.scene, &old);
+            self.newborn = if newborn.is_finite() { newborn } else { 0.0 };
+        }
+        self.from.set(&old);
+        self.powers = self.powers(&old);
+    }
+
+    /// Takes what the newborn have back out of what emission has given: it brings in all that they have when they have flown on.
+    fn set_newborn_aside(&mut self) {
+        let newborn = core::mem::take(&mut self.newborn);
+        self.energy -= newborn;
+        self.books.emission -= newborn;
     }
 
     /// Books the work that forces have done on the way here.
@@ -242,6 +263,11 @@ fn first<'s>(state: &State<'s>, len: usize) -> State<'s> {
 impl Observer for Ledger<'_> {
     fn after(&mut self, phase: Phase, state: &State<'_>) {
         match phase {
+            Phase::Begin | Phase::Delete => self.newborn = 0.0,
+            Phase::Advance | Phase::Project | Phase::Move => self.set_newborn_aside(),
+            _ => {}
+        }
+        match phase {
             Phase::Begin => {
                 let change = self.change(state);
                 self.books.outside += change;
@@ -285,6 +311,7 @@ impl Observer for Ledger<'_> {
                 self.books.friction += friction;
                 self.books.scenery += scenery;
                 self.books.remainder += change - restitution - friction - scenery;
+                self.go_on(state);
             }
             Phase::Delete => {
                 let change = self.change(state);

@@ -202,11 +202,12 @@ pub enum Phase {
     Project,
     /// Constraints have moved the old at the end of a sub-step.
     Constrain,
-    /// The integrator has moved the old to the step's end, and the newborn have flown there.
+    /// The integrator has moved the old to a sub-step's end, and the newborn have flown there. Those who are born later are still where they
+    /// will be.
     Move,
-    /// Springs that were stretched too far have broken.
+    /// Springs that were stretched too far have broken, at the end of the last sub-step.
     Snap,
-    /// All have been held against colliders and sinks.
+    /// All have been held against colliders and sinks, at a sub-step's end.
     Collide,
     /// Those whose time has come are gone.
     Delete,

@@ -6,6 +6,7 @@ mod balls;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;
 mod births;
+mod blows;
 mod carried;
 mod clusters;
 mod collisions;
@@ -13,6 +14,7 @@ mod constraints;
 #[path = "contacts/main.rs"]
 mod contacts;
 mod density;
+mod drops;
 mod emission;
 mod extend;
 mod faces;

@@ -62,11 +62,13 @@ impl EventDriven<'_> {
             let since = self.units(start);
             self.events.set(row, NextEvent { since, until: NEVER, partner: NOBODY, ..NextEvent::default() });
             let path = self.path(row);
-            if !path.is_finite() {
+            let (now, is_newborn) = (self.end - self.dt, row >= old);
+            let is_there = self.pending_death[row] == PendingDeath::Lives && !(is_newborn && born > self.end);
+            if !(is_there && path.is_finite()) {
                 self.events.set(row, NextEvent { partner: GONE, until: NEVER, ..NextEvent::default() });
                 continue;
             }
-            if row >= old {
+            if is_newborn && born >= now {
                 let path = self.sweep(row).let_go(path);
                 self.go(row, &path);
             } else if path.lags() {

@@ -1,4 +1,4 @@
-//! A step's sweep, as it is handed to whatever answers the meetings.
+//! A sub-step's sweep, as it is handed to whatever answers the meetings.
 
 use super::tile_sweep::each_by_itself;
 use crate::observe::Observer;
@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::step::Workspace;
 use crate::time::Time;
 
-/// A step whose particles have been moved and are now to be held against colliders, sinks and each other.
+/// A sub-step whose particles have been moved and are now to be held against colliders, sinks and each other.
 pub(crate) struct Passage<'p, 'v> {
     pub(crate) workspace: &'p mut Workspace<'v>,
     pub(crate) scene: &'p Scene<'p>,

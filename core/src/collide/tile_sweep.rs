@@ -50,7 +50,7 @@ struct Waiting {
     bouncing: Queue,
 }
 
-/// Sends every free particle of a tile along its path through the step, past all others.
+/// Sends every free particle of a tile along its path through the sub-step, past all others.
 pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
     let work = core::mem::take(&mut tile.work);
     let past = tile.layout.past(work);
@@ -131,6 +131,9 @@ impl TileSweep<'_, '_> {
         let mut waiting: Option<Waiting> = None;
         for first in (0..self.tile.position.len()).step_by(Hulls::MANY) {
             let mut in_packet = 0;
+            if self.are_carried(first, Hulls::MANY) {
+                continue;
+            }
             for (i, mark) in marked(self.tile, &self.past, first).into_iter().enumerate() {
                 let row = first + i;
                 if mark == 0 {
@@ -152,12 +155,23 @@ impl TileSweep<'_, '_> {
         }
     }
 
+    /// Tells whether constraints have taken all of so many rows past the scenery, and nothing is left to meet.
+    fn are_carried(&self, first: usize, most: usize) -> bool {
+        let rows = first..self.tile.position.len().min(first + most);
+        let marks = self.past.marks.get(rows.clone()).filter(|_| rows.end <= self.tile.old);
+        let are_carried = |marks: &[u32]| marks.iter().fold(CARRIED, |all, mark| all & mark) != 0;
+        self.tile.scene.sinks.is_empty() && marks.is_some_and(are_carried)
+    }
+
     /// Follows all past a face, those who were there before the step in packets.
     fn go_past(&mut self, face: &Face) {
         let (old, in_packets) = (self.tile.old, self.goes_in_packets());
         let mut waiting = Waiting::before(*face);
         self.are_points = true;
         for first in (0..old).step_by(BLOCK) {
+            if self.are_carried(first, BLOCK) {
+                continue;
+            }
             let block = self.balls().block(first..old.min(first + BLOCK), self.tile.reached);
             let (Near { touching, lying }, are_points) = (block.near(face), block.are_points());
             self.are_points &= are_points;
@@ -362,7 +376,7 @@ impl TileSweep<'_, '_> {
         mixed
     }
 
-    /// A row's path through the step.
+    /// A row's path through the sub-step.
     fn path(&self, row: usize) -> Path {
         let (Tile { dt, attributes, .. }, end) = (&*self.tile, self.tile.end());
         // A newborn has come only part of the way.
@@ -387,11 +401,12 @@ impl TileSweep<'_, '_> {
             Some(observer) => Some(&mut **observer),
             None => None,
         };
-        let Tile { scene, old, dt, attributes: ref m, .. } = **tile;
-        if m.inverse_mass[row] == 0.0 {
+        let Tile { scene, old, now, dt, attributes: ref m, .. } = **tile;
+        let (lives, born) = (&m.lives, m.lives.born[row]);
+        let is_still_to_come = row >= old && born > now + dt;
+        if m.inverse_mass[row] == 0.0 || is_still_to_come || tile.pending_death[row] != PendingDeath::Lives {
             return;
         }
-        let lives = &m.lives;
         // Constraints know nothing of the newborn.
         let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
         // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
@@ -408,7 +423,7 @@ impl TileSweep<'_, '_> {
         }
         let (walls, known): (&dyn Collider, _) =
             if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
-        let before = report.hits;
+        let before = report.hits + report.caps.bounces;
         let sweep = Sweep {
             scene,
             walls,
@@ -424,7 +439,7 @@ impl TileSweep<'_, '_> {
             observer,
         };
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
-        let is_newborn = row >= old;
+        let is_newborn = row >= old && born >= now;
         // Whoever is near one face alone goes the short way, among however many things.
         let facing = match known {
             None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
@@ -435,7 +450,11 @@ impl TileSweep<'_, '_> {
             _ => { sweep }.travel(&path, is_newborn, may_lie),
         };
         let Some(end) = arrival else { return };
-        if is_kept && end.pending_death == PendingDeath::Lives && report.hits == before {
+        // Whom constraints have moved keeps the velocity that they leave it, which is not that of the straight way, where it meets nothing.
+        if mark & SHIFTED != 0
+            && end.pending_death == PendingDeath::Lives
+            && report.hits + report.caps.bounces == before
+        {
             return;
         }
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =

@@ -12,11 +12,11 @@ use crate::time::Time;
 use core::fmt;
 use glam::Vec3;
 
-/// A constraint has moved the particle: its path through the step is no longer the method's.
+/// A constraint has moved the particle: its path through the sub-step is no longer the method's.
 pub(crate) const SHIFTED: u32 = 1;
 /// A constraint keeps the particle from what it touches: the sweep only keeps its middle from passing through.
 pub(crate) const TOUCHING: u32 = 2;
-/// The particle belongs to a body that meets the scenery as a whole, or its way has been followed past that in each sub-step: the sweep looks
+/// The particle belongs to a body that meets the scenery as a whole, or its way has been followed past that: the sweep looks
 /// for sinks on its path, and for nothing else.
 pub(crate) const CARRIED: u32 = 4;
 /// The bits of a mark that say what constraints have done to its particle; the others are those of how far it is kept off scenery.
@@ -149,12 +149,12 @@ impl Bodies<'_> {
         self.observer.touched(touch);
     }
 
-    /// Says that the particle in a row has not passed through the scenery on any of its ways through the step's sub-steps.
+    /// Says that the particle in a row has not passed through the scenery on its way through the sub-step.
     pub(crate) fn mark_followed(&mut self, row: usize) {
         self.marks[row] |= SHIFTED | CARRIED;
     }
 
-    /// Says that the particle in a row is kept from the surface it touches, and needs no other answer to it in this step:
+    /// Says that the particle in a row is kept from the surface it touches, and needs no other answer to it in this sub-step:
     /// the sweep then only sees that its inner half does not pass through.
     pub fn mark_touching(&mut self, row: usize) {
         self.marks[row] |= SHIFTED | TOUCHING;

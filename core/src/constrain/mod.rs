@@ -51,8 +51,8 @@ use crate::composed::composed;
 /// A tuple, slice or reference of constraints is a constraint: all of them, one after the other in each phase. Every
 /// constraint sees what those before it have done.
 ///
-/// Newborns come under it in the step after that of their birth. Colliders act at the end of the step, after the last sub-step: what they stop
-/// may be off the constraint, and has the velocity that they leave it, until then. (Shells and contacts of sheets meet the scenery by
+/// Newborns come under it in the step after that of their birth. Colliders act at the end of each sub-step: what they stop
+/// may be off the constraint, and has the velocity that they leave it, until the next. (Shells and contacts of sheets meet the scenery by
 /// themselves.)
 ///
 /// Whatever goes to the nearest place that satisfies it takes energy out of the motion, the less the shorter the sub-steps. To keep it, go

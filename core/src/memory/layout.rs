@@ -77,9 +77,8 @@ pub(crate) struct Plan {
     pub(crate) custom: usize,
     /// Words a particle for what materials change.
     pub(crate) ageing: usize,
-    /// True if anybody asks for places and velocities at the step's beginning, and likewise at each sub-step's.
+    /// True if anybody asks for places and velocities at a sub-step's beginning.
     pub(crate) start: bool,
-    pub(crate) before: bool,
     /// True if there are constraints, and their demand.
     pub(crate) constrained: bool,
     pub(crate) constraints: Demand,
@@ -115,7 +114,7 @@ impl Plan {
 
     /// The words that last through the step.
     fn lasting(&self) -> Words {
-        let states = Words::columns(2 * usize::from(self.start) + 2 * usize::from(self.before));
+        let states = Words::columns(2 * usize::from(self.start));
         let marks = Words { per_row: usize::from(self.constrained), fixed: 0 };
         states.and(marks).and(self.constraints.step)
     }
@@ -140,10 +139,8 @@ pub(crate) struct Layout {
 /// The parts of the memory that a step works with.
 #[derive(Debug)]
 pub(crate) struct Shares<'m> {
-    /// Where all were at the step's beginning \[m\], and how fast \[m/s\]; empty if nobody asks.
+    /// Where all were at the sub-step's beginning \[m\], and how fast \[m/s\]; empty if nobody asks.
     pub(crate) start: [&'m mut [Vec3]; 2],
-    /// The same at the sub-step's beginning.
-    pub(crate) before: [&'m mut [Vec3]; 2],
     /// A mark for each particle of what constraints have done to it.
     pub(crate) marks: &'m mut [u32],
     /// The words that constraints keep through the step.
@@ -200,7 +197,7 @@ pub(crate) struct Scratch<'m> {
     layout: Layout,
 }
 
-/// The parts of its beginning that a step remembers, for reading.
+/// The parts of its beginning that a sub-step remembers, for reading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Past<'m> {
     pub(crate) start: [&'m [Vec3]; 2],
@@ -225,13 +222,10 @@ impl Layout {
         let mut rest: &'m mut [u32] = bytemuck::cast_slice_mut(work);
         let pair = if self.plan.start { self.capacity } else { 0 };
         let start = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
-        let pair = if self.plan.before { self.capacity } else { 0 };
-        let before = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
         let marks = take(&mut rest, if self.plan.constrained { self.capacity } else { 0 });
         let step = take(&mut rest, self.plan.constraints.step.of(self.capacity));
         Shares {
             start,
-            before,
             marks,
             step,
             scratch: Scratch { words: rest, layout: *self },
@@ -272,11 +266,10 @@ impl Layout {
         work.split_at_mut(work.len() / len.max(1) * rows)
     }
 
-    /// The memory of a step's beginning.
+    /// The memory of a sub-step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
         let pair = if self.plan.start { self.capacity } else { 0 };
         let (start, rest) = work.split_at(2 * pair);
-        let rest = if self.plan.before { &rest[2 * self.capacity..] } else { rest };
         let marks = if self.plan.constrained { &bytemuck::cast_slice(rest)[..self.capacity] } else { &[] };
         Past { start: start.split_at(pair).into(), marks }
     }
@@ -302,7 +295,7 @@ impl Scratch<'_> {
 }
 
 impl<'m> Scratch<'m> {
-    /// For meetings of so many, when all have been moved: for their events, for where they were at the step's beginning, and for an
+    /// For meetings of so many, when all have been moved: for their events, for where they were at the sub-step's beginning, and for an
     /// index of that.
     pub(crate) fn meeting(self, len: usize) -> (&'m mut [u32], &'m mut [Vec3], &'m mut [u32]) {
         let (plan, mut rest) = (self.layout.plan, self.words);

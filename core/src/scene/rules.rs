@@ -41,11 +41,13 @@ pub struct Scene<'a> {
     pub materials: &'a dyn MaterialList,
     /// The constraints that bind them together and keep them apart.
     pub constraints: &'a dyn Constraint,
-    /// Parts that a step is cut into for the method and the constraints, 1 to 1000: the finer, the stiffer are constraints.
+    /// Parts that a step is cut into for the method, the constraints and the scenery, 1 to 1000: the finer, the stiffer are constraints. So many
+    /// parts of a step do what as many steps of their length do, but for births and deaths, reapers, springs that break, and ageing, which are once
+    /// a step.
     pub substeps: u32,
     /// The answer of those that have a radius where they meet.
     pub meetings: Meetings,
-    /// How often a particle may bounce in one step before it waits at the surface for its end, which is counted in
+    /// How often a particle may bounce in one sub-step before it waits at the surface for its end, which is counted in
     /// `caps.bounces`: by default 8 times. By [`Impulse`](crate::Impulse) it may meet others and colliders four times as often.
     pub max_bounces: u32,
     /// How they are moved.
@@ -116,7 +118,6 @@ impl Scene<'_> {
             custom: self.custom.count(),
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
             start: self.needs_start(),
-            before: constrained || self.pieces() > 1,
             constrained,
             constraints: self.constraints.demand(),
             trees: needs.tree_columns(),
@@ -170,7 +171,7 @@ impl Scene<'_> {
     }
 
     pub(crate) fn needs_start(&self) -> bool {
-        self.integrator.needs_start() || self.is_swept()
+        self.integrator.needs_start() || self.is_swept() || !self.constraints.is_empty()
     }
 
     /// Tells whether a step can be made in memory of size `have`: all but the particles must fit.

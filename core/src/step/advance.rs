@@ -1,39 +1,43 @@
-//! Update: the old go through the step's sub-steps; the newborn fly on from their births.
+//! Update: the old go through a sub-step; the newborn fly on from their births.
 
 use super::field::Field;
 use super::substeps::{Carried, Moved, custom};
 use super::tile::Tile;
+use crate::constrain::{SHIFTED, Substep};
 use crate::force::Steady;
 use crate::index::ListMemory;
 use crate::integrate::{Drift, Dynamics};
 use crate::math::along;
-use crate::memory::Shares;
+use crate::memory::{Past, Shares};
 use crate::observe::Observer;
+use crate::reap::PendingDeath;
 use crate::report::{Effort, Report};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
 
 impl Tile<'_> {
-    /// Moves the old by the integrator. The newborn fly on from their places of birth with the acceleration they have there at
-    /// the step's beginning; they act on the old from the next step on.
+    /// Moves the old by the integrator. The newborn fly on from their places of birth, and from where the sub-step finds them, with the
+    /// acceleration they have there at its beginning; they act on the old from the next step on.
     pub(super) fn advance(
         &mut self,
+        substep: Substep,
         Carried { kept, hint, listed, changes }: Carried<'_>,
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
+        let [now, end] = substep.during;
+        (self.now, self.dt) = (now, end - now);
         if let Some(leap) = self.scene.leap().filter(|_| self.old == self.position.len()) {
             return self.leap(leap, report);
         }
-        let Self { scene, now, dt, old, layout, ref attributes, .. } = *self;
+        let Self { scene, old, layout, ref attributes, .. } = *self;
         let len = self.position.len();
-        let Shares { start: [start_x, start_v], before, marks, step: lasting, mut scratch, lists } =
-            layout.shares(self.work);
+        let Shares { start, marks, step: lasting, mut scratch, lists } = layout.shares(self.work);
         let capacity = layout.capacity();
         if scene.needs_start() {
-            start_x[..len].copy_from_slice(self.position);
-            start_v[..len].copy_from_slice(self.velocity);
+            start[0][..len].copy_from_slice(self.position);
+            start[1][..len].copy_from_slice(self.velocity);
         }
         let needs = scene.forces.needs();
         if old < len {
@@ -52,7 +56,7 @@ impl Tile<'_> {
                 observer,
             };
             let ends = [&mut *self.position, &mut *self.velocity];
-            fly(&mut field, ends, old..len, attributes.lives.born, [now, now + dt], memory);
+            fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
             report.effort.found(&field.effort);
         }
         let mut moved = Moved {
@@ -61,18 +65,36 @@ impl Tile<'_> {
             needs,
             position: &mut self.position[..old],
             velocity: &mut self.velocity[..old],
-            start: [start_x, start_v].map(|column| &*first(column, old)),
-            before: before.map(|column| first(column, old)),
+            start: start.map(|column| &*first(column, old)),
             marks: first(marks, old),
             lasting,
-            lists: ListMemory::new(lists, listed, changes, dt.seconds(), scene.index.room()),
+            lists: ListMemory::new(lists, listed, changes, substep.step.seconds(), scene.index.room()),
             kept,
             scratch,
             capacity,
             report,
             observer,
         };
-        moved.go(now, dt, hint);
+        moved.go(substep, hint);
+        if substep.number > 0 && !scene.sinks.is_empty() {
+            self.hold_doomed();
+        }
+    }
+
+    /// Lets those stay where they are who have vanished in an earlier sub-step of the step, at the end of which they go. Whom constraints
+    /// move goes on with what they bind him to.
+    #[inline(never)]
+    fn hold_doomed(&mut self) {
+        let Past { start: [x, v], marks } = self.layout.past(self.work);
+        for (row, death) in self.pending_death.iter().enumerate() {
+            let is_bound = row < self.old && marks.get(row).is_some_and(|mark| mark & SHIFTED != 0);
+            if *death != PendingDeath::Lives && !is_bound {
+                // As numbers: to a chip a copy of vectors that might overlap would be code of its own.
+                let ([x, y, z], [u, v, w]) = (x[row].to_array(), v[row].to_array());
+                self.position[row] = Vec3::new(x, y, z);
+                self.velocity[row] = Vec3::new(u, v, w);
+            }
+        }
     }
 
     /// Moves the rows, none of them newborn, in one pass.
@@ -93,7 +115,7 @@ fn first<T>(column: &mut [T], len: usize) -> &mut [T] {
     &mut column[..len]
 }
 
-/// Lets newborn rows fly from their births to the end of the step.
+/// Lets newborn rows fly from their births, or from the sub-step's beginning, to its end.
 fn fly(
     field: &mut Field<'_>,
     [position, velocity]: [&mut [Vec3]; 2],
@@ -105,7 +127,7 @@ fn fly(
     let a = &mut scratch[..newborn.len()];
     field.accelerations(now, position, velocity, a);
     for (row, &a) in newborn.zip(a.iter()) {
-        let flight = (end - born[row]).seconds();
+        let flight = (end - born[row]).min(end - now).seconds();
         position[row] = along(position[row], along(velocity[row], a, 0.5 * flight), flight);
         velocity[row] = along(velocity[row], a, flight);
     }

@@ -1,4 +1,4 @@
-//! The step: create, age, advance, snap, collide, reap. Each is a file.
+//! The step: create, age, in each sub-step advance and collide, snap, reap. Each is a file.
 
 mod advance;
 mod age;
@@ -67,21 +67,29 @@ impl Workspace<'_> {
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
-        let [now, dt] = span;
-        self.advance(scene, span, old, report, observer);
-        self.status.time = now + dt;
-        self.tell(Phase::Move, scene, observer);
-        if scene.springs.code().is_some_and(|code| self.snap(scene, code, report)) {
-            self.tell(Phase::Snap, scene, observer);
+        for substep in scene.parts(span) {
+            let [now, end] = substep.during;
+            self.advance(scene, substep, old, report, observer);
+            self.status.time = end;
+            self.tell(Phase::Move, scene, observer);
+            let springs = scene.springs.code().filter(|_| substep.is_last());
+            if springs.is_some_and(|code| self.snap(scene, code, report)) {
+                self.tell(Phase::Snap, scene, observer);
+            }
+            if scene.is_swept() {
+                let met = report.hits + report.contacts;
+                let (report, observer, dt) = (&mut *report, &mut *observer, end - now);
+                let passage = Passage { workspace: &mut *self, scene, old, now, dt, report: &mut *report, observer };
+                scene.meetings.follow(passage);
+                if report.hits + report.contacts > met {
+                    self.status.hint = Time::ZERO;
+                }
+            }
+            self.tell(Phase::Collide, scene, observer);
         }
-        if scene.is_swept() {
-            let (report, observer) = (&mut *report, &mut *observer);
-            scene.meetings.follow(Passage { workspace: &mut *self, scene, old, now, dt, report, observer });
-        }
-        self.tell(Phase::Collide, scene, observer);
         // The steps that were made of this one: sub-steps, and those that a method chose.
         let steps = u64::from(scene.pieces()).max(report.effort.accepted);
-        report.caps.stalled += self.judge(scene, span, old, dt.seconds() / steps as f32);
+        report.caps.stalled += self.judge(scene, span, old, span[1].seconds() / steps as f32);
     }
 
     /// Says how far the step has come.

@@ -1,7 +1,7 @@
-//! Sub-steps: the method moves everything, then constraints move it to where they are met.
+//! A sub-step: the method moves everything, then constraints move it to where they are met.
 
 use super::field::{Attributes, Field};
-use crate::constrain::{Bodies, ConstraintCode, Moment, Near, Share, Substep};
+use crate::constrain::{Bodies, ConstraintCode, DONE, Moment, Near, Share, Substep};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::force::Needs;
 use crate::index::{ListMemory, Listed};
@@ -13,16 +13,15 @@ use crate::scene::Scene;
 use crate::time::Time;
 use glam::Vec3;
 
-/// The particles that a step moves through its sub-steps, and the memory for it.
+/// The particles that a sub-step moves, and the memory for it.
 pub(crate) struct Moved<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) attributes: &'a Attributes<'a>,
     pub(super) needs: Needs,
     pub(super) position: &'a mut [Vec3],
     pub(super) velocity: &'a mut [Vec3],
-    /// Places and velocities at the step's beginning, and at the sub-step's; empty where nobody asks.
+    /// Places and velocities at the sub-step's beginning; empty where nobody asks.
     pub(super) start: [&'a [Vec3]; 2],
-    pub(super) before: [&'a mut [Vec3]; 2],
     /// A mark for each of what constraints do to it, and the words that they keep through the step.
     pub(super) marks: &'a mut [u32],
     pub(super) lasting: &'a mut [u32],
@@ -47,35 +46,22 @@ pub(super) struct Carried<'a> {
 }
 
 impl Moved<'_> {
-    /// Moves all from `now` on through a step of `dt`.
-    pub(super) fn go(&mut self, now: Time, dt: Time, hint: &mut Time) {
-        let (mut from, count) = (now, self.scene.pieces());
-        self.marks.fill(0);
-        for number in 0..count {
-            let to = now + dt.part(number + 1, count);
-            let substep = Substep { during: [from, to], number, count, step: dt };
-            self.remember();
-            let constraints = self.scene.constraints.code().filter(|_| !self.marks.is_empty());
-            if let Some(code) = constraints {
-                self.ask(code, Moment::Before, substep);
-            }
-            self.integrate(substep, hint);
-            if let Some(code) = constraints {
-                self.tell(Phase::Advance, to);
-                self.tell(Phase::Project, to);
-                self.ask(code, Moment::After, substep);
-                self.tell(Phase::Constrain, to);
-            }
-            from = to;
+    /// Moves all through a sub-step.
+    pub(super) fn go(&mut self, substep: Substep, hint: &mut Time) {
+        let ([_, to], constraints) = (substep.during, self.scene.constraints.code());
+        let constraints = constraints.filter(|_| !self.marks.is_empty());
+        // How far constraints keep particles off the scenery is told once a step.
+        let lasts = if substep.number == 0 { 0 } else { !DONE };
+        self.marks.iter_mut().for_each(|mark| *mark &= lasts);
+        if let Some(code) = constraints {
+            self.ask(code, Moment::Before, substep);
         }
-    }
-
-    /// Keeps where all are as a sub-step begins.
-    fn remember(&mut self) {
-        let [x, v] = &mut self.before;
-        if !x.is_empty() {
-            x.copy_from_slice(self.position);
-            v.copy_from_slice(self.velocity);
+        self.integrate(substep, hint);
+        if let Some(code) = constraints {
+            self.tell(Phase::Advance, to);
+            self.tell(Phase::Project, to);
+            self.ask(code, Moment::After, substep);
+            self.tell(Phase::Constrain, to);
         }
     }
 
@@ -98,11 +84,10 @@ impl Moved<'_> {
             effort: Effort::NONE,
             observer: self.observer,
         };
-        let start = if self.before[0].is_empty() { self.start } else { self.before.each_ref().map(|column| &**column) };
         let motion = Motion {
             position: self.position,
             velocity: self.velocity,
-            start,
+            start: self.start,
             work: Work { memory, stride: self.capacity, len },
             hint,
             effort: &mut self.report.effort,
@@ -130,7 +115,7 @@ impl Moved<'_> {
         let mut bodies = Bodies {
             position: self.position,
             velocity: self.velocity,
-            before: self.before.each_ref().map(|column| &**column),
+            before: self.start,
             radius: &lives.radius[..len],
             mass: &lives.mass[..len],
             inverse_mass: &inverse_mass[..len],

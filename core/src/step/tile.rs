@@ -4,6 +4,7 @@ use super::field::Attributes;
 use super::substeps::Carried;
 use super::{Status, TILED, Workspace};
 use crate::collide::each_by_itself;
+use crate::constrain::Substep;
 use crate::custom::CustomColumns;
 use crate::force::{Springs, State, Steady};
 use crate::index::{Listed, Neighbours};
@@ -32,7 +33,7 @@ const SHARE: usize = 4 * TILE;
 /// Rows in the middle of a step.
 pub(crate) struct Tile<'a> {
     pub(crate) scene: &'a Scene<'a>,
-    /// When the step begins, and how long it takes.
+    /// When the sub-step begins, and how long it takes.
     pub(crate) now: Time,
     pub(crate) dt: Time,
     /// The number of the first row.
@@ -72,6 +73,15 @@ impl Scene<'_> {
         Some((self.steady()?, drift))
     }
 
+    /// The sub-steps of a step that begins at an instant and takes some time.
+    pub(super) fn parts(&self, [now, dt]: [Time; 2]) -> impl Iterator<Item = Substep> + use<> {
+        let (mut from, count) = (now, self.pieces());
+        (0..count).map(move |number| {
+            let to = now + dt.part(number + 1, count);
+            Substep { during: [core::mem::replace(&mut from, to), to], number, count, step: dt }
+        })
+    }
+
     /// Tells whether a step takes each row through all its phases without a look at the others, so that rows can go a
     /// few at a time.
     pub(super) fn is_local(&self) -> bool {
@@ -82,14 +92,14 @@ impl Scene<'_> {
 }
 
 impl Workspace<'_> {
-    /// Moves all rows at once.
+    /// Moves all rows at once through a sub-step.
     ///
     /// Apart, as all that takes room on the stack, for which chips have little: paths are followed beyond it.
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
         scene: &Scene<'_>,
-        span: [Time; 2],
+        substep: Substep,
         old: usize,
         report: &mut Report,
         observer: &mut dyn Observer,
@@ -98,7 +108,8 @@ impl Workspace<'_> {
         let Status { mut hint, mut listed, changes, .. } = *self.status;
         let kept = core::mem::take(&mut self.memory.kept);
         let carried = Carried { kept: &mut *kept, hint: &mut hint, listed: &mut listed, changes };
-        self.tile(scene, span, old, rows, capacity).advance(carried, report, observer);
+        let span = [substep.during[0], Time::ZERO];
+        self.tile(scene, span, old, rows, capacity).advance(substep, carried, report, observer);
         self.memory.kept = kept;
         self.status.listed = listed;
         self.status.hint = hint;
@@ -193,11 +204,11 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Takes the rows through all phases, a few at a time; parts of a step take `h` \[s\]. Forces that are evaluated for one tile
+    /// Takes the rows through all phases, a few at a time; sub-steps take `h` \[s\]. Forces that are evaluated for one tile
     /// after the other are evaluated once.
     pub(super) fn pass(&mut self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
-        let (mut hint, mut listed) = (Time::ZERO, Listed::NONE);
-        let (is_swept, most, len) = (self.scene.is_swept(), self.scene.tile_rows(), self.position.len());
+        let (scene, span, len) = (self.scene, [self.now, self.dt], self.position.len());
+        let most = scene.tile_rows();
         let before = report.effort.evaluations;
         let mut evaluations = 0;
         // Memory that is in the cache goes from tile to tile.
@@ -205,16 +216,24 @@ impl<'a> Tile<'a> {
         for first in (0..len).step_by(most) {
             report.effort.evaluations = before;
             let mut tile = self.part(first..len.min(first + most), work);
-            let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
-            tile.advance(carried, report, observer);
-            evaluations = report.effort.evaluations - before;
-            if is_swept {
-                each_by_itself(&mut tile, report, observer);
+            for substep in scene.parts(span) {
+                tile.go(substep, report, observer);
             }
+            evaluations = report.effort.evaluations - before;
             report.caps.stalled += tile.judge(h);
         }
         self.work = work;
         report.effort.evaluations = before + evaluations;
+    }
+
+    /// Takes the rows through a sub-step.
+    fn go(&mut self, substep: Substep, report: &mut Report, observer: &mut dyn Observer) {
+        let (mut hint, mut listed) = (Time::ZERO, Listed::NONE);
+        let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
+        self.advance(substep, carried, report, observer);
+        if self.scene.is_swept() {
+            each_by_itself(self, report, observer);
+        }
     }
 
     /// The first so many rows, and the others, each with its memory.
@@ -266,7 +285,7 @@ impl<'a> Tile<'a> {
 }
 
 impl Tile<'_> {
-    /// When the step ends.
+    /// When the sub-step ends.
     pub(crate) fn end(&self) -> Time {
         self.now + self.dt
     }

@@ -3,6 +3,7 @@
 use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
+use super::bound::Blow;
 use crate::math::{length, max, min, sqrt};
 use core::ops::Range;
 use glam::{Mat3, Vec3};
@@ -83,6 +84,7 @@ pub(super) struct Body {
     /// The share of the normal speed it keeps in a hit, and the number of its material plus one.
     pub(super) elasticity: f32,
     pub(super) material: u32,
+    pub(super) blow: Blow,
 }
 
 /// The make of a body: its box, and the places of its particles in it, three words each.
@@ -207,11 +209,11 @@ impl Body {
 
     /// Takes in what has been done to a ball in the sub-step, as [`gather`](Self::gather) does.
     pub(super) fn gather_ball(&mut self, bodies: &Bodies<'_>, row: usize) {
-        self.before = [self.velocity, Vec3::ZERO];
-        self.pressed = 0;
+        self.begin();
         let (to, velocity) = (bodies.position[row], bodies.velocity[row]);
         if self.moves() && (to + velocity).is_finite() {
             self.velocity = velocity + Vec3::ZERO;
+            self.count_forces();
             self.drift = to - self.center - velocity * bodies.substep.seconds();
         }
     }
@@ -345,6 +347,7 @@ impl Body {
     pub(super) fn begin(&mut self) {
         self.before = [self.velocity, self.omega];
         self.pressed = 0;
+        self.blow.begun = self.vigour();
     }
 
     /// Takes in what has been done to its particles in a sub-step of so many seconds: what [`gather`](Self::gather) sums up.

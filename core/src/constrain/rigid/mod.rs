@@ -3,6 +3,7 @@
 mod balls;
 mod beside;
 mod body;
+mod bound;
 mod boxes;
 mod facets;
 mod fly;

@@ -29,6 +29,30 @@ impl Moving {
         self.0[2][2]
     }
 
+    pub(super) fn velocity(&self) -> Vec3 {
+        let [[_, x, y, z], ..] = self.0;
+        Vec3::new(x, y, z)
+    }
+
+    pub(super) fn spin(&self) -> Vec3 {
+        let [_, [l, m, n, _], _] = self.0;
+        Vec3::new(l, m, n)
+    }
+
+    pub(super) fn omega(&self) -> Vec3 {
+        let [_, [.., p], [q, r, ..]] = self.0;
+        Vec3::new(p, q, r)
+    }
+
+    /// Takes but a share of what has changed it since the body moved as it does.
+    pub(super) fn go_part(&mut self, body: &Body, share: f32) {
+        let part = |from: Vec3, to: Vec3| (from + (to - from) * share).to_array();
+        let ([x, y, z], [l, m, n]) = (part(body.velocity, self.velocity()), part(body.spin, self.spin()));
+        let [p, q, r] = part(body.omega, self.omega());
+        let [[inverse_mass, ..], _, [_, _, changed, last]] = self.0;
+        self.0 = [[inverse_mass, x, y, z], [l, m, n, p], [q, r, changed, last]];
+    }
+
     fn tell(&self, body: &mut Body) {
         let [[_, x, y, z], [l, m, n, p], [q, r, ..]] = self.0;
         (body.velocity, body.spin, body.omega) = (Vec3::new(x, y, z), Vec3::new(l, m, n), Vec3::new(p, q, r));

@@ -133,6 +133,12 @@ impl Pack {
         pressed
     }
 
+    /// Tells whether one of them is pressed by a surface that moves.
+    pub(super) fn is_carried(&self, lane: usize) -> bool {
+        let mut all = self.spots.iter().zip(&self.places).take(self.points[lane] as usize);
+        all.any(|(spots, places)| spots.pressed[lane] > 0.0 && places.surface.iter().any(|row| row[lane] != 0.0))
+    }
+
     /// Those of which a bit is set among `which`, on one side; `nobody` for the others.
     #[inline(always)]
     pub(super) fn side<'a>(&self, side: usize, bodies: &'a [Body], which: u32, nobody: &'a Body) -> [&'a Body; LANES] {

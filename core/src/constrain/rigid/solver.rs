@@ -1,6 +1,7 @@
 //! What bodies that touch do to each other in a sub-step: impulses that hold them apart, and friction.
 
 use super::body::Body;
+use super::bound::bound;
 use super::manifold::{Manifold, middle};
 use super::moving::{self, Moving};
 use super::order::{Manifolds, Order};
@@ -80,6 +81,9 @@ pub(super) fn part(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, order: &m
     let bounces = run_abreast(Stand { bodies, order, span });
     moving::take(order.moving, bodies);
     go_over(bodies, order, if bounces { BLOWS } else { PASSES });
+    if bounces {
+        bound(bodies, order, span);
+    }
     moving::tell(order.moving, bodies);
     run_abreast(Tell { manifolds, order });
 }

@@ -102,7 +102,7 @@ pub(super) struct Kept<'m> {
     pub(super) pushed: &'m mut [Vec3],
     /// How far off the scenery is, at the least \[m\].
     pub(super) clear: &'m mut [f32],
-    /// 1 if its way through the step may pass through the scenery, plus 2 if a face is listed near it in the sub-step.
+    /// 1 if its way through the sub-step may pass through the scenery, plus 2 if a face is listed near it in the sub-step.
     pub(super) followed: &'m mut [u32],
     pub(super) contacts: &'m mut [Contact],
     pub(super) surfaces: &'m mut [Surface],

@@ -15,7 +15,7 @@ const AHEAD: u32 = 8;
 const RECOVERY: f32 = 0.2;
 /// The share of half a thickness that a particle stays off, whatever happens.
 const LEAST: f32 = 0.1;
-/// A particle's way through the step may pass through the scenery.
+/// A particle's way through the sub-step may pass through the scenery.
 const LOST: u32 = 1;
 /// A face is listed near it in the sub-step.
 const LISTED: u32 = 2;
@@ -26,8 +26,8 @@ pub(super) fn gather(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &Work<'_>, bodi
     kept.counts.surfaces = 0;
     if bodies.substep.number == 0 {
         kept.clear.fill(0.0);
-        kept.followed.fill(0);
     }
+    kept.followed.fill(0);
     if bodies.colliders.is_empty() {
         return;
     }
@@ -123,8 +123,7 @@ fn meets(kept: &Kept<'_>, work: &Work<'_>, bodies: &Bodies<'_>, i: usize) -> boo
     bodies.colliders.first_hit(&way).is_some()
 }
 
-/// Notes whose ways through the sub-step may pass through the scenery, and leaves all others out of the sweep at the step's
-/// end: that goes straight from the step's beginning, through what they have gone around.
+/// Notes whose ways through the sub-step may pass through the scenery, and leaves all others out of the sweep at its end.
 pub(super) fn follow(kept: &mut Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'_>) {
     if bodies.colliders.is_empty() {
         return;
@@ -138,17 +137,14 @@ pub(super) fn follow(kept: &mut Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'
     }
     for i in 0..kept.rows.len() {
         let (row, listed) = (kept.rows[i], kept.followed[i] & LISTED != 0);
-        kept.followed[i] &= LOST;
-        if row == NOBODY || !(kept.weight[i] > 0.0) || kept.followed[i] != 0 {
+        if row == NOBODY || !(kept.weight[i] > 0.0) || kept.followed[i] & LOST != 0 {
             continue;
         }
         // What lists no faces may be in the way of others.
         let radius = bodies.radius[row as usize];
         let around =
             Aabb { min: low(work.from[i], work.now[i]) - radius, max: high(work.from[i], work.now[i]) + radius };
-        if !listed && bodies.colliders.may_touch(&around) && meets(kept, work, bodies, i) {
-            kept.followed[i] = LOST;
-        } else if bodies.substep.is_last() {
+        if listed || !bodies.colliders.may_touch(&around) || !meets(kept, work, bodies, i) {
             bodies.mark_followed(row as usize);
         }
     }

@@ -7,6 +7,9 @@ use glam::Vec3;
 /// The cosine of how far a triangle may turn: by 60°.
 const COSINE: f32 = 0.5;
 
+/// The share of its length at rest below which warp or weft is crushed: it then shears the more freely, the shorter it is.
+const CRUSHED: f32 = 0.25;
+
 /// What is kept of a triangle.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -75,7 +78,8 @@ impl Cell {
     }
 }
 
-/// The length of the warp or of the weft, or the sine of the angle of shear, and its slopes by warp and weft; none where it has none.
+/// The length of the warp or of the weft, or the sine of the angle of shear, and its slopes by warp and weft; none where it has none. What is
+/// crushed to less than a part of its length counts as that long in the sine, whose slopes would have no bound.
 fn strain(kind: usize, [u, v]: [Vec3; 2]) -> Option<(f32, [Vec3; 2])> {
     let [a, b] = [length(u), length(v)];
     let [along, across] = [u / a, v / b];
@@ -83,8 +87,11 @@ fn strain(kind: usize, [u, v]: [Vec3; 2]) -> Option<(f32, [Vec3; 2])> {
         0 => (a, [along, Vec3::ZERO]),
         1 => (b, [Vec3::ZERO, across]),
         _ => {
-            let sine = dot(along, across);
-            (sine, [(across - along * sine) / a, (along - across * sine) / b])
+            let [long, wide] = [max(a, CRUSHED), max(b, CRUSHED)];
+            let [p, q] = [u / long, v / wide];
+            let sine = dot(p, q);
+            let slope = |other: Vec3, own: Vec3, far: f32| if far > CRUSHED { other - own * sine } else { other };
+            (sine, [slope(q, p, a) / long, slope(p, q, b) / wide])
         }
     };
     slopes.iter().all(|slope| slope.is_finite()).then_some((value, slopes))

@@ -5,10 +5,9 @@ use crate::constrain::Bodies;
 use crate::math::{high, length, low};
 use crate::shape::{Aabb, Segment};
 
-/// Notes whose ways through the sub-step may pass through the scenery, and leaves all others out of the sweep at the step's end: that goes straight
-/// from the step's beginning, through what they have gone around.
-pub(in crate::constrain) fn follow(walls: &mut [Wall], bodies: &mut Bodies<'_>) {
-    for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY && wall.lost == 0) {
+/// Leaves out of the sweep at the sub-step's end whose ways do not pass through the scenery.
+pub(in crate::constrain) fn follow(walls: &[Wall], bodies: &mut Bodies<'_>) {
+    for wall in walls.iter().filter(|wall| wall.row != NOBODY) {
         let row = wall.row as usize;
         // Whoever is kept off by another constraint is followed by that.
         if bodies.clearance(row) > 0.0 {
@@ -23,9 +22,8 @@ pub(in crate::constrain) fn follow(walls: &mut [Wall], bodies: &mut Bodies<'_>) 
         let around = Aabb { min: low(from, to) - radius, max: high(from, to) + radius };
         // What touches sinks in by its radius at the most.
         let way = Segment { from, to, radius: 0.5 * radius, during: bodies.substep.during };
-        if !far(wall) && bodies.colliders.may_touch(&around) && bodies.colliders.first_hit(&way).is_some() {
-            wall.lost = 1;
-        } else if bodies.substep.is_last() {
+        let passes = || !far(wall) && bodies.colliders.may_touch(&around) && bodies.colliders.first_hit(&way).is_some();
+        if !passes() {
             bodies.mark_followed(row);
         }
     }

@@ -40,8 +40,6 @@ pub(super) struct Wall {
     state: u32,
     /// 1 if its particle has yet to be brought to where the wall wants it; while walls are gathered, its state in the sub-step before.
     fresh: u32,
-    /// 1 if its particle's way through the step may pass through the scenery.
-    lost: u32,
     normal: Vec3,
     /// How far along the normal the particle is to be from the origin at the sub-step's end \[m\], at the least.
     offset: f32,
@@ -76,7 +74,7 @@ pub(super) fn of(step: &mut [u32], count: usize) -> &mut [Wall] {
 pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>) {
     let Substep { number, count, .. } = bodies.substep;
     if number == 0 {
-        walls.iter_mut().for_each(|wall| (wall.clear, wall.lost) = (0.0, 0));
+        walls.iter_mut().for_each(|wall| wall.clear = 0.0);
     }
     let mut around = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
     for (wall, &particle) in walls.iter_mut().zip(particles) {

@@ -1,0 +1,137 @@
+//! Elastic blows of rigid bodies: at however many points they happen at once, none gives energy.
+
+use pointmass::constrain::{HullBuf, RigidBodies, RigidBox};
+use pointmass::force::Friction;
+use pointmass::shape::{Collider, Cuboid, HeightField, MeshBuf, Plane, Sphere};
+use pointmass::{ContactMaterial, Force, Gravity, Heap, Measures, Method, Particle, Scene, System, Time, Vec3};
+use pointmass_tests::{Random, often, started};
+
+const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
+
+/// A body of 0.2 kg and some 0.2 m: a box of any sides, or a stone; with its particles, as they are thrown.
+fn body(
+    random: &mut Random,
+    hull: Option<&HullBuf>,
+    at: Vec3,
+    first: u32,
+    elasticity: f32,
+) -> (RigidBox, [Particle; 8]) {
+    let half = Vec3::new(random.between(0.05, 0.15), random.between(0.05, 0.15), random.between(0.05, 0.15));
+    let turn = [random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0), 0.5];
+    let of = hull.map_or(RigidBox::new(half, at, first), |hull| RigidBox::with_hull(&hull.lend(), 0, at, first));
+    let of = RigidBox { turn, ..of };
+    let (velocity, spin) = (random.direction() * random.between(1.0, 4.0), random.vector(6.0));
+    let whole = Particle { velocity, mass: 0.2, drag: 0.0, elasticity, material: Some(0), ..Particle::REST };
+    let solid = hull.map_or_else(|| of.solid(whole), |hull| of.solid_hull(&hull.lend(), whole));
+    (of, solid.map(|p| Particle { velocity: velocity + spin.cross(p.position - of.center), ..p }))
+}
+
+fn energy(system: &System<Heap>, scene: &Scene<'_>) -> f64 {
+    Measures::of(system, scene).energy.total()
+}
+
+/// The most by which energy rises above that of the beginning, and what is left in the end, as shares of that.
+fn course(scene: &Scene<'_>, seconds: u32) -> [f64; 2] {
+    let mut system = started(scene, scene.start.len(), 1);
+    let first = energy(&system, scene);
+    let (mut last, mut above) = (first, 0f64);
+    for frame in 1..=u64::from(60 * seconds) {
+        system.step_to(scene, Time::frame(frame, 60));
+        last = energy(&system, scene);
+        above = above.max((last - first) / first.abs());
+    }
+    [above, last / first]
+}
+
+/// A room 1.8 m wide, with one thing of every kind in it.
+fn rooms(heights: &[f32]) -> Vec<(&'static str, Box<dyn Collider + '_>)> {
+    let room = Cuboid { min: Vec3::splat(-0.9), max: Vec3::splat(0.9) };
+    let corners = [[-0.4, -0.9, -0.4], [0.4, -0.9, -0.4], [0.0, -0.9, 0.5], [0.0, -0.4, 0.0]].map(Vec3::from_array);
+    let hill = MeshBuf::new(corners.to_vec(), vec![[0, 3, 1], [1, 3, 2], [2, 3, 0]]).expect("a hill is a mesh");
+    let field = HeightField::new(Vec3::new(-1.2, -0.9, -1.2), 0.3, 9, heights).expect("nine by nine");
+    let slope = Plane { point: Vec3::new(0.0, -0.7, 0.0), normal: Vec3::new(0.4, 1.0, 0.2).normalize() };
+    let ball = Sphere { center: Vec3::new(0.0, -0.9, 0.0), radius: 0.3 };
+    let block = Cuboid { min: Vec3::new(-0.25, -0.9, -0.25), max: Vec3::new(0.25, -0.6, 0.25) };
+    vec![
+        ("room", Box::new(room)),
+        ("slope", Box::new((room, slope))),
+        ("ball", Box::new((room, ball))),
+        ("block", Box::new((room, block))),
+        ("hill", Box::new((room, hill))),
+        ("heights", Box::new((room, field))),
+    ]
+}
+
+#[test]
+fn no_blow_gives_energy() {
+    let mut random = Random::new(91);
+    let points: Vec<_> = (0..30).map(|_| random.direction() * random.between(0.09, 0.12)).collect();
+    let stone = [HullBuf::of(&points).expect("a stone")];
+    let heights: Vec<f32> = (0..81).map(|_| random.between(0.0, 0.25)).collect();
+    let mut failures = vec![];
+    for round in 0..often(600) {
+        let rooms = rooms(&heights);
+        let (at, room) = &rooms[round % rooms.len()];
+        let elasticity = [0.5, 0.9, 1.0][random.word() as usize % 3];
+        let substeps = 1 + (random.word() % 20) as u32;
+        let count = 1 + (random.word() % 4) as u32;
+        let mu = if random.unit() < 0.5 { 0.0 } else { random.unit() };
+        let method = Method::ALL[random.word() as usize % Method::ALL.len()];
+        let (mut start, mut bodies) = (vec![], vec![]);
+        for i in 0..count {
+            let hull = (random.unit() < 0.4).then_some(&stone[0]);
+            let place = Vec3::new(0.4 * i as f32 - 0.6, 0.3, random.between(-0.3, 0.3));
+            let (of, solid) = body(&mut random, hull, place, 8 * i, elasticity);
+            start.extend(solid);
+            bodies.push(of);
+        }
+        let bodies = RigidBodies { boxes: bodies, hulls: &stone, balls: 0 };
+        let friction = Some(Friction { static_: mu, kinetic: mu });
+        let materials = [ContactMaterial { elasticity: Some(elasticity), friction }];
+        let falls = random.unit() < 0.5;
+        let scene = Scene {
+            start: &start,
+            forces: if falls { &DOWN as &dyn Force } else { &() },
+            colliders: &**room,
+            materials: &materials,
+            constraints: &bodies,
+            integrator: method.integrator(),
+            substeps,
+            ..Scene::EMPTY
+        };
+        let [above, _] = course(&scene, 4);
+        if !(above < 0.01) {
+            let what = format!("{at}, {count} bodies, e {elasticity}, mu {mu}");
+            failures.push(format!("{what}, {substeps} sub-steps, {}, falls {falls}: {above}", method.name()));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// Boxes that hit a wall with one corner, smoothly.
+#[test]
+fn a_corner_gives_back_all_of_it() {
+    let mut random = Random::new(92);
+    let wall = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for _ in 0..often(600) {
+        let at = Vec3::Y * random.between(0.35, 0.5);
+        let (of, solid) = body(&mut random, None, at, 0, 1.0);
+        let down = Vec3::NEG_Y * random.between(1.0, 3.0);
+        let middle = solid.iter().map(|p| p.velocity).sum::<Vec3>() / 8.0;
+        let spin = random.between(0.1, 0.3);
+        let start = solid.map(|p| Particle { velocity: (p.velocity - middle) * spin + down, ..p });
+        let bodies = RigidBodies::boxes([of]);
+        let materials = [ContactMaterial { elasticity: Some(1.0), friction: None }];
+        let substeps = 1 + (random.word() % 20) as u32;
+        let scene = Scene {
+            start: &start,
+            colliders: &wall,
+            materials: &materials,
+            constraints: &bodies,
+            substeps,
+            ..Scene::EMPTY
+        };
+        let [above, left] = course(&scene, 1);
+        assert!(left > 0.9 && above < 0.01, "{substeps} sub-steps: {left} {above}");
+    }
+}
