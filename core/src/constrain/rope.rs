@@ -73,9 +73,14 @@ const ROUNDS: u32 = 8;
 const COSINE: f32 = 0.5;
 /// Paces of a sub-step in which links turn farther, at the most.
 const PACES: f32 = 64.0;
+/// Rounds of the last pace, at the most.
+const LAST_ROUNDS: u32 = 24;
+/// The square of how far a particle may swing across its links in a sub-step, in radians of its oscillation: half of what is stable.
+const STIFF: f32 = 2.0;
 /// How far a link may be off after all rounds, a share of its length: what is left is rounding.
 const NEARLY: f32 = 1e-4;
-/// What is added to the diagonal, a share of it: chains that are stretched straight between two fixed ends leave the system singular.
+/// What a pivot is at the least for each link, a share of the first end's weight: chains that are stretched straight between two fixed ends
+/// leave the system singular.
 const RIDGE: f32 = 1e-6;
 /// Words that each particle takes.
 const WORDS: usize = 14;
@@ -200,9 +205,43 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         let mut met = true;
         for pace in 1..=paces as u32 {
             links.pace(bodies, pace as f32 / paces, 1.0 / paces);
-            met = self.meet(bodies, links, soft, Way::Now(if pace as f32 == paces { ROUNDS } else { 3 }));
+            met = self.meet(bodies, links, soft, Way::Now(if pace as f32 == paces { LAST_ROUNDS } else { 3 }));
         }
         bodies.report.effort.capped += u64::from(!met);
+    }
+
+    /// Tells whether a particle is so light for what pulls at it that it would swing across its links faster than the sub-step shows. Along the
+    /// directions of before it would be driven on and on by what it should only follow.
+    fn is_stiff(&self, bodies: &Bodies<'_>, links: &Links<'_>) -> bool {
+        let pull = |link: usize| links.pull[link].abs() / self.length(link);
+        (0..links.count).any(|link| {
+            let [one, other] = links.ends(link);
+            let next = if other < links.count { pull(other) } else { 0.0 };
+            // Past the end of an open chain nothing pulls back.
+            let weight = bodies.inverse_mass.get(links.rows[other] as usize).copied().unwrap_or(0.0);
+            one != other && next > 0.0 && weight * (pull(link) + next) > STIFF
+        })
+    }
+
+    /// Takes out of the places what lengths show of the method's own way beyond where velocities lead. Soft links answer forces by what they
+    /// do in a whole sub-step, as a method of first order shows it; what hangs still would show speed with others.
+    fn catch_up(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
+        let h = bodies.substep.seconds();
+        links.reach = 0.0;
+        for link in 0..links.count {
+            let Some(line) = links.line(bodies, link) else { continue };
+            let [p, q] = line.rows;
+            let [ahead, behind] = [p, q].map(|row| bodies.lead(row, h));
+            let weight = bodies.inverse_mass[p] + bodies.inverse_mass[q];
+            links.way[link] = line.normal;
+            let slack = self.tether && line.distance <= self.length(link);
+            links.ask(link, slack, line.normal, (ahead - behind).dot(line.normal), weight);
+        }
+        if links.reach > 0.0 && links.solve(bodies, 0.0) {
+            links.act(bodies, &mut |bodies, row, by| bodies.position[row] += by);
+        }
+        links.pull.fill(0.0);
+        links.normal.fill(Vec3::ZERO);
     }
 
     /// The rounding of a link's length, from where its ends are.
@@ -228,8 +267,11 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         }
         let mut links = self.links_of(bodies, share);
         let soft = self.compliance / (h * h);
+        if soft > 0.0 {
+            self.catch_up(bodies, &mut links);
+        }
         links.aim_at(bodies);
-        if !self.meet(bodies, &mut links, soft, Way::First) {
+        if !self.meet(bodies, &mut links, soft, Way::First) || self.is_stiff(bodies, &links) {
             let before = links.vigour(bodies);
             self.walk(bodies, &mut links, soft);
             links.calm(bodies, before);
@@ -393,11 +435,40 @@ impl<'m> Links<'m> {
         (p + q) * self.normal[link].dot(self.way[link]) * (1.0 + RIDGE) + soft
     }
 
+    /// What elimination of the links before leaves of a link's λ in itself, through its first end alone.
+    fn remains(&self, bodies: &Bodies<'_>, link: usize, left: f32, pivot: f32) -> f32 {
+        if self.normal[link] == Vec3::ZERO {
+            return 0.0;
+        }
+        let (own, weight) = (self.normal[link].dot(self.way[link]), bodies.inverse_mass[self.rows[link] as usize]);
+        match link.checked_sub(1).filter(|&i| self.normal[i] != Vec3::ZERO) {
+            // (n₁·w₁)(n₀·w₀) − (n₁·w₀)(n₀·w₁) = (n₁ × n₀)·(w₁ × w₀).
+            Some(i) => {
+                let bend = self.normal[link].cross(self.normal[i]).dot(self.way[link].cross(self.way[i]));
+                weight * ((own * left + weight * bend) / pivot)
+            }
+            None => weight * own,
+        }
+    }
+
+    /// The pivot of a link of whose own such a rest is left.
+    fn pivot(&self, bodies: &Bodies<'_>, link: usize, left: f32) -> f32 {
+        if self.normal[link] == Vec3::ZERO {
+            return 1.0;
+        }
+        let [first, second] = self.ends(link).map(|end| bodies.inverse_mass[self.rows[end] as usize]);
+        let own = self.normal[link].dot(self.way[link]);
+        let least = if second > 0.0 { 0.5 * second } else { RIDGE * self.count as f32 * first };
+        max(own * second + left, least * own)
+    }
+
     /// Solves for the changes of λ: elimination from the first link to the last, and back. Tells whether there is a solution.
     fn solve(&mut self, bodies: &Bodies<'_>, soft: f32) -> bool {
         let closed = self.count == self.rows.len();
         let open = self.count - usize::from(closed);
         let last = self.count - 1;
+        // What is left of a link's own pivot without its second end: no difference of what is nearly the same, which would lose a heavy bob.
+        let mut left = 0.0;
         for link in 0..open {
             let lower = if link > 0 { -self.coupling(bodies, link, link - 1, link) } else { 0.0 };
             let upper = if link + 1 < open { -self.coupling(bodies, link, link + 1, link + 1) } else { 0.0 };
@@ -408,12 +479,12 @@ impl<'m> Links<'m> {
             if closed && link + 1 == open {
                 border -= self.coupling(bodies, link, last, last);
             }
-            let [before, above, beside] = match link.checked_sub(1) {
-                Some(i) => [self.change[i], self.upper[i], self.border[i]],
-                None => [0.0; 3],
+            let [before, beside, pivot] = match link.checked_sub(1) {
+                Some(i) => [self.change[i], self.border[i], self.pivot(bodies, i, left)],
+                None => [0.0, 0.0, 1.0],
             };
-            let diagonal = self.diagonal(bodies, link, soft);
-            let pivot = max(diagonal - lower * above, diagonal * RIDGE);
+            left = soft + self.remains(bodies, link, left, pivot);
+            let pivot = self.pivot(bodies, link, left);
             self.upper[link] = upper / pivot;
             self.change[link] = (self.change[link] - lower * before) / pivot;
             self.border[link] = (border - lower * beside) / pivot;

@@ -23,9 +23,7 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
         *drift = bodies.position[row] - x[row] - (v[row] + bodies.velocity[row]) * (0.5 * h);
     }
-    let driven = bodies.velocity.iter().zip(v).map(|(now, before)| *now - *before);
-    // A particle that is no longer finite must not reach the others before it is taken out.
-    kept.lists.driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
+    kept.lists.driven = driven(bodies);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces {
         pass.move_from_face(face);
@@ -33,6 +31,21 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     for pair in pairs {
         pass.move_apart(pair);
     }
+}
+
+/// By how much forces from outside have changed the velocity of all together \[m/s\]: the mean by mass, in which what two do to each other is
+/// nothing. Else contacts would take that for weight, and share it out otherwise than momentum asks for.
+fn driven(bodies: &Bodies<'_>) -> Vec3 {
+    let (mut sum, mut whole) = (Vec3::ZERO, 0.0);
+    for (row, &mass) in bodies.mass.iter().enumerate() {
+        let change = (bodies.velocity[row] - bodies.before[1][row]) * mass;
+        // A particle that is no longer finite must not reach the others before it is taken out.
+        if bodies.inverse_mass[row] > 0.0 && change.is_finite() {
+            (sum, whole) = (sum + change, whole + mass);
+        }
+    }
+    let mean = sum / whole;
+    if mean.is_finite() { mean } else { Vec3::ZERO }
 }
 
 /// Answers the approach of what touches by the elasticity and the slip by friction.
