@@ -141,6 +141,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     /// Brings all links to their lengths, in a few rounds. Tells whether they have come near.
     fn meet(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>, soft: f32, along: Way) -> bool {
         let h = bodies.substep.seconds();
+        let longest = self.lengths.as_ref().iter().copied().fold(0.0, max);
         let mut worst = 0.0;
         for round in 0..along.rounds() {
             let mut met = true;
@@ -177,6 +178,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             if met {
                 return true;
             }
+            if let Way::Now(_) = along {
+                // Straight across a taut link it takes the root of that to close a gap.
+                links.reach += sqrt(0.5 * links.reach * longest);
+            }
             if !links.solve(bodies, soft) {
                 return false;
             }
@@ -207,7 +212,49 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             links.pace(bodies, pace as f32 / paces, 1.0 / paces);
             met = self.meet(bodies, links, soft, Way::Now(if pace as f32 == paces { LAST_ROUNDS } else { 3 }));
         }
-        bodies.report.effort.capped += u64::from(!met);
+        if !met {
+            bodies.report.effort.capped += 1;
+            self.hold(bodies, links);
+        }
+    }
+
+    /// Gives a rope that has not come near its lengths the form back that it had when the sub-step began, if that was nearer: in the middle of all
+    /// of its masses if nobody is fixed, which keeps its momentum.
+    fn hold(&self, bodies: &mut Bodies<'_>, links: &Links<'_>) {
+        let (mut sum, mut mass, mut is_free) = (Vec3::ZERO, 0.0, true);
+        let rows = links.rows.iter().map(|&row| row as usize).zip(links.aim.iter());
+        for (row, &aim) in rows.filter(|&(row, _)| row < bodies.len()) {
+            is_free &= bodies.inverse_mass[row] > 0.0;
+            sum += (aim - bodies.before[0][row]) * bodies.mass[row];
+            mass += bodies.mass[row];
+        }
+        let way = if is_free && mass > 0.0 { sum / mass } else { Vec3::ZERO };
+        let place = |bodies: &Bodies<'_>, end: usize| {
+            let row = links.rows[end] as usize;
+            let moves = bodies.inverse_mass[row] > 0.0;
+            if moves { bodies.before[0][row] + way } else { links.aim[end] }
+        };
+        let (mut now, mut then) = (0.0, 0.0);
+        for link in 0..links.count {
+            let Some(line) = links.line(bodies, link) else { continue };
+            let [one, other] = links.ends(link).map(|end| place(bodies, end));
+            let rest = self.length(link);
+            let off = |distance: f32| {
+                let off = (distance - rest) / (distance + rest);
+                if self.tether { max(off, 0.0) } else { off.abs() }
+            };
+            now = max(now, off(line.distance));
+            then = max(then, off(length(between(bodies.near.room(), other, one))));
+        }
+        if !(then < now) {
+            return;
+        }
+        for (particle, row) in links.rows.iter().map(|&row| row as usize).enumerate() {
+            if row < bodies.len() {
+                let to = place(bodies, particle);
+                put(bodies, row, to - bodies.position[row], to);
+            }
+        }
     }
 
     /// Tells whether a particle is so light for what pulls at it that it would swing across its links faster than the sub-step shows. Along the

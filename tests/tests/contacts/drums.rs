@@ -1,10 +1,10 @@
 //! Balls that meet by impulse stay in the rooms that hold them, however these move.
 
 use pointmass::force::Friction;
-use pointmass::index::{IndexChoice, Structure};
+use pointmass::index::Structure;
 use pointmass::motion::{Key, Motion, Script};
 use pointmass::shape::{Aabb, Collider, Moving};
-use pointmass::{ContactMaterial, Gravity, Mat3, Meetings, Method, Particle, Scene, Time, Vec3};
+use pointmass::{ContactMaterial, Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::solids::{Solid, extent, inside, solids};
 use pointmass_tests::{Random, f64s, often, started};
 
@@ -51,66 +51,54 @@ fn balls(solid: &Solid, random: &mut Random, count: usize, radius: f32, elastici
     start
 }
 
+/// The farthest that a ball is outside of a room in a second, a share of the coordinates there; infinite if one is lost.
+fn farthest_out(solid: &Solid, motion: &Motion<Vec<Key>>, random: &mut Random) -> (f64, String) {
+    let mut any = |count: usize| random.word() as usize % count;
+    let (elasticity, mu) = ([0.0, 0.5, 0.9, 1.0][any(4)], [0.0, 0.3, 1.0][any(3)]);
+    let (rate, substeps) = [(240, 1), (144, 1), (60, 1), (60, 4), (15, 1), (24, 2)][any(6)];
+    let (method, index) = (Method::ALL[any(Method::ALL.len())], Structure::ALL[any(Structure::ALL.len())]);
+    let count = [1, 2, 10, 50][any(4)];
+    let (size, middle) = (extent(solid), solid.middle);
+    let radius = (solid.depth)(f64s(middle)) as f32 * random.between(0.05, 0.25);
+    let start = balls(solid, random, count, radius, elasticity);
+    let friction = (mu > 0.0).then_some(Friction { static_: mu, kinetic: mu });
+    let materials = [ContactMaterial { elasticity: Some(elasticity), friction }];
+    let gravity = Gravity { acceleration: random.direction() * (9.8 * size) };
+    let bounds = Aabb { min: middle - 2.0 * size, max: middle + 2.0 * size };
+    let room = Moving::new(&*solid.collider, &bounds, motion.clone());
+    let parts = Scene { start: &start, forces: &gravity, colliders: &room, materials: &materials, ..Scene::EMPTY };
+    let integrator = method.integrator();
+    let scene = Scene { meetings: Meetings::IMPULSE, integrator, substeps, index: &index, ..parts };
+    let mut system = started(&scene, start.len(), 1);
+    let mut farthest = 0.0f64;
+    for frame in 1..=rate {
+        system.step_to(&scene, Time::frame(frame, rate));
+        let now = motion.frame(system.time());
+        for &x in system.particles().position {
+            let out = f64::from(radius) - (solid.depth)(f64s(now.local(x)));
+            farthest = if out <= farthest { farthest } else { out };
+        }
+    }
+    let lost = if system.len() == start.len() { 0.0 } else { f64::INFINITY };
+    let share = farthest / f64::from(solid.size + 3.0 * size) + lost;
+    (share, format!("e {elasticity}, mu {mu}, {rate}/{substeps}, {method}, {index:?}, {} balls", start.len()))
+}
+
 #[test]
 fn drums_keep_their_balls() {
     let mut random = Random::new(51);
     let mut failures = vec![];
-    let mut worst_all = 0.0f64;
     for solid in solids() {
-        let size = extent(&solid);
-        let depth = (solid.depth)(f64s(solid.middle));
-        for (name, motion) in motions(solid.middle, size) {
-            for round in 0..often(80) {
-                let elasticity = [0.0, 0.5, 0.9, 1.0][random.word() as usize % 4];
-                let mu = [0.0, 0.3, 1.0][random.word() as usize % 3];
-                let (rate, substeps) =
-                    [(240, 1), (144, 1), (60, 1), (60, 4), (15, 1), (24, 2)][random.word() as usize % 6];
-                let method = Method::ALL[random.word() as usize % Method::ALL.len()];
-                let index = [Structure::Grid, Structure::ALL[random.word() as usize % Structure::ALL.len()]][round % 2];
-                let count = [1, 2, 10, 50][random.word() as usize % 4];
-                let radius = depth as f32 * random.between(0.05, 0.25);
-                let start = balls(&solid, &mut random, count, radius, elasticity);
-                let friction = (mu > 0.0).then_some(Friction { static_: mu, kinetic: mu });
-                let materials = [ContactMaterial { elasticity: Some(elasticity), friction }];
-                let turn = Mat3::from_axis_angle(random.direction(), random.between(0.0, 6.0));
-                let gravity = Gravity { acceleration: turn * Vec3::Y * (9.8 * size) };
-                let bounds = Aabb { min: solid.middle - 2.0 * size, max: solid.middle + 2.0 * size };
-                let room = Moving::new(&*solid.collider, &bounds, motion.clone());
-                let scene = Scene {
-                    start: &start,
-                    forces: &gravity,
-                    colliders: &room,
-                    materials: &materials,
-                    meetings: Meetings::IMPULSE,
-                    integrator: method.integrator(),
-                    substeps,
-                    index: &index as &dyn IndexChoice,
-                    ..Scene::EMPTY
-                };
-                let mut system = started(&scene, start.len(), 1);
-                let mut worst = (0.0f64, 0);
-                for frame in 1..=rate {
-                    system.step_to(&scene, Time::frame(u64::from(frame), rate));
-                    let frame_now = motion.frame(system.time());
-                    for &x in system.particles().position {
-                        let out = f64::from(radius) - (solid.depth)(f64s(frame_now.local(x)));
-                        if !(out <= worst.0) {
-                            worst = (out, frame);
-                        }
-                    }
-                }
-                let far = f64::from(solid.size + 3.0 * size);
-                let share = worst.0 / far;
-                worst_all = worst_all.max(share);
-                if !(share < 1e-5) || system.len() != start.len() {
-                    failures.push(format!(
-                        "{} {name}: e {elasticity} mu {mu} rate {rate}/{substeps} {method} {index:?} n {} r {radius}: {share:e} of {far} at {} caps {:?}",
-                        solid.name, start.len(), worst.1, system.totals().caps
-                    ));
+        // Rounding takes more of a room that is nearly flat, whose faces are turned from single precision.
+        let bound = if solid.name.starts_with("flattened") { 5e-5 } else { 2e-6 };
+        for (name, motion) in motions(solid.middle, extent(&solid)) {
+            for _ in 0..often(40) {
+                let (share, how) = farthest_out(&solid, &motion, &mut random);
+                if !(share < bound) {
+                    failures.push(format!("{} {name}: {how}: {share:e}", solid.name));
                 }
             }
         }
     }
-    println!("worst {worst_all:e}");
     assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
 }
