@@ -3,7 +3,7 @@
 use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::motion::{Key, Motion, Script};
-use pointmass::shape::{Aabb, Collider, Moving};
+use pointmass::shape::{Aabb, Moving};
 use pointmass::{ContactMaterial, Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::solids::{Solid, extent, inside, solids};
 use pointmass_tests::{Random, f64s, often, started};
@@ -71,7 +71,7 @@ fn farthest_out(solid: &Solid, motion: &Motion<Vec<Key>>, random: &mut Random) -
     let scene = Scene { meetings: Meetings::IMPULSE, integrator, substeps, index: &index, ..parts };
     let mut system = started(&scene, start.len(), 1);
     let mut farthest = 0.0f64;
-    for frame in 1..=rate {
+    for frame in 1..=u64::from(rate) {
         system.step_to(&scene, Time::frame(frame, rate));
         let now = motion.frame(system.time());
         for &x in system.particles().position {
