@@ -4,7 +4,7 @@ use super::images::first_touch_of_images;
 use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
 use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
-use super::sweep::Sweep;
+use super::sweep::{Meeting, Sweep};
 use crate::index::{Room, SpatialIndex, between as shortest};
 use crate::material::of_two;
 use crate::math::{high, largest, length, max};
@@ -215,23 +215,45 @@ impl EventDriven<'_> {
 
     fn meet_wall(&mut self, row: usize, until: u32) {
         let path = self.path(row);
-        let mut sweep = self.sweep(row);
-        let meeting = sweep.first_meeting(&path);
-        let event = *self.events.event(row);
-        let (turns, since) = (event.turns + 1, until);
-        let Some(meeting) = meeting else {
+        if let Some(meeting) = self.sweep(row).first_meeting(&path) {
+            self.answer_wall(row, until, &path, &meeting);
+        } else {
             // A collider that answers otherwise the second time: it must not be asked for ever.
-            self.events.set(row, NextEvent { turns, ..event });
-            return;
-        };
+            let event = *self.events.event(row);
+            self.events.set(row, NextEvent { turns: event.turns + 1, ..event });
+        }
+    }
+
+    /// Tells whether a wall is in the way of a particle to where it is to meet another, and lets it meet that first. Chords may have missed it on
+    /// the whole path, within their error; who was stopped by another just there would be beyond it for good.
+    fn is_stopped(&mut self, row: usize, place: Vec3, now: Time) -> bool {
+        let path = self.path(row);
+        let [start, end] = path.during;
+        let share = if end > start { (now - start).seconds() / (end - start).seconds() } else { 0.0 };
+        let part = Path { x1: place, v1: path.velocity(share), during: [start, now], ..path };
+        let hull = part.hull(self.radius[row]);
+        let near_walls = self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull);
+        if !near_walls || self.events.event(row).waits != 0 || self.inverse_mass[row] == 0.0 {
+            return false;
+        }
+        let Some(meeting) = self.sweep(row).first_meeting(&part) else { return false };
+        let until = self.units(part.instant(meeting.time));
+        self.answer_wall(row, until, &path, &meeting.within(share));
+        true
+    }
+
+    /// Lets a particle on its present path meet a wall.
+    fn answer_wall(&mut self, row: usize, since: u32, path: &Path, meeting: &Meeting) {
+        let event = *self.events.event(row);
+        let turns = event.turns + 1;
         if meeting.is_sink {
-            let end = meeting.arrival(&path);
+            let end = meeting.arrival(path);
             (self.ends[0][row], self.ends[1][row], self.pending_death[row]) =
                 (end.position, end.velocity, end.pending_death);
             self.events.set(row, NextEvent { turns, partner: GONE, ..event });
             return;
         }
-        let onward = self.sweep(row).rebound(&path, &meeting);
+        let onward = self.sweep(row).rebound(path, meeting);
         self.events.set(row, NextEvent { turns, since, partner: NOBODY, ..event });
         self.go(row, &onward);
     }
@@ -249,6 +271,9 @@ impl EventDriven<'_> {
                 path.x0 = whole.at(at);
             }
         }
+        if self.is_stopped(row, paths[0].x0, now) || self.is_stopped(other, paths[1].x0, now) {
+            return;
+        }
         let waits = rows.map(|row| self.events.event(row).waits != 0);
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
         let offset = paths[0].x0 - paths[1].x0 - self.image(at, &whole);
@@ -256,7 +281,7 @@ impl EventDriven<'_> {
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
         let overlap = self.radius[row] + self.radius[other] - length(offset);
         if overlap > self.slack(row, other) {
-            self.set_apart(rows, &mut paths, normal * overlap);
+            self.set_apart(rows, waits, &mut paths, normal * overlap);
         }
         let material = rows.map(|row| self.material[row].checked_sub(1));
         let mixed = of_two(self.scene.materials, rows.map(|row| self.elasticity[row]), material);
@@ -288,13 +313,19 @@ impl EventDriven<'_> {
                 surface: Vec3::ZERO,
                 time: now,
             });
-            self.events.set(row, NextEvent { turns: event.turns + 1, since: until, ..event });
+            let turns = event.turns + 1;
+            if waits[i] {
+                // It stays or goes with a wall as before: only since it began to wait does its place say where that takes it.
+                self.events.set(row, NextEvent { turns, ..event });
+                (self.starts[1][row], self.ends[1][row]) = (after[i], after[i]);
+                continue;
+            }
+            self.events.set(row, NextEvent { turns, since: until, ..event });
             let Path { x0, during, .. } = paths[i];
             let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during };
             self.go(row, &onward);
             // Where one waits and does not get away, the other cannot go on either.
-            let blocked = waits[1 - i] && after[i].dot(normal) < 0.0;
-            if waits[i] || blocked {
+            if waits[1 - i] && after[i].dot(normal) < 0.0 {
                 self.wait(row);
             }
         }
@@ -302,8 +333,11 @@ impl EventDriven<'_> {
 
     /// Moves two that overlap apart, each by its share or one for both, where no wall is in the way: what walls have set
     /// off may have been put a little into its neighbour, and would creep on and on.
-    fn set_apart(&self, rows: [usize; 2], paths: &mut [Path; 2], way: Vec3) {
-        let [a, b] = rows.map(|row| self.inverse_mass[row]);
+    fn set_apart(&self, rows: [usize; 2], waits: [bool; 2], paths: &mut [Path; 2], way: Vec3) {
+        let [a, b] = [0, 1].map(|i| if waits[i] { 0.0 } else { self.inverse_mass[rows[i]] });
+        if a + b == 0.0 {
+            return;
+        }
         let free = |i: usize, change: Vec3| {
             let Path { x0, during: [now, _], .. } = paths[i];
             let radius = self.radius[rows[i]];

@@ -70,6 +70,11 @@ impl Meeting {
     pub(super) fn arrival(&self, path: &Path) -> Arrival {
         Arrival { position: self.place, velocity: path.velocity(self.time), pending_death: PendingDeath::Sink }
     }
+
+    /// The same on a path of which that where it was found is the first `share`.
+    pub(super) fn within(self, share: f32) -> Self {
+        Self { time: self.time * share, begun: self.begun * share, ..self }
+    }
 }
 
 impl<'a, C: Collider + ?Sized> Sweep<'a, C> {

@@ -132,6 +132,15 @@ impl Bodies<'_> {
         self.marks[row] |= SHIFTED;
     }
 
+    /// How far the method has brought a particle beyond where its velocity leads in a sub-step of `h` \[m\].
+    pub(crate) fn lead(&self, row: usize, h: f32) -> Vec3 {
+        if self.inverse_mass[row] > 0.0 {
+            self.position[row] - self.before[0][row] - self.velocity[row] * h
+        } else {
+            Vec3::ZERO
+        }
+    }
+
     /// Says that the particle in a row is kept so far off the scenery \[m\], to rounding, by a constraint that follows its way past that.
     pub(crate) fn keep_off(&mut self, row: usize, distance: f32) {
         if distance > 0.0 && distance < f32::INFINITY {

@@ -78,11 +78,21 @@ impl Constraint for Distance {
     fn project(&self, bodies: &mut Bodies<'_>, _: &mut Share<'_>) {
         let h = bodies.substep.seconds();
         let Some(([a, b], normal, distance)) = self.line(bodies) else { return };
-        let stretch = distance - self.length;
+        let mut stretch = distance - self.length;
         if !(h > 0.0) || self.tether && stretch <= 0.0 {
             return;
         }
         let [wa, wb] = [a, b].map(|row| bodies.inverse_mass[row]);
+        if self.compliance > 0.0 {
+            // What hangs still would show speed where the method has not brought it to where its velocity leads.
+            let lead = (bodies.lead(a, h) - bodies.lead(b, h)).dot(normal);
+            let share = lead / (wa + wb);
+            if share.is_finite() {
+                bodies.position[a] -= normal * (share * wa);
+                bodies.position[b] += normal * (share * wb);
+                stretch -= lead;
+            }
+        }
         let pull = stretch / (wa + wb + self.compliance / (h * h));
         if pull.is_finite() {
             bodies.shift(a, normal * (-pull * wa));

@@ -3,8 +3,10 @@
 use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::shape::{Cuboid, Plane};
-use pointmass::{ContactMaterial, Contacts, Gravity, Particle, Scene, Time, Vec3};
-use pointmass_tests::{G, Random, f64s, run, started};
+use pointmass::{
+    ContactMaterial, Contacts, Gravity, Measures, Method, MutualGravity, Particle, Rope, Scene, Spring, Time, Vec3,
+};
+use pointmass_tests::{G, Random, f64s, gap, run, started};
 
 /// Hard balls in as many sub-steps as a heap asks for.
 const HEAP: Scene<'_> = Scene { substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
@@ -27,6 +29,61 @@ fn a_soft_floor_gives_way_by_the_same_however_many_sub_steps() {
             let sunk = 0.1 - f64s(system.particles().position[0])[1];
             assert!((sunk / want - 1.0).abs() < 0.03, "{substeps} sub-steps: {sunk}, {want}");
         }
+    }
+}
+
+/// The weight above each contact of a stack decides how far it gives way, by every method.
+#[test]
+fn soft_balls_sink_by_their_weight_whatever_the_method() {
+    for (mass, compliance) in [(1.0f32, 1e-3f32), (0.2, 2e-3), (0.1, 1e-3), (10.0, 1e-5)] {
+        let sinks = f64::from(mass) * G * f64::from(compliance);
+        for method in Method::ALL {
+            for (count, substeps, most) in [(1, 1, 0.01), (1, 5, 0.01), (1, 12, 0.01), (3, 5, 0.1), (3, 12, 0.02)] {
+                let start: Vec<_> = (0..count).map(|i| Particle { mass, ..ball(0.1 + 0.2 * i as f32) }).collect();
+                let (forces, constraints) = (&Gravity::EARTH, &Contacts { compliance });
+                let parts = Scene { start: &start, forces, colliders: &GROUND, constraints, ..Scene::EMPTY };
+                let scene = Scene { substeps, integrator: method.integrator(), ..parts };
+                let mut system = started(&scene, count, 1);
+                run(&mut system, &scene, 1.0 / 60.0, 1200);
+                let mut below = -0.1;
+                for (row, x) in system.particles().position.iter().enumerate() {
+                    let share = (0.2 - (f64s(*x)[1] - below)) / (sinks * (count - row) as f64);
+                    assert!((share - 1.0).abs() < most, "{method}, {mass} kg, {substeps}: {row} of {count} by {share}");
+                    below = f64s(*x)[1];
+                }
+                let speed = system.particles().velocity.iter().fold(0.0f32, |most, v| most.max(v.length()));
+                assert!(speed < 2e-4, "{method}, {mass} kg, {substeps} sub-steps: {speed} m/s");
+            }
+        }
+    }
+}
+
+/// Balls of many masses that draw each other together, with a rope and springs among them: what two do to each other is no weight.
+#[test]
+fn momentum_stays_where_forces_are_their_own() {
+    let mut random = Random::new(62);
+    for (substeps, method) in [(12, Method::Verlet), (1, Method::Rk4), (5, Method::Symplectic)] {
+        let start: Vec<Particle> = (0..27)
+            .map(|i| Particle {
+                position: Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32) * 0.22 + random.vector(0.01),
+                velocity: random.vector(0.5),
+                mass: random.magnitude(0.01, 1.0),
+                ..ball(0.0)
+            })
+            .collect();
+        let forces = MutualGravity { constant: 1.0, softening: 0.05, ..MutualGravity::NEWTON };
+        let rope = Rope::rigid([0u32, 1, 2, 5, 4], [0.22]);
+        let constraints = (&rope, Contacts::HARD);
+        let springs = [Spring::new([9, 26], 0.3, 50.0).damped(0.1)];
+        let parts = Scene { start: &start, forces: &forces, springs: &springs, ..Scene::EMPTY };
+        let scene = Scene { constraints: &constraints, substeps, integrator: method.integrator(), ..parts };
+        let mut system = started(&scene, start.len(), 1);
+        let before = Measures::of(&system, &scene).momentum;
+        run(&mut system, &scene, 1.0 / 60.0, 120);
+        let lost = gap(before, Measures::of(&system, &scene).momentum);
+        let mass: f32 = start.iter().map(|p| p.mass).sum();
+        assert!(system.totals().contacts > 100);
+        assert!(lost < 2e-5 * f64::from(mass), "{method} in {substeps}: {lost} of {mass} kg");
     }
 }
 

@@ -23,9 +23,7 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
         *drift = bodies.position[row] - x[row] - (v[row] + bodies.velocity[row]) * (0.5 * h);
     }
-    let driven = bodies.velocity.iter().zip(v).map(|(now, before)| *now - *before);
-    // A particle that is no longer finite must not reach the others before it is taken out.
-    kept.lists.driven = driven.filter(|change| change.is_finite()).sum::<Vec3>() / max(len as f32, 1.0);
+    kept.lists.driven = driven(bodies);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces {
         pass.move_from_face(face);
@@ -33,6 +31,21 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     for pair in pairs {
         pass.move_apart(pair);
     }
+}
+
+/// By how much forces from outside have changed the velocity of all together \[m/s\]: the mean by mass, in which what two do to each other is
+/// nothing. Else contacts would take that for weight, and share it out otherwise than momentum asks for.
+fn driven(bodies: &Bodies<'_>) -> Vec3 {
+    let (mut sum, mut whole) = (Vec3::ZERO, 0.0);
+    for (row, &mass) in bodies.mass.iter().enumerate() {
+        let change = (bodies.velocity[row] - bodies.before[1][row]) * mass;
+        // A particle that is no longer finite must not reach the others before it is taken out.
+        if bodies.inverse_mass[row] > 0.0 && change.is_finite() {
+            (sum, whole) = (sum + change, whole + mass);
+        }
+    }
+    let mean = sum / whole;
+    if mean.is_finite() { mean } else { Vec3::ZERO }
 }
 
 /// Answers the approach of what touches by the elasticity and the slip by friction.
@@ -196,9 +209,10 @@ impl<'a> Pass<'a> {
             return;
         }
         let calm = (self.pushed[a] - self.pushed[b]).dot(normal).abs() <= self.calm;
-        pair.lean = if calm { SUPPORT * normal.dot(self.up) } else { 0.0 };
+        pair.lean = if calm { SUPPORT * self.hardness(a, b) * normal.dot(self.up) } else { 0.0 };
         let (wa, wb) = self.weights(pair);
-        let moved = max(overlap, 0.0) * ((wa + wb) / (wa + wb + self.softness));
+        let lag = self.catch_up(a, normal) - self.catch_up(b, normal);
+        let moved = max(overlap + lag, 0.0) * ((wa + wb) / (wa + wb + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
         pair.touch.begin(felt);
         let share = normal * (1.0 / (wa + wb));
@@ -206,6 +220,9 @@ impl<'a> Pass<'a> {
         self.position[b] -= share * (moved * wb);
         self.velocity[a] += share * (felt * wa);
         self.velocity[b] -= share * (felt * wb);
+        if self.softness > 0.0 {
+            return;
+        }
         let drift = share * (self.drift[a] - self.drift[b]).dot(normal);
         self.drift[a] -= drift * wa;
         self.drift[b] += drift * wb;
@@ -220,12 +237,36 @@ impl<'a> Pass<'a> {
         if !(overlap > 0.0 || overlap > -self.slack(row, radius) && closing > 0.0) {
             return;
         }
-        let moved = max(overlap, 0.0) * (w / (w + self.softness));
+        let lag = self.catch_up(row, face.normal);
+        let moved = max(overlap + lag, 0.0) * (w / (w + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
         face.touch.begin(felt);
         self.position[row] += face.normal * moved;
         self.velocity[row] += face.normal * felt;
-        self.drift[row] = aside(self.drift[row], face.normal);
+        if self.softness == 0.0 {
+            self.drift[row] = aside(self.drift[row], face.normal);
+        }
+    }
+
+    /// Moves a particle along the normal of a soft contact to where its velocity leads, and tells how far behind it was \[m\]. A contact answers forces
+    /// by what they do in a whole sub-step to its overlap, as a method of first order shows it: others show half of that or none, and what
+    /// rests would sink in by as much too little.
+    fn catch_up(&mut self, row: usize, normal: Vec3) -> f32 {
+        if !(self.softness > 0.0 && self.inverse_mass[row] > 0.0) {
+            return 0.0;
+        }
+        let ahead = (self.v0[row] - self.pushed[row]) * (0.5 * self.h);
+        let lag = (self.drift[row] + ahead).dot(normal);
+        self.position[row] -= normal * lag;
+        self.drift[row] -= normal * lag;
+        lag
+    }
+
+    /// How much two that touch count as hard: those that give way by far more than gravity moves them in a sub-step need no support.
+    fn hardness(&self, a: usize, b: usize) -> f32 {
+        let whole = self.inverse_mass[a] + self.inverse_mass[b];
+        let square = (whole / (whole + self.softness)) * (whole / (whole + self.softness));
+        square * square
     }
 
     /// Puts pairs in their order from the ground up, the same whatever order they were found in.
