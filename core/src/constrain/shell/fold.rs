@@ -207,7 +207,8 @@ impl Fold {
     pub(super) fn excess(&self, bend: &Bend) -> f32 {
         let [m, n] = self.slope;
         let (a, b) = (dot(m, m), dot(n, n));
-        let sharp = max(1.0 - dot(m, n) / sqrt(a * b), 0.0);
+        // Of a fold that hardly acts rounding leaves no angle.
+        let sharp = min(max(1.0 - dot(m, n) / sqrt(a * b), 0.0), 2.0);
         let narrow = max(a / bend.steep(0), b / bend.steep(1)) - 1.0;
         TOGETHER * (sharp + max(narrow, 0.0))
     }

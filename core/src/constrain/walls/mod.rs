@@ -45,9 +45,10 @@ pub(super) struct Wall {
     normal: Vec3,
     /// How far along the normal the particle is to be from the origin at the sub-step's end \[m\], at the least.
     offset: f32,
-    /// How the surface moves \[m/s\], how far off it is as the sub-step begins, and by how much rounding may be wrong about that \[m\].
+    /// How the surface moves \[m/s\], how far the particle can go in the sub-step without meeting any that is near, and by how much rounding may be
+    /// wrong about that \[m\].
     velocity: Vec3,
-    distance: f32,
+    free: f32,
     slack: f32,
     /// The speed away from it before the material answers \[m/s\].
     approach: f32,
@@ -172,10 +173,12 @@ impl Wall {
         let radius = bodies.radius[row];
         let was = core::mem::take(&mut self.fresh);
         let mut most = f32::NEG_INFINITY;
+        let mut free = self.clear;
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
             let Contact { point, normal, distance, velocity, material, slack } = *contact;
             // What moves is asked again in every sub-step.
             self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
+            free = min(distance - length(velocity) * h, free);
             if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() {
                 return;
             }
@@ -199,7 +202,6 @@ impl Wall {
                 normal,
                 offset,
                 velocity,
-                distance,
                 slack,
                 approach,
                 held,
@@ -210,6 +212,7 @@ impl Wall {
                 ..*self
             };
         });
+        self.free = free;
         if self.state == NEAR {
             self.touch.begin(0.0);
             // Who was pressed in the sub-step before most often still is.
