@@ -12,7 +12,7 @@ pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, m
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};
 use crate::material::on_surface;
-use crate::math::{high, length, low, max, min};
+use crate::math::{dot, high, largest, length, low, max, min, sqrt};
 use crate::memory::take;
 use crate::shape::{Aabb, Contact};
 use glam::{Mat3, Vec3};
@@ -24,6 +24,8 @@ const RECOVERY: f32 = 0.2;
 /// So many times what rounding may be wrong by has to be missing for a wall to press: what presses less is left to whoever settles velocities, as
 /// rounding would be a large part of it.
 const NOTICED: f32 = 4.0;
+/// The share of the largest coordinate by which rounding may put a particle off what it touches.
+const ROUNDING: f32 = 4e-6;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 /// The state of a wall and its particle: none is near, it is left alone, it slides along, it goes as the wall does.
@@ -80,6 +82,7 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
         walls.iter_mut().for_each(|wall| (wall.clear, wall.lost) = (0.0, 0));
     }
     let mut around = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+    let (mut size, mut farthest) = (0.0, 0.0);
     for (wall, &particle) in walls.iter_mut().zip(particles) {
         wall.fresh = if number == 0 { NONE } else { wall.state };
         wall.state = NONE;
@@ -88,11 +91,16 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
         if wall.row != NOBODY {
             let row = wall.row as usize;
             let (from, to) = (bodies.before[0][row], bodies.position[row]);
-            let near = reach(bodies, row);
-            around.min = low(low(from, to) - near, around.min);
-            around.max = high(high(from, to) + near, around.max);
+            around.min = low(low(from, to), around.min);
+            around.max = high(high(from, to), around.max);
+            size = max(max(bodies.clearance(row), bodies.radius[row]), size);
+            farthest = max(dot(to - from, to - from), farthest);
         }
     }
+    // Whoever stands may be pushed as fast as any of what hangs on him goes.
+    let pushed = sqrt(farthest) + ROUNDING * max(largest(around.min), largest(around.max));
+    let all = reach(size, pushed);
+    around = Aabb { min: around.min - all, max: around.max + all };
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around) {
         walls.iter_mut().for_each(|wall| wall.clear = 0.0);
         return;
@@ -100,7 +108,8 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
     let ahead = (count - number).min(AHEAD) as f32;
     for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
         let row = wall.row as usize;
-        let (way, near) = (length(bodies.position[row] - bodies.before[0][row]), reach(bodies, row));
+        let way = length(bodies.position[row] - bodies.before[0][row]);
+        let near = reach(max(bodies.clearance(row), bodies.radius[row]), pushed);
         if wall.clear < near {
             wall.clear = near + ahead * way;
             wall.look(near, bodies);
@@ -122,10 +131,9 @@ fn find(particle: u32, bodies: &Bodies<'_>) -> u32 {
     bodies.row_of_start(particle).filter(sound).map_or(NOBODY, |row| row as u32)
 }
 
-/// How near a face has to be to be met in the sub-step: what hangs on a particle may take it as far again.
-fn reach(bodies: &Bodies<'_>, row: usize) -> f32 {
-    let way = length(bodies.position[row] - bodies.before[0][row]);
-    2.0 * (max(bodies.clearance(row), bodies.radius[row]) + way)
+/// How near a face has to be to be met in the sub-step by a particle of such a size that is pushed so far: what hangs on it may take it as far again.
+fn reach(size: f32, pushed: f32) -> f32 {
+    2.0 * (size + pushed)
 }
 
 impl Wall {
