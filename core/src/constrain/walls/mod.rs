@@ -26,6 +26,8 @@ const RECOVERY: f32 = 0.2;
 const NOTICED: f32 = 4.0;
 /// The share of the largest coordinate by which rounding may put a particle off what it touches.
 const ROUNDING: f32 = 4e-6;
+/// The cosine of the least angle between two faces that a particle is kept from at once.
+const ALIKE: f32 = 0.9;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 /// The state of a wall and its particle: none is near, it is left alone, it slides along, it goes as the wall does.
@@ -63,6 +65,9 @@ pub(super) struct Wall {
     stuck: Vec3,
     touch: Touch,
     grip: Grip,
+    /// The normal of another face that is near, or zero, and how far along that the particle is to be from the origin, at the least \[m\].
+    beside: Vec3,
+    beyond: f32,
 }
 
 /// The words of the wall of a particle.
@@ -182,6 +187,8 @@ impl Wall {
         let was = core::mem::take(&mut self.fresh);
         let mut most = f32::NEG_INFINITY;
         let mut free = self.clear;
+        (self.beside, self.beyond) = (Vec3::ZERO, 0.0);
+        let mut second = f32::NEG_INFINITY;
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
             let Contact { point, normal, distance, velocity, material, slack } = *contact;
             // What moves is asked again in every sub-step.
@@ -194,8 +201,17 @@ impl Wall {
             let gap = if distance < keep { distance + RECOVERY * (keep - distance) } else { keep };
             let offset = normal.dot(point + velocity * h) + gap;
             let missing = offset - normal.dot(to);
+            let another = |other: Vec3| normal.dot(other) < ALIKE;
             if !(missing > most) {
+                if missing > second && another(self.normal) {
+                    (second, self.beside, self.beyond) = (missing, normal, offset);
+                }
                 return;
+            }
+            if most > f32::NEG_INFINITY && another(self.normal) {
+                (second, self.beside, self.beyond) = (most, self.normal, self.offset);
+            } else if !another(self.beside) {
+                (second, self.beside, self.beyond) = (f32::NEG_INFINITY, Vec3::ZERO, 0.0);
             }
             most = missing;
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
