@@ -221,20 +221,7 @@ impl Wall {
             let share = if far > 0.0 && missing > 0.0 { far / (far + missing) } else { 0.0 };
             let stuck = there + (to - there) * share;
             let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
-            *self = Self {
-                state,
-                normal,
-                offset,
-                velocity,
-                slack,
-                approach,
-                held,
-                brake,
-                stuck,
-                touch,
-                grip,
-                ..*self
-            };
+            *self = Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, grip, ..*self };
         });
         self.free = free;
         if self.state == NEAR {
