@@ -114,7 +114,9 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
     for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
         let row = wall.row as usize;
         let way = length(bodies.position[row] - bodies.before[0][row]);
-        let near = reach(max(bodies.clearance(row), bodies.radius[row]), pushed);
+        // Whoever another constraint keeps off is followed by that, from farther away.
+        let kept = bodies.clearance(row);
+        let near = reach(max(kept, bodies.radius[row]), if kept > 0.0 { way } else { pushed });
         if wall.clear < near {
             wall.clear = near + ahead * way;
             wall.look(near, bodies);
