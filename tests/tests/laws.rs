@@ -43,6 +43,7 @@ mod scripted;
 #[path = "sheet_contacts/main.rs"]
 mod sheet_contacts;
 mod sheets;
+mod shell_crushes;
 mod shell_meshes;
 mod sleep;
 mod springs;

@@ -2,12 +2,15 @@
 
 use super::membrane::frame;
 use super::solver::Step;
-use crate::math::{angle, dot, length, max, sqrt};
+use crate::math::{angle, dot, length, max, min, sqrt};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 /// The folds of a triangle.
 const TOGETHER: f32 = 3.0;
+/// So many times as fast as at rest, for each metre that a corner goes, an angle may change that acts in full: that of a triangle that collapses changes
+/// without bound, and the less it can tell, the less it acts.
+const STEEPER: f32 = 8.0;
 
 /// A fold at rest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -20,6 +23,8 @@ pub(super) struct Bend {
     pub(super) curvature: [[f32; 3]; 2],
     /// The point of the edge beside the far corner of each, as a share of it.
     pub(super) foot: [f32; 2],
+    /// The square of how fast the angle may change for each metre that a corner goes \[1/m²\]: where it is faster, the fold acts less.
+    pub(super) most: f32,
 }
 
 /// A fold in a sub-step: how its angle changes as its corners move.
@@ -41,11 +46,28 @@ fn normals([e, f, g]: [Vec3; 3]) -> [Vec3; 2] {
     [e.cross(f), g.cross(e)]
 }
 
+/// How the angle changes for each metre that each far corner goes from the edge.
+#[cfg_attr(not(target_os = "none"), inline(always))]
+fn slopes(ways: [Vec3; 3]) -> [Vec3; 2] {
+    let edge = length(ways[0]);
+    normals(ways).map(|normal| normal * (edge / dot(normal, normal)))
+}
+
 /// The angle of a fold, above zero where the far corners are on the side of the normals.
 #[cfg_attr(not(target_os = "none"), inline(always))]
 fn fold_angle(ways: [Vec3; 3]) -> f32 {
     let [m, n] = normals(ways).map(|normal| normal / length(normal));
     angle(dot(m, n), dot(n.cross(m), ways[0]) / length(ways[0]))
+}
+
+/// The square of how fast an angle changes for each metre that the corner goes for which that is fastest.
+#[cfg_attr(not(target_os = "none"), inline(always))]
+fn fastest(slope: [Vec3; 2], foot: [f32; 2]) -> f32 {
+    let [a, b] = [0, 1].map(|side| {
+        let (x, y) = (foot[side], 1.0 - foot[side]);
+        dot(slope[side], slope[side]) * max(max(x * x, y * y), 1.0)
+    });
+    max(a, b)
 }
 
 /// An angle, by the nearer way round.
@@ -64,7 +86,7 @@ impl Bend {
     /// The fold with these ways from the first corner; `signs` say on which side each triangle's normal is.
     pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2]) -> Self {
         let [e, f, g] = ways;
-        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], foot: [0.0; 2] };
+        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], foot: [0.0; 2], most: 0.0 };
         let side = |far: Vec3, sign: f32| {
             let up = far - e * (dot(far, e) / dot(e, e));
             let height = length(up);
@@ -74,9 +96,10 @@ impl Bend {
         };
         let (Some(first), Some(second)) = (side(f, signs[0]), side(g, signs[1])) else { return none };
         let foot = [f, g].map(|far| dot(far, e) / dot(e, e));
-        let this = Self { angle: fold_angle(ways), curvature: [first, second], foot };
-        let sound =
-            this.angle.is_finite() && this.curvature.iter().flatten().chain(&this.foot).all(|part| part.is_finite());
+        let most = STEEPER * STEEPER * fastest(slopes(ways), foot);
+        let this = Self { angle: fold_angle(ways), curvature: [first, second], foot, most };
+        let numbers = this.curvature.iter().flatten().chain(&this.foot);
+        let sound = this.angle.is_finite() && most.is_finite() && numbers.copied().all(f32::is_finite);
         if sound { this } else { none }
     }
 
@@ -116,13 +139,14 @@ impl Fold {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn of(bend: &Bend, step: &Step, [now, along, before]: [[Vec3; 3]; 3]) -> (Self, f32) {
         let [e, f, g] = along;
-        let edge = length(e);
-        let slope = normals(along).map(|normal| normal * (edge / dot(normal, normal)));
+        let (edge, slope) = (length(e), slopes(along));
         let foot = [dot(f, e), dot(g, e)].map(|along| along / (edge * edge));
-        let this = Self { slope, foot, moment: 0.0 };
+        let acting = min(bend.most / fastest(slope, foot), 1.0);
+        let this = Self { slope: slope.map(|slope| slope * acting), foot, moment: 0.0 };
         let angle = fold_angle(now);
         let open = turn(angle - bend.angle);
         let open = if step.lag > 0.0 { step.felt(open, open - turn(angle - fold_angle(before))) } else { open };
+        let open = open * acting;
         let acts = bend.curvature[0] != [0.0; 3];
         if acts && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
     }
@@ -183,7 +207,8 @@ impl Fold {
     pub(super) fn excess(&self, bend: &Bend) -> f32 {
         let [m, n] = self.slope;
         let (a, b) = (dot(m, m), dot(n, n));
-        let sharp = max(1.0 - dot(m, n) / sqrt(a * b), 0.0);
+        // Of a fold that hardly acts rounding leaves no angle.
+        let sharp = min(max(1.0 - dot(m, n) / sqrt(a * b), 0.0), 2.0);
         let narrow = max(a / bend.steep(0), b / bend.steep(1)) - 1.0;
         TOGETHER * (sharp + max(narrow, 0.0))
     }

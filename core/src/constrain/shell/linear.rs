@@ -164,7 +164,7 @@ impl Linearise<'_, '_, '_> {
         };
         let Some(ways) = self.ways_of(like, &all_corners(hinges)) else { return false };
         let Some(folds) = eight_mut(self.solver.folds, first) else { return false };
-        let rest = column!(like, bends, |bend| bend.angle);
+        let rest = [column!(like, bends, |bend| bend.angle), column!(like, bends, |bend| bend.most)];
         let (slope, foot, open, sound) = fold_of(like, &self.solver.step, rest, ways);
         let (m, n) = (slope[0].rows(), slope[1].rows());
         let (x, y, open) = (foot[0].to_array(), foot[1].to_array(), open.to_array());
@@ -254,7 +254,7 @@ fn stress<F: Eight>(params: &ShellParams, scale: F, [warp, weft, shear]: [F; 3])
 fn fold_of<F: Eight>(
     like: F,
     step: &Step,
-    rest: F,
+    [rest, most]: [F; 2],
     [now, along, before]: [[Vectors<F>; 4]; 3],
 ) -> ([Vectors<F>; 2], [F; 2], F, u32) {
     let [_, e, f, g] = along;
@@ -262,11 +262,17 @@ fn fold_of<F: Eight>(
     let [m, n] = normals(along);
     let slope = [m * (edge / m.dot(m)), n * (edge / n.dot(n))];
     let foot = [f.dot(e) / (edge * edge), g.dot(e) / (edge * edge)];
+    let acting = lanes::min(most / fastest(like, slope, foot), like.all(1.0));
+    let slope = slope.map(
+        #[inline(always)]
+        |slope| slope * acting,
+    );
     let angle = fold_angle(like, now);
     let mut open = turn(like, angle - rest);
     if step.lag > 0.0 {
         open = felt(like, step, open, open - turn(like, angle - fold_angle(like, before)));
     }
+    open = open * acting;
     let most = like.all(f32::INFINITY);
     let feet = foot[0].abs().simd_lt(most) & foot[1].abs().simd_lt(most);
     let sound = is_finite(slope[0]) & is_finite(slope[1]) & feet & open.abs().simd_lt(most);
@@ -289,6 +295,19 @@ fn fold_angle<F: Eight>(like: F, ways: [Vectors<F>; 4]) -> F {
     let [m, n] = normals(ways);
     let (m, n) = (m / m.length(), n / n.length());
     angle(like, m.dot(n), n.cross(m).dot(ways[1]) / ways[1].length())
+}
+
+#[inline(always)]
+fn fastest<F: Eight>(like: F, slope: [Vectors<F>; 2], foot: [F; 2]) -> F {
+    let one = like.all(1.0);
+    let [a, b] = [0, 1].map(
+        #[inline(always)]
+        |side| {
+            let (x, y) = (foot[side], one - foot[side]);
+            slope[side].dot(slope[side]) * lanes::max(lanes::max(x * x, y * y), one)
+        },
+    );
+    lanes::max(a, b)
 }
 
 #[inline(always)]

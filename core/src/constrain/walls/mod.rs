@@ -12,7 +12,7 @@ pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, m
 use super::contacts::{Grip, Touch};
 use super::{Bodies, Substep};
 use crate::material::on_surface;
-use crate::math::{high, length, low, max, min};
+use crate::math::{dot, high, largest, length, low, max, min, sqrt};
 use crate::memory::take;
 use crate::shape::{Aabb, Contact};
 use glam::{Mat3, Vec3};
@@ -24,6 +24,10 @@ const RECOVERY: f32 = 0.2;
 /// So many times what rounding may be wrong by has to be missing for a wall to press: what presses less is left to whoever settles velocities, as
 /// rounding would be a large part of it.
 const NOTICED: f32 = 4.0;
+/// The share of the largest coordinate by which rounding may put a particle off what it touches.
+const ROUNDING: f32 = 4e-6;
+/// The cosine of the least angle between two faces that a particle is kept from at once.
+const ALIKE: f32 = 0.9;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 /// The state of a wall and its particle: none is near, it is left alone, it slides along, it goes as the wall does.
@@ -43,9 +47,10 @@ pub(super) struct Wall {
     normal: Vec3,
     /// How far along the normal the particle is to be from the origin at the sub-step's end \[m\], at the least.
     offset: f32,
-    /// How the surface moves \[m/s\], how far off it is as the sub-step begins, and by how much rounding may be wrong about that \[m\].
+    /// How the surface moves \[m/s\], how far the particle can go in the sub-step without meeting any that is near, and by how much rounding may be
+    /// wrong about that \[m\].
     velocity: Vec3,
-    distance: f32,
+    free: f32,
     slack: f32,
     /// The speed away from it before the material answers \[m/s\].
     approach: f32,
@@ -58,6 +63,9 @@ pub(super) struct Wall {
     stuck: Vec3,
     touch: Touch,
     grip: Grip,
+    /// The normal of another face that is near, or zero, and how far along that the particle is to be from the origin, at the least \[m\].
+    beside: Vec3,
+    beyond: f32,
 }
 
 /// The words of the wall of a particle.
@@ -77,6 +85,7 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
         walls.iter_mut().for_each(|wall| wall.clear = 0.0);
     }
     let mut around = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+    let (mut size, mut farthest) = (0.0, 0.0);
     for (wall, &particle) in walls.iter_mut().zip(particles) {
         wall.fresh = if number == 0 { NONE } else { wall.state };
         wall.state = NONE;
@@ -85,11 +94,16 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
         if wall.row != NOBODY {
             let row = wall.row as usize;
             let (from, to) = (bodies.before[0][row], bodies.position[row]);
-            let near = reach(bodies, row);
-            around.min = low(low(from, to) - near, around.min);
-            around.max = high(high(from, to) + near, around.max);
+            around.min = low(low(from, to), around.min);
+            around.max = high(high(from, to), around.max);
+            size = max(max(bodies.clearance(row), bodies.radius[row]), size);
+            farthest = max(dot(to - from, to - from), farthest);
         }
     }
+    // Whoever stands may be pushed as fast as any of what hangs on him goes.
+    let pushed = sqrt(farthest) + ROUNDING * max(largest(around.min), largest(around.max));
+    let all = reach(size, pushed);
+    around = Aabb { min: around.min - all, max: around.max + all };
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around) {
         walls.iter_mut().for_each(|wall| wall.clear = 0.0);
         return;
@@ -97,7 +111,10 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
     let ahead = (count - number).min(AHEAD) as f32;
     for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
         let row = wall.row as usize;
-        let (way, near) = (length(bodies.position[row] - bodies.before[0][row]), reach(bodies, row));
+        let way = length(bodies.position[row] - bodies.before[0][row]);
+        // Whoever another constraint keeps off is followed by that, from farther away.
+        let kept = bodies.clearance(row);
+        let near = reach(max(kept, bodies.radius[row]), if kept > 0.0 { way } else { pushed });
         if wall.clear < near {
             wall.clear = near + ahead * way;
             wall.look(near, bodies);
@@ -119,10 +136,9 @@ fn find(particle: u32, bodies: &Bodies<'_>) -> u32 {
     bodies.row_of_start(particle).filter(sound).map_or(NOBODY, |row| row as u32)
 }
 
-/// How near a face has to be to be met in the sub-step: what hangs on a particle may take it as far again.
-fn reach(bodies: &Bodies<'_>, row: usize) -> f32 {
-    let way = length(bodies.position[row] - bodies.before[0][row]);
-    2.0 * (max(bodies.clearance(row), bodies.radius[row]) + way)
+/// How near a face has to be to be met in the sub-step by a particle of such a size that is pushed so far: what hangs on it may take it as far again.
+fn reach(size: f32, pushed: f32) -> f32 {
+    2.0 * (size + pushed)
 }
 
 impl Wall {
@@ -170,10 +186,14 @@ impl Wall {
         let radius = bodies.radius[row];
         let was = core::mem::take(&mut self.fresh);
         let mut most = f32::NEG_INFINITY;
+        let mut free = self.clear;
+        (self.beside, self.beyond) = (Vec3::ZERO, 0.0);
+        let mut second = f32::NEG_INFINITY;
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
             let Contact { point, normal, distance, velocity, material, slack } = *contact;
             // What moves is asked again in every sub-step.
             self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
+            free = min(distance - length(velocity) * h, free);
             if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() {
                 return;
             }
@@ -181,8 +201,17 @@ impl Wall {
             let gap = if distance < keep { distance + RECOVERY * (keep - distance) } else { keep };
             let offset = normal.dot(point + velocity * h) + gap;
             let missing = offset - normal.dot(to);
+            let another = |other: Vec3| normal.dot(other) < ALIKE;
             if !(missing > most) {
+                if missing > second && another(self.normal) {
+                    (second, self.beside, self.beyond) = (missing, normal, offset);
+                }
                 return;
+            }
+            if most > f32::NEG_INFINITY && another(self.normal) {
+                (second, self.beside, self.beyond) = (most, self.normal, self.offset);
+            } else if !another(self.beside) {
+                (second, self.beside, self.beyond) = (f32::NEG_INFINITY, Vec3::ZERO, 0.0);
             }
             most = missing;
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
@@ -192,22 +221,9 @@ impl Wall {
             let share = if far > 0.0 && missing > 0.0 { far / (far + missing) } else { 0.0 };
             let stuck = there + (to - there) * share;
             let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
-            *self = Self {
-                state,
-                normal,
-                offset,
-                velocity,
-                distance,
-                slack,
-                approach,
-                held,
-                brake,
-                stuck,
-                touch,
-                grip,
-                ..*self
-            };
+            *self = Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, grip, ..*self };
         });
+        self.free = free;
         if self.state == NEAR {
             self.touch.begin(0.0);
             // Who was pressed in the sub-step before most often still is.

@@ -136,6 +136,14 @@ impl Wall {
         to + self.normal * (self.offset - to.dot(self.normal)) - now
     }
 
+    /// The way out of another face that its particle is behind, along its own.
+    fn aside(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
+        let missing = self.beyond - (bodies.position[self.row as usize] + shift).dot(self.beside);
+        let along = aside(self.beside, self.normal);
+        let share = along.dot(self.beside);
+        if missing > 0.0 && share > 0.0 { along * (missing / share) } else { Vec3::ZERO }
+    }
+
     /// How far its particle has gone along it since it touched it.
     fn slid(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
         aside(bodies.position[self.row as usize] + shift - self.stuck, self.normal)
@@ -203,6 +211,11 @@ pub(in crate::constrain) fn keep(
         if missing > 0.0 {
             *shift += wall.normal * missing;
             wall.touch.begin(wall.touch.pressed() + missing / h);
+            tell(number);
+        }
+        let by = wall.aside(bodies, *shift);
+        if by != Vec3::ZERO {
+            *shift += by;
             tell(number);
         }
     }
