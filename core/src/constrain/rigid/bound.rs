@@ -35,6 +35,15 @@ impl Body {
 
 /// Takes back from what a blow has made of how bodies move, while these do not know it yet, what it has given.
 pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
+    // Most often nobody has more than he came with.
+    let gains = |(body, to): (&Body, &Moving)| {
+        let [spare, linear, square] = account(body, to, span.h);
+        linear + square > max(spare, 0.0)
+    };
+    let bouncing = bodies.iter().zip(&*order.moving).filter(|(body, _)| body.bounces != 0 && body.moves());
+    if !{ bouncing }.any(gains) {
+        return;
+    }
     // Colours have done their work.
     for (number, body) in bodies.iter_mut().enumerate() {
         body.colours = number as u32;
