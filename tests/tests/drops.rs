@@ -5,8 +5,8 @@ use pointmass::force::{Coulomb, Friction};
 use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Collider, Cuboid, HeightField, MeshBuf, Moving, Plane, Sphere};
 use pointmass::{
-    ClothSprings, Constraint, ContactMaterial, Force, Gravity, Heap, Measures, Method, Particle, Report, Scene, Sheet,
-    Spring, SpringParams, System, Time, Vec3,
+    Cause, ClothSprings, Constraint, ContactMaterial, Emitter, Force, Gravity, Heap, LifeEvent, Measures, Method,
+    Observer, Particle, Report, Scene, Sheet, Spring, SpringParams, System, Time, Vec3,
 };
 use pointmass_tests::{Random, often, started};
 
@@ -249,5 +249,51 @@ fn bound_things_fall_alike_in_steps_and_sub_steps() {
             let (one, many) = (middle(1), middle(8));
             assert!(one.distance(many) < 0.02, "{} on {at}: {one} {many}", thing.name);
         }
+    }
+}
+
+/// The places at which particles have vanished.
+#[derive(Default)]
+struct Drowned(Vec<Vec3>);
+
+impl Observer for Drowned {
+    fn died(&mut self, death: &LifeEvent, _: Cause) {
+        self.0.push(death.place);
+    }
+}
+
+/// Who is born in the middle of a step flies, bounces and vanishes in its sub-steps as in a whole one.
+#[test]
+fn the_newborn_and_those_who_vanish_are_where_they_would_be_without_sub_steps() {
+    let ball = Sphere { center: Vec3::Y, radius: 0.1 };
+    let source = Emitter { velocity: Vec3::new(0.8, -6.0, 0.3), ..Emitter::new(ball, 3000.0) };
+    // The ground ends; beside it all vanish below.
+    let ground = Cuboid { min: Vec3::new(-9.0, -0.2, -9.0), max: Vec3::new(0.1, 0.0, 9.0) };
+    let sea = Plane { point: Vec3::Y * -0.5, normal: Vec3::Y };
+    let scene = Scene {
+        emitters: &source,
+        forces: &DOWN,
+        colliders: &ground,
+        sinks: &sea,
+        integrator: Method::Verlet.integrator(),
+        ..Scene::EMPTY
+    };
+    let course = |substeps: u32| {
+        let (scene, mut drowned) = (Scene { substeps, ..scene }, Drowned::default());
+        let mut system = started(&scene, 2000, 1);
+        let mut hits = 0;
+        for _ in 0..12 {
+            hits += system.step_observed(&scene, Time::frame(1, 30), &mut drowned).hits;
+        }
+        (system.particles().position.to_vec(), drowned.0, hits)
+    };
+    let (one, gone, hits) = course(1);
+    assert!(one.len() > 200 && gone.len() > 50 && hits > 200, "{} {} {hits}", one.len(), gone.len());
+    for substeps in [2, 7, 20] {
+        let (many, others, more) = course(substeps);
+        assert_eq!((one.len(), gone.len(), hits), (many.len(), others.len(), more), "{substeps} sub-steps");
+        let far = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(far(&one, &many) < 1e-3 && far(&gone, &others) < 1e-3, "{} {}", far(&one, &many), far(&gone, &others));
+        assert!(others.iter().all(|place| (place.y + 0.5).abs() < 1e-4), "they vanish where they meet the sea");
     }
 }
