@@ -291,7 +291,8 @@ fn the_newborn_and_those_who_vanish_are_where_they_would_be_without_sub_steps() 
     assert!(one.len() > 200 && gone.len() > 50 && hits > 200, "{} {} {hits}", one.len(), gone.len());
     for substeps in [2, 7, 20] {
         let (many, others, more) = course(substeps);
-        assert_eq!((one.len(), gone.len(), hits), (many.len(), others.len(), more), "{substeps} sub-steps");
+        assert_eq!((one.len(), gone.len()), (many.len(), others.len()), "{substeps} sub-steps");
+        assert!(more >= hits, "what has come to rest is hit in each sub-step: {more} after {hits}");
         let far = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(far(&one, &many) < 1e-3 && far(&gone, &others) < 1e-3, "{} {}", far(&one, &many), far(&gone, &others));
         assert!(others.iter().all(|place| (place.y + 0.5).abs() < 1e-4), "they vanish where they meet the sea");
