@@ -10,7 +10,7 @@ use super::eye::Eye;
 use super::lamp::Lamp;
 use super::model::Model;
 use super::rays::Rays;
-use super::segments::Thread;
+use super::segments::Wire;
 use super::shade::Shader;
 use super::sprite::Sprite;
 use super::{Flipbook, Moving, Stage};
@@ -49,7 +49,7 @@ pub fn develop(exposures: &[Exposure]) -> RgbImage {
 enum Mover<'a> {
     Sprite(Sprite),
     Billboard(Placed<'a>),
-    Thread(Thread),
+    Wire(Wire),
 }
 
 impl Renderer {
@@ -85,7 +85,7 @@ impl Renderer {
             match &movers[at as usize] {
                 Mover::Sprite(sprite) => sprite.paint(&mut canvas, &mut bloom, &self.lamps),
                 Mover::Billboard(board) => board.paint(&mut canvas),
-                Mover::Thread(thread) => thread.paint(&mut canvas),
+                Mover::Wire(wire) => wire.paint(&mut canvas),
             }
         }
         bloom.spread();
@@ -99,8 +99,8 @@ impl Renderer {
         let boards = moving.billboards.iter().filter_map(|board| Placed::new(board, pictures, eye));
         let lines = moving.segments.iter().map(|line| (line, false));
         let lines = lines.chain(moving.ribbons.iter().map(|line| (line, true)));
-        let threads = lines.filter_map(|(line, joined)| Thread::new(line, joined, eye)).map(Mover::Thread);
-        threads.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect()
+        let wires = lines.filter_map(|(line, joined)| Wire::new(line, joined, eye)).map(Mover::Wire);
+        wires.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect()
     }
 }
 
@@ -118,7 +118,7 @@ impl Mover<'_> {
         match self {
             Self::Sprite(sprite) => sprite.depth,
             Self::Billboard(board) => board.depth,
-            Self::Thread(thread) => thread.depth,
+            Self::Wire(wire) => wire.depth,
         }
     }
 
@@ -135,7 +135,7 @@ impl Mover<'_> {
                 let Placed { place, reach, opacity, color, haze, .. } = *board;
                 Some(Caster { place, reach, opacity: 0.5 * opacity * haze.clear, glow, color })
             }
-            Self::Thread(_) => None,
+            Self::Wire(_) => None,
         }
     }
 }

@@ -17,7 +17,7 @@ const LIFT: f32 = 0.004;
 
 /// A line as the lens sees it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Thread {
+pub(super) struct Wire {
     /// How far away its farther end is, so that a dot on either end lies on top.
     pub(super) depth: f32,
     ends: [End; 2],
@@ -37,7 +37,7 @@ struct End {
     opacity: f32,
 }
 
-impl Thread {
+impl Wire {
     /// Brings a line before the lens; `None` if it cannot be seen.
     pub(super) fn new(line: &Line, joined: bool, eye: &Eye) -> Option<Self> {
         let Eye { lens, frustum, .. } = eye;

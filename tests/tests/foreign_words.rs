@@ -75,12 +75,12 @@ fn each_kind(mut visit: impl FnMut(&[Particle], &str, &dyn Constraint)) {
     let jelly = ShapeMatching { compliance: 1e-3, damping: 0.1, ..ShapeMatching::rigid(&cube[..]) };
     let wire = Strands { twist: 0.2, ..Strands::of(&woven[..8], [4, 4], StrandParams::round(2e-3, 3e9, 0.3)) };
     let hand = Attach { particles: [0, 3], motion: Motion { spin: 0.5, axis: Vec3::Y, ..Motion::STILL } };
-    let leash = Distance::string([0, 16], 0.2);
+    let tether = Distance::string([0, 16], 0.2);
     let cloth = SheetContacts { particles: &woven[..], triangles: &triangles[..], thickness: [0.02] };
     let within =
         StrainLimitParams { warp: Some([0.9, 1.1]), weft: None, shear: Some(0.2), compliance: 0.0, damping: 0.0 };
     let limits = StrainLimits { triangles: &triangles[..], warp: Vec3::X, params: within };
-    let all = &(&hand, leash, (&rope, &jelly), (&shell, &chest), &cloth, Contacts::HARD);
+    let all = &(&hand, tether, (&rope, &jelly), (&shell, &chest), &cloth, Contacts::HARD);
     let kinds: [(&str, &dyn Constraint); 10] = [
         ("shell", &shell),
         ("chest", &chest),
@@ -88,7 +88,7 @@ fn each_kind(mut visit: impl FnMut(&[Particle], &str, &dyn Constraint)) {
         ("jelly", &jelly),
         ("wire", &wire),
         ("hand", &hand),
-        ("leash", &leash),
+        ("tether", &tether),
         ("cloth", &cloth),
         ("limits", &limits),
         ("all", all),

@@ -221,7 +221,7 @@ impl Hold {
             }
             _ => format!(
                 "in sub-steps of {now} {name} hang up to {off} % longer than they are, since each is met once; {enough_for} leave \
-                 1 %, and a rope is exact in any"
+                 1 %, and a rope does in any, unless a run says that it was cut short"
             ),
         })
     }

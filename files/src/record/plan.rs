@@ -55,12 +55,12 @@ impl Plan {
             triangles: Vec::new(),
             edges: vec![true; model.springs.len()],
         };
-        plan.weave(file, model, scene, files)?;
+        plan.add_faces(file, model, scene, files)?;
         Ok(plan)
     }
 
     /// Puts in the triangles of cloths, in place of their springs.
-    fn weave(&mut self, file: &SceneFile, model: &Model, scene: &str, files: &mut dyn Files) -> Outcome {
+    fn add_faces(&mut self, file: &SceneFile, model: &Model, scene: &str, files: &mut dyn Files) -> Outcome {
         let ends = model.cloths.iter().skip(1).map(|&[_, spring]| spring).chain([model.springs.len()]);
         for ((cloth, &[first, spring]), end) in file.cloths.iter().zip(&model.cloths).zip(ends) {
             let triangles: Vec<_> = match &cloth.form {

@@ -67,12 +67,12 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let sheet = sheet();
     let chest = |place: Vec3, first| RigidBox::new(Vec3::splat(0.1), place + 0.1, first);
     let chests = RigidBodies::boxes([chest(THROWN[0], DIE[0]), chest(THROWN[1], JELLY[0])]);
-    let leash = Distance { compliance: 1e-3, ..Distance::string([11, 20], 0.3) };
+    let tether = Distance { compliance: 1e-3, ..Distance::string([11, 20], 0.3) };
     let hand = Attach {
         particles: [0],
         motion: Motion { spin: 0.7, pivot: Vec3::new(0.0, 1.0, 0.1), axis: Vec3::Y, ..Motion::STILL },
     };
-    let all = &(hand, (leash, rope, ring), (die, jelly), sheet, Contacts::HARD);
+    let all = &(hand, (tether, rope, ring), (die, jelly), sheet, Contacts::HARD);
     let wire = StrandParams { damping: 1e-3, ..StrandParams::round(2e-3, 3e9, 0.3) };
     let wire = Strands { twist: 1.0, ..Strands::of(RING, [8], wire) };
     let bonds: [(&str, &dyn Constraint); 9] = [
@@ -80,7 +80,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         ("ring", &ring),
         ("die", &die),
         ("jelly", &jelly),
-        ("leash", &leash),
+        ("tether", &tether),
         ("sheet", &sheet),
         ("chests", &chests),
         ("wire", &wire),

@@ -99,10 +99,10 @@ impl Touch {
 /// The part of a slip that friction has taken, with its direction, of two in touch.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(in crate::constrain) struct Grip(Vec3);
+pub(in crate::constrain) struct TangentImpulse(Vec3);
 
-impl Grip {
-    /// A grip by which friction has given so much already \[m/s\].
+impl TangentImpulse {
+    /// One by which friction has given so much already \[m/s\].
     pub(in crate::constrain) fn of(given: Vec3) -> Self {
         Self(given)
     }

@@ -77,12 +77,12 @@ pub(super) fn invite(
         fastest = max(fastest, length(bodies.velocity[row]));
         thickest = max(thickest, bodies.radius[row]);
     }
-    // What the world keeps as its leash is how far any ball may go before the lists are made anew.
-    let leash = 1.25 * fastest * bodies.substep.step.seconds() + 0.1 * thickest;
-    all[0].leash = leash;
+    // What the world keeps as its `max_travel` is how far any ball may go before the lists are made anew.
+    let max_travel = 1.25 * fastest * bodies.substep.step.seconds() + 0.1 * thickest;
+    all[0].max_travel = max_travel;
     let (mut free, mut left_out) = (0, 0);
     let Bodies { near, position, radius, slot, serial, .. } = &mut *bodies;
-    near.ask(middles, widest + thickest + leash, &mut |ask| {
+    near.ask(middles, widest + thickest + max_travel, &mut |ask| {
         for row in 0..position.len() {
             if rows[row] == MEMBER || !(radius[row] > 0.0) {
                 continue;
@@ -90,7 +90,7 @@ pub(super) fn invite(
             ask(position[row], &mut |body| {
                 let (number, of) = (body + 1, &all[body as usize + 1]);
                 let far = forms.of(number).nearest(of, of.place(position[row])).2 - radius[row];
-                if !(far <= of.leash + leash) {
+                if !(far <= of.max_travel + max_travel) {
                     return;
                 }
                 if rows[row] == NOBODY {
@@ -146,14 +146,14 @@ pub(super) fn are_far(bodies: &Bodies<'_>, kept: &mut Kept<'_>, h: f32) -> bool 
             fastest = max(fastest, length(bodies.velocity[row]));
         }
     }
-    kept.bodies[0].leash -= fastest * h;
+    kept.bodies[0].max_travel -= fastest * h;
     let first = kept.first_ball();
     for (ball, body) in kept.balls.iter().zip(&mut kept.bodies[first..]) {
         if let Some(row) = ball.row(bodies) {
             body.follow(bodies, row);
         }
     }
-    !(kept.bodies[0].leash >= fastest * h)
+    !(kept.bodies[0].max_travel >= fastest * h)
 }
 
 /// Tells what each row is: of a body, a ball that was there before, by its number, or nobody.

@@ -37,7 +37,7 @@ pub(super) struct Body {
     /// The colours of those that it touches, a bit for each.
     pub(super) colours: u32,
     /// How far it may go before the lists of pairs, and of what it meets of the scenery, have to be made anew \[m\].
-    pub(super) leash: f32,
+    pub(super) max_travel: f32,
     pub(super) spare: f32,
     /// How fast its farthest point goes round its centre, as the lists were looked through last \[m/s\].
     pub(super) whirl: f32,
@@ -184,12 +184,12 @@ impl Body {
         let velocity = if inverse_mass > 0.0 { bodies.velocity[row] } else { Vec3::ZERO };
         let (center, elasticity, material) =
             (bodies.position[row], bodies.elasticity[row], u32::from(bodies.material[row]));
-        let (known, met, spare, leash) = (self.known, self.met, self.spare, self.leash);
+        let (known, met, spare, max_travel) = (self.known, self.met, self.spare, self.max_travel);
         let ball = Self {
             known,
             met,
             spare,
-            leash,
+            max_travel,
             state,
             turn,
             center,

@@ -10,7 +10,7 @@ use super::manifold::{Manifold, are_near};
 use super::moving::Moving;
 use super::order::packs_of;
 use super::pack::Pack;
-use super::scenery::{DIRECTIONS, leash};
+use super::scenery::{DIRECTIONS, max_travel};
 use super::sleep;
 use crate::lanes::{ABREAST, run_abreast};
 use crate::material::of_two;
@@ -141,15 +141,15 @@ pub(super) fn gather(
     for body in kept.bodies[..awake].iter_mut().filter(|body| body.is_awake()) {
         body.whirl = length(body.omega) * body.radius;
         let way = (length(body.velocity) + body.whirl) * h;
-        body.leash -= way;
-        is_over |= !(body.leash >= way);
+        body.max_travel -= way;
+        is_over |= !(body.max_travel >= way);
     }
     if !kept.balls.is_empty() {
         is_over |= bodies.substep.number == 0 || balls::are_far(bodies, kept, h);
     }
     if is_over {
         for body in kept.bodies[..first].iter_mut() {
-            body.leash = if body.moves() { leash(body, step) } else { 0.0 };
+            body.max_travel = if body.moves() { max_travel(body, step) } else { 0.0 };
         }
         list(bodies, kept, forms, scratch);
         is_awake = kept.bodies[1..].iter().any(Body::is_awake);
@@ -245,8 +245,8 @@ fn invite(
     let (all, mut widest) = (&*kept.bodies, 0.0);
     for (middle, body) in middles.iter_mut().zip(&all[1..]) {
         *middle = if body.is_there() { body.center } else { Vec3::NAN };
-        if body.is_there() && body.radius + body.leash < f32::INFINITY {
-            widest = max(widest, body.radius + body.leash);
+        if body.is_there() && body.radius + body.max_travel < f32::INFINITY {
+            widest = max(widest, body.radius + body.max_travel);
         }
     }
     let mut found = 0;
@@ -254,7 +254,7 @@ fn invite(
     bodies.near.pairs(middles, 2.0 * widest, &mut |row, other| {
         let [a, b] = [row.min(other) + 1, row.max(other) + 1];
         let [one, two] = [a, b].map(|number| &all[number as usize]);
-        let reach = one.radius + two.radius + one.leash + two.leash;
+        let reach = one.radius + two.radius + one.max_travel + two.max_travel;
         if !(one.moves() || two.moves()) || !(length(one.center - two.center) <= reach) {
             return;
         }
@@ -287,7 +287,7 @@ fn mark_far(all: &[Body], forms: Forms<'_>, candidates: &mut [[u32; 2]]) {
         let mut bound = [0.0; ABREAST];
         for (bound, numbers) in bound.iter_mut().zip(&*some) {
             let [a, b] = numbers.map(|number| &all[number as usize]);
-            *bound = a.leash + b.leash;
+            *bound = a.max_travel + b.max_travel;
         }
         let gaps = run_abreast(Beside { bodies: all, pairs: some, bound });
         for (lane, numbers) in some.iter_mut().enumerate() {
@@ -354,7 +354,7 @@ fn admit(
         let [a, b] = pair;
         let are_apart = || {
             let boxes = forms.are_boxes(key);
-            is_far || !boxes && !are_near(pair, key.map(|number| forms.of(number)), a.leash + b.leash)
+            is_far || !boxes && !are_near(pair, key.map(|number| forms.of(number)), a.max_travel + b.max_travel)
         };
         if ball.is_none() && !holds && are_apart() {
             continue;

@@ -242,7 +242,7 @@ fn mean_velocity(bodies: &Bodies<'_>, contact: &Contact, small: f32) -> Vec3 {
 
 /// How far a body may go before the lists are made anew \[m\], if that shall last for some time: who sleeps goes nowhere, and those around it that
 /// do not touch it are left out of the lists until it wakes.
-pub(super) fn leash(body: &Body, seconds: f32) -> f32 {
+pub(super) fn max_travel(body: &Body, seconds: f32) -> f32 {
     let share = if body.sleeps() { 0.02 } else { 0.25 };
     share * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
 }

@@ -1,6 +1,6 @@
 //! The memory of contacts between sheets: what lasts through a step, and what a sub-step is worked out in.
 
-use super::super::contacts::{Grip, Touch};
+use super::super::contacts::{TangentImpulse, Touch};
 use super::super::{Bodies, Demand, Words};
 use super::closest::Kind;
 use super::near::{self, Near};
@@ -34,7 +34,7 @@ pub(super) struct Contact {
     /// 1 if the two would pass each other.
     pub(super) meets: u32,
     pub(super) touch: Touch,
-    pub(super) grip: Grip,
+    pub(super) tangent: TangentImpulse,
 }
 
 impl Contact {
@@ -81,7 +81,7 @@ pub(super) struct Surface {
     /// How it moves there \[m/s\].
     pub(super) velocity: Vec3,
     pub(super) touch: Touch,
-    pub(super) grip: Grip,
+    pub(super) tangent: TangentImpulse,
 }
 
 /// How long the lists are.

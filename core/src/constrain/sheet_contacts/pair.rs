@@ -204,8 +204,8 @@ impl Look<'_, '_> {
         let recovery = RECOVERY * max(wanted - begun, 0.0);
         let target = if begun < wanted { begun + recovery } else { wanted };
         let (split, weights, meets) = (kind.split() as u32, closest.weights, u32::from(meets));
-        let (touch, grip) = (bytemuck::Zeroable::zeroed(), bytemuck::Zeroable::zeroed());
-        *place = Contact { corners, split, weights, normal, target, recovery, meets, touch, grip };
+        let (touch, tangent) = (bytemuck::Zeroable::zeroed(), bytemuck::Zeroable::zeroed());
+        *place = Contact { corners, split, weights, normal, target, recovery, meets, touch, tangent };
     }
 }
 

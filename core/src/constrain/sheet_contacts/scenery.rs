@@ -89,7 +89,7 @@ fn look(
             distance,
             velocity,
             touch,
-            grip: bytemuck::Zeroable::zeroed(),
+            tangent: bytemuck::Zeroable::zeroed(),
         };
     });
 }

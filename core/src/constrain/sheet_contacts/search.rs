@@ -33,7 +33,7 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     let old = &work.old[..known];
     for contact in &mut kept.contacts[..count] {
         match old.binary_search_by_key(&contact.key(), Contact::key) {
-            Ok(place) => (contact.touch, contact.grip) = (old[place].touch, old[place].grip),
+            Ok(place) => (contact.touch, contact.tangent) = (old[place].touch, old[place].tangent),
             Err(_) => contact.touch = touch(bodies, contact.sides().map(|side| kept.rows[side] as usize)),
         }
     }

@@ -73,16 +73,16 @@ fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
 fn rub(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) -> Vec3 {
     let mut torque = Vec3::ZERO;
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
-    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.grip.acts(&contact.touch)) {
+    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.tangent.acts(&contact.touch)) {
         let Some(ease) = ease_of(contact, kept.rows, kept.weight, bodies) else { continue };
         let slip = aside(contact.between(|i| bodies.velocity[kept.rows[i] as usize]), contact.normal);
-        let by = contact.grip.hold(&contact.touch, slip, contact.touch.pressed()) / ease;
+        let by = contact.tangent.hold(&contact.touch, slip, contact.touch.pressed()) / ease;
         torque += push(contact, kept.rows, kept.weight, bodies, by);
     }
-    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.grip.acts(&surface.touch)) {
+    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.tangent.acts(&surface.touch)) {
         let row = kept.rows[surface.particle as usize] as usize;
         let slip = aside(bodies.velocity[row] - surface.velocity, surface.normal);
-        bodies.velocity[row] += surface.grip.hold(&surface.touch, slip, surface.touch.pressed());
+        bodies.velocity[row] += surface.tangent.hold(&surface.touch, slip, surface.touch.pressed());
     }
     torque
 }
@@ -90,7 +90,7 @@ fn rub(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) -> Vec3 {
 /// How fast two that touch part by a unit push \[1/kg\].
 fn ease_of(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &Bodies<'_>) -> Option<f32> {
     let far = || contact.between(|i| bodies.position[rows[i] as usize]).dot(contact.normal);
-    let pushes = contact.touch.pressed() > 0.0 || contact.grip.acts(&contact.touch);
+    let pushes = contact.touch.pressed() > 0.0 || contact.tangent.acts(&contact.touch);
     let touches = pushes || !contact.leans() && far() < contact.target * (1.0 + SLACK);
     Some(ease(contact, weight)).filter(|&ease| touches && ease > 0.0)
 }

@@ -116,20 +116,20 @@ fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
 fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
     let mut torque = Vec3::ZERO;
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
-    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.grip.acts(&contact.touch)) {
+    for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.tangent.acts(&contact.touch)) {
         let ease = ease(contact, kept.weight);
         let slip = aside(contact.between(|i| work.now[i] - work.from[i]), contact.normal);
         let load = contact.touch.pressed() - contact.recovery / h;
-        let change = contact.grip.hold(&contact.touch, slip / h, load) * h;
+        let change = contact.tangent.hold(&contact.touch, slip / h, load) * h;
         if change != Vec3::ZERO && ease > 0.0 {
             torque += push(contact, kept.weight, work, change / ease);
         }
     }
-    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.grip.acts(&surface.touch)) {
+    for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.tangent.acts(&surface.touch)) {
         let i = surface.particle as usize;
         let slip = aside((work.now[i] - work.from[i]) / h - surface.velocity, surface.normal);
         let load = surface.touch.pressed() - surface.recovery / h;
-        work.shift(i, surface.grip.hold(&surface.touch, slip, load) * h);
+        work.shift(i, surface.tangent.hold(&surface.touch, slip, load) * h);
     }
     torque
 }

@@ -15,7 +15,7 @@ const STEEPER: f32 = 8.0;
 /// A fold at rest.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct Bend {
+pub(super) struct RestFold {
     /// The angle at rest \[rad\]; zero is flat.
     pub(super) angle: f32,
     /// The curvature of the triangle on each side for each radian of the angle: along warp, weft, and √2 times that between
@@ -82,7 +82,7 @@ fn turn(angle: f32) -> f32 {
     }
 }
 
-impl Bend {
+impl RestFold {
     /// The fold with these ways from the first corner; `signs` say on which side each triangle's normal is.
     pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2]) -> Self {
         let [e, f, g] = ways;
@@ -137,7 +137,7 @@ impl Fold {
     /// The fold with these ways now, along others, and as it was as the sub-step began; with its angle less that at rest, and what
     /// damping adds.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(super) fn of(bend: &Bend, step: &Step, [now, along, before]: [[Vec3; 3]; 3]) -> (Self, f32) {
+    pub(super) fn of(bend: &RestFold, step: &Step, [now, along, before]: [[Vec3; 3]; 3]) -> (Self, f32) {
         let [e, f, g] = along;
         let (edge, slope) = (length(e), slopes(along));
         let foot = [dot(f, e), dot(g, e)].map(|along| along / (edge * edge));
@@ -204,7 +204,7 @@ impl Fold {
     /// of that: its angle changes by m f + n g, and by ½ |m − n|² at the most of what f and g are alone where m and n are taken for one. The
     /// folds of a triangle act together.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(super) fn excess(&self, bend: &Bend) -> f32 {
+    pub(super) fn excess(&self, bend: &RestFold) -> f32 {
         let [m, n] = self.slope;
         let (a, b) = (dot(m, m), dot(n, n));
         // Of a fold that hardly acts rounding leaves no angle.
@@ -215,7 +215,7 @@ impl Fold {
 
     /// The same where the point beside a far corner has gone along the edge: for the way of the edge's corners from each other.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(super) fn slip(&self, bend: &Bend, side: usize) -> f32 {
+    pub(super) fn slip(&self, bend: &RestFold, side: usize) -> f32 {
         let slip = self.foot[side] - bend.foot[side];
         TOGETHER * (slip * slip)
     }

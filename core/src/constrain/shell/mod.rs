@@ -21,7 +21,7 @@ use crate::cloth::Hinge;
 use crate::memory::take;
 use cycle::Levels;
 use finest::Links;
-use fold::{Bend, Fold};
+use fold::{Fold, RestFold};
 use glam::Vec3;
 use membrane::{Cell, Strain};
 use mesh::{Graph, Room};
@@ -140,7 +140,7 @@ pub struct Shell<P, T, H> {
 }
 
 /// The words that it keeps of each triangle and each fold, and works with; and with each particle.
-const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<Bend>() / 4];
+const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<RestFold>() / 4];
 const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 18];
 
 impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
@@ -186,7 +186,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         Rest { cells, bends, graphs, links, plate, last: whole(take(&mut rest, 3 * room.rows[0])) }
     }
 
-    fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [Bend]) -> Shape<'s> {
+    fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [RestFold]) -> Shape<'s> {
         Shape { triangles: self.triangles.as_ref(), cells, hinges: self.hinges.as_ref(), bends }
     }
 
@@ -232,7 +232,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
                 continue;
             };
             let signs = [hinge.sign(*first), -hinge.sign(*second)];
-            *bend = Bend::at_rest([b - a, c - a, d - a], self.warp, signs);
+            *bend = RestFold::at_rest([b - a, c - a, d - a], self.warp, signs);
         }
     }
 }
@@ -240,7 +240,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
 /// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, and where it went last.
 struct Rest<'m> {
     cells: &'m mut [Cell],
-    bends: &'m mut [Bend],
+    bends: &'m mut [RestFold],
     graphs: &'m mut [u32],
     links: &'m mut [u32],
     plate: &'m mut [u32],

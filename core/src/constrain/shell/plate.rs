@@ -2,7 +2,7 @@
 
 use super::ShellParams;
 use super::finest::eight_of;
-use super::fold::Bend;
+use super::fold::RestFold;
 use super::membrane::Cell;
 use super::mesh::{Graph, Room, link, sorted};
 use super::strips::{self, Strips};
@@ -53,7 +53,7 @@ pub(super) struct Shape<'s> {
     pub(super) triangles: &'s [[u32; 3]],
     pub(super) cells: &'s [Cell],
     pub(super) hinges: &'s [Hinge],
-    pub(super) bends: &'s [Bend],
+    pub(super) bends: &'s [RestFold],
 }
 
 /// Words that a matrix is kept in.
@@ -162,7 +162,7 @@ impl<'m> Plate<'m> {
             let mut patch = Patch::default();
             let slender = cell.slenderness();
             for &hinge in hinges.get(from as usize..to as usize).unwrap_or(&[]) {
-                let steep = shape.bends.get(hinge as usize).map_or(0.0, Bend::steepness);
+                let steep = shape.bends.get(hinge as usize).map_or(0.0, RestFold::steepness);
                 self.steepest[0] = max(steep * (slender * slender), self.steepest[0]);
                 patch.take(shape, self.roll, face as u32, hinge as usize);
             }
@@ -313,7 +313,7 @@ impl Patch {
 }
 
 /// How the angle of a hinge changes for each metre that the corners of its edge and the far one of a side go along that side's normal, at rest.
-fn slopes(bend: &Bend, side: usize) -> [f32; 3] {
+fn slopes(bend: &RestFold, side: usize) -> [f32; 3] {
     let slope = sqrt(bend.steep(side));
     let foot = bend.foot[side];
     [-(1.0 - foot) * slope, -foot * slope, slope]

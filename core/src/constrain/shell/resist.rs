@@ -2,7 +2,7 @@
 
 use super::ShellParams;
 use super::eights::{WIDE, all_corners, at_rest, column, eight, eight_mut, gathered, vector, vectors};
-use super::fold::{Bend, Fold};
+use super::fold::{Fold, RestFold};
 use super::membrane::{Cell, Strain};
 use super::solver::{Step, add_all, add_pair, all_at, curve, moment};
 use crate::cloth::Hinge;
@@ -21,7 +21,7 @@ pub(super) struct Resist<'s> {
     pub(super) cells: &'s [Cell],
     pub(super) strains: &'s mut [Strain],
     pub(super) hinges: &'s [Hinge],
-    pub(super) bends: &'s [Bend],
+    pub(super) bends: &'s [RestFold],
     pub(super) folds: &'s [Fold],
     pub(super) p: &'s [Vec3],
     pub(super) q: &'s mut [Vec3],

@@ -1,7 +1,7 @@
 //! The positions of a shell at a sub-step's end, by conjugate gradients.
 
 use super::cycle::Levels;
-use super::fold::{Bend, Fold};
+use super::fold::{Fold, RestFold};
 use super::membrane::{Cell, Strain};
 use super::resist::Resist;
 use super::{Bodies, ShellParams};
@@ -142,7 +142,7 @@ pub(super) struct Solver<'m> {
     pub(super) cells: &'m [Cell],
     pub(super) strains: &'m mut [Strain],
     pub(super) hinges: &'m [Hinge],
-    pub(super) bends: &'m [Bend],
+    pub(super) bends: &'m [RestFold],
     pub(super) folds: &'m mut [Fold],
     pub(super) vectors: Vectors<'m>,
     /// True if a matrix holds how it bends.
@@ -379,7 +379,7 @@ impl Solver<'_> {
 
 /// Adds the curvature that a change of a fold's angle makes.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: f32) {
+pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &RestFold, change: f32) {
     let [first, second] = hinge.faces;
     if let Some(strain) = strains.get_mut(first as usize) {
         bend.curve(0, change, &mut strain.curvature);
@@ -391,7 +391,7 @@ pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &Bend, change: 
 
 /// The moment about an edge that the curvatures of its triangles make.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &Bend, bending: f32) -> f32 {
+pub(super) fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &RestFold, bending: f32) -> f32 {
     let mut sum = 0.0;
     for (side, face) in hinge.faces.into_iter().enumerate() {
         if let (Some(strain), Some(cell)) = (strains.get(face as usize), cells.get(face as usize)) {

@@ -9,7 +9,7 @@ pub(super) use follow::follow;
 pub(super) use settle::settle;
 pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, meet};
 
-use super::contacts::{Grip, Touch};
+use super::contacts::{TangentImpulse, Touch};
 use super::{Bodies, Substep};
 use crate::material::on_surface;
 use crate::math::{dot, high, largest, length, low, max, min, sqrt};
@@ -62,7 +62,7 @@ pub(super) struct Wall {
     /// Where its particle is held if friction can: where it comes to touch \[m\].
     stuck: Vec3,
     touch: Touch,
-    grip: Grip,
+    tangent: TangentImpulse,
     /// The normal of another face that is near, or zero, and how far along that the particle is to be from the origin, at the least \[m\].
     beside: Vec3,
     beyond: f32,
@@ -220,8 +220,9 @@ impl Wall {
             let (there, far) = (from + velocity * h, distance - keep - slack);
             let share = if far > 0.0 && missing > 0.0 { far / (far + missing) } else { 0.0 };
             let stuck = there + (to - there) * share;
-            let (state, held, brake, grip) = (NEAR, Vec3::ZERO, 0.0, Grip::of(Vec3::ZERO));
-            *self = Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, grip, ..*self };
+            let (state, held, brake, tangent) = (NEAR, Vec3::ZERO, 0.0, TangentImpulse::of(Vec3::ZERO));
+            *self =
+                Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, tangent, ..*self };
         });
         self.free = free;
         if self.state == NEAR {

@@ -17,9 +17,9 @@ pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) 
         let wanted = bounce(&bodies.substep, wall.touch.elasticity, [begun, wall.approach]);
         let parting = (bodies.velocity[row] - wall.velocity).dot(normal);
         bodies.velocity[row] += normal * wall.touch.press(wanted, parting);
-        if wall.grip.acts(&wall.touch) {
+        if wall.tangent.acts(&wall.touch) {
             let slip = aside(bodies.velocity[row] - wall.velocity, normal);
-            bodies.velocity[row] += wall.grip.hold(&wall.touch, slip, wall.touch.pressed());
+            bodies.velocity[row] += wall.tangent.hold(&wall.touch, slip, wall.touch.pressed());
         }
         if wall.touch.pressed() > 0.0 {
             bodies.report.hits += 1;

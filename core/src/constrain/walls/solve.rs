@@ -2,7 +2,7 @@
 
 use super::{NEAR, NOTICED, SLIDES, STICKS, Wall};
 use crate::constrain::Bodies;
-use crate::constrain::contacts::Grip;
+use crate::constrain::contacts::TangentImpulse;
 use crate::math::{aside, length, max, min};
 use glam::Vec3;
 
@@ -190,8 +190,8 @@ pub(in crate::constrain) fn finish(walls: &mut [Wall], bodies: &Bodies<'_>, weig
             let [_, sliding] = wall.touch.friction();
             let (given, most) = (slid * (-wall.brake * weight / h), sliding * pressed);
             let far = length(given);
-            wall.grip = Grip::of(if far > most { given * (most / far) } else { given });
-            *shift += wall.grip.hold(&wall.touch, slid / h, pressed) * h;
+            wall.tangent = TangentImpulse::of(if far > most { given * (most / far) } else { given });
+            *shift += wall.tangent.hold(&wall.touch, slid / h, pressed) * h;
         }
     }
     keep(walls, bodies, shifts, |_| ());
