@@ -1,22 +1,20 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
 mod among;
+mod follow;
 
 use super::near::{BLOCK, Balls, Marks as Bits, Near};
 use super::packet::{Outcome, Paths, Riders};
-use super::path::Path;
-use super::sweep::{Sweep, facing};
+use super::sweep::facing;
 use super::waiting::{Packet, Queue, ones};
-use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
+use crate::constrain::CARRIED;
 use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run, widest};
 use crate::material::on_surface;
 use crate::math::max;
 use crate::memory::Past;
 use crate::observe::{Attention, Observer};
-use crate::particles::Id;
-use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::shape::{Aabb, Collider, Face, Facing, Hulls, Many, Marks};
+use crate::shape::{Aabb, Face, Facing, Hulls, Many, Marks};
 use crate::step::Tile;
 use crate::time::Time;
 use glam::Vec3;
@@ -374,94 +372,6 @@ impl TileSweep<'_, '_> {
             (bounces[i], at_rest[i], kinetic[i]) = (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
         }
         mixed
-    }
-
-    /// A row's path through the sub-step.
-    fn path(&self, row: usize) -> Path {
-        let (Tile { dt, attributes, .. }, end) = (&*self.tile, self.tile.end());
-        // A newborn has come only part of the way.
-        let start = end - (end - attributes.lives.born[row]).min(*dt);
-        let [x0, v0] = self.past.start;
-        let (x1, v1) = (self.tile.position[row], self.tile.velocity[row]);
-        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
-    }
-
-    /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
-    fn follow(&mut self, row: usize) {
-        let known = Some(self.facing).filter(|known| *known != Facing::Several);
-        self.follow_past(row, self.tile.scene.colliders, known);
-    }
-
-    /// The same past these, of which so much is known.
-    #[inline(never)]
-    fn follow_past(&mut self, row: usize, walls: &dyn Collider, known: Option<Facing>) {
-        let path = self.path(row);
-        let Self { tile, past, report, observer, .. } = self;
-        let observer: Option<&mut dyn Observer> = match observer {
-            Some(observer) => Some(&mut **observer),
-            None => None,
-        };
-        let Tile { scene, old, now, dt, attributes: ref m, .. } = **tile;
-        let (lives, born) = (&m.lives, m.lives.born[row]);
-        let is_still_to_come = row >= old && born > now + dt;
-        if m.inverse_mass[row] == 0.0 || is_still_to_come || tile.pending_death[row] != PendingDeath::Lives {
-            return;
-        }
-        // Constraints know nothing of the newborn.
-        let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
-        // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
-        // may not touch anything.
-        let path = if mark & SHIFTED != 0 { path.straightened() } else { path };
-        let is_kept = mark & TOUCHING != 0;
-        let radius = if is_kept { 0.5 * lives.radius[row] } else { lives.radius[row] };
-        if !path.is_finite() {
-            return;
-        }
-        let sinks = (!scene.sinks.is_empty()).then_some(scene.sinks);
-        if mark & CARRIED != 0 && sinks.is_none() {
-            return;
-        }
-        let (walls, known): (&dyn Collider, _) =
-            if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
-        let before = report.hits + report.caps.bounces;
-        let sweep = Sweep {
-            scene,
-            walls,
-            sinks,
-            id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },
-            row: tile.first + row,
-            radius,
-            mass: lives.mass[row],
-            elasticity: m.elasticity[row],
-            material: m.lives.material[row].checked_sub(1),
-            dt: dt.seconds(),
-            report,
-            observer,
-        };
-        let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
-        let is_newborn = row >= old && born >= now;
-        // Whoever is near one face alone goes the short way, among however many things.
-        let facing = match known {
-            None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
-            known => known.unwrap_or(Facing::Several),
-        };
-        let arrival = match facing {
-            Facing::Face(face) if SHORT_WAY => sweep.past(&face).travel(&path, is_newborn, may_lie),
-            _ => { sweep }.travel(&path, is_newborn, may_lie),
-        };
-        let Some(end) = arrival else { return };
-        // Whom constraints have moved keeps the velocity that they leave it, which is not that of the straight way, where it meets nothing.
-        if mark & SHIFTED != 0
-            && end.pending_death == PendingDeath::Lives
-            && report.hits + report.caps.bounces == before
-        {
-            return;
-        }
-        (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
-            (end.position, end.velocity, end.pending_death);
-        if SHORT_WAY {
-            tile.reached = tile.reached.and_then(|reached| reached.with(end.position, end.velocity));
-        }
     }
 }
 

@@ -1,0 +1,107 @@
+//! A row by itself: its path through the sub-step, followed to its first hit and on.
+
+use super::{SHORT_WAY, TileSweep};
+use crate::collide::path::Path;
+use crate::collide::sweep::{Sweep, facing};
+use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
+use crate::observe::Observer;
+use crate::particles::Id;
+use crate::reap::PendingDeath;
+use crate::shape::{Collider, Facing};
+use crate::step::Tile;
+
+impl TileSweep<'_, '_> {
+    /// A row's path through the sub-step.
+    pub(super) fn path(&self, row: usize) -> Path {
+        let (Tile { dt, attributes, .. }, end) = (&*self.tile, self.tile.end());
+        // A newborn has come only part of the way.
+        let start = end - (end - attributes.lives.born[row]).min(*dt);
+        let [x0, v0] = self.past.start;
+        let (x1, v1) = (self.tile.position[row], self.tile.velocity[row]);
+        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
+    }
+
+    /// Tells whether a row moves in the sub-step: it is not fixed, nor yet to be born, nor has it vanished.
+    fn is_under_way(&self, row: usize) -> bool {
+        let Tile { old, now, dt, attributes, .. } = *self.tile;
+        let is_still_to_come = row >= old && attributes.lives.born[row] > now + dt;
+        attributes.inverse_mass[row] != 0.0 && !is_still_to_come && self.tile.pending_death[row] == PendingDeath::Lives
+    }
+
+    /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
+    pub(super) fn follow(&mut self, row: usize) {
+        let known = Some(self.facing).filter(|known| *known != Facing::Several);
+        self.follow_past(row, self.tile.scene.colliders, known);
+    }
+
+    /// The same past these, of which so much is known.
+    #[inline(never)]
+    pub(super) fn follow_past(&mut self, row: usize, walls: &dyn Collider, known: Option<Facing>) {
+        if !self.is_under_way(row) {
+            return;
+        }
+        let path = self.path(row);
+        let Self { tile, past, report, observer, .. } = self;
+        let observer: Option<&mut dyn Observer> = match observer {
+            Some(observer) => Some(&mut **observer),
+            None => None,
+        };
+        let Tile { scene, old, now, dt, attributes: ref m, .. } = **tile;
+        let lives = &m.lives;
+        // Constraints know nothing of the newborn.
+        let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
+        // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
+        // may not touch anything.
+        let path = if mark & SHIFTED != 0 { path.straightened() } else { path };
+        let is_kept = mark & TOUCHING != 0;
+        let radius = if is_kept { 0.5 * lives.radius[row] } else { lives.radius[row] };
+        if !path.is_finite() {
+            return;
+        }
+        let sinks = (!scene.sinks.is_empty()).then_some(scene.sinks);
+        if mark & CARRIED != 0 && sinks.is_none() {
+            return;
+        }
+        let (walls, known): (&dyn Collider, _) =
+            if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
+        let before = report.hits + report.caps.bounces;
+        let sweep = Sweep {
+            scene,
+            walls,
+            sinks,
+            id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },
+            row: tile.first + row,
+            radius,
+            mass: lives.mass[row],
+            elasticity: m.elasticity[row],
+            material: m.lives.material[row].checked_sub(1),
+            dt: dt.seconds(),
+            report,
+            observer,
+        };
+        let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
+        let is_newborn = row >= old && lives.born[row] >= now;
+        // Whoever is near one face alone goes the short way, among however many things.
+        let facing = match known {
+            None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
+            known => known.unwrap_or(Facing::Several),
+        };
+        let arrival = match facing {
+            Facing::Face(face) if SHORT_WAY => sweep.past(&face).travel(&path, is_newborn, may_lie),
+            _ => { sweep }.travel(&path, is_newborn, may_lie),
+        };
+        let Some(end) = arrival else { return };
+        // Whom constraints have moved keeps the velocity that they leave it, which is not that of the straight way, where it meets nothing.
+        if mark & SHIFTED != 0
+            && end.pending_death == PendingDeath::Lives
+            && report.hits + report.caps.bounces == before
+        {
+            return;
+        }
+        (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
+            (end.position, end.velocity, end.pending_death);
+        if SHORT_WAY {
+            tile.reached = tile.reached.and_then(|reached| reached.with(end.position, end.velocity));
+        }
+    }
+}
