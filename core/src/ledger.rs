@@ -13,8 +13,8 @@ use std::vec::Vec;
 ///
 /// Energy that comes and goes by a cause is booked under it; the rest is the remainder, the error of the method and of
 /// rounding. The work of a force is its power integrated over the step by Simpson's rule along the cubic through both
-/// ends, which is of order 4: where steps are so long that this errs, the remainder shows it. Every step costs about
-/// three evaluations of all energies and powers.
+/// ends, which is of order 4: where steps are so long that this errs, the remainder shows it. Every sub-step costs about
+/// four evaluations of all energies and powers.
 ///
 /// ```
 /// use pointmass::{Drag, Gravity, Heap, Ledger, Particle, Rk4, Scene, System, Time};

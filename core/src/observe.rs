@@ -196,7 +196,7 @@ pub enum Phase {
     Begin,
     /// Emitters have emitted; the newborn are where and when they were born.
     Create,
-    /// The integrator has moved the old so far on its way through the step. The newborn have not moved yet.
+    /// The integrator has moved the old so far on its way through the step. The newborn have not moved since the sub-step began.
     Advance,
     /// The integrator has moved the old to the end of a sub-step, and constraints are about to.
     Project,

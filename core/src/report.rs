@@ -107,7 +107,7 @@ pub struct Died {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Caps {
-    /// A particle hit as often in one step as it may, and waited at the surface for the step's end.
+    /// A particle hit as often in one sub-step as it may, and waited at the surface for its end.
     pub bounces: u64,
     /// A path was so curved that its collisions were sought along fewer chords than its accuracy asks. Only paths that are followed count:
     /// at coordinates from about 1e17 m on rounding decides which are, and not in the same way for one thing and for a list of it.

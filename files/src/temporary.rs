@@ -76,6 +76,7 @@ pub fn clean_up_when_interrupted() {
     let _ = std::thread::Builder::new().name("interrupts".into()).spawn(wait);
 }
 
+/// Without signals there is nothing to wait for.
 #[cfg(not(unix))]
 pub fn clean_up_when_interrupted() {}
 

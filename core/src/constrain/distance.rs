@@ -1,7 +1,7 @@
 //! Two particles at a distance from each other: rods, links of ropes and chains, tethers.
 
 use super::{Bodies, Constraint, Share};
-use crate::math::length;
+use crate::math::{length, max};
 use glam::Vec3;
 
 /// Keeps two particles at a distance: C = |x₁ − x₂| − length.
@@ -91,6 +91,7 @@ impl Constraint for Distance {
                 bodies.position[a] -= normal * (share * wa);
                 bodies.position[b] += normal * (share * wb);
                 stretch -= lead;
+                stretch = if self.tether { max(stretch, 0.0) } else { stretch };
             }
         }
         let pull = stretch / (wa + wb + self.compliance / (h * h));

@@ -117,7 +117,7 @@ pub struct Run {
     pub index: Structure,
     /// How paths find what they run into among the triangles of a mesh.
     pub collision_index: rays::Structure,
-    /// How often a particle may bounce in one step before it waits for its end, from 1 to 10000. By `impulse` it may meet
+    /// How often a particle may bounce in one sub-step before it waits for its end, from 1 to 10000. By `impulse` it may meet
     /// others four times as often.
     pub max_bounces: u32,
     /// The seed of all randomness.

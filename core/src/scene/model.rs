@@ -58,7 +58,7 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// The solids that are drawn.
     pub scenery: Vec<Solid>,
-    /// How often a particle may bounce in one step.
+    /// How often a particle may bounce in one sub-step.
     pub max_bounces: u32,
     /// The method.
     pub integrator: Tuned,

@@ -42,8 +42,8 @@ pub struct Scene<'a> {
     /// The constraints that bind them together and keep them apart.
     pub constraints: &'a dyn Constraint,
     /// Parts that a step is cut into for the method, the constraints and the scenery, 1 to 1000: the finer, the stiffer are constraints. So many
-    /// parts of a step do what as many steps of their length do, but for births and deaths, reapers, springs that break, and ageing, which are once
-    /// a step.
+    /// parts of a step do what as many steps of their length do, but for births and deaths, reapers, springs that break, ageing, the sides of a periodic room, columns
+    /// that forces write and what constraints do once a step, such as making lists, which are once a step.
     pub substeps: u32,
     /// The answer of those that have a radius where they meet.
     pub meetings: Meetings,

@@ -36,7 +36,9 @@ impl Workspace<'_> {
         let old = self.create(scene, span[0] + dt, report, observer);
         self.age(scene, span);
         self.tell(Phase::Create, scene, observer);
-        if TILED && scene.is_local() && observer.attention() < Attention::Phases {
+        // In tiles those of one go through all sub-steps before those of the next, and who looks on would be told in that order.
+        let told_alike = scene.pieces() == 1 && observer.attention() < Attention::Phases;
+        if TILED && scene.is_local() && (told_alike || observer.attention() == Attention::Nothing) {
             self.tile_by_tile(scene, span, old, report, observer);
         } else {
             self.phase_by_phase(scene, span, old, report, observer);

@@ -1,4 +1,4 @@
-//! Blows give no energy. Newton's restitution, asked for at several points of a body at once, or of a chain of bodies, can part them with more
+//! Blows give no energy to speak of. Newton's restitution, asked for at several points of a body at once, or of a chain of bodies, can part them with more
 //! than they came with; of that so much is taken back, evenly from all impulses of those that touch each other, that nothing is gained.
 
 use super::body::Body;

@@ -14,7 +14,8 @@ use links::{Links, NOBODY, put};
 /// are and whatever the sub-steps: in each the tridiagonal system (∇C M⁻¹ ∇Cᵀ + α/h²) Δλ = −C − (α/h²) λ is solved directly, link
 /// by link there and back, until lengths are met to rounding (Macklin, Müller and Chentanez, "XPBD", MIG 2016, equation 18; Deul et
 /// al., "Direct Position-Based Solver for Stiff Rods", Computer Graphics Forum 37, 2018, section 4). Two or three such rounds are the
-/// rule, and eight the most. The time that it takes grows with the number of links alone.
+/// rule, and eight the most, of which each takes time in proportion to the number of links; where the sub-step is gone through in paces (below) there may be
+/// up to 64 of these, of three rounds each, the last of 24.
 ///
 /// A damping β takes from the speed at which a link stretches what a force β times that speed does, by an implicit step at the
 /// sub-step's end. Rigid links keep nothing of that speed: with `Verlet` that is RATTLE (Andersen, J. Comput. Phys. 52, 1983).
@@ -220,7 +221,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
     /// Gives a rope that has not come near its lengths the form back that it had when the sub-step began, if that was nearer: in the middle of all
     /// of its masses if nobody is fixed, which keeps its momentum.
-    fn hold(&self, bodies: &mut Bodies<'_>, links: &Links<'_>) {
+    fn hold(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
         let (mut sum, mut mass, mut is_free) = (Vec3::ZERO, 0.0, true);
         let rows = links.rows.iter().map(|&row| row as usize).zip(links.aim.iter());
         for (row, &aim) in rows.filter(|&(row, _)| row < bodies.len()) {
@@ -255,12 +256,18 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 put(bodies, row, to - bodies.position[row], to);
             }
         }
+        // Nothing pulls that could be taken back.
+        links.pull.fill(0.0);
     }
 
     /// Tells whether a particle is so light for what pulls at it that it would swing across its links faster than the sub-step shows. Along the
     /// directions of before it would be driven on and on by what it should only follow.
     fn is_stiff(&self, bodies: &Bodies<'_>, links: &Links<'_>) -> bool {
-        let pull = |link: usize| links.pull[link].abs() / self.length(link);
+        // What swings across a link is pulled back by its pull over the length that it has.
+        let pull = |link: usize| {
+            let length = links.line(bodies, link).map_or(0.0, |line| line.distance);
+            links.pull[link].abs() / max(length, self.length(link))
+        };
         (0..links.count).any(|link| {
             let [_, other] = links.ends(link);
             let next = if other < links.count { pull(other) } else { 0.0 };

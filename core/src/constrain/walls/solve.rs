@@ -1,6 +1,6 @@
 //! Walls while the material is solved: which press, and how particles slide along them.
 
-use super::{NEAR, NOTICED, SLIDES, STICKS, Wall};
+use super::{ALIKE, NEAR, NOTICED, SLIDES, STICKS, Wall};
 use crate::constrain::Bodies;
 use crate::constrain::contacts::TangentImpulse;
 use crate::math::{aside, length, max, min};
@@ -136,12 +136,21 @@ impl Wall {
         to + self.normal * (self.offset - to.dot(self.normal)) - now
     }
 
-    /// The way out of another face that its particle is behind, along its own.
+    /// The way out of another face that its particle is behind: straight, or along its own where that would lead behind it. Between two that
+    /// almost face each other there is no way out.
     fn aside(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
-        let missing = self.beyond - (bodies.position[self.row as usize] + shift).dot(self.beside);
+        let now = bodies.position[self.row as usize] + shift;
+        let missing = self.beyond - now.dot(self.beside);
+        if !(missing > 0.0) {
+            return Vec3::ZERO;
+        }
+        let straight = self.beside * missing;
+        if (now + straight).dot(self.normal) >= self.offset {
+            return straight;
+        }
         let along = aside(self.beside, self.normal);
         let share = along.dot(self.beside);
-        if missing > 0.0 && share > 0.0 { along * (missing / share) } else { Vec3::ZERO }
+        if share > 1.0 - ALIKE * ALIKE { along * (missing / share) } else { Vec3::ZERO }
     }
 
     /// How far its particle has gone along it since it touched it.
