@@ -2,7 +2,7 @@
 
 use super::cycle::Levels;
 use super::eights::{WIDE, at_rest, column, eight, vectors};
-use super::finest::Finest;
+use super::finest::{BACK, Finest};
 use super::folded::Settle;
 use super::solver::Solver;
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
@@ -102,9 +102,9 @@ impl Membranes<'_, '_, '_, '_> {
         let blocks = strain.blocks(cell, params, step);
         let Some(places) = self.finest.links.edges.get(i) else { return };
         let numbers = self.finest.blocks.as_flattened_mut().as_flattened_mut();
-        for (&[there, back], block) in places.as_chunks().0.iter().zip(blocks) {
-            add(numbers, there, block.to_cols_array());
-            add(numbers, back, block.transpose().to_cols_array());
+        for (&place, block) in places.iter().zip(blocks) {
+            let block = if place & BACK == 0 { block } else { block.transpose() };
+            add(numbers, place & !BACK, block.to_cols_array());
         }
     }
 
@@ -131,19 +131,20 @@ impl Membranes<'_, '_, '_, '_> {
             [scale * like.all(warp) * rate, scale * like.all(weft) * rate, scale * like.all(params.shear) * rate];
         let taut = like.all(0.25) * tension * area * square;
         let numbers = self.finest.blocks.as_flattened_mut().as_flattened_mut();
-        let blocks = [0, 1, 2].map(
-            #[inline(always)]
-            |side| block(stress, taut, held[side], [gain[side], gain[(side + 1) % 3]], [u, v]),
-        );
+        // Spelled out: `map` of an array would be called, for other registers.
+        let blocks = [
+            block(stress, taut, held[0], [gain[0], gain[1]], [u, v]),
+            block(stress, taut, held[1], [gain[1], gain[2]], [u, v]),
+            block(stress, taut, held[2], [gain[2], gain[0]], [u, v]),
+        ];
         for (lane, places) in places.iter().enumerate() {
-            for (side, block) in blocks.iter().enumerate() {
-                let [mut there, mut back] = [[0.0; 9]; 2];
+            for (&place, block) in places.iter().zip(&blocks) {
+                let mut one = [0.0; 9];
                 for (number, lanes) in block.iter().enumerate() {
-                    there[number] = lanes[lane];
-                    back[number / 3 + number % 3 * 3] = lanes[lane];
+                    let turned = number / 3 + number % 3 * 3;
+                    one[if place & BACK == 0 { number } else { turned }] = lanes[lane];
                 }
-                add(numbers, places[2 * side], there);
-                add(numbers, places[2 * side + 1], back);
+                add(numbers, place & !BACK, one);
             }
         }
         true

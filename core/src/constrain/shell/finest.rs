@@ -1,10 +1,11 @@
 //! The finest graph's part of a shell's system, eight rows side by side: products, and sweeps of Gauss and Seidel's method.
 
 use super::mesh::{Graph, Room};
+use super::parts::{Parts, PartsMut};
 use super::plate::Plate;
-use super::strips::{self, ALL, NONE, Strips};
+use super::strips::{self, NONE, Place, Strips};
 use super::sweep::Quad;
-use crate::lanes::{Eight, Kernel, LANES, Vectors, mask_of};
+use crate::lanes::{Eight, Kernel, LANES, Vectors};
 use crate::memory::take;
 use glam::Vec3;
 
@@ -21,24 +22,25 @@ pub(super) struct Finest<'m> {
     pub(super) into: &'m [u32],
     /// The blocks of its links.
     pub(super) blocks: &'m mut [Block],
-    /// Those of its rows with themselves before walls press; with these their inverses, zero for what does not move; and what is left of them
-    /// where all go the same way.
+    /// Those of its rows with themselves before walls press; with these their inverses, zero for what does not move.
     pub(super) whole: &'m mut [Own],
     pub(super) inverse: &'m mut [Own],
     /// What sweeps take them for more than they are, in each direction, by what rows of one strip do to each other.
     pub(super) soft: &'m mut [[f32; LANES]],
-    pub(super) alone: &'m mut [Block],
+    /// Masses, zero of what does not move \[kg\]. That is at zero in each product and sweep, so that blocks of its links may be what they are.
+    pub(super) mass: &'m mut [[f32; LANES]],
     /// How it bends beyond what is in blocks, and so many times that: bending stiffness × h².
     pub(super) plate: Plate<'m>,
     pub(super) bending: f32,
-    /// The right-hand side and the solution: three columns each.
+    /// The right-hand side, the solution, and what is left or comes of it: three columns each.
     pub(super) r: &'m mut [f32],
     pub(super) x: &'m mut [f32],
+    pub(super) sum: &'m mut [f32],
 }
 
 /// Words for so many rows and entries.
 pub(super) fn words(rows: usize, entries: usize) -> usize {
-    let own = rows.div_ceil(LANES).saturating_mul(LANES * (1 + 2 * 6 + 9 + 2 * 3));
+    let own = rows.div_ceil(LANES).saturating_mul(LANES * (2 + 2 * 6 + 3 * 3));
     entries.saturating_mul(9 * LANES).saturating_add(own)
 }
 
@@ -46,14 +48,16 @@ pub(super) fn words(rows: usize, entries: usize) -> usize {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Links<'m> {
     pub(super) strips: Strips<'m>,
-    /// Where in the next graph each link's block goes: to a link, or to a row's block with itself ([`WITHIN`]), or nowhere.
-    pub(super) sums: &'m [[u32; LANES]],
-    /// Where the blocks of a triangle's edges are, there and back: of their first numbers.
-    pub(super) edges: &'m [[u32; 6]],
+    /// Where in the next graph each link's block goes, there and back: to a link, or to a row's block with itself ([`WITHIN`]), or nowhere.
+    pub(super) sums: &'m [[[u32; LANES]; 2]],
+    /// Where the blocks of a triangle's edges are: of their first numbers, and whether they are there turned round ([`BACK`]).
+    pub(super) edges: &'m [[u32; 3]],
 }
 
 /// The bit that says that a block goes to a row with itself.
 pub(super) const WITHIN: u32 = 1 << 31;
+/// The bit that says that a block is there as one from the edge's second corner.
+pub(super) const BACK: u32 = 1 << 31;
 
 /// Words for what is known of links.
 pub(super) fn pattern(room: &Room, triangles: usize) -> usize {
@@ -61,8 +65,8 @@ pub(super) fn pattern(room: &Room, triangles: usize) -> usize {
     if rows == 0 {
         return 0;
     }
-    let sums = entries.saturating_mul(LANES);
-    strips::words(rows, entries).saturating_add(sums).saturating_add(triangles.saturating_mul(6))
+    let sums = entries.saturating_mul(2 * LANES);
+    strips::words(rows, entries).saturating_add(sums).saturating_add(triangles.saturating_mul(3))
 }
 
 impl<'m> Links<'m> {
@@ -72,7 +76,7 @@ impl<'m> Links<'m> {
             return Self::default();
         }
         let (strips, rest) = words.split_at(strips::words(rows, entries));
-        let (sums, edges) = rest.split_at(LANES * entries);
+        let (sums, edges) = rest.split_at(2 * LANES * entries);
         Self {
             strips: Strips::of(rows, entries, strips),
             sums: bytemuck::cast_slice(sums),
@@ -94,31 +98,31 @@ impl<'m> Links<'m> {
         let (head, rest) = words.split_at_mut_checked(strips::words(room.rows[0], entries))?;
         Strips::make(&fine, entries, head, work)?;
         let strips = Strips::of(room.rows[0], entries, head);
-        let (sums, edges) = rest.split_at_mut_checked(LANES * entries)?;
-        let (sums, edges): (&mut [[u32; LANES]], &mut [[u32; 6]]) =
+        let (sums, edges) = rest.split_at_mut_checked(2 * LANES * entries)?;
+        let (sums, edges): (&mut [[[u32; LANES]; 2]], &mut [[u32; 3]]) =
             (bytemuck::cast_slice_mut(sums), bytemuck::cast_slice_mut(edges));
-        sums.as_flattened_mut().fill(NONE);
+        sums.as_flattened_mut().as_flattened_mut().fill(NONE);
         for row in 0..room.rows[0] {
             for &other in fine.row(row) {
-                let (Some((entry, lane)), Some(&into)) = (strips.place(row, other), fine.into.get(row)) else {
+                let (Some(Place { entry, lane, back }), Some(&into)) = (strips.place(row, other), fine.into.get(row))
+                else {
                     continue;
                 };
                 let group = *fine.into.get(other as usize)?;
-                sums[entry][lane] = match coarse.link(into as usize, group) {
+                sums[entry][usize::from(back)][lane] = match coarse.link(into as usize, group) {
                     _ if group == into => WITHIN | into,
                     link => link.map_or(NONE, |link| link as u32),
                 };
             }
         }
         let place = |from: u32, to: u32| {
-            let (entry, lane) = strips.place(from as usize, to)?;
-            u32::try_from(9 * LANES * entry + lane).ok()
+            let Place { entry, lane, back } = strips.place(from as usize, to)?;
+            let first = u32::try_from(9 * LANES * entry + lane).ok().filter(|first| first & BACK == 0)?;
+            Some(if back { BACK | first } else { first })
         };
         for (places, corners) in edges.iter_mut().zip(triangles) {
-            for side in 0..3 {
-                let (from, to) = (corners[side], corners[(side + 1) % 3]);
-                places[2 * side] = place(from, to).unwrap_or(NONE);
-                places[2 * side + 1] = place(to, from).unwrap_or(NONE);
+            for (side, to) in places.iter_mut().enumerate() {
+                *to = place(corners[side], corners[(side + 1) % 3]).unwrap_or(NONE);
             }
         }
         Some(())
@@ -139,24 +143,32 @@ impl Kernel for Product<'_, '_> {
     fn run<F: Eight>(self, like: F) {
         let Self { finest, p, q } = self;
         finest.take(like, p);
-        let Finest { links: Links { strips, .. }, blocks, alone, plate, bending, x, .. } = finest;
-        let x = columns(x);
-        for (strip, alone) in alone.iter().enumerate() {
+        let Finest { links: Links { strips, .. }, blocks, mass, plate, bending, x, sum, .. } = finest;
+        let (x, mut sum, bending) = (columns(x), columns_mut(sum), *bending);
+        for (strip, mass) in mass.iter().enumerate() {
             let own = load(like, x, LANES * strip);
-            let mut sum = times(like, alone, own);
-            let range = strips.range(strip);
-            for (entry, block) in range.clone().zip(blocks.get(range).unwrap_or(&[])) {
-                sum = sum + times(like, block, strips.vectors(like, x, entry) - own);
+            put(&mut sum, LANES * strip, Vectors([like.all(0.0); 3]));
+            let mut all = own * like.of(*mass);
+            for (entry, block) in strips.each(strips.range(strip), blocks) {
+                let ways = entry.vectors(like, x) - own;
+                all = all + times(like, block, ways);
+                entry.take_from(like, &mut sum, times_back(like, block, ways));
             }
-            for entry in strips.mixed(strip) {
-                let (Some(block), owners) = (blocks.get(entry), strips.owners(entry)) else { return };
-                let ways = strips.vectors(like, x, entry) - owners.lent(like, own);
-                sum = owners.add(like, sum, times(like, block, ways));
+            for (entry, block) in strips.each(strips.mixed(strip), blocks) {
+                let ways = entry.vectors(like, x) - entry.owners().lent(like, own);
+                all = entry.owners().add(like, all, times(like, block, ways));
+                entry.take_from(like, &mut sum, times_back(like, block, ways));
             }
-            if *bending > 0.0 {
-                sum = sum + plate.bend(like, x, strip, own) * like.all(*bending);
+            if bending > 0.0 {
+                all = all + plate.bend(like, (x, &mut sum), strip, own, like.all(bending));
             }
-            save(q, &strips.rows(strip), sum);
+            let all = load(like, shared(&sum), LANES * strip) + all;
+            put(&mut sum, LANES * strip, all);
+        }
+        // What later strips do to earlier ones is known in the end.
+        let (mut to, sum) = (PartsMut::of(q, strips.len()), shared(&sum));
+        for (strip, mass) in mass.iter().enumerate() {
+            to.save(strip, load(like, sum, LANES * strip).masked(like.of(*mass).simd_gt(like.all(0.0))));
         }
     }
 }
@@ -174,11 +186,8 @@ impl Kernel for Forth<'_, '_> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) {
         let Self { finest, r, next } = self;
-        finest.keep(like, r);
-        finest.x.fill(0.0);
-        finest.forth(like);
+        finest.forth(like, r);
         if let Some(next) = next {
-            next.fill([0.0; 4]);
             finest.leave(like, next);
         }
     }
@@ -211,9 +220,9 @@ impl<'m> Finest<'m> {
         let strips = links.strips.len();
         let blocks = super::whole(take(words, 9 * LANES * links.strips.entries()));
         let [whole, inverse] = [0, 1].map(|_| super::whole(take(words, 6 * LANES * strips)));
-        let (soft, alone) = (super::whole(take(words, LANES * strips)), super::whole(take(words, 9 * LANES * strips)));
-        let [r, x] = [0, 1].map(|_| super::whole(take(words, 3 * LANES * strips)));
-        Self { links, into, blocks, whole, inverse, soft, alone, plate, bending: 0.0, r, x }
+        let [soft, mass] = [0, 1].map(|_| super::whole(take(words, LANES * strips)));
+        let [r, x, sum] = [0, 1, 2].map(|_| super::whole(take(words, 3 * LANES * strips)));
+        Self { links, into, blocks, whole, inverse, soft, mass, plate, bending: 0.0, r, x, sum }
     }
 }
 
@@ -221,62 +230,57 @@ impl Finest<'_> {
     /// Puts vectors into the columns of the solution.
     #[inline(always)]
     fn take<F: Eight>(&mut self, like: F, p: &[Vec3]) {
-        let mut x = columns_mut(self.x);
-        for strip in 0..self.links.strips.len() {
-            put(&mut x, LANES * strip, taken(like, p, &self.links.strips.rows(strip)));
+        let (mut x, p) = (columns_mut(self.x), Parts::of(p, self.links.strips.len()));
+        for (strip, mass) in self.mass.iter().enumerate() {
+            let moves = like.of(*mass).simd_gt(like.all(0.0));
+            put(&mut x, LANES * strip, p.load(like, strip).masked(moves));
         }
     }
 
-    /// Puts vectors into those of the right-hand side.
+    /// Sweeps forth, and keeps the right-hand side and what earlier rows feel of where later ones go.
     #[inline(always)]
-    fn keep<F: Eight>(&mut self, like: F, r: &[Vec3]) {
-        let mut to = columns_mut(self.r);
-        for strip in 0..self.links.strips.len() {
-            put(&mut to, LANES * strip, taken(like, r, &self.links.strips.rows(strip)));
-        }
-    }
-
-    #[inline(always)]
-    fn forth<F: Eight>(&mut self, like: F) {
-        let Self { links: Links { strips, .. }, blocks, inverse, r, x, .. } = self;
-        let (r, mut x) = (columns(r), columns_mut(x));
-        for (strip, inverse) in inverse.iter().enumerate() {
-            let mut left = load(like, r, LANES * strip);
-            let range = strips.range(strip);
-            for (entry, block) in range.clone().zip(blocks.get(range).unwrap_or(&[])) {
-                // Who comes later is at zero still.
-                if strips.below(entry) != 0 {
-                    left = left - times(like, block, strips.vectors(like, shared(&x), entry));
+    fn forth<F: Eight>(&mut self, like: F, right: &[Vec3]) {
+        let Self { links: Links { strips, .. }, blocks, inverse, soft, r, x, sum, .. } = self;
+        x.fill(0.0);
+        let (mut r, mut x, mut sum) = (columns_mut(r), columns_mut(x), columns_mut(sum));
+        let right = Parts::of(right, strips.len());
+        for (strip, (inverse, soft)) in inverse.iter().zip(&**soft).enumerate() {
+            let mut left = right.load(like, strip);
+            put(&mut r, LANES * strip, left);
+            put(&mut sum, LANES * strip, Vectors([like.all(0.0); 3]));
+            for (entry, block) in strips.each(strips.range(strip), blocks) {
+                left = left - times(like, block, entry.vectors(like, shared(&x)));
+            }
+            for (entry, block) in strips.each(strips.mixed(strip), blocks) {
+                // Those of the strip itself are at zero still.
+                let parts = times(like, block, entry.vectors(like, shared(&x)));
+                left = entry.owners().add(like, left, -parts);
+            }
+            let own = own_times(like, inverse, left);
+            put(&mut x, LANES * strip, own);
+            let mut all = own * like.of(*soft);
+            for (entry, block) in strips.each(strips.range(strip), blocks) {
+                entry.take_from(like, &mut sum, times_back(like, block, own));
+            }
+            for (entry, block) in strips.each(strips.mixed(strip), blocks) {
+                entry.take_from(like, &mut sum, times_back(like, block, entry.owners().lent(like, own)));
+                if let Some(within) = entry.mask_within(like, strip) {
+                    let parts = times(like, block, entry.vectors(like, shared(&x)));
+                    all = entry.owners().add(like, all, -parts.masked(within));
                 }
             }
-            left = less_mixed(like, left, (strips, blocks), shared(&x), strip, false);
-            put(&mut x, LANES * strip, own_times(like, inverse, left));
+            let all = load(like, shared(&sum), LANES * strip) + all;
+            put(&mut sum, LANES * strip, all);
         }
     }
 
+    /// Sums up for the next graph what is left.
     #[inline(always)]
     fn leave<F: Eight>(&self, like: F, next: &mut [Quad]) {
-        let x = columns(self.x);
-        for strip in 0..self.links.strips.len() {
-            let soft = self.soft.get(strip).map_or(
-                like.all(0.0),
-                #[inline(always)]
-                |soft| like.of(*soft),
-            );
-            let mut left = load(like, x, LANES * strip) * soft;
-            let range = self.links.strips.range(strip);
-            for (entry, block) in range.clone().zip(self.blocks.get(range).unwrap_or(&[])) {
-                let below = self.links.strips.below(entry);
-                if below == ALL {
-                    continue;
-                }
-                let mut others = self.links.strips.vectors(like, x, entry);
-                if below != 0 {
-                    others = others.masked(mask_of(like, !below));
-                }
-                left = left - times(like, block, others);
-            }
-            left = less_mixed(like, left, (&self.links.strips, self.blocks), x, strip, true);
+        next.fill([0.0; 4]);
+        let sum = columns(self.sum);
+        for (strip, mass) in self.mass.iter().enumerate() {
+            let left = load(like, sum, LANES * strip).masked(like.of(*mass).simd_gt(like.all(0.0)));
             for (row, left) in self.links.strips.rows(strip).into_iter().zip(left.rows()) {
                 if let Some(next) = self.into.get(row).and_then(|&group| next.get_mut(group as usize)) {
                     next.iter_mut().zip(left).for_each(|(next, left)| *next += left);
@@ -288,68 +292,64 @@ impl Finest<'_> {
     #[inline(always)]
     fn add<F: Eight>(&mut self, like: F, next: &[Quad], further: F) {
         let mut x = columns_mut(self.x);
-        for strip in 0..self.links.strips.len() {
+        for (strip, mass) in self.mass.iter().enumerate() {
+            let moves = like.of(*mass).simd_gt(like.all(0.0));
             let mut all = [[0.0; 4]; LANES];
             for (all, row) in all.iter_mut().zip(self.links.strips.rows(strip)) {
                 *all = self.into.get(row).and_then(|&group| next.get(group as usize)).copied().unwrap_or_default();
             }
             let own = load(like, shared(&x), LANES * strip);
-            put(&mut x, LANES * strip, own + Vectors(like.columns_of(all)) * further);
+            put(&mut x, LANES * strip, (own + Vectors(like.columns_of(all)) * further).masked(moves));
         }
     }
 
+    /// Sweeps back: takes from the right-hand side of earlier rows what later ones do to them.
     #[inline(always)]
     fn back<F: Eight>(&mut self, like: F, z: &mut [Vec3]) {
         let Self { links: Links { strips, .. }, blocks, inverse, soft, r, x, .. } = self;
-        let (r, mut x) = (columns(r), columns_mut(x));
+        let (mut r, mut x, mut z) = (columns_mut(r), columns_mut(x), PartsMut::of(z, strips.len()));
         for (strip, (inverse, soft)) in inverse.iter().zip(&**soft).enumerate().rev() {
-            let mut left = load(like, r, LANES * strip) + load(like, shared(&x), LANES * strip) * like.of(*soft);
-            let range = strips.range(strip);
-            for (entry, block) in range.clone().zip(blocks.get(range).unwrap_or(&[])) {
-                left = left - times(like, block, strips.vectors(like, shared(&x), entry));
+            let before = load(like, shared(&x), LANES * strip);
+            let mut all = before * like.of(*soft);
+            for (entry, block) in strips.each(strips.range(strip), blocks) {
+                all = all - times(like, block, entry.vectors(like, shared(&x)));
             }
-            left = less_mixed(like, left, (strips, blocks), shared(&x), strip, false);
-            let own = own_times(like, inverse, left);
+            for (entry, block) in strips.each(strips.mixed(strip), blocks) {
+                let parts = times(like, block, entry.vectors(like, shared(&x)));
+                all = entry.owners().add(like, all, -parts);
+                if let Some(within) = entry.mask_within(like, strip) {
+                    let parts = times_back(like, block, entry.owners().lent(like, before)).masked(within);
+                    entry.take_from(like, &mut r, parts);
+                }
+            }
+            let own = own_times(like, inverse, all + load(like, shared(&r), LANES * strip));
             put(&mut x, LANES * strip, own);
-            save(z, &strips.rows(strip), own);
+            z.save(strip, own);
+            for (entry, block) in strips.each(strips.range(strip), blocks) {
+                entry.take_from(like, &mut r, times_back(like, block, own));
+            }
+            for (entry, block) in strips.each(strips.mixed(strip), blocks) {
+                entry.take_from(like, &mut r, times_back(like, block, entry.owners().lent(like, own)));
+            }
         }
     }
 }
 
-/// Takes from what is left of a strip's rows what its mixed entries do to them, or only that by rows that are not of earlier strips.
-#[inline(always)]
-fn less_mixed<F: Eight>(
-    like: F,
-    mut left: Vectors<F>,
-    (strips, blocks): (&Strips<'_>, &[Block]),
-    x: [&[f32]; 3],
-    strip: usize,
-    later: bool,
-) -> Vectors<F> {
-    for entry in strips.mixed(strip) {
-        let Some(block) = blocks.get(entry) else { break };
-        let mut others = strips.vectors(like, x, entry);
-        if later {
-            others = others.masked(mask_of(like, !strips.below(entry)));
-        }
-        left = strips.owners(entry).add(like, left, -times(like, block, others));
-    }
-    left
-}
-
-/// Three columns of so many numbers together.
+/// Three columns of so many numbers together. They are cut to one length, so that one check does for all.
 #[inline(always)]
 fn columns(all: &[f32]) -> [&[f32]; 3] {
-    let (x, others) = all.split_at(all.len() / 3);
-    let (y, z) = others.split_at(x.len());
-    [x, y, z]
+    let len = all.len() / 3;
+    let (x, others) = all.split_at(len);
+    let (y, z) = others.split_at(len);
+    [x, y, &z[..len]]
 }
 
 #[inline(always)]
 fn columns_mut(all: &mut [f32]) -> [&mut [f32]; 3] {
-    let (x, others) = all.split_at_mut(all.len() / 3);
-    let (y, z) = others.split_at_mut(x.len());
-    [x, y, z]
+    let len = all.len() / 3;
+    let (x, others) = all.split_at_mut(len);
+    let (y, z) = others.split_at_mut(len);
+    [x, y, &mut z[..len]]
 }
 
 #[inline(always)]
@@ -360,7 +360,10 @@ fn shared<'x>([x, y, z]: &'x [&mut [f32]; 3]) -> [&'x [f32]; 3] {
 /// Eight numbers of a column from one on, if there are as many.
 #[inline(always)]
 pub(super) fn eight_of<F: Eight>(like: F, column: &[f32], first: usize) -> F {
-    column.get(first..).and_then(|rest| rest.first_chunk()).map_or(like.all(0.0), |lanes| like.of(*lanes))
+    column
+        .get(first..first + LANES)
+        .and_then(|lanes| lanes.first_chunk())
+        .map_or(like.all(0.0), |lanes| like.of(*lanes))
 }
 
 #[inline(always)]
@@ -371,32 +374,8 @@ fn load<F: Eight>(like: F, [x, y, z]: [&[f32]; 3], first: usize) -> Vectors<F> {
 #[inline(always)]
 fn put<F: Eight>(to: &mut [&mut [f32]; 3], first: usize, vectors: Vectors<F>) {
     for (column, lanes) in to.iter_mut().zip(vectors.0) {
-        if let Some(to) = column.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<LANES>()) {
+        if let Some(to) = column.get_mut(first..first + LANES).and_then(|lanes| lanes.first_chunk_mut::<LANES>()) {
             *to = lanes.to_array();
-        }
-    }
-}
-
-/// The vectors of eight rows; zero, where there is no row.
-#[inline(always)]
-fn taken<F: Eight>(like: F, vectors: &[Vec3], of: &[usize; LANES]) -> Vectors<F> {
-    let (mut rows, all) = ([[0.0; 4]; LANES], bytemuck::cast_slice::<_, f32>(vectors));
-    for (row, &of) in rows.iter_mut().zip(of) {
-        // The last number of each does not count.
-        match all.get(3 * of..).and_then(|rest| rest.first_chunk()) {
-            Some(quad) => *row = *quad,
-            None => *row = vectors.get(of).map_or([0.0; 4], |v| [v.x, v.y, v.z, 0.0]),
-        }
-    }
-    Vectors(like.columns_of(rows))
-}
-
-/// Puts vectors where eight rows are, or as many as there are.
-#[inline(always)]
-fn save<F: Eight>(to: &mut [Vec3], of: &[usize; LANES], vectors: Vectors<F>) {
-    for (&row, [x, y, z, _]) in of.iter().zip(vectors.rows()) {
-        if let Some(to) = to.get_mut(row) {
-            *to = Vec3::new(x, y, z);
         }
     }
 }
@@ -406,6 +385,13 @@ fn save<F: Eight>(to: &mut [Vec3], of: &[usize; LANES], vectors: Vectors<F>) {
 fn times<F: Eight>(like: F, block: &Block, v: Vectors<F>) -> Vectors<F> {
     let [a, b, c, d, e, f, g, h, i] = block;
     Vectors([row(like, [a, d, g], v), row(like, [b, e, h], v), row(like, [c, f, i], v)])
+}
+
+/// The same blocks turned round: what the links do to those at their other ends.
+#[inline(always)]
+fn times_back<F: Eight>(like: F, block: &Block, v: Vectors<F>) -> Vectors<F> {
+    let [a, b, c, d, e, f, g, h, i] = block;
+    Vectors([row(like, [a, b, c], v), row(like, [d, e, f], v), row(like, [g, h, i], v)])
 }
 
 /// Symmetric blocks times vectors.

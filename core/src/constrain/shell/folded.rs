@@ -1,10 +1,10 @@
 //! What comes of a shell's blocks: of each row with itself, of groups, and their inverses; eight rows side by side.
 
-use super::finest::{Finest, Own, WITHIN, eight_of};
-use super::strips::NONE;
+use super::finest::{Finest, Links, Own, WITHIN, eight_of};
+use super::strips::{Entry, NONE};
 use super::sweep::{BLOCK, Level, add};
 use crate::constrain::walls::Wall;
-use crate::lanes::{Eight, Kernel, LANES, not};
+use crate::lanes::{Eight, Kernel, LANES};
 use crate::math::sqrt;
 use glam::Mat3;
 
@@ -12,6 +12,8 @@ use glam::Mat3;
 const SHARE: f32 = 0.125;
 /// Where the numbers of a symmetric block lie in a whole one.
 const UPPER: [usize; 6] = [0, 3, 6, 4, 7, 8];
+/// Where they lie if it is turned round.
+const LOWER: [usize; 6] = [0, 1, 2, 4, 5, 8];
 /// Those on its diagonal.
 const DIAGONAL: [usize; 3] = [0, 3, 5];
 
@@ -28,63 +30,57 @@ impl Kernel for Settle<'_, '_> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) {
         let Self { finest, weight } = self;
-        let Finest { links, blocks, whole, alone, plate, bending, x, .. } = finest;
-        x.fill(0.0);
-        for (lane, weights) in weight.chunks(links.strips.len().max(1)).enumerate() {
-            for (strip, &weight) in x.as_chunks_mut::<LANES>().0.iter_mut().zip(weights) {
-                strip[lane] = weight;
+        let Finest { links: Links { strips, .. }, blocks, whole, mass, plate, bending, .. } = finest;
+        mass.as_flattened_mut().fill(0.0);
+        for (lane, weights) in weight.chunks(strips.len().max(1)).enumerate() {
+            for (strip, &weight) in mass.iter_mut().zip(weights) {
+                strip[lane] = if weight > 0.0 { 1.0 / weight } else { 0.0 };
             }
         }
-        let (weight, zero, one, bending) = (&**x, like.all(0.0), like.all(1.0), like.all(*bending));
-        for (strip, (whole, alone)) in whole.iter_mut().zip(&mut **alone).enumerate() {
-            let own = eight_of(like, weight, LANES * strip);
-            let moves = own.simd_gt(zero);
-            let (mut sum, mut left) = ([zero; 6], [zero; 9]);
-            let range = links.strips.range(strip);
-            for (entry, block) in range.clone().zip(blocks.get_mut(range).unwrap_or(&mut [])) {
-                let both = moves & links.strips.numbers(like, weight, entry).simd_gt(zero);
-                for (i, &number) in UPPER.iter().enumerate() {
-                    sum[i] = sum[i] - like.of(block[number]);
+        let (zero, bending) = (like.all(0.0), like.all(*bending));
+        // Later strips have told earlier ones what is theirs when the turn of these comes.
+        for (strip, mass) in mass.iter().enumerate().rev() {
+            let mut sum = [zero; 6];
+            let range = strips.all(strip);
+            let near = plate.near.get(range.clone()).unwrap_or(&[]);
+            for ((entry, block), near) in strips.each_mut(range, blocks).zip(near) {
+                let (near, mut back) = (like.of(*near) * bending, [zero; 6]);
+                for i in 0..6 {
+                    sum[i] = entry.added(like, sum[i], zero - like.of(block[UPPER[i]]));
+                    back[i] = like.of(block[LOWER[i]]);
                 }
-                let near = plate.near_of(like, entry) * bending;
-                for (i, number) in block.iter_mut().enumerate() {
-                    left[i] = left[i] - settled(like, number, i, near, both);
+                for i in [0, 4, 8] {
+                    block[i] = (like.of(block[i]) + near).to_array();
                 }
+                take_from(like, whole, &entry, back);
             }
-            for entry in links.strips.mixed(strip) {
-                let (Some(block), owners) = (blocks.get_mut(entry), links.strips.owners(entry)) else { return };
-                let both = links.strips.numbers(like, weight, entry).simd_gt(zero)
-                    & owners.lent_number(like, own).simd_gt(zero);
-                for (i, &number) in UPPER.iter().enumerate() {
-                    sum[i] = owners.add_number(like, sum[i], zero - like.of(block[number]));
-                }
-                let near = plate.near_of(like, entry) * bending;
-                for (i, number) in block.iter_mut().enumerate() {
-                    left[i] = owners.add_number(like, left[i], zero - settled(like, number, i, near, both));
-                }
+            let (mass, edges) = (like.of(*mass), eight_of(like, plate.own, LANES * strip));
+            for i in DIAGONAL {
+                sum[i] = sum[i] + (mass + edges * bending);
             }
-            let mass = one / own;
-            let [edges, all] = plate.of_strip(like, strip);
-            for i in 0..3 {
-                sum[DIAGONAL[i]] = sum[DIAGONAL[i]] + (mass + edges * bending);
-                left[4 * i] = left[4 * i] + (mass + all * bending);
-            }
-            for (whole, sum) in whole.iter_mut().zip(sum) {
-                *whole = ((like.of(*whole) + sum) & moves).to_array();
-            }
-            for (alone, left) in alone.iter_mut().zip(left) {
-                *alone = (left & moves).to_array();
+            for (to, sum) in whole.get_mut(strip).into_iter().flatten().zip(sum) {
+                *to = ((like.of(*to) + sum) & mass.simd_gt(zero)).to_array();
             }
         }
     }
 }
 
-/// Adds to a number of blocks what bends along edges, zero where one of both does not move, and tells what it was there.
+/// Takes numbers from those of the rows that an entry links with.
 #[inline(always)]
-fn settled<F: Eight>(like: F, number: &mut [f32; LANES], i: usize, near: F, both: F) -> F {
-    let own = like.of(*number);
-    *number = ((own + if i.is_multiple_of(4) { near } else { like.all(0.0) }) & both).to_array();
-    own & not(both)
+fn take_from<F: Eight, const N: usize>(like: F, to: &mut [[[f32; LANES]; N]], entry: &Entry<'_>, parts: [F; N]) {
+    if let Some(to) = entry.strip().and_then(|strip| to.get_mut(strip)) {
+        for (to, part) in to.iter_mut().zip(parts) {
+            *to = (like.of(*to) - part).to_array();
+        }
+        return;
+    }
+    for (i, part) in parts.into_iter().enumerate() {
+        for (&slot, part) in entry.columns().iter().zip(part.to_array()) {
+            if let Some(to) = to.get_mut(slot as usize / LANES) {
+                to[i][slot as usize % LANES] -= part;
+            }
+        }
+    }
 }
 
 /// Sums up the finest's blocks for the next graph. Groups that go as one would bend sharply between each other: how they do is left out, and
@@ -100,12 +96,11 @@ impl Kernel for Sum<'_, '_> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) {
         let Self { finest, next } = self;
-        let Finest { links, blocks, whole, plate, bending, into, .. } = finest;
+        let Finest { links, blocks, whole, mass, plate, bending, into, .. } = finest;
         let bending = like.all(*bending);
-        let share = like.all(SHARE - 1.0);
+        let (share, zero) = (like.all(SHARE - 1.0), like.all(0.0));
         for (strip, whole) in whole.iter().enumerate() {
-            let [own, _] = plate.of_strip(like, strip);
-            let less = own * share * bending;
+            let less = eight_of(like, plate.own, LANES * strip) * share * bending;
             let [xx, xy, xz, yy, yz, zz] = whole.map(
                 #[inline(always)]
                 |lanes| like.of(lanes),
@@ -116,17 +111,27 @@ impl Kernel for Sum<'_, '_> {
                     add(next.whole, group as usize, block);
                 }
             }
-            for entry in links.strips.all(strip) {
-                let (Some(block), Some(sums)) = (blocks.get(entry), links.sums.get(entry)) else { return };
-                let near = plate.near_of(like, entry) * bending;
+            let (range, masses) = (links.strips.all(strip), mass.as_flattened());
+            let (Some(near), Some(sums)) = (plate.near.get(range.clone()), links.sums.get(range.clone())) else {
+                return;
+            };
+            for (((entry, block), near), sums) in links.strips.each(range, blocks).zip(near).zip(sums) {
+                let (own, other) = (eight_of(like, masses, LANES * strip), entry.numbers(like, masses));
+                let both = (entry.lent(like, own).simd_gt(zero) & other.simd_gt(zero)).to_bitmask();
+                let near = like.of(*near) * bending;
                 let [a, b, c, d, e, f, g, h, i] = block.map(
                     #[inline(always)]
                     |lanes| like.of(lanes),
                 );
-                let rows = blocks_of([a - near, b, c, d, e - near, f, g, h, i - near]);
-                for (&to, block) in sums.iter().zip(&rows).filter(|(to, _)| **to != NONE) {
-                    let blocks = if to & WITHIN == 0 { &mut *next.blocks } else { &mut *next.whole };
-                    add(blocks, (to & !WITHIN) as usize, block);
+                let there = blocks_of([a - near, b, c, d, e - near, f, g, h, i - near]);
+                let back = blocks_of([a - near, d, g, b, e - near, h, c, f, i - near]);
+                for (sums, rows) in sums.iter().zip([there, back]) {
+                    for (lane, (&to, block)) in sums.iter().zip(&rows).enumerate() {
+                        if to != NONE && both & 1 << lane != 0 {
+                            let blocks = if to & WITHIN == 0 { &mut *next.blocks } else { &mut *next.whole };
+                            add(blocks, (to & !WITHIN) as usize, block);
+                        }
+                    }
                 }
             }
         }
@@ -163,19 +168,20 @@ impl Finest<'_> {
     /// Adds to the blocks of rows with themselves a half of how hard others of their strips hold them, which sweeps take as they were: so that a
     /// sweep forth and one back never go too far.
     pub(super) fn soften(&mut self) {
-        for (strip, (own, soft)) in self.inverse.iter_mut().zip(&mut *self.soft).enumerate() {
+        let all = self.inverse.iter_mut().zip(&mut *self.soft).zip(&*self.mass);
+        for (strip, ((own, soft), mass)) in all.enumerate() {
             *soft = [0.0; LANES];
-            for entry in self.links.strips.all(strip) {
-                let within = self.links.strips.within(entry);
-                if within == 0 {
-                    continue;
-                }
-                let Some(block) = self.blocks.get(entry) else { return };
+            for (entry, block) in self.links.strips.each(self.links.strips.mixed(strip), self.blocks) {
+                let within = entry.within(strip);
                 for lane in (0..LANES).filter(|lane| within & 1 << lane != 0) {
                     let held = 0.5 * sqrt(block.iter().map(|lanes| lanes[lane] * lanes[lane]).sum());
-                    let row = self.links.strips.owner(entry, lane);
-                    soft[row] += held;
-                    DIAGONAL.into_iter().for_each(|i| own[i][row] += held);
+                    let rows = [entry.owner(lane), entry.columns()[lane] as usize % LANES];
+                    if rows.iter().all(|&row| mass[row] > 0.0) {
+                        for row in rows {
+                            soft[row] += held;
+                            DIAGONAL.into_iter().for_each(|i| own[i][row] += held);
+                        }
+                    }
                 }
             }
         }

@@ -9,6 +9,7 @@ mod folded;
 mod linear;
 mod membrane;
 mod mesh;
+mod parts;
 mod plate;
 mod resist;
 mod solver;
@@ -194,13 +195,8 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     fn update(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
         let Rest { cells, bends, graphs, links, plate, .. } = self.rest(kept);
         let ([finest, ..], room) = (Graph::all(graphs), Room::of(self.counts()));
-        let moves = |&particle: &u32| {
-            let row = bodies.row_of_start(particle)?;
-            let inverse = bodies.inverse_mass[row];
-            Some(inverse > 0.0 && inverse < f32::INFINITY)
-        };
         let edges = Links::of(&room, cells.len(), links).strips;
-        let particles = self.particles.as_ref().iter().map(moves);
+        let particles = self.particles.as_ref().iter().map(|&particle| bodies.row_of_start(particle).is_some());
         Plate::of(&room, plate).update(&finest, &edges, &self.shape(cells, bends), particles, work);
     }
 

@@ -1,11 +1,10 @@
 //! The matrix of bending: of a shell that hardly stretches it is always the same, and one number for each two particles.
 
 use super::ShellParams;
-use super::finest::eight_of;
 use super::fold::RestFold;
 use super::membrane::Cell;
 use super::mesh::{Graph, Room, link, sorted};
-use super::strips::{self, Strips};
+use super::strips::{self, Place, Strips};
 use crate::cloth::Hinge;
 use crate::lanes::{Eight, LANES, Vectors};
 use crate::math::{max, min, sqrt};
@@ -18,10 +17,9 @@ const PATCH: usize = 4 * SIDES;
 const ASKED: usize = 64;
 /// The most that a thin shell resists bending, in its triangles, as a share of stretching.
 const THIN: f32 = 0.05;
-/// What a particle is: it moves, it is fixed, it is not there. Nothing is known of it before that is set.
-const MOVES: u32 = 1;
-const FIXED: u32 = 2;
-const GONE: u32 = 3;
+/// A particle is there, or it is not. Nothing is known of it before that is set.
+const THERE: u32 = 1;
+const GONE: u32 = 2;
 
 /// How particles hold each other by bending, where bending stiffness is one: ½ xᵀ K x is the energy of positions x, for each coordinate by itself.
 ///
@@ -34,15 +32,13 @@ const GONE: u32 = 3;
 /// farther than edges do.
 #[derive(Default)]
 pub(super) struct Plate<'m> {
-    /// What each particle is in the matrix.
+    /// Whether each particle is there in the matrix.
     roll: &'m mut [u32],
     /// The largest of the squares of the curvatures that a radian makes \[1/m²\] and of how slender their triangles are.
     steepest: &'m mut [f32],
     /// What edges do to particles by their places in strips, and along the links of the finest graph.
     pub(super) own: &'m mut [f32],
     pub(super) near: &'m mut [[f32; LANES]],
-    /// What all of it does to particles where those that move all go the same way.
-    pub(super) alone: &'m mut [f32],
     /// The rest: who bends with each, and numbers.
     links: Strips<'m>,
     numbers: &'m mut [[f32; LANES]],
@@ -62,7 +58,7 @@ pub(super) fn words(room: &Room) -> usize {
     let padded = LANES * rows.div_ceil(LANES);
     let near = strips::entries(rows, room.links[0]).saturating_mul(LANES);
     let numbers = entries(room).saturating_mul(LANES);
-    let own = (2 * padded).saturating_add(rows + 1);
+    let own = padded.saturating_add(rows + 1);
     if rows == 0 { 0 } else { own.saturating_add(near).saturating_add(pattern(room)).saturating_add(numbers) }
 }
 
@@ -92,42 +88,36 @@ impl<'m> Plate<'m> {
         let links = Strips::of(rows, entries(room), take(&mut rest, pattern(room)));
         let roll = take(&mut rest, rows);
         let padded = LANES * rows.div_ceil(LANES);
-        let [steepest, own, alone] = [1, padded, padded].map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
+        let [steepest, own] = [1, padded].map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
         let lanes = [strips::entries(rows, room.links[0]), entries(room)].map(|entries| entries.saturating_mul(LANES));
         let [near, numbers] = lanes.map(|len| bytemuck::cast_slice_mut(take(&mut rest, len)));
-        Self { roll, steepest, own, near, alone, links, numbers }
+        Self { roll, steepest, own, near, links, numbers }
     }
 
-    /// What bending does beyond what is in blocks, of which these are the places of a strip's rows.
+    /// What so many times bending does to the rows of a strip beyond what is in blocks, `own` being their places; what it does to others is added
+    /// to the sums there.
     #[inline(always)]
-    pub(super) fn bend<F: Eight>(&self, like: F, x: [&[f32]; 3], strip: usize, own: Vectors<F>) -> Vectors<F> {
+    pub(super) fn bend<F: Eight>(
+        &self,
+        like: F,
+        (x, sums): ([&[f32]; 3], &mut [&mut [f32]; 3]),
+        strip: usize,
+        own: Vectors<F>,
+        bending: F,
+    ) -> Vectors<F> {
         let mut sum = Vectors([like.all(0.0); 3]);
-        let range = self.links.range(strip);
-        for (entry, numbers) in range.clone().zip(self.numbers.get(range).unwrap_or(&[])) {
-            sum = sum + (self.links.vectors(like, x, entry) - own) * like.of(*numbers);
+        for (entry, numbers) in self.links.each(self.links.range(strip), self.numbers) {
+            let parts = (entry.vectors(like, x) - own) * (like.of(*numbers) * bending);
+            sum = sum + parts;
+            entry.take_from(like, sums, parts);
         }
-        for entry in self.links.mixed(strip) {
-            let (Some(numbers), owners) = (self.numbers.get(entry), self.links.owners(entry)) else { break };
-            let ways = self.links.vectors(like, x, entry) - owners.lent(like, own);
-            sum = owners.add(like, sum, ways * like.of(*numbers));
+        for (entry, numbers) in self.links.each(self.links.mixed(strip), self.numbers) {
+            let ways = entry.vectors(like, x) - entry.owners().lent(like, own);
+            let parts = ways * (like.of(*numbers) * bending);
+            sum = entry.owners().add(like, sum, parts);
+            entry.take_from(like, sums, parts);
         }
         sum
-    }
-
-    /// What edges do to the particles of a strip, and all of it where all go the same way.
-    #[inline(always)]
-    pub(super) fn of_strip<F: Eight>(&self, like: F, strip: usize) -> [F; 2] {
-        [eight_of(like, self.own, LANES * strip), eight_of(like, self.alone, LANES * strip)]
-    }
-
-    /// What edges along the links of an entry resist by bending.
-    #[inline(always)]
-    pub(super) fn near_of<F: Eight>(&self, like: F, entry: usize) -> F {
-        self.near.get(entry).map_or(
-            like.all(0.0),
-            #[inline(always)]
-            |near| like.of(*near),
-        )
     }
 
     /// Tells whether a shell resists bending so much less than stretching that its triangles stay what they are at rest; what is slender is soon
@@ -138,18 +128,18 @@ impl<'m> Plate<'m> {
         params.bending * steepest <= THIN * min(min(warp, weft), params.shear)
     }
 
-    /// Makes the matrix, if other particles are there, or move, than when it was made: of each is said whether it moves, if it is there.
+    /// Makes the matrix, if other particles are there than when it was made: of each is said whether it is.
     pub(super) fn update(
         &mut self,
         graph: &Graph<'_>,
         edges: &Strips<'_>,
         shape: &Shape<'_>,
-        particles: impl Iterator<Item = Option<bool>>,
+        particles: impl Iterator<Item = bool>,
         work: &mut [u32],
     ) {
         let mut same = true;
         for (was, is) in self.roll.iter_mut().zip(particles) {
-            let is = is.map_or(GONE, |moves| if moves { MOVES } else { FIXED });
+            let is = if is { THERE } else { GONE };
             same &= core::mem::replace(was, is) == is;
         }
         if same || graph.rows() == 0 {
@@ -169,7 +159,7 @@ impl<'m> Plate<'m> {
             self.add(&patch, cell.area);
         }
         self.part(graph, edges);
-        let all = self.own.iter().chain(self.near.as_flattened()).chain(&*self.alone);
+        let all = self.own.iter().chain(self.near.as_flattened());
         if !all.chain(self.numbers.as_flattened()).all(|number| number.is_finite()) {
             // Which bits a NaN has depends on the machine, and these words are in the hash.
             self.clear();
@@ -178,8 +168,7 @@ impl<'m> Plate<'m> {
     }
 
     fn clear(&mut self) {
-        for numbers in [&mut *self.own, &mut *self.alone, self.near.as_flattened_mut(), self.numbers.as_flattened_mut()]
-        {
+        for numbers in [&mut *self.own, self.near.as_flattened_mut(), self.numbers.as_flattened_mut()] {
             numbers.fill(0.0);
         }
         self.steepest[0] = 0.0;
@@ -194,24 +183,20 @@ impl<'m> Plate<'m> {
                 // So nothing comes of it where all go the same way.
                 let slot = self.links.slot(row as usize);
                 self.own[slot] -= number;
-                if self.roll[other as usize] == FIXED {
-                    self.alone[slot] -= number;
-                } else if self.roll[row as usize] == MOVES
-                    && let Some((entry, lane)) = self.links.place(row as usize, other)
-                {
+                if let Some(Place { entry, lane, back: false }) = self.links.place(row as usize, other) {
                     self.numbers[entry][lane] += number;
                 }
             }
         }
     }
 
-    /// Gives edges their part: what each particle does to itself is shared among its edges. What does not move gets none.
+    /// Gives edges their part: what each particle does to itself is shared among its edges.
     fn part(&mut self, graph: &Graph<'_>, edges: &Strips<'_>) {
         let slot = |row: usize| edges.slot(row);
         let share = |own: &[f32], row: usize| own[slot(row)] / graph.range(row).len() as f32;
         for row in 0..self.roll.len() {
             for &other in graph.row(row) {
-                if let Some((entry, lane)) = edges.place(row, other)
+                if let Some(Place { entry, lane, back: false }) = edges.place(row, other)
                     && self.links.place(row, other).is_some()
                 {
                     self.near[entry][lane] = -0.5 * (share(self.own, row) + share(self.own, other as usize));
@@ -219,16 +204,13 @@ impl<'m> Plate<'m> {
             }
         }
         for row in 0..self.roll.len() {
-            let moves = self.roll[row] == MOVES;
             self.own[slot(row)] = 0.0;
             for &other in graph.row(row) {
-                let Some((entry, lane)) = edges.place(row, other) else { continue };
-                let near = &mut self.near[entry][lane];
-                let both = moves && self.roll[other as usize] == MOVES;
-                self.own[slot(row)] -= if moves { *near } else { 0.0 };
-                match self.links.place(row, other) {
-                    Some((entry, lane)) if both => self.numbers[entry][lane] -= *near,
-                    _ => *near = 0.0,
+                let Some(Place { entry, lane, back }) = edges.place(row, other) else { continue };
+                let near = self.near[entry][lane];
+                self.own[slot(row)] -= near;
+                if !back && let Some(Place { entry, lane, .. }) = self.links.place(row, other) {
+                    self.numbers[entry][lane] -= near;
                 }
             }
         }

@@ -1,14 +1,18 @@
-//! Eight rows of a matrix side by side, so that products and sweeps go through them in lanes.
+//! Eight rows of a symmetric matrix side by side, so that products and sweeps go through them in lanes.
 //!
 //! All rows are cut into eight parts of as many one behind the other, and a strip has one row of each part: those beside each other in a lane
 //! follow each other in the mesh, those beside each other in a strip are far apart. So a sweep through one strip after the other
 //! is one of Gauss and Seidel's method, and the rows that those of a strip are linked with most often are those of another.
 //!
+//! Each link is there once, at the row of the later strip: what it does to both rows is told when that strip's turn comes, since matrices of fine
+//! meshes are larger than caches, and it is the memory that products and sweeps wait for.
+//!
 //! Where a row has many more links than those beside it, the rest of its links go eight side by side in entries of their own, which are
-//! mixed: any lane may have a link of any row. So there is always room, whatever the mesh, for little more than as many places as links.
+//! mixed: any lane may have a link of any row. So there is always room, whatever the mesh, for little more than as many places as links. Links within a
+//! strip, of which there are some in small meshes, are among these.
 
 use super::mesh::Graph;
-use crate::lanes::{Eight, LANES, Vectors};
+use crate::lanes::{Eight, LANES, Vectors, mask_of};
 use crate::memory::take;
 use core::ops::Range;
 
@@ -24,26 +28,30 @@ const WORTH: usize = 3;
 const MIXED: u32 = 1 << 31;
 /// A mixed entry whose lanes are those of the strip.
 const IN_TURN: u32 = MIXED | 0o7654_3210;
-/// A bit for each lane.
-pub(super) const ALL: u32 = (1 << LANES) - 1;
-
-/// Who is linked with whom, in strips of eight rows: an entry has one link of each, or none, and names the row itself then. Rows are named by
-/// their places: the lane in the strip, and eight times the strip.
+/// Who is linked with whom, in strips of eight rows: an entry has one link of each to a row of an earlier strip, or none, and names the row itself
+/// then. Rows are named by their places: the lane in the strip, and eight times the strip.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Strips<'m> {
     /// Where the entries of each strip begin and which is the first mixed one; and where the last one's end.
     starts: &'m [u32],
     /// The first of eight rows that lie one behind the other as their links do, if they do; of mixed entries whose links they have.
     bases: &'m [u32],
-    /// A bit for each link to a row of an earlier strip, and one after these for each to one of the same.
-    below: &'m [u32],
     columns: &'m [[u32; LANES]],
 }
 
-/// Entries for so many links of so many rows. If all are mixed it takes an eighth of the links, and in each strip some places stay empty; with half of
-/// that more, those of uneven meshes seldom have to be.
+/// Where a link is: its entry and lane, and whether it is there as one from the other row.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) entry: usize,
+    pub(super) lane: usize,
+    pub(super) back: bool,
+}
+
+/// Entries for so many links of so many rows, there and back. If all are mixed it takes a sixteenth of the links, and in each strip some places stay
+/// empty; with half of that more, those of uneven meshes seldom have to be.
 pub(super) fn entries(rows: usize, links: usize) -> usize {
-    links / LANES + links / (2 * LANES) + rows.div_ceil(LANES).min(links)
+    let once = links / 2;
+    once / LANES + once / (2 * LANES) + rows.div_ceil(LANES).min(once)
 }
 
 /// The number of words that tell where entries begin.
@@ -53,7 +61,7 @@ fn ends(rows: usize) -> usize {
 
 /// Words for so many rows and entries.
 pub(super) fn words(rows: usize, entries: usize) -> usize {
-    entries.saturating_mul(2 + LANES).saturating_add(ends(rows))
+    entries.saturating_mul(1 + LANES).saturating_add(ends(rows))
 }
 
 impl<'m> Strips<'m> {
@@ -64,8 +72,8 @@ impl<'m> Strips<'m> {
             rest = others;
             first
         };
-        let (starts, bases, below) = (next(ends(rows)), next(entries), next(entries));
-        Self { starts, bases, below, columns: bytemuck::cast_slice(next(entries.saturating_mul(LANES))) }
+        let (starts, bases) = (next(ends(rows)), next(entries));
+        Self { starts, bases, columns: bytemuck::cast_slice(next(entries.saturating_mul(LANES))) }
     }
 
     /// Puts the links of a graph into words, with others to work with; tells whether there is room, as there is for so many links as `entries`
@@ -74,12 +82,12 @@ impl<'m> Strips<'m> {
         let rows = graph.starts.len().saturating_sub(1);
         let mut rest = words;
         let starts = take(&mut rest, ends(rows));
-        let [bases, below] = [0, 1].map(|_| take(&mut rest, entries));
+        let bases = take(&mut rest, entries);
         let columns = bytemuck::cast_slice_mut(take(&mut rest, entries.saturating_mul(LANES)));
         let strips = rows.div_ceil(LANES);
         let least = (0..strips).map(|strip| count(graph, [strip, strips]).div_ceil(LANES)).sum();
         let keys = work.get_mut(..KEYS)?;
-        let mut making = Making { bases, below, columns, end: 0, spare: entries.checked_sub(least)? };
+        let mut making = Making { bases, columns, end: 0, spare: entries.checked_sub(least)? };
         for (strip, [start, mixed]) in starts.as_chunks_mut().0.iter_mut().enumerate() {
             *start = making.end as u32;
             *mixed = making.strip(graph, [strip, strips], keys)? as u32;
@@ -103,13 +111,13 @@ impl<'m> Strips<'m> {
         self.between(2 * strip, 2 * strip + 1)
     }
 
-    /// The mixed entries of a strip: most often none.
+    /// Its mixed entries: most often none.
     #[inline(always)]
     pub(super) fn mixed(&self, strip: usize) -> Range<usize> {
         self.between(2 * strip + 1, 2 * strip + 2)
     }
 
-    /// All entries of a strip.
+    /// All of its entries.
     #[inline(always)]
     pub(super) fn all(&self, strip: usize) -> Range<usize> {
         self.between(2 * strip, 2 * strip + 2)
@@ -123,35 +131,34 @@ impl<'m> Strips<'m> {
         }
     }
 
-    /// Whose links a mixed entry has.
+    /// Entries, and what there is of each.
     #[inline(always)]
-    pub(super) fn owners(&self, entry: usize) -> Owners {
-        Owners(self.bases.get(entry).copied().unwrap_or(IN_TURN))
+    pub(super) fn each<'a, T>(
+        &self,
+        range: Range<usize>,
+        of: &'a [T],
+    ) -> impl Iterator<Item = (Entry<'m>, &'a T)> + use<'a, 'm, T> {
+        self.entries_in(range.clone()).zip(of.get(range).unwrap_or(&[]))
     }
 
-    /// The lane of the row whose link an entry has in one.
+    /// The same to change it.
     #[inline(always)]
-    pub(super) fn owner(&self, entry: usize, lane: usize) -> usize {
-        match self.owners(entry) {
-            Owners(base) if base & MIXED == 0 || base == NONE => lane,
-            owners => owners.of(lane),
-        }
+    pub(super) fn each_mut<'a, T>(
+        &self,
+        range: Range<usize>,
+        of: &'a mut [T],
+    ) -> impl Iterator<Item = (Entry<'m>, &'a mut T)> + use<'a, 'm, T> {
+        self.entries_in(range.clone()).zip(of.get_mut(range).unwrap_or(&mut []))
     }
 
     #[inline(always)]
-    pub(super) fn columns(&self, entry: usize) -> &'m [u32; LANES] {
-        self.columns.get(entry).unwrap_or(&[0; LANES])
-    }
-
-    /// A bit for each of an entry's links to a row of an earlier strip.
-    #[inline(always)]
-    pub(super) fn below(&self, entry: usize) -> u32 {
-        self.below.get(entry).map_or(0, |below| below & ALL)
-    }
-
-    /// A bit for each of an entry's links to a row of the same strip.
-    pub(super) fn within(&self, entry: usize) -> u32 {
-        self.below.get(entry).map_or(0, |below| below >> LANES)
+    fn entries_in(&self, range: Range<usize>) -> impl Iterator<Item = Entry<'m>> + use<'m> {
+        let (bases, columns) = (self.bases.get(range.clone()), self.columns.get(range));
+        let entries = bases.unwrap_or(&[]).iter().zip(columns.unwrap_or(&[]));
+        entries.map(
+            #[inline(always)]
+            |(&base, columns)| Entry { base, columns },
+        )
     }
 
     /// The strip of a row, and its lane.
@@ -178,37 +185,144 @@ impl<'m> Strips<'m> {
         rows
     }
 
-    /// The entry that has the link of two rows, and its lane there.
-    pub(super) fn place(&self, row: usize, other: u32) -> Option<(usize, usize)> {
-        let ((strip, lane), (there, beside)) = (self.at(row), self.at(other as usize));
-        let other = (LANES * there + beside) as u32;
-        if other == (LANES * strip + lane) as u32 {
+    /// Where the link of two rows is.
+    pub(super) fn place(&self, row: usize, other: u32) -> Option<Place> {
+        let other = other as usize;
+        let [one, two] = [row, other].map(|row| self.slot(row));
+        let (from, to, back) = if one > two { (one, two, false) } else { (two, one, true) };
+        let (strip, lane, to) = (from / LANES, from % LANES, to as u32);
+        if one == two {
             return None;
         }
-        let plain = self.range(strip).find(|&entry| self.columns(entry).get(lane) == Some(&other));
-        plain.map(|entry| (entry, lane)).or_else(|| {
-            self.mixed(strip).find_map(|entry| {
-                let mut lanes = self.columns(entry).iter().enumerate();
-                let is_it = |&(at, &column): &(usize, &u32)| column == other && self.owner(entry, at) == lane;
-                lanes.find(is_it).map(|(at, _)| (entry, at))
-            })
-        })
+        let all = self.all(strip);
+        let mut entries = all.clone().zip(self.entries_in(all));
+        let found = entries.find_map(|(entry, links)| {
+            if !links.is_mixed() {
+                return (links.columns[lane] == to).then_some((entry, lane));
+            }
+            let mut lanes = links.columns.iter().enumerate();
+            let is_it = |&(at, &column): &(usize, &u32)| column == to && links.owner(at) == lane;
+            lanes.find(is_it).map(|(at, _)| (entry, at))
+        });
+        found.map(|(entry, lane)| Place { entry, lane, back })
+    }
+}
+
+/// Eight links, one in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Entry<'m> {
+    /// See [`Strips`].
+    base: u32,
+    columns: &'m [u32; LANES],
+}
+
+impl<'m> Entry<'m> {
+    /// The places that they lead to.
+    #[inline(always)]
+    pub(super) fn columns(&self) -> &'m [u32; LANES] {
+        self.columns
     }
 
-    /// The numbers of those that an entry links with.
+    /// Whose links a mixed entry has.
     #[inline(always)]
-    pub(super) fn numbers<F: Eight>(&self, like: F, column: &[f32], entry: usize) -> F {
-        let base = self.bases.get(entry).map_or(usize::MAX, |&base| base as usize);
-        match column.get(base..).and_then(|run| run.first_chunk()) {
+    pub(super) fn owners(&self) -> Owners {
+        Owners(self.base)
+    }
+
+    /// The lane of the row whose link a mixed entry has in one.
+    #[inline(always)]
+    pub(super) fn owner(&self, lane: usize) -> usize {
+        self.owners().of(lane)
+    }
+
+    #[inline(always)]
+    fn is_mixed(&self) -> bool {
+        self.base & MIXED != 0 && self.base != NONE
+    }
+
+    /// What rows have of their own, for the links of each.
+    #[inline(always)]
+    pub(super) fn lent<F: Eight>(&self, like: F, own: F) -> F {
+        if self.is_mixed() { self.owners().lent_number(like, own) } else { own }
+    }
+
+    /// With what comes of links added to the sums of their rows.
+    #[inline(always)]
+    pub(super) fn added<F: Eight>(&self, like: F, sum: F, parts: F) -> F {
+        if self.is_mixed() { self.owners().add_number(like, sum, parts) } else { sum + parts }
+    }
+
+    /// The strip whose rows it links with, lane by lane, if that is so.
+    #[inline(always)]
+    pub(super) fn strip(&self) -> Option<usize> {
+        let base = self.base as usize;
+        (self.base & MIXED == 0 && base.is_multiple_of(LANES)).then_some(base / LANES)
+    }
+
+    /// A bit for each lane of a mixed entry that leads to a row of the same strip.
+    #[inline(always)]
+    pub(super) fn within(&self, strip: usize) -> u32 {
+        let lanes = self.columns.iter().enumerate();
+        lanes.fold(0, |bits, (lane, &other)| bits | u32::from(other as usize / LANES == strip) << lane)
+    }
+
+    /// The same as a mask, if there is any.
+    #[inline(always)]
+    pub(super) fn mask_within<F: Eight>(&self, like: F, strip: usize) -> Option<F> {
+        let within = self.within(strip);
+        (within != 0).then(
+            #[inline(always)]
+            || mask_of(like, within),
+        )
+    }
+
+    /// The run of eight that it links with, if they are one.
+    #[inline(always)]
+    fn run(&self) -> Range<usize> {
+        let base = self.base as usize;
+        base..base.wrapping_add(LANES)
+    }
+
+    /// The numbers of those that it links with.
+    #[inline(always)]
+    pub(super) fn numbers<F: Eight>(&self, like: F, column: &[f32]) -> F {
+        match column.get(self.run()).and_then(|run| run.first_chunk()) {
             Some(run) => like.of(*run),
-            None => gathered(like, column, self.columns(entry)),
+            None => gathered(like, column, self.columns),
         }
     }
 
-    /// The vectors of those that an entry links with.
+    /// Their vectors, by columns of one length.
     #[inline(always)]
-    pub(super) fn vectors<F: Eight>(&self, like: F, [x, y, z]: [&[f32]; 3], entry: usize) -> Vectors<F> {
-        Vectors([self.numbers(like, x, entry), self.numbers(like, y, entry), self.numbers(like, z, entry)])
+    pub(super) fn vectors<F: Eight>(&self, like: F, [x, y, z]: [&[f32]; 3]) -> Vectors<F> {
+        Vectors([self.numbers(like, x), self.numbers(like, y), self.numbers(like, z)])
+    }
+
+    /// Takes vectors from theirs.
+    #[inline(always)]
+    pub(super) fn take_from<F: Eight>(&self, like: F, to: &mut [&mut [f32]; 3], Vectors([a, b, c]): Vectors<F>) {
+        let [x, y, z] = to;
+        self.take_numbers(like, x, a);
+        self.take_numbers(like, y, b);
+        self.take_numbers(like, z, c);
+    }
+
+    #[inline(always)]
+    fn take_numbers<F: Eight>(&self, like: F, to: &mut [f32], part: F) {
+        match to.get_mut(self.run()).and_then(|run| run.first_chunk_mut()) {
+            Some(run) => *run = (like.of(*run) - part).to_array(),
+            None => scatter(to, self.columns, part.to_array()),
+        }
+    }
+}
+
+/// Takes numbers from those of some rows, one after the other.
+#[inline(always)]
+fn scatter(column: &mut [f32], rows: &[u32; LANES], parts: [f32; LANES]) {
+    for (&row, part) in rows.iter().zip(parts) {
+        if let Some(to) = column.get_mut(row as usize) {
+            *to -= part;
+        }
     }
 }
 
@@ -254,7 +368,7 @@ impl Owners {
 
     /// The same for numbers.
     #[inline(always)]
-    pub(super) fn lent_number<F: Eight>(self, like: F, own: F) -> F {
+    fn lent_number<F: Eight>(self, like: F, own: F) -> F {
         let (own, mut lanes) = (own.to_array(), [0.0; LANES]);
         for (lane, number) in lanes.iter_mut().enumerate() {
             *number = own[self.of(lane)];
@@ -264,7 +378,7 @@ impl Owners {
 
     /// The same for numbers.
     #[inline(always)]
-    pub(super) fn add_number<F: Eight>(self, like: F, sum: F, parts: F) -> F {
+    fn add_number<F: Eight>(self, like: F, sum: F, parts: F) -> F {
         let mut lanes = sum.to_array();
         for (lane, part) in parts.to_array().into_iter().enumerate() {
             lanes[self.of(lane)] += part;
@@ -276,7 +390,6 @@ impl Owners {
 /// Entries as they are made.
 struct Making<'w> {
     bases: &'w mut [u32],
-    below: &'w mut [u32],
     columns: &'w mut [[u32; LANES]],
     end: usize,
     /// Entries that would be left if all from here on were mixed.
@@ -293,7 +406,8 @@ struct Plan {
 }
 
 impl Plan {
-    fn of(keys: &[u32], slots: usize) -> Self {
+    /// By the keys of links to earlier strips, the number of those within the strip, and that of all places.
+    fn of(keys: &[u32], within: usize, slots: usize) -> Self {
         let (mut runs, mut others, mut all) = (0, [0; LANES], [0; LANES]);
         for links in together(keys) {
             let run = is_run(links, slots);
@@ -308,11 +422,12 @@ impl Plan {
             // Where few go together, each has its own places: as many as whoever has most.
             (runs, others) = (0, all);
         }
-        let mixed = |plain: usize| others.iter().map(|&count| usize::saturating_sub(count, plain)).sum::<usize>();
-        let cost = |&plain: &usize| plain + WORTH * mixed(plain).div_ceil(LANES);
+        let beyond = |plain: usize| others.iter().map(|&count| usize::saturating_sub(count, plain)).sum::<usize>();
+        let mixed = |plain: usize| (within + beyond(plain)).div_ceil(LANES);
+        let cost = |&plain: &usize| plain + WORTH * mixed(plain);
         // The most of those that cost the same.
         let plain = (0..=most(&others)).rev().min_by_key(cost).unwrap_or(0);
-        Self { runs, plain, mixed: mixed(plain).div_ceil(LANES) }
+        Self { runs, plain, mixed: mixed(plain) }
     }
 }
 
@@ -320,68 +435,49 @@ impl Making<'_> {
     /// Adds the entries of a strip, one of so many, and tells which is the first mixed one.
     fn strip(&mut self, graph: &Graph<'_>, [strip, strips]: [usize; 2], keys: &mut [u32]) -> Option<usize> {
         let least = count(graph, [strip, strips]).div_ceil(LANES);
-        let keys = sorted(graph, [strip, strips], keys);
-        let plan = keys.map(|keys| Plan::of(keys, LANES * strips));
+        let is_within = |&(_, slot): &(usize, usize)| slot / LANES == strip;
+        let within = kept(graph, [strip, strips]).filter(is_within).count();
+        let keys = sorted(kept(graph, [strip, strips]).filter(|link| !is_within(link)), keys);
+        let plan = keys.map(|keys| Plan::of(keys, within, LANES * strips));
         let plan = plan.filter(|plan| plan.runs + plan.plain + plan.mixed <= least + self.spare);
         let plan = plan.unwrap_or(Plan { runs: 0, plain: 0, mixed: least });
         self.spare = (self.spare + least).checked_sub(plan.runs + plan.plain + plan.mixed)?;
-        let first = self.end + plan.runs;
-        let mixed = first + plan.plain;
-        (self.end..mixed).try_for_each(|_| self.add(strip, NONE))?;
+        let mut run = self.end;
+        let plain = run + plan.runs;
+        let mut filling = Filling { plain, mixed: plain + plan.plain, counts: [0; LANES], left: 0 };
+        (run..filling.mixed).try_for_each(|_| self.add(strip, NONE))?;
         (0..plan.mixed).try_for_each(|_| self.add(strip, IN_TURN))?;
-        let (mut run, mut counts, mut left) = (first - plan.runs, [0; LANES], 0);
-        let mut put = |making: &mut Self, lane: usize, slot: usize| {
-            let count = counts[lane];
-            counts[lane] += 1;
-            if count < plan.plain {
-                return making.set([first + count, lane], slot, strip);
-            }
-            making.own(mixed + left / LANES, left % LANES, lane);
-            making.set([mixed + left / LANES, left % LANES], slot, strip);
-            left += 1;
-        };
         let Some(keys) = keys else {
-            for lane in 0..LANES {
-                let row = graph.row(lane * strips + strip).iter();
-                row.for_each(|&link| put(self, lane, slot(link, strips)));
-            }
-            return Some(mixed);
+            kept(graph, [strip, strips]).for_each(|(lane, slot)| filling.mix(self, lane, slot));
+            return Some(filling.mixed);
         };
         for links in together(keys) {
             if plan.runs > 0 && is_run(links, LANES * strips) {
-                self.run(run, links, strip);
+                self.run(run, links);
                 run += 1;
             } else {
-                links.iter().for_each(|&key| put(self, lane(key), led_to(key)));
+                links.iter().for_each(|&key| filling.put(self, lane(key), led_to(key)));
             }
         }
-        Some(mixed)
+        let within = kept(graph, [strip, strips]).filter(is_within);
+        within.for_each(|(lane, slot)| filling.mix(self, lane, slot));
+        Some(filling.mixed)
     }
 
     /// Adds an entry without links.
     fn add(&mut self, strip: usize, base: u32) -> Option<()> {
         let at = self.end;
         *self.columns.get_mut(at)? = core::array::from_fn(|lane| (LANES * strip + lane) as u32);
-        (self.bases[at], self.below[at]) = (base, 0);
+        self.bases[at] = base;
         self.end += 1;
         Some(())
     }
 
-    /// Puts links that lie one behind the other into an entry.
-    fn run(&mut self, at: usize, links: &[u32], strip: usize) {
+    /// Puts links that lie one behind the other into an entry. Where there is no link nothing comes of it.
+    fn run(&mut self, at: usize, links: &[u32]) {
         let Some(&first) = links.first() else { return };
-        let base = led_to(first) - lane(first);
-        self.bases[at] = base as u32;
-        links.iter().for_each(|&key| self.set([at, lane(key)], led_to(key), strip));
-        // Where there is no link nothing comes of it.
-        let below = (0..LANES).filter(|&lane| base + lane < LANES * strip);
-        below.for_each(|lane| self.below[at] |= 1 << lane);
-    }
-
-    fn set(&mut self, [at, lane]: [usize; 2], other: usize, strip: usize) {
-        self.columns[at][lane] = other as u32;
-        let there = other / LANES;
-        self.below[at] |= u32::from(there < strip) << lane | u32::from(there == strip) << (LANES + lane);
+        self.bases[at] = (led_to(first) - lane(first)) as u32;
+        links.iter().for_each(|&key| self.columns[at][lane(key)] = led_to(key) as u32);
     }
 
     /// Says whose link a mixed entry has in a lane.
@@ -391,9 +487,47 @@ impl Making<'_> {
     }
 }
 
-/// The number of links of a strip's rows, one of so many strips.
-fn count(graph: &Graph<'_>, [strip, strips]: [usize; 2]) -> usize {
-    (0..LANES).map(|lane| graph.row(lane * strips + strip).len()).sum()
+/// Where the links of a strip go that are no runs: the first plain entry and the first mixed one, how many links each lane has had of the plain ones, and
+/// how many are in mixed ones.
+struct Filling {
+    plain: usize,
+    mixed: usize,
+    counts: [usize; LANES],
+    left: usize,
+}
+
+impl Filling {
+    /// Puts a link into a plain entry, or where there is none left for its lane into a mixed one.
+    fn put(&mut self, making: &mut Making<'_>, lane: usize, slot: usize) {
+        let at = self.plain + self.counts[lane];
+        if at >= self.mixed {
+            return self.mix(making, lane, slot);
+        }
+        self.counts[lane] += 1;
+        making.columns[at][lane] = slot as u32;
+    }
+
+    /// Puts a link into a mixed entry.
+    fn mix(&mut self, making: &mut Making<'_>, lane: usize, slot: usize) {
+        let (at, into) = (self.mixed + self.left / LANES, self.left % LANES);
+        making.own(at, into, lane);
+        making.columns[at][into] = slot as u32;
+        self.left += 1;
+    }
+}
+
+/// The links that a strip of so many keeps, each as the lane of its row and the place that it leads to: those to rows of earlier strips, and to those
+/// of the same in earlier lanes.
+fn kept<'g>(graph: &'g Graph<'_>, [strip, strips]: [usize; 2]) -> impl Iterator<Item = (usize, usize)> + 'g {
+    (0..LANES).flat_map(move |lane| {
+        let slots = graph.row(lane * strips + strip).iter().map(move |&link| slot(link, strips));
+        slots.filter(move |&slot| slot < LANES * strip + lane).map(move |slot| (lane, slot))
+    })
+}
+
+/// Their number.
+fn count(graph: &Graph<'_>, strip: [usize; 2]) -> usize {
+    kept(graph, strip).count()
 }
 
 /// The place of a row, of so many strips.
@@ -401,15 +535,13 @@ fn slot(row: u32, strips: usize) -> usize {
     LANES * (row as usize % strips) + row as usize / strips
 }
 
-/// The links of a strip's rows, if there is room for all: each a number that says where the first of eight would lead that lie one behind the other,
+/// Links, if there is room for all: each a number that says where the first of eight would lead that lie one behind the other,
 /// eight more than its place, so that it is not below zero; and in which lane it is. They are in order.
-fn sorted<'k>(graph: &Graph<'_>, [strip, strips]: [usize; 2], keys: &'k mut [u32]) -> Option<&'k [u32]> {
+fn sorted(links: impl Iterator<Item = (usize, usize)>, keys: &mut [u32]) -> Option<&[u32]> {
     let mut count = 0;
-    for lane in 0..LANES {
-        for &link in graph.row(lane * strips + strip) {
-            *keys.get_mut(count)? = (LANES * (slot(link, strips) + LANES - lane) + lane) as u32;
-            count += 1;
-        }
+    for (lane, slot) in links {
+        *keys.get_mut(count)? = (LANES * (slot + LANES - lane) + lane) as u32;
+        count += 1;
     }
     let keys = &mut keys[..count];
     keys.sort_unstable();
