@@ -5,6 +5,7 @@ use super::eights::{WIDE, at_rest, column, eight, vectors};
 use super::finest::{BACK, Finest};
 use super::folded::Settle;
 use super::solver::Solver;
+use crate::cloth::Hinge;
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 
 impl Solver<'_> {
@@ -15,12 +16,11 @@ impl Solver<'_> {
             return;
         }
         let finest = &mut levels.finest;
-        self.thin = finest.plate.is_thin(self.params);
         finest.blocks.as_flattened_mut().as_flattened_mut().fill(0.0);
         finest.whole.as_flattened_mut().as_flattened_mut().fill(0.0);
         let bending = self.bending() * self.step.rate;
         finest.bending = if self.thin { bending } else { 0.0 };
-        if bending > 0.0 {
+        if bending > 0.0 && !self.thin {
             lanes::widest(
                 #[inline(always)]
                 || (0..self.hinges.len()).for_each(|i| self.add_fold(finest, bending, i)),
@@ -32,45 +32,49 @@ impl Solver<'_> {
         levels.press(self.walls, self.vectors.pressing());
     }
 
-    /// Adds to a fold's triangles how their corners hold each other, by its moment, and by what the matrix of bending lacks of its stiffness; or
-    /// what its corners do to themselves.
+    /// Adds to a fold's triangles how their corners hold each other by its moment, and what these do to themselves.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn add_fold(&mut self, finest: &mut Finest<'_>, bending: f32, i: usize) {
-        let (Some(hinge), Some(bend), Some(fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
+        let (Some(hinge), Some(bend), Some(&fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
             return;
         };
-        let mut stiffness = 0.0;
-        for (side, face) in hinge.faces.into_iter().enumerate() {
-            let mut curvature = [0.0; 3];
-            bend.curve(side, 1.0, &mut curvature);
-            stiffness += self.cells.get(face as usize).map_or(0.0, |cell| cell.area) * bend.moment(side, curvature);
-        }
-        let stiffness = stiffness * bending;
-        let mut besides = [[0.0; 2]; 2];
-        if self.thin {
-            let excess = stiffness * fold.excess(bend);
-            besides = [0, 1].map(|side| [excess, stiffness * fold.slip(bend, side)]);
-        } else {
-            for (corner, force) in hinge.corners().into_iter().zip(fold.forces(1.0)) {
-                let ([x, y, z], (strip, lane)) = (force.to_array(), finest.links.strips.at(corner as usize));
-                let Some(whole) = finest.whole.get_mut(strip) else { continue };
-                for (own, number) in whole.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z]) {
-                    if let Some(own) = own.get_mut(lane) {
-                        *own += stiffness * number;
-                    }
+        let area = |face: u32| self.cells.get(face as usize).map_or(0.0, |cell| cell.area);
+        let stiffness = bending * bend.stiffness(hinge.faces.map(area));
+        for (corner, force) in hinge.corners().into_iter().zip(fold.forces(1.0)) {
+            let ([x, y, z], (strip, lane)) = (force.to_array(), finest.links.strips.at(corner as usize));
+            let Some(whole) = finest.whole.get_mut(strip) else { continue };
+            for (own, number) in whole.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z]) {
+                if let Some(own) = own.get_mut(lane) {
+                    *own += stiffness * number;
                 }
             }
         }
-        for (side, face) in hinge.faces.into_iter().enumerate() {
-            let corners = self.triangles.get(face as usize).copied().unwrap_or_default();
-            let far = corners.iter().position(|&corner| corner == hinge.far[side]);
-            let (Some(far), Some(strain)) = (far, self.strains.get_mut(face as usize)) else { continue };
-            let [across, first, second] = fold.held(side, besides[side]);
-            let (next, last) = ((far + 1) % 3, (far + 2) % 3);
-            let [first, second] = if corners[next] == hinge.edge[0] { [first, second] } else { [second, first] };
-            for (edge, held) in [(next, across), (far, first), (last, second)] {
-                strain.held[edge] += held;
-            }
+        self.hold(hinge, [0, 1].map(|side| fold.held(side, [0.0; 2])));
+    }
+
+    /// Adds to a hinge's triangles how their corners hold each other: on each side those of the edge, its first corner and the far one, its second and
+    /// that.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn hold(&mut self, hinge: &Hinge, held: [[f32; 3]; 2]) {
+        for (side, [across, first, second]) in held.into_iter().enumerate() {
+            let (face, far) = (hinge.faces[side] as usize, hinge.far[side]);
+            let (Some(&[a, b, c]), Some(strain)) = (self.triangles.get(face), self.strains.get_mut(face)) else {
+                continue;
+            };
+            // The corner behind the far one, and the edges from there on.
+            let (next, [across_at, last, from]) = if a == far {
+                (b, [1, 2, 0])
+            } else if b == far {
+                (c, [2, 0, 1])
+            } else if c == far {
+                (a, [0, 1, 2])
+            } else {
+                continue;
+            };
+            let [first, second] = if next == hinge.edge[0] { [first, second] } else { [second, first] };
+            strain.held[across_at] += across;
+            strain.held[from] += first;
+            strain.held[last] += second;
         }
     }
 }

@@ -7,7 +7,7 @@ use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 /// The folds of a triangle.
-const TOGETHER: f32 = 3.0;
+pub(super) const TOGETHER: f32 = 3.0;
 /// So many times as fast as at rest, for each metre that a corner goes, an angle may change that acts in full: that of a triangle that collapses changes
 /// without bound, and the less it can tell, the less it acts.
 const STEEPER: f32 = 8.0;
@@ -107,6 +107,12 @@ impl RestFold {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn steep(&self, side: usize) -> f32 {
         self.moment(side, self.curvature[side])
+    }
+
+    /// How it resists a change of its angle where bending stiffness is one, by the areas of its triangles.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn stiffness(&self, areas: [f32; 2]) -> f32 {
+        areas[0] * self.steep(0) + areas[1] * self.steep(1)
     }
 
     /// The larger of both.

@@ -2,31 +2,38 @@
 //! operations of one, in their order, so that the bits are the same.
 
 use super::eights::{WIDE, all_corners, at_rest, column, eight, eight_mut, gathered, vector};
-use super::fold::Fold;
-use super::membrane::Strain;
+use super::fold::{Fold, RestFold, TOGETHER};
+use super::membrane::{Cell, Strain};
 use super::resist::{columns, spread};
-use super::solver::{NOBODY, Solver, Step, add_all, add_pair, curve, moment};
+use super::solver::{Solver, Step, Vectors as Columns, add_all, add_pair, curve, moment};
 use super::{Bodies, ShellParams};
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::Vec3;
 
-/// Makes all strains and folds, and adds their forces × h² to the residuals.
-pub(super) struct Linearise<'a, 's, 'm> {
+/// Makes all strains and folds, and adds their forces × h² to the residuals. Where particles are, how fast they go and where they were is found in
+/// the first directions, what comes of these, and the shifts, which nobody needs yet; what is not there is no number.
+pub(super) struct Linearise<'a, 'm> {
     pub(super) solver: &'a mut Solver<'m>,
-    /// Where all are, how fast they go, and where they were.
-    pub(super) columns: [&'s [Vec3]; 3],
 }
 
 impl Solver<'_> {
     /// The forces where all are, and the directions in which they act.
     pub(super) fn linearise(&mut self, bodies: &Bodies<'_>) {
         let columns = [&*bodies.position, &*bodies.velocity, bodies.before[0]];
-        lanes::run(Linearise { solver: self, columns });
+        let Columns { rows, shift, p, q, .. } = &mut self.vectors;
+        let own = [&mut **p, &mut **q, &mut **shift];
+        for (to, column) in own.into_iter().zip(columns) {
+            for (to, &row) in to.iter_mut().zip(&**rows) {
+                *to = column.get(row as usize).copied().unwrap_or(Vec3::NAN);
+            }
+        }
+        lanes::run(Linearise { solver: self });
+        self.vectors.shift.fill(Vec3::ZERO);
     }
 }
 
-impl Kernel for Linearise<'_, '_, '_> {
+impl Kernel for Linearise<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -54,18 +61,26 @@ impl Kernel for Linearise<'_, '_, '_> {
     }
 }
 
-impl Linearise<'_, '_, '_> {
+impl Linearise<'_, '_> {
+    /// Where all are, how fast they go, and where they were.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn columns(&self) -> [&[Vec3]; 3] {
+        let Columns { shift, p, q, .. } = &self.solver.vectors;
+        [p, q, shift]
+    }
+
     /// From one particle to another: now, along what forces act, and as it was.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn ways(&self, a: usize, b: usize) -> [Vec3; 3] {
-        let ([x, v, x0], h) = (self.columns, self.solver.step.h);
+        let ([x, v, x0], h) = (self.columns(), self.solver.step.h);
         [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]]
     }
 
     fn strain(&mut self, i: usize) {
         let (Some(&corners), Some(cell)) = (self.solver.triangles.get(i), self.solver.cells.get(i)) else { return };
         let mut strain = Strain::NONE;
-        if let Some([a, b, c]) = self.solver.vectors.living(corners) {
+        if self.solver.vectors.living(corners).is_some() {
+            let [a, b, c] = corners.map(|corner| corner as usize);
             let (e, f) = (self.ways(a, b), self.ways(a, c));
             let edges = [0, 1, 2].map(|i| [e[i], f[i]]);
             let (now, push) = Strain::of(cell, self.solver.params, &self.solver.step, edges);
@@ -80,7 +95,8 @@ impl Linearise<'_, '_, '_> {
     fn fold(&mut self, i: usize) {
         let (Some(hinge), Some(bend)) = (self.solver.hinges.get(i), self.solver.bends.get(i)) else { return };
         let mut fold = Fold::NONE;
-        if let Some([a, b, c, d]) = self.solver.vectors.living(hinge.corners()) {
+        if self.solver.vectors.living(hinge.corners()).is_some() {
+            let [a, b, c, d] = hinge.corners().map(|corner| corner as usize);
             let (e, f, g) = (self.ways(a, b), self.ways(a, c), self.ways(a, d));
             let (now, open) = Fold::of(bend, &self.solver.step, [0, 1, 2].map(|i| [e[i], f[i], g[i]]));
             fold = now;
@@ -99,28 +115,22 @@ impl Linearise<'_, '_, '_> {
         };
         let moment = moment(strains, cells, hinge, bend, bending);
         *fold = fold.with_moment(moment);
+        let fold = *fold;
         add_all(self.solver.vectors.r, hinge.corners(), fold.forces(-moment));
-    }
-
-    /// The rows of the corners of eight, if all are there.
-    #[inline(always)]
-    fn rows<const N: usize>(&self, corners: &[[u32; N]; LANES]) -> Option<[[u32; N]; LANES]> {
-        let rows = &*self.solver.vectors.rows;
-        let mut all = [[NOBODY; N]; LANES];
-        for (to, of) in all.as_flattened_mut().iter_mut().zip(corners.as_flattened()) {
-            *to = *rows.get(*of as usize)?;
+        if self.solver.thin {
+            let stiffness = self.solver.step.rate * bending * bend.stiffness(hinge.faces.map(|face| area(cells, face)));
+            let excess = stiffness * fold.excess(bend);
+            let held = [0, 1].map(|side| fold.held(side, [excess, stiffness * fold.slip(bend, side)]));
+            self.solver.hold(hinge, held);
         }
-        // Whoever is not there has a row beyond all, which is not gathered.
-        Some(all)
     }
 
     /// Ways from the first corners of eight to the others, as [`Linearise::ways`].
     #[inline(always)]
     fn ways_of<F: Eight, const N: usize>(&self, like: F, corners: &[[u32; N]; LANES]) -> Option<[[Vectors<F>; N]; 3]> {
-        let (rows, h) = (self.rows(corners)?, like.all(self.solver.step.h));
-        let [x, v, x0] = self.columns;
-        let (mut now, mut speed, mut before) =
-            (gathered::<F, N>(like, x, &rows)?, gathered::<F, N>(like, v, &rows)?, gathered::<F, N>(like, x0, &rows)?);
+        let ([x, v, x0], h) = (self.columns(), like.all(self.solver.step.h));
+        let mut now = gathered::<F, N>(like, x, corners)?;
+        let (mut speed, mut before) = (gathered::<F, N>(like, v, corners)?, gathered::<F, N>(like, x0, corners)?);
         let mut along = now;
         for column in [&mut now, &mut speed, &mut before] {
             let first = column[0];
@@ -192,14 +202,63 @@ impl Linearise<'_, '_, '_> {
             *fold = fold.with_moment(moment);
         }
         let folds = &*folds;
-        let ((foot, slope), moments) = (columns(like, folds), lanes::negated(like.of(moments)));
-        let [a, b, c, d] = spread([slope[0] * moments, slope[1] * moments], foot, like.all(1.0));
+        let ((foot, slope), moments) = (columns(like, folds), like.of(moments));
+        let against = lanes::negated(moments);
+        let [a, b, c, d] = spread([slope[0] * against, slope[1] * against], foot, like.all(1.0));
         let [a, b, c, d] = [a.rows(), b.rows(), c.rows(), d.rows()];
         for (i, hinge) in hinges.iter().enumerate() {
             add_all(self.solver.vectors.r, hinge.corners(), [vector(a[i]), vector(b[i]), vector(c[i]), vector(d[i])]);
         }
+        if self.solver.thin {
+            let mut stiffness = [0.0; LANES];
+            for ((to, hinge), bend) in stiffness.iter_mut().zip(hinges).zip(bends) {
+                let areas = [area(cells, hinge.faces[0]), area(cells, hinge.faces[1])];
+                *to = self.solver.step.rate * bending * bend.stiffness(areas);
+            }
+            let held = held_of(like, bends, (foot, slope), moments.abs(), like.of(stiffness));
+            let [[a, b, c], [d, e, f]] = held;
+            let arrays = [a.to_array(), b.to_array(), c.to_array(), d.to_array(), e.to_array(), f.to_array()];
+            for (i, hinge) in hinges.iter().enumerate() {
+                let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(
+                    #[inline(always)]
+                    |of: usize| arrays[of][i],
+                );
+                self.solver.hold(hinge, [[a, b, c], [d, e, f]]);
+            }
+        }
         true
     }
+}
+
+/// The area of a triangle at rest \[m²\].
+#[cfg_attr(not(target_os = "none"), inline(always))]
+fn area(cells: &[Cell], face: u32) -> f32 {
+    cells.get(face as usize).map_or(0.0, |cell| cell.area)
+}
+
+/// As [`Fold::held`] for both sides, with what the matrix of bending lacks.
+#[inline(always)]
+fn held_of<F: Eight>(
+    like: F,
+    bends: &[RestFold; LANES],
+    ([x, y], [m, n]): ([F; 2], [Vectors<F>; 2]),
+    moment: F,
+    stiffness: F,
+) -> [[F; 3]; 2] {
+    let (zero, one, few) = (like.all(0.0), like.all(1.0), like.all(TOGETHER));
+    let (a, b) = (m.dot(m), n.dot(n));
+    let sharp = lanes::min(lanes::max(one - m.dot(n) / (a * b).sqrt(), zero), like.all(2.0));
+    let steep = [column!(like, bends, |bend| bend.steep(0)), column!(like, bends, |bend| bend.steep(1))];
+    let narrow = lanes::max(a / steep[0], b / steep[1]) - one;
+    let excess = stiffness * (few * (sharp + lanes::max(narrow, zero)));
+    let (p, q) = (x - column!(like, bends, |bend| bend.foot[0]), y - column!(like, bends, |bend| bend.foot[1]));
+    let slips = [stiffness * (few * (p * p)), stiffness * (few * (q * q))];
+    let hold = like.all(0.25) * moment + excess;
+    let (first, second) = (hold * a, hold * b);
+    [
+        [x * (one - x) * first - slips[0] * a, lanes::negated((one - x) * first), lanes::negated(x * first)],
+        [y * (one - y) * second - slips[1] * b, lanes::negated((one - y) * second), lanes::negated(y * second)],
+    ]
 }
 
 /// As [`Strain::of`]: warp and weft, tension, the push, and a bit for each of eight that is sound.

@@ -317,7 +317,7 @@ where
             bends,
             folds,
             vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
-            thin: false,
+            thin: !levels.is_empty() && levels.finest.plate.is_thin(&self.params) && self.params.bending > 0.0,
             walls,
             last,
         };
