@@ -309,6 +309,8 @@ where
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
         bodies.report.caps.graphs += u64::from(mesh::asked(self.counts()) && levels.is_empty());
+        let vectors = solver::Vectors::of(bodies, self.particles.as_ref(), vectors);
+        vectors.catch_up(bodies);
         let walls = walls::of(share.step, particles);
         walls::gather(walls, self.particles.as_ref(), bodies);
         let mut solver = Solver {
@@ -320,7 +322,7 @@ where
             hinges: self.hinges.as_ref(),
             bends,
             folds,
-            vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
+            vectors,
             thin: false,
             walls,
             last,
