@@ -2,8 +2,8 @@
 
 use pointmass::emit::Burst;
 use pointmass::rng::Stream;
-use pointmass::shape::{Disc, Line};
-use pointmass::{Emit, Emitter, Gravity, Method, Particle, Scene, Spread, Time, Varied, Vec3};
+use pointmass::shape::{Disc, Line, Plane};
+use pointmass::{Emit, Emitter, Gravity, Meetings, Method, Particle, Scene, Spread, Time, Varied, Vec3};
 use pointmass_tests::emitting::{cuts, play, varied};
 use pointmass_tests::{Form, G, KS, chi_squared, f64s, gap, ks, often, point, started, turn};
 
@@ -333,4 +333,31 @@ fn a_lifetime_of_zero_or_less_is_for_ever() {
         system.step(&scene, Time::from_seconds(1e6));
     }
     assert_eq!(system.len(), start.len());
+}
+
+/// Who is born on a surface at the very end of a sub-step leaves that one, and no other that is a hair's breadth away.
+#[test]
+fn who_is_born_where_a_sub_step_ends_is_let_through_one_surface() {
+    // Rounding is about a micrometre there.
+    let at = Vec3::new(1.0, 0.0, 0.3);
+    for gap in [4.5e-6f32, 6e-6, 1e-5] {
+        let walls = [at, at + Vec3::Y * gap].map(|point| Plane { point, normal: Vec3::Y });
+        for radius in [0.0, 1e-9] {
+            let particle = Particle { radius, ..Particle::REST };
+            let way = Varied::exactly(1.0);
+            let source = Emitter { speed: way, direction: Some(Vec3::Y), ..Emitter::new(point(at), 256.0) };
+            let source = source.giving_birth_to(&particle);
+            for (kind, meetings) in [Meetings::Through, Meetings::IMPULSE].into_iter().enumerate() {
+                for substeps in [1, 2, 4] {
+                    let scene = Scene { emitters: &source, colliders: &walls, meetings, substeps, ..Scene::EMPTY };
+                    let mut system = started(&scene, 100, 1);
+                    (0..4).for_each(|_| {
+                        system.step(&scene, Time::from_ticks(1 << 26));
+                    });
+                    let out = system.particles().position.iter().filter(|x| x.y > 2.0 * gap).count();
+                    assert_eq!((system.len(), out), (16, 0), "{gap} m, {kind}, {substeps} sub-steps");
+                }
+            }
+        }
+    }
 }

@@ -125,62 +125,78 @@ fn risen(scene: &Scene<'_>, [step, whole]: [Time; 2], drift: Vec3) -> f64 {
     if system.len() == scene.start.len() { risen } else { f64::INFINITY }
 }
 
-/// One law in many scenes: a thing, a ground, a method, steps and sub-steps, elasticity, friction, size.
-#[test]
-fn no_ground_gives_energy() {
-    let mut random = Random::new(77);
-    let mut failures = vec![];
+/// A thing falls on a ground by a method, in steps and sub-steps, with elasticity, friction, size and drift of all kinds: tells what went wrong.
+fn gain(random: &mut Random, thing: &Thing, scale: f32, heights: &[f32]) -> Option<String> {
+    // Times go by the root of the size.
+    let pace = f64::from(scale).sqrt();
+    let grounds = grounds(scale, heights);
+    let (at, ground) = &grounds[random.word() as usize % grounds.len()];
+    let method = Method::ALL[random.word() as usize % Method::ALL.len()];
+    let substeps = [1, 2, 5, 10, 30][random.word() as usize % 5];
+    let (elasticity, mu) = (random.unit(), random.unit());
+    let material = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: 0.8 * mu }) }];
+    let drift = if random.unit() < 0.3 { random.vector(1.0) * pace as f32 } else { Vec3::ZERO };
+    let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+    let moving = Moving::new(&**ground, &all, Motion { drift, ..Motion::STILL });
+    let own = |p: &Particle| Particle { elasticity, velocity: p.velocity + drift, material: Some(0), ..*p };
+    let start: Vec<_> = thing.start.iter().map(own).collect();
+    let free = Scene {
+        start: &start,
+        springs: &thing.springs,
+        forces: &*thing.forces,
+        constraints: &*thing.bond,
+        materials: &material,
+        integrator: method.integrator(),
+        substeps,
+        ..Scene::EMPTY
+    };
+    let scene =
+        if drift == Vec3::ZERO { Scene { colliders: &**ground, ..free } } else { Scene { colliders: &moving, ..free } };
+    // Sub-steps of 1/600 s at the most, steps of 1/15 s.
+    let step = (f64::from(substeps) / 600.0).min(1.0 / 15.0) * pace;
+    let span = [step, 1.2 * pace].map(Time::from_seconds_f64);
+    let scale_of_all = 0.2 * 9.8 * 0.9 * f64::from(scale) * start.len() as f64 / 64.0;
+    let own = risen(&free, span, drift) / scale_of_all;
+    let more = risen(&scene, span, drift) / scale_of_all - own;
+    // Springs that crumple push harder than a sub-step shows: what limits of strain are to answer for is what they add to that.
+    let springs = || risen(&Scene { constraints: &(), ..scene }, span, drift) / scale_of_all;
+    let is_limits = || thing.name == "limits" && more < springs();
+    // A method may not stand undamped springs at all.
+    (!(more < 0.01) && own < 0.1 && !is_limits()).then(|| {
+        let what = format!("{} on {at}, {}, {substeps} sub-steps", thing.name, method.name());
+        format!("{what}, e {elasticity}, mu {mu}, {drift} m/s, {scale} m: {own} {more}")
+    })
+}
+
+/// The drops of things that tell of a fault, each thing of every kind whose name is `among` some.
+fn gains(seed: u64, rounds: usize, among: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut random = Random::new(seed);
     let heights: Vec<f32> = (0..81).map(|_| random.between(0.0, 0.2)).collect();
-    for round in 0..often(200) {
+    let mut failures = vec![];
+    for round in 0..rounds {
         let scale = [1.0, 0.05, 20.0][round % 3];
         let high: Vec<f32> = heights.iter().map(|height| height * scale).collect();
-        // Times go by the root of the size.
-        let pace = f64::from(scale).sqrt();
-        let methods = Method::ALL;
-        for thing in things(&mut random, scale) {
-            let grounds = grounds(scale, &high);
-            let (at, ground) = &grounds[random.word() as usize % grounds.len()];
-            let method = methods[random.word() as usize % methods.len()];
-            let substeps = [1, 2, 5, 10, 30][random.word() as usize % 5];
-            let (elasticity, mu) = (random.unit(), random.unit());
-            let material =
-                [ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: 0.8 * mu }) }];
-            let drift = if random.unit() < 0.3 { random.vector(1.0) * pace as f32 } else { Vec3::ZERO };
-            let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
-            let moving = Moving::new(&**ground, &all, Motion { drift, ..Motion::STILL });
-            let own = |p: &Particle| Particle { elasticity, velocity: p.velocity + drift, material: Some(0), ..*p };
-            let start: Vec<_> = thing.start.iter().map(own).collect();
-            let free = Scene {
-                start: &start,
-                springs: &thing.springs,
-                forces: &*thing.forces,
-                constraints: &*thing.bond,
-                materials: &material,
-                integrator: method.integrator(),
-                substeps,
-                ..Scene::EMPTY
-            };
-            let scene = if drift == Vec3::ZERO {
-                Scene { colliders: &**ground, ..free }
-            } else {
-                Scene { colliders: &moving, ..free }
-            };
-            // Sub-steps of 1/600 s at the most, steps of 1/15 s.
-            let step = (f64::from(substeps) / 600.0).min(1.0 / 15.0) * pace;
-            let span = [step, 1.2 * pace].map(Time::from_seconds_f64);
-            let scale_of_all = 0.2 * 9.8 * 0.9 * f64::from(scale) * start.len() as f64 / 64.0;
-            let own = risen(&free, span, drift) / scale_of_all;
-            let more = risen(&scene, span, drift) / scale_of_all - own;
-            // A method may not stand undamped springs at all.
-            // Of strain limits under springs that are squeezed no more is claimed than that they stay bounded.
-            let most = if thing.name == "limits" { 10.0 } else { 0.01 };
-            if !(more < most) && own < 0.1 {
-                let what = format!("{} on {at}, {}, {substeps} sub-steps", thing.name, method.name());
-                failures.push(format!("{what}, e {elasticity}, mu {mu}, {drift} m/s, {scale} m: {own} {more}"));
-            }
+        let things = things(&mut random, scale);
+        for thing in things.iter().filter(|thing| among(thing.name)) {
+            failures.extend(gain(&mut random, thing, scale, &high));
         }
     }
+    failures
+}
+
+/// One law in many scenes.
+#[test]
+fn no_ground_gives_energy() {
+    let failures = gains(77, often(200), |_| true);
     assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// The same of nets that are held within limits of strain, which scenery squeezes.
+#[test]
+#[ignore = "long: minutes"]
+fn no_ground_gives_energy_to_limits_of_strain() {
+    let failures: Vec<_> = (0..6).flat_map(|seed| gains(1000 + seed, 100, |name| name == "limits")).collect();
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
 }
 
 /// What a run comes to: where all are and how they move, to the bit, and how often they have been hit and have waited.
@@ -296,5 +312,38 @@ fn the_newborn_and_those_who_vanish_are_where_they_would_be_without_sub_steps() 
         let far = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(far(&one, &many) < 1e-3 && far(&gone, &others) < 1e-3, "{} {}", far(&one, &many), far(&gone, &others));
         assert!(others.iter().all(|place| (place.y + 0.5).abs() < 1e-4), "they vanish where they meet the sea");
+    }
+}
+
+/// What is bound together falls into a sink in the middle of a step of many sub-steps: each vanishes where it meets that.
+#[test]
+fn what_is_bound_vanishes_where_it_meets_a_sink() {
+    let mut random = Random::new(80);
+    let sea = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for scale in [1.0, 0.05, 20.0] {
+        let pace = f64::from(scale).sqrt();
+        for (thing, method) in things(&mut random, scale).iter().zip(Method::ALL.iter().cycle()) {
+            for substeps in [2, 5, 20] {
+                let fast = |p: &Particle| Particle { velocity: Vec3::new(0.0, -9.0, 1.0) * pace as f32, ..*p };
+                let start: Vec<_> = thing.start.iter().map(fast).collect();
+                let scene = Scene {
+                    start: &start,
+                    springs: &thing.springs,
+                    forces: &*thing.forces,
+                    constraints: &*thing.bond,
+                    sinks: &sea,
+                    substeps,
+                    integrator: method.integrator(),
+                    ..Scene::EMPTY
+                };
+                let (mut system, mut drowned) = (started(&scene, start.len(), 1), Drowned::default());
+                (0..8).for_each(|_| {
+                    system.step_observed(&scene, Time::from_seconds_f64(0.05 * pace), &mut drowned);
+                });
+                let off = drowned.0.iter().map(|place| place.y.abs() / scale).fold(0.0, f32::max);
+                let what = format!("{} of {scale} m, {}, {substeps} sub-steps", thing.name, method.name());
+                assert!(!drowned.0.is_empty() && off < 1e-4, "{what}: {} left, {off}", system.len());
+            }
+        }
     }
 }

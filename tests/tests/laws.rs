@@ -31,6 +31,7 @@ mod integrators;
 mod ledger;
 mod lives;
 mod looks;
+mod mesh_floors;
 #[path = "rays/main.rs"]
 mod rays;
 mod reapers;
@@ -47,6 +48,7 @@ mod shell_crushes;
 mod shell_meshes;
 mod sleep;
 mod springs;
+mod still;
 mod storage;
 mod strain_limits;
 mod strands;

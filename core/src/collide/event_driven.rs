@@ -68,7 +68,8 @@ impl EventDriven<'_> {
                 self.events.set(row, NextEvent { partner: GONE, until: NEVER, ..NextEvent::default() });
                 continue;
             }
-            if is_newborn && born >= now {
+            // Who is born where a sub-step ends is let go in that.
+            if is_newborn && born > now {
                 let path = self.sweep(row).let_go(path);
                 self.go(row, &path);
             } else if path.lags() {

@@ -6,6 +6,7 @@ use crate::material::MaterialList;
 use crate::memory::{Demand, Kept, take};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
+use crate::reap::PendingDeath;
 use crate::report::Report;
 use crate::shape::Collider;
 use crate::time::Time;
@@ -83,9 +84,12 @@ pub struct Bodies<'a> {
     pub(crate) slot: &'a [u32],
     pub(crate) serial: &'a [u32],
     pub(crate) row_of: &'a [u32],
+    pub(crate) pending_death: &'a [PendingDeath],
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
     pub(crate) marks: &'a mut [u32],
+    /// How far the method's places lag behind where its velocities lead, see [`Integrator::lag`](crate::Integrator::lag).
+    pub(crate) lag: f32,
     pub(crate) observer: &'a mut dyn Observer,
 }
 
@@ -108,11 +112,12 @@ impl Bodies<'_> {
         Some(Id { slot: *self.slot.get(row)?, serial: *self.serial.get(row)? })
     }
 
-    /// The row of a particle by its place in the scene's start, while it lives.
+    /// The row of a particle by its place in the scene's start, while it lives: who has met a sink in an earlier sub-step does not.
     #[must_use]
     pub fn row_of_start(&self, number: u32) -> Option<usize> {
         let row = *self.row_of.get(number as usize)? as usize;
-        (number < self.start && self.serial.get(row) == Some(&number)).then_some(row)
+        let lives = || self.pending_death.get(row).is_none_or(|death| *death == PendingDeath::Lives);
+        (number < self.start && self.serial.get(row) == Some(&number) && lives()).then_some(row)
     }
 
     /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic).
@@ -138,6 +143,15 @@ impl Bodies<'_> {
             self.position[row] - self.before[0][row] - self.velocity[row] * h
         } else {
             Vec3::ZERO
+        }
+    }
+
+    /// Moves a particle that is held to where its velocity leads, so that what hangs still shows no speed: a constraint answers forces by what they do
+    /// in a whole sub-step, as a method of first order shows it, and methods of higher order go half as far.
+    pub(crate) fn catch_up(&mut self, row: usize) {
+        let lead = self.lead(row, self.substep.seconds());
+        if lead.is_finite() {
+            self.position[row] -= lead;
         }
     }
 

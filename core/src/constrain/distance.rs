@@ -1,7 +1,7 @@
 //! Two particles at a distance from each other: rods, links of ropes and chains, tethers.
 
-use super::{Bodies, Constraint, Share};
-use crate::math::{length, max};
+use super::{Bodies, Constraint, Demand, Share, Words};
+use crate::math::{length, max, min};
 use glam::Vec3;
 
 /// Keeps two particles at a distance: C = |x₁ − x₂| − length.
@@ -11,7 +11,8 @@ use glam::Vec3;
 /// force β v does, by an implicit step at the sub-step's end, so that it never drives.
 ///
 /// One iteration a sub-step: a chain of n links passes a pull on from link to link, and is as stiff as it says where the square
-/// of the sub-step is a hundredth of α m or less; a rigid one sags. Linear momentum is kept to rounding.
+/// of the sub-step is a hundredth of α m or less; a rigid one sags. Linear momentum is kept to rounding. What hangs still shows no speed, whatever
+/// the method: each keeps the force through it for that, three words.
 ///
 /// Two that are in one place have no direction, and one that has lost an end does nothing. In a [periodic room](crate::index::Periodic) it acts
 /// along the shortest way through the sides: `length` has to be less than half of each.
@@ -72,32 +73,68 @@ impl Distance {
         let moves = bodies.inverse_mass[a] + bodies.inverse_mass[b] > 0.0;
         (moves && distance > 0.0 && distance < f32::INFINITY).then(|| ([a, b], apart / distance, distance))
     }
-}
 
-impl Constraint for Distance {
-    fn project(&self, bodies: &mut Bodies<'_>, _: &mut Share<'_>) {
-        let h = bodies.substep.seconds();
-        let Some(([a, b], normal, distance)) = self.line(bodies) else { return };
+    /// Lets its ends go by so much of the pull that it is about to answer with (× h²) \[kg m\] as what hangs still would else show as speed.
+    fn let_go(bodies: &mut Bodies<'_>, pull: f32, ([a, b], normal): ([usize; 2], Vec3)) {
+        if pull.is_finite() {
+            bodies.position[a] += normal * (pull * bodies.inverse_mass[a]);
+            bodies.position[b] -= normal * (pull * bodies.inverse_mass[b]);
+        }
+    }
+
+    /// Moves its ends to where they belong, and tells the force that it takes \[N\].
+    fn pull(&self, bodies: &mut Bodies<'_>) -> Option<f32> {
+        let (h, ([a, b], normal, distance)) = (bodies.substep.seconds(), self.line(bodies)?);
         let mut stretch = distance - self.length;
         if !(h > 0.0) || self.tether && stretch <= 0.0 {
-            return;
+            return None;
         }
         let [wa, wb] = [a, b].map(|row| bodies.inverse_mass[row]);
-        if self.compliance > 0.0 {
-            // What hangs still would show speed where the method has not brought it to where its velocity leads.
+        if bodies.lag == 0.0 {
+            // The way by which the method has not brought them to where velocities lead.
             let lead = (bodies.lead(a, h) - bodies.lead(b, h)).dot(normal);
-            let share = lead / (wa + wb);
-            if share.is_finite() {
-                bodies.position[a] -= normal * (share * wa);
-                bodies.position[b] += normal * (share * wb);
-                stretch -= lead;
-                stretch = if self.tether { max(stretch, 0.0) } else { stretch };
-            }
+            Self::let_go(bodies, -lead / (wa + wb), ([a, b], normal));
+            stretch -= if lead.is_finite() { lead } else { 0.0 };
+            stretch = if self.tether { max(stretch, 0.0) } else { stretch };
         }
         let pull = stretch / (wa + wb + self.compliance / (h * h));
-        if pull.is_finite() {
-            bodies.shift(a, normal * (-pull * wa));
-            bodies.shift(b, normal * (pull * wb));
+        if !pull.is_finite() {
+            return None;
+        }
+        bodies.shift(a, normal * (-pull * wa));
+        bodies.shift(b, normal * (pull * wb));
+        Some(pull / (h * h))
+    }
+}
+
+/// The words that it keeps: whose they are, and the force through it in the last two sub-steps.
+const KEPT: usize = 3;
+
+impl Constraint for Distance {
+    fn demand(&self) -> Demand {
+        Demand { kept: Words { per_row: 0, fixed: KEPT }, ..Demand::NONE }
+    }
+
+    /// A steady force goes into places as late as all forces do by the method: so does the force of before, which alone tells what the links of a
+    /// chain bear together. A jolt is no steady force: of the last two the lesser counts.
+    fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        share.claim(*b"dist", &[]);
+        let ([_, last, before], true) = (&*share.kept.fixed, bodies.lag > 0.0) else { return };
+        let [last, before] = [last, before].map(|word| f32::from_bits(*word));
+        let steady = max(min(last, before), 0.0) + min(max(last, before), 0.0);
+        if steady == 0.0 {
+            return;
+        }
+        if let Some((rows, normal, _)) = self.line(bodies) {
+            let h = bodies.substep.seconds();
+            Self::let_go(bodies, steady * (bodies.lag * h * h), (rows, normal));
+        }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let pull = self.pull(bodies).filter(|pull| pull.is_finite()).unwrap_or(0.0);
+        if let [_, last, before] = share.kept.fixed {
+            (*before, *last) = (*last, pull.to_bits());
         }
     }
 

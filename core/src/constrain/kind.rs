@@ -98,6 +98,9 @@ impl Constraint for ConstraintKind {
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         self.get().prepare(bodies, share);
     }
+    fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.get().begin(bodies, share);
+    }
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         self.get().project(bodies, share);
     }

@@ -104,6 +104,12 @@ pub trait Constraint: Sync {
         let _ = (bodies, share);
     }
 
+    /// Looks on when the method has moved everything, before any constraint moves anybody: to take back what the method does beyond where velocities
+    /// lead, for instance.
+    fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let _ = (bodies, share);
+    }
+
     /// Moves particles to where they satisfy it, when the method has moved them: by [`Bodies::shift`], so that their
     /// velocities follow.
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>);
@@ -136,6 +142,7 @@ fn constrain(constraints: &dyn Constraint, moment: Moment, bodies: &mut Bodies<'
     match moment {
         Moment::Before => constraints.prepare(bodies, share),
         Moment::After => {
+            constraints.begin(bodies, share);
             constraints.project(bodies, share);
             constraints.settle(bodies, share);
         }
@@ -164,6 +171,9 @@ impl<T: Constraint + ?Sized> Constraint for &T {
     }
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         (**self).prepare(bodies, share);
+    }
+    fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        (**self).begin(bodies, share);
     }
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         (**self).project(bodies, share);
@@ -194,6 +204,7 @@ macro_rules! all_of {
             true
         }
         all_of!(@phase prepare, $this => $parts);
+        all_of!(@phase begin, $this => $parts);
         all_of!(@phase project, $this => $parts);
         all_of!(@phase settle, $this => $parts);
     };

@@ -237,6 +237,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         if !(h > 0.0) {
             return;
         }
+        if body.fixed > 0 && self.compliance > 0.0 {
+            self.each(bodies, kept, &mut |bodies, member| bodies.catch_up(member.row));
+        }
         let (spin, _) = self.spin(bodies, kept, &body);
         let mut last = Turn::kept(kept);
         if body.fixed > 1 {

@@ -66,6 +66,7 @@ impl Tile<'_> {
             position: &mut self.position[..old],
             velocity: &mut self.velocity[..old],
             start: start.map(|column| &*first(column, old)),
+            pending_death: &self.pending_death[..old],
             marks: first(marks, old),
             lasting,
             lists: ListMemory::new(lists, listed, changes, substep.step.seconds(), scene.index.room()),

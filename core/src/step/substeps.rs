@@ -8,6 +8,7 @@ use crate::index::{ListMemory, Listed};
 use crate::integrate::{Motion, Work};
 use crate::memory::{Layout, Scratch};
 use crate::observe::{Observer, Phase};
+use crate::reap::PendingDeath;
 use crate::report::{Effort, Report};
 use crate::scene::Scene;
 use crate::time::Time;
@@ -22,6 +23,7 @@ pub(crate) struct Moved<'a> {
     pub(super) velocity: &'a mut [Vec3],
     /// Places and velocities at the sub-step's beginning; empty where nobody asks.
     pub(super) start: [&'a [Vec3]; 2],
+    pub(super) pending_death: &'a [PendingDeath],
     /// A mark for each of what constraints do to it, and the words that they keep through the step.
     pub(super) marks: &'a mut [u32],
     pub(super) lasting: &'a mut [u32],
@@ -130,8 +132,10 @@ impl Moved<'_> {
             slot: &lives.slot[..len],
             serial: &lives.springs.serial[..len],
             row_of: lives.springs.row_of,
+            pending_death: self.pending_death,
             start: lives.springs.start,
             marks: self.marks,
+            lag: scene.integrator.lag(),
             observer: self.observer,
         };
         let mut share = Share { kept, step: self.lasting, scratch, capacity: self.capacity };

@@ -80,7 +80,8 @@ impl TileSweep<'_, '_> {
             observer,
         };
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
-        let is_newborn = row >= old && lives.born[row] >= now;
+        // Who is born where a sub-step ends is let go in that.
+        let is_newborn = row >= old && lives.born[row] > now;
         // Whoever is near one face alone goes the short way, among however many things.
         let facing = match known {
             None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),

@@ -305,6 +305,8 @@ where
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
         bodies.report.caps.graphs += u64::from(mesh::asked(self.counts()) && levels.is_empty());
+        let vectors = solver::Vectors::of(bodies, self.particles.as_ref(), vectors);
+        vectors.catch_up(bodies);
         let walls = walls::of(share.step, particles);
         walls::gather(walls, self.particles.as_ref(), bodies);
         let mut solver = Solver {
@@ -316,7 +318,7 @@ where
             hinges: self.hinges.as_ref(),
             bends,
             folds,
-            vectors: solver::Vectors::of(bodies, self.particles.as_ref(), vectors),
+            vectors,
             thin: !levels.is_empty() && levels.finest.plate.is_thin(&self.params) && self.params.bending > 0.0,
             walls,
             last,

@@ -90,6 +90,14 @@ impl<'m> Vectors<'m> {
         Self { rows, weight, shift, r, p, q, met, pressing, pressed: 0 }
     }
 
+    /// Lets the particles go on to where their velocities lead, if some are fixed.
+    pub(super) fn catch_up(&self, bodies: &mut Bodies<'_>) {
+        let living = || self.rows.iter().zip(&*self.weight).filter(|&(&row, _)| row != NOBODY);
+        if living().any(|(_, &weight)| weight == 0.0) {
+            living().for_each(|(&row, _)| bodies.catch_up(row as usize));
+        }
+    }
+
     /// The rows of some particles, if all are there.
     pub(super) fn living<const N: usize>(&self, corners: [u32; N]) -> Option<[usize; N]> {
         let rows = corners.map(|corner| self.rows.get(corner as usize).copied().unwrap_or(NOBODY) as usize);

@@ -1,6 +1,6 @@
 //! Triangles: their strains, and how each is held.
 
-use super::Bodies;
+use super::{Bodies, NEARLY};
 use crate::math::{dot, largest, length, max, min, sqrt};
 use glam::Vec3;
 
@@ -20,6 +20,10 @@ pub(super) struct Cell {
     pub(super) area: f32,
     /// The stress × area × h² in it along warp, weft and between them in the last sub-step, below zero where it pulls \[kg m²\].
     pub(super) stress: [f32; 3],
+    /// Its strains as the last sub-step left them, and how far others have taken it beyond its limits since, as far as that has not been given back:
+    /// below zero, if beyond the lower ones.
+    pub(super) left: [f32; 3],
+    pub(super) owed: [f32; 3],
 }
 
 /// A triangle before.
@@ -40,7 +44,8 @@ impl Past {
 impl Cell {
     /// A triangle at rest with these edges from its first corner.
     pub(super) fn at_rest([e, f]: [Vec3; 2], warp: Vec3) -> Self {
-        const NONE: Cell = Cell { inverse: [0.0; 4], area: 0.0, stress: [0.0; 3] };
+        const NONE: Cell =
+            Cell { inverse: [0.0; 4], area: 0.0, stress: [0.0; 3], left: [1.0, 1.0, 0.0], owed: [0.0; 3] };
         let normal = e.cross(f);
         let twice = length(normal);
         // A triangle narrower than a millionth of its length has no plane.
@@ -62,6 +67,31 @@ impl Cell {
     pub(super) fn deform(&self, [e, f]: [Vec3; 2]) -> [Vec3; 2] {
         let [a, b, c, d] = self.inverse;
         [e * a + f * b, e * c + f * d]
+    }
+
+    /// Notes how far others have taken it beyond its limits since it was left, where its edges are these.
+    pub(super) fn owe(&mut self, edges: [Vec3; 2], ranges: [[f32; 2]; 3]) {
+        let threads = self.deform(edges);
+        for (kind, [low, high]) in ranges.into_iter().enumerate() {
+            let value = strain(kind, threads).map_or(0.0, |(value, _)| value);
+            let (beyond, left) = (excess(value, [low, high]), self.left[kind]);
+            let more = excess(value, [min(low, left), max(high, left)]);
+            let owed = self.owed[kind] + if more.abs() > NEARLY { more } else { 0.0 };
+            // No more than it is beyond them.
+            self.owed[kind] = if owed * beyond > 0.0 { max(min(owed, beyond.abs()), -beyond.abs()) } else { 0.0 };
+        }
+    }
+
+    /// Notes how it is left.
+    pub(super) fn leave(&mut self, edges: [Vec3; 2]) {
+        let threads = self.deform(edges);
+        self.left = [0, 1, 2].map(|kind| strain(kind, threads).map_or(0.0, |(value, _)| value));
+    }
+
+    /// A range, and a `share` of what it is beyond that by others.
+    pub(super) fn wider(&self, kind: usize, [low, high]: [f32; 2], share: f32) -> [f32; 2] {
+        let owed = share * self.owed[kind];
+        [low + min(owed, 0.0), high + max(owed, 0.0)]
     }
 
     /// The slopes by the corners of what has these by warp and weft.
@@ -97,6 +127,11 @@ fn strain(kind: usize, [u, v]: [Vec3; 2]) -> Option<(f32, [Vec3; 2])> {
     slopes.iter().all(|slope| slope.is_finite()).then_some((value, slopes))
 }
 
+/// How far a strain is beyond a range: below zero, if below it.
+fn excess(value: f32, [low, high]: [f32; 2]) -> f32 {
+    min(value - low, 0.0) + max(value - high, 0.0)
+}
+
 /// The multiplier with which a strain is within its range, pulling alone at the upper end and pushing alone at the lower; `soft` is the
 /// compliance for it, and `weight` what it moves by.
 fn held(value: f32, [low, high]: [f32; 2], before: f32, weight: f32, soft: f32) -> f32 {
@@ -116,10 +151,18 @@ pub(super) struct Held<'m> {
     pub(super) cell: &'m mut Cell,
     /// Warp and weft as the sub-step began.
     pub(super) then: [Vec3; 2],
+    /// The kinetic energy that has come of what it has done \[J\].
+    pub(super) gain: f32,
+}
+
+impl<'m> Held<'m> {
+    pub(super) fn new(rows: [usize; 3], cell: &'m mut Cell, then: [Vec3; 2]) -> Self {
+        Self { rows, cell, then, gain: 0.0 }
+    }
 }
 
 impl Held<'_> {
-    fn edges(&self, x: &[Vec3]) -> [Vec3; 2] {
+    pub(super) fn edges(&self, x: &[Vec3]) -> [Vec3; 2] {
         let [a, b, c] = self.rows;
         [x[b] - x[a], x[c] - x[a]]
     }
@@ -141,12 +184,38 @@ impl Held<'_> {
     }
 
     /// Moves its corners by a change of a multiplier.
-    pub(super) fn act(&self, bodies: &mut Bodies<'_>, slopes: [Vec3; 3], change: f32) {
+    pub(super) fn act(&mut self, bodies: &mut Bodies<'_>, slopes: [Vec3; 3], change: f32) {
+        let rate = 1.0 / bodies.substep.seconds();
         for (row, slope) in self.rows.into_iter().zip(slopes) {
             let weight = bodies.inverse_mass[row];
             if weight > 0.0 {
+                let impulse = slope * (change * rate);
+                self.gain += dot(bodies.velocity[row] + impulse * (0.5 * weight), impulse);
                 bodies.shift(row, slope * (weight * change));
             }
+        }
+    }
+
+    /// Calls for the impulses on its corners that its stresses are.
+    pub(super) fn impulses(&self, bodies: &mut Bodies<'_>, then: &mut dyn FnMut(&mut Bodies<'_>, usize, Vec3)) {
+        let rate = 1.0 / bodies.substep.seconds();
+        for kind in (0..3).filter(|&kind| self.cell.stress[kind] != 0.0) {
+            let Some((_, slopes, _)) = self.line(bodies, kind) else { continue };
+            for (row, slope) in self.rows.into_iter().zip(slopes).filter(|&(row, _)| bodies.inverse_mass[row] > 0.0) {
+                then(bodies, row, slope * (self.cell.stress[kind] * rate));
+            }
+        }
+    }
+
+    /// Moves its corners alone, to where a strain is within a range.
+    pub(super) fn bring_back(&self, bodies: &mut Bodies<'_>, kind: usize, range: [f32; 2]) {
+        let Some((value, slopes, weight)) = self.line(bodies, kind) else { return };
+        let change = -excess(value, range) / weight;
+        if change == 0.0 || !change.is_finite() {
+            return;
+        }
+        for (row, slope) in self.rows.into_iter().zip(slopes) {
+            bodies.position[row] += slope * (bodies.inverse_mass[row] * change);
         }
     }
 

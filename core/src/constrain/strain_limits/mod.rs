@@ -75,7 +75,8 @@ const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
 /// under them. Within limits nothing acts.
 ///
 /// Stresses act along the directions of the sub-step's beginning, by which both momenta are kept to rounding; those of triangles that turn by
-/// more than 60° in a sub-step along those of its end, which keep linear momentum alone. A triangle that has lost a corner is gone, whoever is
+/// more than 60° in a sub-step along those of its end, which keep linear momentum alone. What scenery or others
+/// have put beyond rigid limits gets a part of that back in each sub-step by places alone: it is not thrown. A triangle that has lost a corner is gone, whoever is
 /// fixed stays, and what is degenerate does nothing. A [`Shell`](super::Shell) follows its particles past the scenery by itself: limits of the
 /// same particles go before it in a list.
 ///
@@ -124,6 +125,10 @@ pub struct StrainLimits<T> {
 const ROUNDS: u32 = 16;
 /// How far a strain may be beyond its limit.
 const NEARLY: f32 = 1e-4;
+/// So many rounds bring what is neither crushed nor squeezed within its limits.
+const CALM: u32 = 4;
+/// The share that a sub-step gives back of how far a strain was beyond its limit already.
+const RECOVERY: f32 = 0.2;
 
 /// The words of a cell, and of what it was as a sub-step began.
 const KEPT: usize = size_of::<Cell>() / 4;
@@ -167,40 +172,98 @@ impl<T: AsRef<[[u32; 3]]>> StrainLimits<T> {
 
     /// Notes what all triangles were as the sub-step began. None has any stress yet.
     fn begin(&self, bodies: &Bodies<'_>, cells: &mut [Cell], memory: &mut [Past]) {
-        let h = bodies.substep.seconds();
+        let (ranges, h) = (self.ranges(), bodies.substep.seconds());
         for (number, (cell, past)) in cells.iter_mut().zip(memory).enumerate() {
             (cell.stress, *past) = ([0.0; 3], Past::NONE);
-            if let Some([a, b, c]) = self.rows(bodies, number) {
-                let [x, y, z] = [a, b, c].map(|row| bodies.position[row] - bodies.velocity[row] * h);
+            if let Some(rows) = self.rows(bodies, number) {
+                let [x, y, z] = rows.map(|row| bodies.position[row] - bodies.velocity[row] * h);
                 past.then = cell.deform([y - x, z - x]);
+                // Soft limits pull for it, as springs do.
+                if self.params.compliance == 0.0 {
+                    let [x, y, z] = rows.map(|row| bodies.before[0][row]);
+                    cell.owe([y - x, z - x], ranges);
+                }
             }
         }
     }
 
-    /// Goes through all triangles, there or back, and tells how far the worst was beyond its limits.
-    fn sweep(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &[Past], back: bool) -> f32 {
+    /// Goes through all triangles, there or back, and tells how far the worst was beyond its limits, and the kinetic energy that has come of it.
+    fn sweep(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &[Past], back: bool) -> [f32; 2] {
         let (ranges, h) = (self.ranges(), bodies.substep.seconds());
-        let (soft, mut worst) = (self.params.compliance / (h * h), 0.0);
+        let (soft, mut worst, mut gain) = (self.params.compliance / (h * h), 0.0, 0.0);
         for at in 0..cells.len() {
             let number = if back { cells.len() - 1 - at } else { at };
             let (Some(rows), Some(past)) = (self.rows(bodies, number), memory.get(number)) else { continue };
-            let mut held = Held { rows, cell: &mut cells[number], then: past.then };
+            let mut held = Held::new(rows, &mut cells[number], past.then);
             if held.cell.area == 0.0 {
                 continue;
             }
             for (kind, range) in ranges.into_iter().enumerate() {
                 if range[1] < f32::INFINITY {
+                    let range = held.cell.wider(kind, range, 1.0);
                     worst = max(worst, held.hold(bodies, kind, range, soft));
                 }
             }
+            gain += held.gain;
         }
-        worst
+        [worst, gain]
+    }
+
+    /// Takes back of velocities, by a share of all stresses, what these have brought of kinetic energy. What is crushed or turns far in a sub-step
+    /// may be brought within its limits by places that take more than it had.
+    fn calm(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &[Past], gain: f32) {
+        // The gain of a share s of all is a s + b s², and its slope at the end a + 2 b.
+        let mut slope = 0.0;
+        self.impulses(bodies, cells, memory, &mut |bodies, row, impulse| slope += dot(bodies.velocity[row], impulse));
+        let [first, second] = [2.0 * gain - slope, slope - gain];
+        let share = clamp(-first / second, 0.0, 1.0);
+        if second > 0.0 && share < 1.0 {
+            self.impulses(bodies, cells, memory, &mut |bodies, row, impulse| {
+                bodies.velocity[row] -= impulse * (bodies.inverse_mass[row] * (1.0 - share));
+            });
+        }
+    }
+
+    /// Visits the impulses on the corners of all triangles.
+    fn impulses(
+        &self,
+        bodies: &mut Bodies<'_>,
+        cells: &mut [Cell],
+        memory: &[Past],
+        visit: &mut dyn FnMut(&mut Bodies<'_>, usize, Vec3),
+    ) {
+        for (number, (cell, past)) in cells.iter_mut().zip(memory).enumerate() {
+            if let Some(rows) = self.rows(bodies, number) {
+                Held::new(rows, cell, past.then).impulses(bodies, visit);
+            }
+        }
+    }
+
+    /// Gives back a part of what others have taken beyond limits, by places alone, and notes how all are left.
+    fn bring_back(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &[Past]) {
+        let ranges = self.ranges();
+        for (number, (cell, past)) in cells.iter_mut().zip(memory).enumerate() {
+            let Some(rows) = self.rows(bodies, number).filter(|_| cell.owed != [0.0; 3]) else { continue };
+            let held = Held::new(rows, cell, past.then);
+            for (kind, range) in ranges.into_iter().enumerate() {
+                if held.cell.owed[kind] != 0.0 {
+                    held.bring_back(bodies, kind, held.cell.wider(kind, range, 1.0 - RECOVERY));
+                }
+            }
+            cell.owed = cell.owed.map(|owed| owed * (1.0 - RECOVERY));
+        }
+        for (number, cell) in cells.iter_mut().enumerate() {
+            if let Some([a, b, c]) = self.rows(bodies, number) {
+                let x = &bodies.position;
+                cell.leave([x[b] - x[a], x[c] - x[a]]);
+            }
+        }
     }
 
     /// Goes on in the direction of the last rounds (nonsmooth nonlinear conjugate gradients), `last` being the square of the last one's change;
-    /// returns that of this one.
-    fn accelerate(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &mut [Past], last: f32) -> f32 {
-        let mut square = 0.0;
+    /// returns that of this one, and the kinetic energy that has come of it.
+    fn accelerate(&self, bodies: &mut Bodies<'_>, cells: &mut [Cell], memory: &mut [Past], last: f32) -> [f32; 2] {
+        let (mut square, mut gain) = (0.0, 0.0);
         for (cell, past) in cells.iter().zip(&*memory) {
             for (now, before) in cell.stress.iter().zip(past.stress) {
                 square += (now - before) * (now - before);
@@ -211,15 +274,16 @@ impl<T: AsRef<[[u32; 3]]>> StrainLimits<T> {
         let share = if share <= 1.0 { share } else { 0.0 };
         for (number, (cell, past)) in cells.iter_mut().zip(memory).enumerate() {
             let Some(rows) = self.rows(bodies, number) else { continue };
-            let mut held = Held { rows, cell, then: past.then };
+            let mut held = Held::new(rows, cell, past.then);
             for kind in 0..3 {
                 let on = share * past.direction[kind];
                 past.direction[kind] = held.cell.stress[kind] - past.stress[kind] + on;
                 held.press(bodies, kind, on);
             }
             past.stress = held.cell.stress;
+            gain += held.gain;
         }
-        square
+        [square, gain]
     }
 }
 
@@ -258,15 +322,22 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
             return;
         }
         self.begin(bodies, cells, memory);
-        let (mut rounds, mut worst, mut last) = (0, f32::INFINITY, f32::INFINITY);
+        let (mut rounds, mut worst, mut last, mut gain) = (0, f32::INFINITY, f32::INFINITY, 0.0);
         while worst > NEARLY && rounds < ROUNDS {
             if rounds > 0 {
-                last = self.accelerate(bodies, cells, memory, last);
+                let [square, more] = self.accelerate(bodies, cells, memory, last);
+                (last, gain) = (square, gain + more);
             }
-            worst = self.sweep(bodies, cells, memory, false);
-            worst = max(worst, self.sweep(bodies, cells, memory, true));
+            let [there, more] = self.sweep(bodies, cells, memory, false);
+            let [back, rest] = self.sweep(bodies, cells, memory, true);
+            (worst, gain) = (max(there, back), gain + more + rest);
             rounds += 1;
         }
+        // What is brought within its limits in a few rounds keeps both momenta and hardly gains anything.
+        if gain > 0.0 && (rounds > CALM || cells.iter().any(|cell| cell.owed != [0.0; 3])) {
+            self.calm(bodies, cells, memory, gain);
+        }
+        self.bring_back(bodies, cells, memory);
         bodies.report.effort.solved(rounds, 0.0, worst > NEARLY);
     }
 
@@ -279,7 +350,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
         for (number, cell) in cells.iter_mut().enumerate() {
             let Some(rows) = self.rows(bodies, number).filter(|_| cell.stress != [0.0; 3]) else { continue };
             let now = cell.deform([1, 2].map(|i| bodies.position[rows[i]] - bodies.position[rows[0]]));
-            let held = Held { rows, cell, then: now };
+            let held = Held::new(rows, cell, now);
             for kind in 0..3 {
                 let Some((_, slopes, weight)) = held.line(bodies, kind) else { continue };
                 let rate: f32 = rows.iter().zip(slopes).map(|(&row, slope)| dot(bodies.velocity[row], slope)).sum();

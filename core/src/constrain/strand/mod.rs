@@ -290,6 +290,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         for (lane, piece) in pieces.iter().enumerate() {
             let rows = &rows[lane * longest..][..piece.count];
             let joints = &mut joints[piece.first..][..piece.count];
+            if rows.iter().any(|&row| !(bodies.inverse_mass[row as usize] > 0.0)) {
+                rows.iter().for_each(|&row| bodies.catch_up(row as usize));
+            }
             masses[lane] = mean_mass(bodies, rows);
             Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.write(piece, joints);
         }

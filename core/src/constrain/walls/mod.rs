@@ -14,7 +14,7 @@ use super::{Bodies, Substep};
 use crate::material::on_surface;
 use crate::math::{dot, high, largest, length, low, max, min, sqrt};
 use crate::memory::take;
-use crate::shape::{Aabb, Contact};
+use crate::shape::{Aabb, Contact, Segment};
 use glam::{Mat3, Vec3};
 
 /// Sub-steps ahead that a search of the scenery looks, at the most.
@@ -28,6 +28,8 @@ const NOTICED: f32 = 4.0;
 const ROUNDING: f32 = 4e-6;
 /// The cosine of the least angle between two faces that a particle is kept from at once.
 const ALIKE: f32 = 0.9;
+/// The cosine of the angle between the normals of two that may be one face.
+const SAME: f32 = 0.9999;
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
 /// The state of a wall and its particle: none is near, it is left alone, it slides along, it goes as the wall does.
@@ -180,24 +182,44 @@ impl Wall {
 
     /// Takes the face that the particle is farthest behind where the method has moved it.
     fn look(&mut self, near: f32, bodies: &Bodies<'_>) {
+        let (was, searched) = (core::mem::take(&mut self.fresh), self.clear);
+        let from = bodies.before[0][self.row as usize];
+        let (mut most, nearest) = self.survey(near, bodies, &|_| true);
+        let is_alike = |normal: Vec3| normal.dot(nearest) >= SAME;
+        if self.state == NEAR && !(is_alike(self.normal) && self.beside == Vec3::ZERO) {
+            // The place of a triangle that is nearest may be on its edge, and edges inside a floor are no faces.
+            (self.state, self.clear) = (NONE, searched);
+            (most, _) =
+                self.survey(near, bodies, &|contact| is_alike(contact.normal) || is_face(contact, from, bodies));
+        }
+        if self.state == NEAR {
+            self.touch.begin(0.0);
+            // Who was pressed in the sub-step before most often still is.
+            if most > NOTICED * self.slack || was > NEAR {
+                self.press();
+            }
+        }
+    }
+
+    /// Takes of the faces that count the one that the particle is farthest behind, and another beside it; tells how far it is behind that, and the
+    /// normal of the nearest of all.
+    fn survey(&mut self, near: f32, bodies: &Bodies<'_>, counts: &dyn Fn(&Contact) -> bool) -> (f32, Vec3) {
         let row = self.row as usize;
-        let (own, elasticity) = (bodies.material[row].checked_sub(1), bodies.elasticity[row]);
         let (from, to, h) = (bodies.before[0][row], bodies.position[row], bodies.substep.seconds());
-        let radius = bodies.radius[row];
-        let was = core::mem::take(&mut self.fresh);
-        let mut most = f32::NEG_INFINITY;
+        let (mut most, mut second) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
+        let (mut least, mut nearest) = (f32::INFINITY, Vec3::ZERO);
         let mut free = self.clear;
         (self.beside, self.beyond) = (Vec3::ZERO, 0.0);
-        let mut second = f32::NEG_INFINITY;
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
-            let Contact { point, normal, distance, velocity, material, slack } = *contact;
+            let Contact { point, normal, distance, velocity, slack, .. } = *contact;
             // What moves is asked again in every sub-step.
             self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
             free = min(distance - length(velocity) * h, free);
-            if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() {
+            if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() || !counts(contact) {
                 return;
             }
-            let keep = max(bodies.clearance(row), radius + 2.0 * slack);
+            (least, nearest) = if distance < least { (distance, normal) } else { (least, nearest) };
+            let keep = max(bodies.clearance(row), bodies.radius[row] + 2.0 * slack);
             let gap = if distance < keep { distance + RECOVERY * (keep - distance) } else { keep };
             let offset = normal.dot(point + velocity * h) + gap;
             let missing = offset - normal.dot(to);
@@ -214,24 +236,24 @@ impl Wall {
                 (second, self.beside, self.beyond) = (f32::NEG_INFINITY, Vec3::ZERO, 0.0);
             }
             most = missing;
-            let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
-            let approach = (bodies.velocity[row] - velocity).dot(normal);
             // Friction does not act on the way there: whoever were held where that begins would be held beside where he hits a slope.
             let (there, far) = (from + velocity * h, distance - keep - slack);
             let share = if far > 0.0 && missing > 0.0 { far / (far + missing) } else { 0.0 };
-            let stuck = there + (to - there) * share;
-            let (state, held, brake, tangent) = (NEAR, Vec3::ZERO, 0.0, TangentImpulse::of(Vec3::ZERO));
-            *self =
-                Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, tangent, ..*self };
+            self.take(contact, offset, there + (to - there) * share, bodies);
         });
         self.free = free;
-        if self.state == NEAR {
-            self.touch.begin(0.0);
-            // Who was pressed in the sub-step before most often still is.
-            if most > NOTICED * self.slack || was > NEAR {
-                self.press();
-            }
-        }
+        (most, nearest)
+    }
+
+    /// Takes a face that keeps its particle so far from the origin, and if friction can at a place.
+    fn take(&mut self, contact: &Contact, offset: f32, stuck: Vec3, bodies: &Bodies<'_>) {
+        let Contact { normal, velocity, material, slack, .. } = *contact;
+        let row = self.row as usize;
+        let (own, elasticity) = (bodies.material[row].checked_sub(1), bodies.elasticity[row]);
+        let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
+        let approach = (bodies.velocity[row] - velocity).dot(normal);
+        let (state, held, brake, tangent) = (NEAR, Vec3::ZERO, 0.0, TangentImpulse::of(Vec3::ZERO));
+        *self = Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, tangent, ..*self };
     }
 
     /// Begins to press: with friction as if that held it.
@@ -239,4 +261,13 @@ impl Wall {
         self.state = if self.touch.sticks() { STICKS } else { SLIDES };
         self.fresh = 1;
     }
+}
+
+/// Tells whether a surface is where a place of it that is nearest says: who goes from the centre straight on through an edge of a flat floor meets
+/// that, which looks elsewhere.
+fn is_face(contact: &Contact, from: Vec3, bodies: &Bodies<'_>) -> bool {
+    let Contact { point, normal, slack, .. } = *contact;
+    let during = [bodies.substep.during[0]; 2];
+    let through = Segment { during, ..Segment::new(from, point - normal * (4.0 * slack)) };
+    bodies.colliders.first_hit(&through).is_some_and(|hit| hit.normal.dot(normal) >= SAME)
 }

@@ -1,0 +1,114 @@
+//! What hangs still has no speed, whatever holds it, whatever the method and the sub-steps.
+
+use pointmass::constrain::{ShapeMatching, Shell, ShellParams, StrandParams, Strands};
+use pointmass::{Constraint, Distance, Drag, Gravity, Method, Particle, Rope, Scene, Sheet, Vec3};
+use pointmass_tests::{run, started};
+
+/// Something that hangs.
+struct Hung {
+    name: &'static str,
+    start: Vec<Particle>,
+    bond: Box<dyn Constraint>,
+    /// True if it is made of links that know nothing of each other, whose speed explicit Euler shows.
+    is_chain: bool,
+}
+
+/// So many particles one below the other, of which the first are fixed.
+fn line(count: u32, fixed: u32, scale: f32) -> Vec<Particle> {
+    let at = |i: u32| Particle { position: Vec3::NEG_Y * (i as f32 * 0.1 * scale), fixed: i < fixed, ..Particle::REST };
+    (0..count).map(at).collect()
+}
+
+/// Links each by itself.
+fn chain(count: u32, scale: f32, compliance: f32, tether: bool) -> Vec<Distance> {
+    let length = 0.1 * scale;
+    (1..count).map(|i| Distance { ends: [i - 1, i], length, compliance, damping: 0.0, tether }).collect()
+}
+
+/// One of each kind: `soft` things stretch by some hundredths of their size.
+fn things(scale: f32) -> Vec<Hung> {
+    let (mass, g) = (0.02, 10.0);
+    let soft = 0.02 * 0.1 * scale / (mass * g);
+    let hung = |name, start: Vec<Particle>, bond: Box<dyn Constraint>, is_chain| {
+        let heavy = |p: &Particle| Particle { mass, drag: 3.0 * mass, ..*p };
+        Hung { name, start: start.iter().map(heavy).collect(), bond, is_chain }
+    };
+    let sheet =
+        Sheet { corner: Vec3::ZERO, sides: [Vec3::X * (0.2 * scale), Vec3::NEG_Y * (0.4 * scale)], cells: [2, 4] };
+    let mut cloth: Vec<Particle> = sheet.particles(Particle::REST).collect();
+    cloth.iter_mut().for_each(|p| p.fixed = p.position.y == 0.0);
+    let params = ShellParams { stretch: [40.0 / scale; 2], shear: 10.0 / scale, bending: 1e-5 * scale, damping: 1e-3 };
+    let shell = Shell {
+        particles: (0..15).collect::<Vec<u32>>(),
+        triangles: sheet.triangles().collect::<Vec<_>>(),
+        hinges: sheet.hinges().collect::<Vec<_>>(),
+        warp: Vec3::X,
+        params,
+    };
+    let params = StrandParams {
+        stretch: Some(20.0),
+        bending: [1e-4 * scale * scale; 2],
+        twisting: 1e-4 * scale * scale,
+        damping: 1e-3,
+    };
+    let numbers: Vec<u32> = (0..6).collect();
+    let strand = Strands::of(numbers.clone(), vec![6], params);
+    let stiff = Strands::of(numbers.clone(), vec![6], StrandParams { stretch: None, ..params });
+    let box_of = |fixed: usize| -> Vec<Particle> {
+        let at = |i: usize| Vec3::new((i & 1) as f32, -((i >> 1 & 1) as f32), (i >> 2) as f32) * (0.1 * scale);
+        (0..8).map(|i| Particle { position: at(i), fixed: i < fixed, ..Particle::REST }).collect()
+    };
+    let cluster = |compliance| ShapeMatching { compliance, ..ShapeMatching::rigid((0..8).collect::<Vec<u32>>()) };
+    let rope = |compliance| Rope { compliance, ..Rope::rigid((0..6).collect::<Vec<u32>>(), vec![0.1 * scale]) };
+    vec![
+        hung("rod", line(2, 1, scale), Box::new(Distance::rod([0, 1], 0.1 * scale)), false),
+        hung("string", line(2, 1, scale), Box::new(Distance::string([0, 1], 0.1 * scale)), false),
+        hung("rods", line(6, 1, scale), Box::new(chain(6, scale, 0.0, false)), true),
+        hung("strings", line(6, 1, scale), Box::new(chain(6, scale, 0.0, true)), true),
+        hung("soft links", line(6, 1, scale), Box::new(chain(6, scale, soft, false)), true),
+        hung("rope", line(6, 1, scale), Box::new(rope(0.0)), false),
+        hung("soft rope", line(6, 1, scale), Box::new(rope(soft)), false),
+        hung("shell", cloth, Box::new(shell), false),
+        hung("strand", line(6, 2, scale), Box::new(strand), false),
+        hung("stiff strand", line(6, 2, scale), Box::new(stiff), false),
+        hung("cluster", box_of(4), Box::new(cluster(0.0)), false),
+        hung("jelly", box_of(4), Box::new(cluster(soft)), false),
+    ]
+}
+
+#[test]
+fn what_hangs_still_shows_no_speed() {
+    let mut failures = vec![];
+    for (round, scale) in [1.0, 0.1, 20.0].into_iter().enumerate() {
+        // Times go by the root of the size.
+        let step = f64::from(scale).sqrt() / 60.0;
+        let forces = (Gravity { acceleration: Vec3::NEG_Y * 10.0 }, Drag {});
+        for Hung { name, start, bond, is_chain } in &things(scale) {
+            let brake = |p: &Particle| Particle { drag: p.drag / scale.sqrt(), ..*p };
+            let start: Vec<_> = start.iter().map(brake).collect();
+            // Every method meets every thing, in one of the sizes.
+            let methods = Method::ALL.iter().enumerate().filter(|(number, _)| number % 3 == round);
+            for (_, &method) in methods {
+                if *is_chain && method == Method::Euler {
+                    continue;
+                }
+                for substeps in [1, 4, 10] {
+                    let parts = Scene { start: &start, forces: &forces, constraints: &**bond, ..Scene::EMPTY };
+                    let scene = Scene { substeps, integrator: method.integrator(), ..parts };
+                    let mut system = started(&scene, start.len(), 0);
+                    run(&mut system, &scene, step, 600);
+                    let speed = system.particles().velocity.iter().fold(0f32, |most, v| most.max(v.length()));
+                    let h = step as f32 / substeps as f32;
+                    let falls = 10.0 * h;
+                    if !(speed < 0.02 * falls + 4.0 * f32::EPSILON * scale / h) {
+                        failures.push(format!(
+                            "{name} of {scale} m, {method}, {substeps} sub-steps: {} of g h",
+                            speed / falls
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
+}
