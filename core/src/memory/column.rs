@@ -20,14 +20,6 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
         }
     }
 
-    /// All of it, for reading.
-    pub(crate) fn read(self) -> &'a [T] {
-        match self {
-            Self::Own(rows) => rows,
-            Self::Common(rows) => rows,
-        }
-    }
-
     /// All of it, for changing, if it exists; else no entries.
     pub fn own(&mut self) -> &mut [T] {
         match self {

@@ -1,9 +1,9 @@
 //! Update: the old go through a sub-step; the newborn fly on from their births.
 
 use super::field::Field;
-use super::substeps::{Carried, Moved, custom};
+use super::substeps::{Carried, custom};
 use super::tile::Tile;
-use crate::constrain::{SHIFTED, Substep};
+use crate::constrain::{Moved, SHIFTED, Substep};
 use crate::force::Steady;
 use crate::index::ListMemory;
 use crate::integrate::{Drift, Dynamics};

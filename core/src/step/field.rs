@@ -1,7 +1,7 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use crate::custom::CustomColumns;
-use crate::force::{BuildTrees, Force, Inertia, Needs, State, Steady, Then};
+use crate::force::{Attributes, BuildTrees, Force, Inertia, Needs, State, Steady, Then};
 use crate::index::{BarnesHut, Found, ListMemory, Search};
 use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
@@ -11,44 +11,6 @@ use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
-
-/// The attributes of particles besides places and velocities: one entry a row.
-#[derive(Clone, Copy)]
-pub(crate) struct Attributes<'a> {
-    /// All that forces see of them.
-    pub(crate) lives: State<'a>,
-    pub(crate) inverse_mass: &'a [f32],
-    pub(crate) elasticity: &'a [f32],
-    /// True if all are known to have the same mass and drag.
-    pub(crate) are_alike: bool,
-}
-
-impl<'a> Attributes<'a> {
-    /// The first rows somewhere, at some time, with columns of a user's own.
-    pub(super) fn state<'s>(&self, custom: CustomColumns<'s>, time: Time, [x, v]: [&'s [Vec3]; 2]) -> State<'s>
-    where
-        'a: 's,
-    {
-        State { custom: custom.rows(0..x.len()), ..self.lives.moved(time, x, v) }
-    }
-
-    /// The columns that tell how some rows fall.
-    pub(super) fn inertia(&self, rows: Range<usize>) -> Inertia<'a> {
-        let Self { lives, inverse_mass, are_alike, .. } = *self;
-        let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
-        Inertia { mass, drag, inverse_mass, are_alike }
-    }
-
-    /// Those of some rows.
-    pub(super) fn rows(&self, rows: Range<usize>) -> Self {
-        Self {
-            inverse_mass: &self.inverse_mass[rows.clone()],
-            elasticity: &self.elasticity[rows.clone()],
-            lives: self.lives.attributes_of(rows),
-            are_alike: self.are_alike,
-        }
-    }
-}
 
 /// Inertia that look at all others for less than it takes to make an index and to look up all in it.
 const FEW: usize = 64;
@@ -124,25 +86,13 @@ impl Dynamics for Field<'_> {
             self.effort.evaluations += u64::from(!position.is_empty());
             return steady.accelerate(columns, &velocity[rows], acceleration);
         }
-        self.with_state(time, position, velocity, &mut |state| {
-            acceleration.fill(Vec3::ZERO);
-            match state.springs.force() {
-                Some(springs) => add_up(&(forces, springs), state, rows.clone(), acceleration),
-                None => add_up(forces, state, rows.clone(), acceleration),
-            }
-        });
+        self.with_state(time, position, velocity, &mut |state| add_all(forces, state, rows.clone(), acceleration));
         divide_by_masses(acceleration, inverse_mass);
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[..position.len()]);
-        self.with_state(time, position, velocity, &mut |state| {
-            let mut linear = |forces: &dyn Force| then(&Linear { forces, state: *state, inverse_mass });
-            match state.springs.force() {
-                Some(springs) => linear(&(forces, springs)),
-                None => linear(forces),
-            }
-        });
+        self.with_state(time, position, velocity, &mut |state| then(&Linear::about(state, forces, inverse_mass)));
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
@@ -158,6 +108,16 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
         // A fixed particle stays so under a force that is beyond an f32.
         if inverse == 0.0 { 0.0 } else { force * inverse }
     });
+}
+
+/// The forces on some rows, those of springs behind the others.
+#[cfg_attr(target_os = "none", inline(never))]
+fn add_all(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+    total.fill(Vec3::ZERO);
+    add_up(forces, state, rows.clone(), total);
+    if let Some(springs) = state.springs.force() {
+        add_up(springs, state, rows, total);
+    }
 }
 
 /// Inertia that are worth a thread's while.

@@ -1,38 +1,15 @@
 //! A sub-step: the method moves everything, then constraints move it to where they are met.
 
-use super::field::{Attributes, Field};
-use crate::constrain::{Bodies, ConstraintCode, DONE, Moment, Near, Share, Substep};
-use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::force::Needs;
-use crate::index::{ListMemory, Listed};
+use super::field::Field;
+use crate::constrain::{DONE, Moment, Moved, Substep};
+use crate::custom::CustomColumns;
+use crate::force::Attributes;
+use crate::index::Listed;
 use crate::integrate::{Motion, Work};
-use crate::memory::{Layout, Scratch};
-use crate::observe::{Observer, Phase};
-use crate::report::{Effort, Report};
+use crate::observe::Phase;
+use crate::report::Effort;
 use crate::scene::Scene;
 use crate::time::Time;
-use glam::Vec3;
-
-/// The particles that a sub-step moves, and the memory for it.
-pub(crate) struct Moved<'a> {
-    pub(super) scene: &'a Scene<'a>,
-    pub(super) attributes: &'a Attributes<'a>,
-    pub(super) needs: Needs,
-    pub(super) position: &'a mut [Vec3],
-    pub(super) velocity: &'a mut [Vec3],
-    /// Places and velocities at the sub-step's beginning; empty where nobody asks.
-    pub(super) start: [&'a [Vec3]; 2],
-    /// A mark for each of what constraints do to it, and the words that they keep through the step.
-    pub(super) marks: &'a mut [u32],
-    pub(super) lasting: &'a mut [u32],
-    pub(super) lists: ListMemory<'a>,
-    /// The words kept from step to step, for writing where there are constraints.
-    pub(super) kept: &'a mut [u32],
-    pub(super) scratch: Scratch<'a>,
-    pub(super) capacity: usize,
-    pub(super) report: &'a mut Report,
-    pub(super) observer: &'a mut dyn Observer,
-}
 
 /// The memory that goes on from step to step beside the particles, in tiles nothing.
 pub(super) struct Carried<'a> {
@@ -54,13 +31,13 @@ impl Moved<'_> {
         let lasts = if substep.number == 0 { 0 } else { !DONE };
         self.marks.iter_mut().for_each(|mark| *mark &= lasts);
         if let Some(code) = constraints {
-            self.ask(code, Moment::Before, substep);
+            (code.0)(self, Moment::Before, substep);
         }
         self.integrate(substep, hint);
         if let Some(code) = constraints {
             self.tell(Phase::Advance, to);
             self.tell(Phase::Project, to);
-            self.ask(code, Moment::After, substep);
+            (code.0)(self, Moment::After, substep);
             self.tell(Phase::Constrain, to);
         }
     }
@@ -102,40 +79,6 @@ impl Moved<'_> {
         let custom = custom(self.scene, self.attributes, self.kept, self.capacity);
         let state = self.attributes.state(custom, time, [self.position, self.velocity]);
         self.observer.after(phase, &state);
-    }
-
-    /// Lends the constraints what they move and the memory that they work in.
-    #[inline(never)]
-    fn ask(&mut self, code: ConstraintCode, moment: Moment, substep: Substep) {
-        let scene = self.scene;
-        let Attributes { lives, inverse_mass, elasticity, .. } = *self.attributes;
-        let len = self.position.len();
-        let [memory, scratch] = self.scratch.constraining();
-        let (custom, kept) = Layout::of(scene.plan(), self.capacity).kept(self.kept);
-        let mut bodies = Bodies {
-            position: self.position,
-            velocity: self.velocity,
-            before: self.start,
-            radius: &lives.radius[..len],
-            mass: &lives.mass[..len],
-            inverse_mass: &inverse_mass[..len],
-            elasticity: &elasticity[..len],
-            material: &lives.material[..len],
-            custom: CustomColumnsMut::new(scene.custom, custom, self.capacity, len),
-            substep,
-            colliders: scene.colliders,
-            materials: scene.materials,
-            near: Near { index: scene.index, memory },
-            report: self.report,
-            slot: &lives.slot[..len],
-            serial: &lives.springs.serial[..len],
-            row_of: lives.springs.row_of,
-            start: lives.springs.start,
-            marks: self.marks,
-            observer: self.observer,
-        };
-        let mut share = Share { kept, step: self.lasting, scratch, capacity: self.capacity };
-        (code.0)(scene.constraints, moment, &mut bodies, &mut share);
     }
 }
 

@@ -208,9 +208,8 @@ impl Workspace<'_> {
     /// Gives rows from `first` on what they begin with in columns of a user's own.
     pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize) {
         let Some(code) = scene.custom.code() else { return };
-        let (capacity, len, start) = (self.capacity(), self.len(), self.status.start);
-        let Slices { serial, kept, .. } = self.memory.slices();
-        let (values, _) = Layout::of(scene.plan(), capacity).kept(kept);
-        (code.give)(scene.custom, Newcomers { first, serial: &serial[..len], start, values, capacity });
+        let layout = Layout::of(scene.plan(), self.capacity());
+        let rows = Newcomers { first, len: self.len(), start: self.status.start, layout };
+        (code.give)(scene.custom, &mut self.memory, rows);
     }
 }
