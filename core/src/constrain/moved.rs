@@ -1,13 +1,14 @@
 //! The particles that a sub-step moves, and how constraints are called upon to.
 
-use super::{Bodies, Near, Share, Substep};
+use super::{Bodies, Constraint, Near, Share, Substep};
 use crate::custom::CustomColumnsMut;
 use crate::force::{Attributes, Needs};
 use crate::index::ListMemory;
 use crate::memory::{Layout, Scratch};
-use crate::observe::Observer;
+use crate::observe::{Observer, Phase};
 use crate::report::Report;
 use crate::scene::Scene;
+use crate::time::Time;
 use glam::Vec3;
 
 /// The function that constraints call for in a step. A program without constraints does not carry it about.
@@ -49,8 +50,35 @@ pub(crate) struct Moved<'a> {
     pub(crate) observer: &'a mut dyn Observer,
 }
 
-/// Lends the constraints what they move and the memory that they work in.
+impl Moved<'_> {
+    /// Says that the sub-step has come so far.
+    fn tell(&mut self, phase: Phase, time: Time) {
+        let custom = self.attributes.custom(self.scene, self.kept, self.capacity);
+        let state = self.attributes.state(custom, time, [self.position, self.velocity]);
+        self.observer.after(phase, &state);
+    }
+}
+
+/// Lets constraints move what the method has moved, or look on before, and says how far that has come.
 fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
+    let [_, end] = substep.during;
+    match moment {
+        Moment::Before => lend(moved, substep, |constraints, bodies, share| constraints.prepare(bodies, share)),
+        Moment::After => {
+            moved.tell(Phase::Advance, end);
+            moved.tell(Phase::Project, end);
+            lend(moved, substep, |constraints, bodies, share| {
+                constraints.project(bodies, share);
+                constraints.settle(bodies, share);
+            });
+            moved.tell(Phase::Constrain, end);
+        }
+    }
+}
+
+/// Lends the constraints what they move and the memory that they work in.
+#[inline(never)]
+fn lend(moved: &mut Moved<'_>, substep: Substep, go: fn(&dyn Constraint, &mut Bodies<'_>, &mut Share<'_>)) {
     let Moved { scene, capacity, .. } = *moved;
     let Attributes { lives, inverse_mass, elasticity, .. } = *moved.attributes;
     let len = moved.position.len();
@@ -79,11 +107,5 @@ fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
         observer: moved.observer,
     };
     let mut share = Share { kept, step: moved.lasting, scratch, capacity };
-    match moment {
-        Moment::Before => scene.constraints.prepare(&mut bodies, &mut share),
-        Moment::After => {
-            scene.constraints.project(&mut bodies, &mut share);
-            scene.constraints.settle(&mut bodies, &mut share);
-        }
-    }
+    go(scene.constraints, &mut bodies, &mut share);
 }

@@ -312,14 +312,14 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         let direction = self.spread.direction(axis, [p, q]);
         Particle {
             position: along(spot, self.velocity, at.seconds()),
-            velocity: along(along_with * self.inherit, direction, self.speed.pick(|| speed)),
-            radius: self.radius.pick(|| random.units(7)[1]),
-            mass: self.mass.pick(|| random.units(3)[0]),
+            velocity: along(along_with * self.inherit, direction, self.speed.pick(speed)),
+            radius: self.radius.draw(random, 7, 1),
+            mass: self.mass.draw(random, 3, 0),
             fixed: self.fixed,
-            drag: self.drag.pick(|| random.units(3)[1]),
-            charge: self.charge.pick(|| random.units(7)[0]),
-            elasticity: self.elasticity.pick(|| bounce),
-            lifetime: self.lifetime.pick(|| life),
+            drag: self.drag.draw(random, 3, 1),
+            charge: self.charge.draw(random, 7, 0),
+            elasticity: self.elasticity.pick(bounce),
+            lifetime: self.lifetime.pick(life),
             material: self.material,
             color: Some(self.tint(random)),
         }

@@ -2,6 +2,7 @@
 
 use super::{Inertia, State};
 use crate::custom::CustomColumns;
+use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -26,6 +27,14 @@ impl<'a> Attributes<'a> {
         let mut state = self.lives.moved(time, x, v);
         state.custom = custom.rows(0..x.len());
         state
+    }
+
+    /// Columns of a user's own as they are now: where constraints may change them, those that are lent for it.
+    pub(crate) fn custom<'s>(&self, scene: &Scene<'s>, kept: &'s [u32], capacity: usize) -> CustomColumns<'s>
+    where
+        'a: 's,
+    {
+        if kept.is_empty() { self.lives.custom } else { CustomColumns::kept(scene.custom, kept, capacity, capacity) }
     }
 
     /// The columns that tell how some rows fall.

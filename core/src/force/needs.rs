@@ -1,8 +1,15 @@
 //! The needs of forces: all that they have to find in the state.
 
-use super::State;
+use super::{Attributes, State};
+use crate::custom::CustomColumnsMut;
 use crate::index::{BarnesHut, Found, IndexChoice, Search, find};
+use crate::integrate::Field;
 use crate::math::max;
+use crate::memory::Layout;
+use crate::report::Effort;
+use crate::scene::Scene;
+use crate::time::Time;
+use glam::Vec3;
 
 /// Makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +18,23 @@ pub struct BuildTrees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
 /// Finds neighbours, likewise.
 #[derive(Clone, Copy, Debug)]
 pub struct Listing(pub(crate) fn(Search<'_>, &State<'_>, Then<'_>) -> Found);
+
+/// Lets forces change columns of a user's own, likewise.
+#[derive(Clone, Copy, Debug)]
+pub struct Writing(pub(crate) fn(Written<'_>));
+
+/// All rows at a step's end, the memory that is laid out for them, and the step's length.
+pub(crate) struct Written<'a> {
+    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) attributes: &'a Attributes<'a>,
+    pub(crate) ends: [&'a [Vec3]; 2],
+    pub(crate) kept: &'a mut [u32],
+    pub(crate) work: &'a mut [Vec3],
+    pub(crate) layout: Layout,
+    pub(crate) end: Time,
+    pub(crate) dt: f32,
+    pub(crate) effort: &'a mut Effort,
+}
 
 /// The continuation with a state in which all is found.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(&State<'_>);
@@ -23,6 +47,35 @@ impl BuildTrees {
 impl Listing {
     /// Lists that last until somebody has gone half their skin, where there is memory for them.
     pub const KEPT: Self = Self(look_up);
+}
+
+impl Writing {
+    /// That of all columns.
+    pub const COLUMNS: Self = Self(write);
+}
+
+fn write(rows: Written<'_>) {
+    let Written { scene, attributes, ends: [position, velocity], kept, work, layout, end, dt, effort } = rows;
+    let values = layout.kept(kept).0;
+    let mut custom = CustomColumnsMut::new(scene.custom, values, layout.capacity(), position.len());
+    let mut scratch = layout.shares(work).scratch;
+    let ([tree, near], _) = scratch.moving();
+    let (needs, observer) = (scene.forces.needs(), &mut ());
+    let seen = attributes.lives.custom;
+    let mut field = Field {
+        scene,
+        attributes,
+        custom: seen,
+        needs,
+        tree,
+        near,
+        lists: None,
+        first: 0,
+        effort: Effort::NONE,
+        observer,
+    };
+    field.with_state(end, position, velocity, &mut |state| scene.forces.write(state, &mut custom, dt));
+    effort.found(&field.effort);
 }
 
 fn build(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
@@ -57,8 +110,9 @@ pub struct Needs {
     pub reach: f32,
     /// The finder: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
     pub lists: Option<Listing>,
-    /// To change columns of a user's own, by [`Force::write`](super::Force::write); else a force is not asked to.
-    pub write: bool,
+    /// To change columns of a user's own, by [`Force::write`](super::Force::write): [`Writing::COLUMNS`]. A function, likewise; without it a
+    /// force is not asked to.
+    pub write: Option<Writing>,
 }
 
 impl Needs {
@@ -76,7 +130,7 @@ impl Needs {
             charge_tree: self.charge_tree.or(other.charge_tree),
             reach: max(self.reach, other.reach),
             lists: self.lists.or(other.lists),
-            write: self.write || other.write,
+            write: self.write.or(other.write),
         }
     }
 

@@ -17,6 +17,7 @@
 mod adaptive;
 mod embedded;
 mod euler;
+mod field;
 mod implicit;
 mod midpoint;
 mod named;
@@ -26,6 +27,7 @@ mod verlet;
 pub use adaptive::Adaptive;
 pub use embedded::Embedded;
 pub use euler::{Euler, Symplectic};
+pub(crate) use field::Field;
 pub use implicit::Implicit;
 pub use midpoint::{LectureMidpoint, Midpoint};
 pub use named::{Method, Tuned, Tuning, UnknownMethod};

@@ -33,14 +33,6 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
         matches!(self, Self::Own(_))
     }
 
-    /// Tells whether a particle with this number may be in any row.
-    pub(crate) fn takes(&self, value: T) -> bool {
-        match self {
-            Self::Own(_) => true,
-            Self::Common(rows) => rows.first().is_none_or(|common| *common == value),
-        }
-    }
-
     /// Gives a row its number, if that may be in it, and says whether it may.
     pub(crate) fn put(&mut self, row: usize, value: T) -> bool {
         match self {

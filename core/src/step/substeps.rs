@@ -1,14 +1,9 @@
 //! A sub-step: the method moves everything, then constraints move it to where they are met.
 
-use super::field::Field;
 use crate::constrain::{DONE, Moment, Moved, Substep};
-use crate::custom::CustomColumns;
-use crate::force::Attributes;
 use crate::index::Listed;
-use crate::integrate::{Motion, Work};
-use crate::observe::Phase;
+use crate::integrate::{Field, Motion, Work};
 use crate::report::Effort;
-use crate::scene::Scene;
 use crate::time::Time;
 
 /// The memory that goes on from step to step beside the particles, in tiles nothing.
@@ -25,8 +20,7 @@ pub(super) struct Carried<'a> {
 impl Moved<'_> {
     /// Moves all through a sub-step.
     pub(super) fn go(&mut self, substep: Substep, hint: &mut Time) {
-        let ([_, to], constraints) = (substep.during, self.scene.constraints.code());
-        let constraints = constraints.filter(|_| !self.marks.is_empty());
+        let constraints = self.scene.constraints.code().filter(|_| !self.marks.is_empty());
         // How far constraints keep particles off the scenery is told once a step.
         let lasts = if substep.number == 0 { 0 } else { !DONE };
         self.marks.iter_mut().for_each(|mark| *mark &= lasts);
@@ -35,10 +29,7 @@ impl Moved<'_> {
         }
         self.integrate(substep, hint);
         if let Some(code) = constraints {
-            self.tell(Phase::Advance, to);
-            self.tell(Phase::Project, to);
             (code.0)(self, Moment::After, substep);
-            self.tell(Phase::Constrain, to);
         }
     }
 
@@ -48,7 +39,7 @@ impl Moved<'_> {
         let len = self.position.len();
         let ([tree, near], memory) = self.scratch.moving();
         let (scene, attributes, needs) = (self.scene, self.attributes, self.needs);
-        let custom = custom(scene, attributes, self.kept, self.capacity);
+        let custom = attributes.custom(scene, self.kept, self.capacity);
         let mut field = Field {
             scene,
             attributes,
@@ -73,21 +64,4 @@ impl Moved<'_> {
         let effort = field.effort;
         self.report.effort.found(&effort);
     }
-
-    /// Says that the sub-step has come so far.
-    fn tell(&mut self, phase: Phase, time: Time) {
-        let custom = custom(self.scene, self.attributes, self.kept, self.capacity);
-        let state = self.attributes.state(custom, time, [self.position, self.velocity]);
-        self.observer.after(phase, &state);
-    }
-}
-
-/// Columns of a user's own as they are now: where constraints may change them, those that are lent for it.
-pub(super) fn custom<'a>(
-    scene: &'a Scene<'a>,
-    attributes: &Attributes<'a>,
-    kept: &'a [u32],
-    capacity: usize,
-) -> CustomColumns<'a> {
-    if kept.is_empty() { attributes.lives.custom } else { CustomColumns::kept(scene.custom, kept, capacity, capacity) }
 }

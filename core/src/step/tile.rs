@@ -59,7 +59,7 @@ impl Scene<'_> {
     }
 
     /// The forces that one pass over the columns can work out, if there are no others.
-    pub(super) fn steady(&self) -> Option<Steady> {
+    pub(crate) fn steady(&self) -> Option<Steady> {
         let floats = || self.materials.code().is_some_and(|code| (code.floats)(self.materials));
         let is_alone = BLOCKS && self.springs.list().is_empty() && !floats();
         if is_alone { self.forces.steady() } else { None }

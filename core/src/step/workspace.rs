@@ -184,10 +184,16 @@ impl Workspace<'_> {
         (!scene.springs.list().is_empty() && !last_spring.is_own()).then_some("last_spring")
     }
 
-    /// The same, or one in which a particle that the scene begins with or bears differs from what all have.
-    pub(crate) fn differs(&self, scene: &Scene<'_>) -> Option<&'static str> {
+    /// The same, or one in which a particle that the scene begins with or bears differs from what all have. It is put in the first row to
+    /// find out, where nobody lives yet.
+    pub(crate) fn differs(&mut self, scene: &Scene<'_>) -> Option<&'static str> {
         let mut differs = self.lacks(scene);
-        let mut ask = |particle: &Particle| differs = differs.or(self.memory.differs(particle));
+        let has_room = self.capacity() > 0;
+        let mut ask = |particle: &Particle| {
+            if has_room && differs.is_none() {
+                differs = self.memory.give(0, particle).err();
+            }
+        };
         scene.start.iter().for_each(&mut ask);
         scene.emitters.extremes(&mut ask);
         differs

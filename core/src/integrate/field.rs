@@ -1,9 +1,9 @@
 //! Forces over masses: what a method asks for accelerations.
 
+use super::{Dynamics, Linear};
 use crate::custom::CustomColumns;
 use crate::force::{Attributes, BuildTrees, Force, Inertia, Needs, State, Steady, Then};
 use crate::index::{BarnesHut, Found, ListMemory, Search};
-use crate::integrate::{Dynamics, Linear};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
 use crate::rows::each_row_with;
@@ -17,24 +17,24 @@ const FEW: usize = 64;
 
 /// The scene's forces over the masses, from row `first` on.
 pub(crate) struct Field<'a> {
-    pub(super) scene: &'a Scene<'a>,
-    pub(super) attributes: &'a Attributes<'a>,
+    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) attributes: &'a Attributes<'a>,
     /// Columns of a user's own.
-    pub(super) custom: CustomColumns<'a>,
+    pub(crate) custom: CustomColumns<'a>,
     /// The parts of the state that the forces need to find there, and memory for them.
-    pub(super) needs: Needs,
-    pub(super) tree: &'a mut [u32],
-    pub(super) near: &'a mut [u32],
+    pub(crate) needs: Needs,
+    pub(crate) tree: &'a mut [u32],
+    pub(crate) near: &'a mut [u32],
     /// Lists of neighbours, where there is memory for them.
-    pub(super) lists: Option<ListMemory<'a>>,
-    pub(super) first: usize,
-    pub(super) effort: Effort,
-    pub(super) observer: &'a mut dyn Observer,
+    pub(crate) lists: Option<ListMemory<'a>>,
+    pub(crate) first: usize,
+    pub(crate) effort: Effort,
+    pub(crate) observer: &'a mut dyn Observer,
 }
 
 impl Field<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
-    pub(super) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
+    pub(crate) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
         self.effort.evaluations += u64::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         match self.needs.mass_tree.or(self.needs.charge_tree) {
