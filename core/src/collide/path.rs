@@ -1,6 +1,6 @@
 //! The path of a particle through a step, and the chords along which its collisions are sought.
 
-use crate::math::{along, dot, high, is_zero, length, low, max, minus, sqrt};
+use crate::math::{along, dot, high, is_zero, length, low, max, minus, over, plus, scaled, sqrt};
 use crate::rows::are_finite;
 use crate::shape::{Aabb, Segment};
 use crate::time::Time;
@@ -89,8 +89,8 @@ impl Path {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn cubic(&self) -> Cubic {
         let (duration, excess) = (self.duration(), self.excess());
-        let bend = along(minus(self.v1, self.v0) * (0.5 * duration), excess, 3.0);
-        Cubic { start: self.x0, coefficients: [self.v0 * duration, bend, excess * -2.0] }
+        let bend = along(scaled(minus(self.v1, self.v0), 0.5 * duration), excess, 3.0);
+        Cubic { start: self.x0, coefficients: [scaled(self.v0, duration), bend, scaled(excess, -2.0)] }
     }
 
     /// The point at a fraction of the time.
@@ -103,7 +103,7 @@ impl Path {
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
         let (change, excess) = (minus(self.v1, self.v0), self.excess());
-        let (steady, bend) = (along(self.v0, change, s), change * (0.5 * self.duration()));
+        let (steady, bend) = (along(self.v0, change, s), scaled(change, 0.5 * self.duration()));
         let is_smooth = !is_zero(excess) && dot(excess, excess) < 0.0625 * dot(bend, bend);
         if is_smooth { along(steady, excess, 6.0 * s * (1.0 - s) / self.duration()) } else { steady }
     }
@@ -112,8 +112,8 @@ impl Path {
     /// nothing: as a velocity it would be noise.
     #[cfg_attr(target_os = "none", inline(never))]
     fn excess(&self) -> Vec3 {
-        let excess = along(minus(self.x1, self.x0), self.v0 + self.v1, -0.5 * self.duration());
-        let rounding = (self.x0.abs() + self.x1.abs()) * f32::EPSILON;
+        let excess = along(minus(self.x1, self.x0), plus(self.v0, self.v1), -0.5 * self.duration());
+        let rounding = scaled(plus(self.x0.abs(), self.x1.abs()), f32::EPSILON);
         Vec3::select(excess.abs().cmple(rounding), Vec3::ZERO, excess)
     }
 
@@ -141,19 +141,19 @@ impl Path {
 
     /// Tells whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
     pub(super) fn lags(&self) -> bool {
-        let bend = minus(self.v1, self.v0) * (0.5 * self.duration());
+        let bend = scaled(minus(self.v1, self.v0), 0.5 * self.duration());
         dot(self.excess(), bend) < -0.5 * dot(bend, bend)
     }
 
     /// The parabola from its beginning with the velocities of its ends.
     pub(super) fn caught_up(&self) -> Self {
-        Self { x1: along(self.x0, self.v0 + self.v1, 0.5 * self.duration()), ..*self }
+        Self { x1: along(self.x0, plus(self.v0, self.v1), 0.5 * self.duration()), ..*self }
     }
 
     /// Straight from its beginning to its end.
     pub(super) fn straightened(&self) -> Self {
         let duration = self.duration();
-        let velocity = if duration > 0.0 { minus(self.x1, self.x0) / duration } else { Vec3::ZERO };
+        let velocity = if duration > 0.0 { over(minus(self.x1, self.x0), duration) } else { Vec3::ZERO };
         Self { v0: velocity, v1: velocity, ..*self }
     }
 
@@ -161,7 +161,7 @@ impl Path {
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();
-        if duration > 0.0 { minus(self.v1, self.v0) / duration } else { Vec3::ZERO }
+        if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
     }
 
     /// The number of chords that stay within `CHORD_ERROR` of it.

@@ -3,7 +3,7 @@
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use crate::material::on_surface;
-use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, sqrt, unit};
+use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, plus, scaled, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
@@ -150,7 +150,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let world = [acceleration, way, slip, end];
             observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
         }
-        Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
+        Some(Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during })
     }
 
     /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
@@ -272,16 +272,16 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
             _ => Vec3::ZERO,
         };
-        let surface = surface + whole;
+        let surface = plus(surface, whole);
         let came = along(minus(before, surface), normal, -incoming);
-        let slip = came + mixed.friction.answer(came, outgoing - incoming);
+        let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
         let Self { id, row, mass, .. } = *self;
-        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(surface + slip, normal, outgoing));
+        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
         if let Some(observer) = &mut self.observer {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
-            return Path::onward(beside, along(surface + slip, normal, onward), acceleration, during);
+            return Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
         }
         let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
@@ -291,12 +291,18 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             // have kept it from.
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
-            let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
-            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity[1] + end, during }
+            let crept = if lay { scaled(came, 0.5 * fell) } else { Vec3::ZERO };
+            Path {
+                x0: beside,
+                v0: after,
+                x1: minus(plus(ride.place, way), crept),
+                v1: plus(ride.velocity[1], end),
+                during,
+            }
         } else {
             let stays = stays && has_lain(path, meeting, place);
             let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
-            Path { x0, v0: after, x1: along(x0, surface, rest) + way, v1: surface + end, during }
+            Path { x0, v0: after, x1: plus(along(x0, surface, rest), way), v1: plus(surface, end), during }
         };
         if let Some(observer) = &mut self.observer {
             let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];

@@ -1,7 +1,7 @@
 //! A surface that gives birth to particles.
 
 use super::{Births, Emit, Spread, Varied};
-use crate::math::{along, divide, unit};
+use crate::math::{along, divide, scaled, unit};
 use crate::motion::Script;
 use crate::particles::{Color, Particle, WHITE};
 use crate::rng::Stream;
@@ -312,7 +312,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         let direction = self.spread.direction(axis, [p, q]);
         Particle {
             position: along(spot, self.velocity, at.seconds()),
-            velocity: along(along_with * self.inherit, direction, self.speed.pick(speed)),
+            velocity: along(scaled(along_with, self.inherit), direction, self.speed.pick(speed)),
             radius: self.radius.draw(random, 7, 1),
             mass: self.mass.draw(random, 3, 0),
             fixed: self.fixed,

@@ -1,6 +1,6 @@
 //! Numbers and directions that vary from birth to birth.
 
-use crate::math::{along, frame, max, sin_cos, sin_cos_turns, sqrt};
+use crate::math::{along, frame, max, scaled, sin_cos, sin_cos_turns, sqrt};
 use crate::rng::Stream;
 use glam::Vec3;
 
@@ -69,7 +69,7 @@ impl Spread {
         };
         let (a, b) = frame(axis);
         let (along_b, along_a) = sin_cos_turns(v);
-        along(axis * cos, along(a * along_a, b, along_b), sin)
+        along(scaled(axis, cos), along(scaled(a, along_a), b, along_b), sin)
     }
 }
 

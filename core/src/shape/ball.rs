@@ -5,7 +5,7 @@
 //! ball fits are the same solid, smaller by the radius, which the path leaves where the ball touches.
 
 use super::{Contact, Hit, Segment};
-use crate::math::{clamp, dot, length, max, sqrt, unit};
+use crate::math::{clamp, dot, length, max, minus, sqrt, unit};
 use glam::Vec3;
 
 /// The largest number of times that Newton's method looks again.
@@ -61,7 +61,7 @@ pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32; 2
     let distance = dot(gap, normal);
     if distance <= reach && normal != Vec3::ZERO {
         let slack = Segment { radius: distance, ..Segment::new(center, center) }.slack(size);
-        visit(&Contact { point: center - gap, normal, distance, slack, velocity: Vec3::ZERO, material: None });
+        visit(&Contact { point: minus(center, gap), normal, distance, slack, velocity: Vec3::ZERO, material: None });
     }
 }
 
