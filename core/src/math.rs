@@ -24,16 +24,19 @@ pub fn sqrt(x: f32) -> f32 {
 #[cfg(any(test, all(target_os = "none", not(target_has_atomic = "32"))))]
 #[inline(never)]
 fn root_by_bits(x: f32) -> f32 {
-    if !(x > 0.0 && x < f32::INFINITY) {
+    let bits = x.to_bits();
+    if bits.wrapping_sub(1) >= f32::INFINITY.to_bits() - 1 {
         return if x < 0.0 { f32::NAN } else { x };
     }
-    if x < f32::MIN_POSITIVE {
-        return root_by_bits(x * 16_777_216.0) * (1.0 / 4096.0);
-    }
     // x = mantissa × 2^(even exponent), the root's exponent being half of that, and its first bit of weight 2²⁴.
-    let exponent = (x.to_bits() >> 23) + 127;
-    let mantissa = x.to_bits() & 0x007F_FFFF | 0x0080_0000;
-    let mut rest = if exponent % 2 == 0 { mantissa << 1 } else { mantissa << 2 };
+    let (mut exponent, mut mantissa) = ((bits >> 23) + 127, bits & 0x007F_FFFF | 0x0080_0000);
+    if bits < 0x0080_0000 {
+        (exponent, mantissa) = (exponent + 1, bits);
+        while mantissa < 0x0080_0000 {
+            (exponent, mantissa) = (exponent - 1, mantissa << 1);
+        }
+    }
+    let mut rest = mantissa << (1 + (exponent & 1));
     let (mut root, mut twice, mut bit) = (0, 0, 1 << 24);
     while bit != 0 {
         let least = twice + bit;

@@ -81,7 +81,7 @@ impl Path {
         let third = self.duration() * (1.0 / 3.0);
         let (a, b) = (along(self.x0, self.v0, third), along(self.x1, self.v1, -third));
         let (min, max) = (low(low(self.x0, self.x1), low(a, b)), high(high(self.x0, self.x1), high(a, b)));
-        Aabb { min: min - radius, max: max + radius }.with_slack()
+        Aabb { min, max }.grown(radius).with_slack()
     }
 
     /// It as a polynomial.

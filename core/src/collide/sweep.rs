@@ -200,8 +200,9 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let (hit, is_sink) = self.first_hit(&chord)?;
             let begun = f32::from(i) / whole;
             let (time, place) = ((f32::from(i) + hit.time) / whole, chord.at(hit.time));
-            let meeting = Meeting { time, place, chord, begun, hit, is_sink };
-            Some(self.on_path(path, &cubic, meeting, f32::from(i + 1) / whole))
+            let mut meeting = Meeting { time, place, chord, begun, hit, is_sink };
+            self.put_on_path(path, &cubic, &mut meeting, f32::from(i + 1) / whole);
+            Some(meeting)
         })
     }
 
@@ -214,32 +215,31 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         }
     }
 
-    /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
-    /// touches the surface. A place far along the surface from that on the chord asks for the surface there, and where that is another
-    /// plane, for the crossing of it.
-    fn on_path(&self, path: &Path, cubic: &Cubic, meeting: Meeting, end: f32) -> Meeting {
-        let Meeting { begun, hit, .. } = meeting;
+    /// Puts a meeting that a chord has found before `end` to its instant on the path: where that crosses the plane that touches the
+    /// surface. A place far along the surface from that on the chord asks for the surface there, and where that is another plane, for the
+    /// crossing of it.
+    fn put_on_path(&self, path: &Path, cubic: &Cubic, meeting: &mut Meeting, end: f32) {
+        let Meeting { begun, hit, place, .. } = *meeting;
         let drift = dot(hit.velocity, hit.normal) * path.duration();
-        let time = crossing(cubic, drift, &hit, meeting.place, [begun, meeting.time, end]);
-        let place = cubic.at(time);
-        if !(length(minus(place, meeting.place)) > 16.0 * hit.slack) {
-            return Meeting { time, place, ..meeting };
+        let time = crossing(cubic, drift, &hit, place, [begun, meeting.time, end]);
+        (meeting.time, meeting.place) = (time, cubic.at(time));
+        if !(length(minus(meeting.place, place)) > 16.0 * hit.slack) {
+            return;
         }
         let reach = (end - begun) * (1.0 / 16.0);
         let [from, to] = [max(time - reach, begun), min(time + reach, end)];
         let piece = path.piece([from, to], self.radius);
-        match self.first_hit(&piece) {
-            Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
-                let found = from + (to - from) * near.time;
-                let (nearby, turn) = (piece.at(near.time), dot(near.velocity, near.normal) * path.duration());
-                let is_flat = near.normal == hit.normal && drift == 0.0 && turn == 0.0;
-                if is_flat && dot(minus(nearby, meeting.place), hit.normal).abs() <= 0.5 * near.slack {
-                    return Meeting { time, place, hit: near, ..meeting };
-                }
-                let time = crossing(cubic, turn, &near, nearby, [from, found, to]);
-                Meeting { time, place: cubic.at(time), hit: near, ..meeting }
-            }
-            _ => Meeting { time, place, ..meeting },
+        let Some((near, is_sink)) = self.first_hit(&piece) else { return };
+        if is_sink != meeting.is_sink || !(dot(near.normal, hit.normal) > 0.0) {
+            return;
+        }
+        meeting.hit = near;
+        let found = from + (to - from) * near.time;
+        let (nearby, turn) = (piece.at(near.time), dot(near.velocity, near.normal) * path.duration());
+        let is_flat = near.normal == hit.normal && drift == 0.0 && turn == 0.0;
+        if !(is_flat && dot(minus(nearby, place), hit.normal).abs() <= 0.5 * near.slack) {
+            let time = crossing(cubic, turn, &near, nearby, [from, found, to]);
+            (meeting.time, meeting.place) = (time, cubic.at(time));
         }
     }
 
