@@ -155,11 +155,11 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
         let (start, stop) = (Time::from_seconds(self.start), self.stop.map_or(Time::NEVER, Time::from_seconds));
+        let (first, last) = (from.max(start), to.min(stop));
         if let Some(burst) = &self.burst {
             let number = births.claim();
-            self.emit_bursts(burst, [from.max(start), to.min(stop)], births, number);
+            self.emit_bursts(burst, [first, last], births, number);
         }
-        let (first, last) = (from.max(start), to.min(stop));
         if first < last {
             let mut due = births.due(number, self.rate, first, last);
             while !births.is_full() {

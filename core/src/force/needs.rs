@@ -2,7 +2,7 @@
 
 use super::{Attributes, State};
 use crate::custom::CustomColumnsMut;
-use crate::index::{BarnesHut, Found, IndexChoice, Search, find};
+use crate::index::{BarnesHut, Found, IndexChoice, ListMemory, Search, find};
 use crate::integrate::Field;
 use crate::math::max;
 use crate::memory::Layout;
@@ -13,11 +13,11 @@ use glam::Vec3;
 
 /// Makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
 #[derive(Clone, Copy, Debug)]
-pub struct BuildTrees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
+pub struct BuildTrees(pub(crate) fn(&mut Field<'_>, &State<'_>, Then<'_>));
 
 /// Finds neighbours, likewise.
 #[derive(Clone, Copy, Debug)]
-pub struct Listing(pub(crate) fn(Search<'_>, &State<'_>, Then<'_>) -> Found);
+pub struct Listing(pub(crate) fn(&mut Field<'_>, &State<'_>, Then<'_>));
 
 /// Lets forces change columns of a user's own, likewise.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +78,8 @@ fn write(rows: Written<'_>) {
     effort.found(&field.effort);
 }
 
-fn build(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
+fn build(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
+    let (needs, memory) = (field.needs, core::mem::take(&mut field.tree));
     // No more memory than these particles call for: more would make other nodes, and so other bits.
     let words = 3 * BarnesHut::COLUMNS * state.position.len();
     let first = if needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
@@ -87,16 +88,22 @@ fn build(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
     let mass_tree = needs.mass_tree.and_then(|_| BarnesHut::over(of_mass, state.position, state.mass));
     let of_charge = &mut of_charge[..second];
     let charge_tree = needs.charge_tree.and_then(|_| BarnesHut::over(of_charge, state.position, state.charge));
-    then(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state });
+    field.with_near(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state }, then);
+    field.tree = memory;
 }
 
-fn look_up(search: Search<'_>, state: &State<'_>, then: Then<'_>) -> Found {
+fn look_up(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
+    let (index, reach) = (field.scene.index, field.needs.reach);
+    let words = (3 * index.columns() * state.position.len()).min(field.near.len());
+    let (memory, lists) = (&mut field.near[..words], field.lists.as_mut().map(ListMemory::again));
     let mut found = Found::AllPairs;
-    find(search, [state.position, state.velocity], &mut |near, how| {
+    find(Search { index, memory, lists, reach }, [state.position, state.velocity], &mut |near, how| {
         found = how;
         then(&State { near, ..*state });
     });
-    found
+    field.effort.lists += u64::from(found == Found::Listed);
+    field.effort.streamed += u64::from(found == Found::Streamed);
+    field.effort.all_pairs += u64::from(found == Found::AllPairs);
 }
 
 /// The needs of a force: all that it has to find in the state, beyond the particles.

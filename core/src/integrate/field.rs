@@ -2,8 +2,8 @@
 
 use super::{Dynamics, Linear};
 use crate::custom::CustomColumns;
-use crate::force::{Attributes, BuildTrees, Force, Inertia, Needs, State, Steady, Then};
-use crate::index::{BarnesHut, Found, ListMemory, Search};
+use crate::force::{Attributes, Force, Inertia, Needs, State, Steady, Then};
+use crate::index::{BarnesHut, ListMemory};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
 use crate::rows::each_row_with;
@@ -38,36 +38,23 @@ impl Field<'_> {
         self.effort.evaluations += u64::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         match self.needs.mass_tree.or(self.needs.charge_tree) {
-            Some(trees) if position.len() >= BarnesHut::FEWEST => self.with_trees(trees, &state, then),
+            Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
             _ => self.with_near(&state, then),
         }
     }
 
-    /// Apart, so that whoever needs no trees has no room for them on the stack.
-    #[inline(never)]
-    fn with_trees(&mut self, trees: BuildTrees, state: &State<'_>, then: Then<'_>) {
-        let memory = core::mem::take(&mut self.tree);
-        (trees.0)(self.needs, memory, state, &mut |state| self.with_near(state, then));
-        self.tree = memory;
-    }
-
     /// Calls `then` with neighbours, where anybody asks for them.
-    fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
+    pub(crate) fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
         // A few newborn look at all others: an index would be made for them alone.
         let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
-        let reach = self.needs.reach;
-        let looks = reach > 0.0 && !are_few;
-        let Some(lists) = self.needs.lists.filter(|_| looks) else {
-            self.effort.all_pairs += u64::from(looks);
-            return then(state);
-        };
-        let index = self.scene.index;
-        let words = (3 * index.columns() * state.position.len()).min(self.near.len());
-        let (memory, kept) = (&mut self.near[..words], self.lists.as_mut().map(ListMemory::again));
-        let found = (lists.0)(Search { index, memory, lists: kept, reach }, state, then);
-        self.effort.lists += u64::from(found == Found::Listed);
-        self.effort.streamed += u64::from(found == Found::Streamed);
-        self.effort.all_pairs += u64::from(found == Found::AllPairs);
+        let looks = self.needs.reach > 0.0 && !are_few;
+        match self.needs.lists.filter(|_| looks) {
+            Some(lists) => (lists.0)(self, state, then),
+            None => {
+                self.effort.all_pairs += u64::from(looks);
+                then(state);
+            }
+        }
     }
 }
 

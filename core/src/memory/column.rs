@@ -13,6 +13,7 @@ pub enum Column<'a, T> {
 
 impl<'a, T: Copy + PartialEq> Column<'a, T> {
     /// The same column, borrowed again.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn again(&mut self) -> Column<'_, T> {
         match self {
             Self::Own(rows) => Column::Own(rows),

@@ -1,6 +1,6 @@
 //! An infinite plane.
 
-use super::ball::lean;
+use super::ball::leaning;
 use super::{Aabb, Affine, Collider, Contact, Face, Hit, Mapped, Segment, Spot, Surface, earlier};
 use crate::math::{clamp, dot, largest, max, minus, plus, scaled, unit};
 use crate::time::Time;
@@ -85,6 +85,7 @@ impl Mapped for Plane {
 
 impl Plane {
     /// It for many who ask.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn face(&self) -> Face {
         Face::new(self.point, self.normal)
     }
@@ -105,8 +106,9 @@ impl Collider for Face {
         let [point, _, unit] = self.vectors();
         let distance = dot(unit, minus(center, point));
         let toward = if distance < 0.0 { -unit } else { unit };
-        let made = &mut |contact: &Contact| visit(&Contact { material: self.material(), ..*contact });
-        lean(center, scaled(unit, distance), toward, [reach, self.size()], made);
+        if let Some(contact) = leaning(center, scaled(unit, distance), toward, [reach, self.size()]) {
+            visit(&Contact { material: self.material(), ..contact });
+        }
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
