@@ -69,10 +69,10 @@ impl EventDriven<'_> {
                 continue;
             }
             if is_newborn && born >= now {
-                let path = self.sweep(row).let_go(path);
+                let path = self.sweep(row).let_go(&path);
                 self.go(row, &path);
             } else if path.lags() {
-                let path = self.sweep(row).pressed_on(path);
+                let path = self.sweep(row).pressed_on(&path);
                 self.go(row, &path);
             }
             let hull = self.path(row).hull(0.0);

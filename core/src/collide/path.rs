@@ -164,33 +164,16 @@ impl Path {
         if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
     }
 
-    /// The number of chords that stay within `CHORD_ERROR` of it.
-    pub(super) fn chords(&self) -> u32 {
-        self.cubic().chords()
-    }
-
-    /// The straight line between two fractions of its time, for a ball.
+    /// The straight line between two fractions of its time, for a ball; `cubic` is it as a polynomial.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn piece(&self, [from, to]: [f32; 2], radius: f32) -> Segment {
+    pub(super) fn piece(&self, cubic: &Cubic, [from, to]: [f32; 2], radius: f32) -> Segment {
         let end = |s: f32| match s {
             0.0 => (self.x0, self.during[0]),
             1.0 => (self.x1, self.during[1]),
-            s => (self.at(s), self.instant(s)),
+            s => (cubic.at(s), self.instant(s)),
         };
         let ((from, start), (to, end)) = (end(from), end(to));
         Segment { from, to, radius, during: [start, end] }
-    }
-
-    /// Its pieces, so many, for a ball: each begins where and when the one before ends.
-    pub(super) fn pieces(&self, count: u32, radius: f32) -> impl Iterator<Item = Segment> + use<> {
-        let (path, mut from, mut start) = (*self, self.x0, self.during[0]);
-        (1..=count).map(move |i| {
-            let s = i as f32 / count as f32;
-            let (to, end) = if i == count { (path.x1, path.during[1]) } else { (path.at(s), path.instant(s)) };
-            let piece = Segment { from, to, radius, during: [start, end] };
-            (from, start) = (to, end);
-            piece
-        })
     }
 }
 
@@ -212,7 +195,7 @@ mod tests {
         let (v0, a, h) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(0.0, -9.8, 0.0), 0.05);
         let during = [Time::ZERO, Time::from_seconds(h)];
         let path = Path { x0: Vec3::ZERO, v0, x1: (v0 + a * (h / 2.0)) * h, v1: v0 + a * h, during };
-        let n = path.chords();
+        let n = path.cubic().chords();
         assert!(n > 1 && n < MAX_CHORDS);
         for i in 0..n {
             let (s, t) = (i as f32 / n as f32, (i + 1) as f32 / n as f32);
@@ -221,7 +204,7 @@ mod tests {
         }
         assert!((path.at(0.5) - (v0 + a * (h / 4.0)) * (h / 2.0)).length() < 1e-6);
         let straight = Path { x1: v0, v1: v0, during: [Time::ZERO, Time::from_seconds(1.0)], ..path };
-        assert_eq!(straight.chords(), 1);
+        assert_eq!(straight.cubic().chords(), 1);
         assert_eq!(unit(straight.at(0.3)), unit(v0));
     }
 
@@ -230,7 +213,8 @@ mod tests {
         let during = [Time::from_seconds(3.0), Time::from_seconds(3.25)];
         let path = Path { x0: Vec3::ZERO, v0: Vec3::X, x1: Vec3::ONE, v1: Vec3::Y, during };
         let (mut place, mut instant) = (path.x0, during[0]);
-        for piece in path.pieces(5, 0.0) {
+        for i in 0..5_u8 {
+            let piece = path.piece(&path.cubic(), [i, i + 1].map(|end| f32::from(end) / 5.0), 0.0);
             assert_eq!((piece.from, piece.during[0]), (place, instant));
             (place, instant) = (piece.to, piece.during[1]);
         }

@@ -91,8 +91,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let path = match lying {
             Some(path) => path,
             None if !self.may_touch(&path.hull(self.radius)) => return None,
-            None if is_newborn => self.let_go(*path),
-            None if path.lags() => self.pressed_on(*path),
+            None if is_newborn => self.let_go(path),
+            None if path.lags() => self.pressed_on(path),
             None => *path,
         };
         Some(self.follow(path))
@@ -106,7 +106,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
     /// on whichever side rounding put it, and leaves it the way its velocity points.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn let_go(&self, path: Path) -> Path {
+    pub(super) fn let_go(&self, path: &Path) -> Path {
         let [start, _] = path.during;
         let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, self.dt)) };
         let hits = [self.walls.first_hit(&ahead), self.sinks.and_then(|sinks| sinks.first_hit(&ahead))];
@@ -118,17 +118,17 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         };
         let beyond = |hit: Hit| along(ahead.at(hit.time), unit(step), 4.0 * hit.slack);
         let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
-        Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..path }
+        Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..*path }
     }
 
     /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
     /// past what it is pressed onto, and meet that only a step later.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn pressed_on(&mut self, path: Path) -> Path {
+    pub(super) fn pressed_on(&mut self, path: &Path) -> Path {
         let pressed = path.caught_up();
         match self.first_meeting(&pressed) {
             Some(meeting) if !meeting.is_sink && has_touched(&pressed, &meeting) => pressed,
-            _ => path,
+            _ => *path,
         }
     }
 
@@ -194,14 +194,16 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
         }
-        let chords = chords.min(MAX_CHORDS);
-        let whole = chords as f32;
-        path.pieces(chords, self.radius).zip(0_u8..).find_map(|(chord, i)| {
+        let count = chords.min(MAX_CHORDS) as u8;
+        let (whole, mut from) = (f32::from(count), 0.0);
+        (0..count).find_map(|i| {
+            let end = f32::from(i + 1) / whole;
+            let begun = core::mem::replace(&mut from, end);
+            let chord = path.piece(&cubic, [begun, end], self.radius);
             let (hit, is_sink) = self.first_hit(&chord)?;
-            let begun = f32::from(i) / whole;
             let (time, place) = ((f32::from(i) + hit.time) / whole, chord.at(hit.time));
             let mut meeting = Meeting { time, place, chord, begun, hit, is_sink };
-            self.put_on_path(path, &cubic, &mut meeting, f32::from(i + 1) / whole);
+            self.put_on_path(path, &cubic, &mut meeting, end);
             Some(meeting)
         })
     }
@@ -228,7 +230,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         }
         let reach = (end - begun) * (1.0 / 16.0);
         let [from, to] = [max(time - reach, begun), min(time + reach, end)];
-        let piece = path.piece([from, to], self.radius);
+        let piece = path.piece(cubic, [from, to], self.radius);
         let Some((near, is_sink)) = self.first_hit(&piece) else { return };
         if is_sink != meeting.is_sink || !(dot(near.normal, hit.normal) > 0.0) {
             return;

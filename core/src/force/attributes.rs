@@ -20,6 +20,7 @@ pub(crate) struct Attributes<'a> {
 
 impl<'a> Attributes<'a> {
     /// The first rows somewhere, at some time, with columns of a user's own.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn state<'s>(&self, custom: CustomColumns<'s>, time: Time, [x, v]: [&'s [Vec3]; 2]) -> State<'s>
     where
         'a: 's,

@@ -2,7 +2,6 @@
 
 use super::Workspace;
 use super::workspace::Inertias;
-use crate::memory::Layout;
 use crate::scene::Scene;
 use crate::time::Time;
 
@@ -12,7 +11,7 @@ impl Workspace<'_> {
     pub(super) fn age(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2]) {
         let Some(code) = scene.materials.code().filter(|code| (code.kept)(scene.materials) > 0) else { return };
         self.status.inertias = Inertias::VARIOUS;
-        let layout = Layout::of(scene.plan(), self.capacity());
+        let layout = self.layout(scene);
         (code.age)(scene.materials, [now, now + dt], self.len(), layout, &mut self.memory);
     }
 }

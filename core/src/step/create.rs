@@ -3,7 +3,7 @@
 use super::Workspace;
 use crate::emit::Births;
 use crate::index::SpatialIndex;
-use crate::memory::{Layout, Storage};
+use crate::memory::Storage;
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -20,11 +20,10 @@ impl Workspace<'_> {
         observer: &mut dyn Observer,
     ) -> usize {
         let (old, now) = (self.status.len, self.status.time);
-        let capacity = self.capacity();
-        let (layout, reach) = (Layout::of(scene.plan(), capacity), scene.emitters.reach());
+        let reach = scene.emitters.reach();
         if reach > 0.0 {
             let work = core::mem::take(&mut self.memory.work);
-            let (places, words) = layout.crowd(work, old);
+            let (places, words) = self.layout(scene).crowd(work, old);
             places.copy_from_slice(&self.memory.position[..old]);
             scene.index.with_index(words, places, reach, scene.index.room(), &mut |near| {
                 self.emit(scene, near, [now, end], report, observer);

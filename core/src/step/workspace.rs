@@ -148,6 +148,12 @@ impl Workspace<'_> {
         self.capacity
     }
 
+    /// Where the memory that a scene's step asks for lies.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn layout(&self, scene: &Scene<'_>) -> Layout {
+        Layout::of(scene.plan(), self.capacity)
+    }
+
     #[inline(never)]
     pub(crate) fn start(&mut self, scene: &Scene<'_>) {
         self.memory.emitter_states.fill(Default::default());
@@ -207,14 +213,14 @@ impl Workspace<'_> {
     /// Columns of a user's own, for writing.
     pub(crate) fn custom_mut<'s>(&'s mut self, scene: &Scene<'s>) -> CustomColumnsMut<'s> {
         let (capacity, len) = (self.capacity(), self.len());
-        let (values, _) = Layout::of(scene.plan(), capacity).kept(self.memory.kept);
+        let (values, _) = self.layout(scene).kept(self.memory.kept);
         CustomColumnsMut::new(scene.custom, values, capacity, len)
     }
 
     /// Gives rows from `first` on what they begin with in columns of a user's own.
     pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize) {
         let Some(code) = scene.custom.code() else { return };
-        let layout = Layout::of(scene.plan(), self.capacity());
+        let layout = self.layout(scene);
         let rows = Newcomers { first, len: self.len(), start: self.status.start, layout };
         (code.give)(scene.custom, &mut self.memory, rows);
     }

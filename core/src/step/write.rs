@@ -3,7 +3,6 @@
 use super::{Tile, Workspace};
 use crate::custom::CustomColumnsMut;
 use crate::force::{Writing, Written};
-use crate::memory::Layout;
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -27,7 +26,7 @@ impl Workspace<'_> {
     pub(super) fn let_write(&mut self, scene: &Scene<'_>, observer: &mut dyn Observer) {
         let (len, capacity) = (self.len(), self.capacity());
         let kept = core::mem::take(&mut self.memory.kept);
-        let values = Layout::of(scene.plan(), capacity).kept(kept).0;
+        let values = self.layout(scene).kept(kept).0;
         observer.write(&self.state(scene), &mut CustomColumnsMut::new(scene.custom, values, capacity, len));
         self.memory.kept = kept;
     }
