@@ -1,5 +1,6 @@
 //! Columns of a user's own: numbers with names that each particle carries along.
 
+use crate::memory::{Layout, Slices};
 use core::fmt;
 use core::ops::Range;
 
@@ -46,7 +47,7 @@ pub trait CustomList: Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct CustomCode {
     /// Gives rows from one on what they begin with.
-    pub(crate) give: fn(&dyn CustomList, Newcomers<'_>),
+    pub(crate) give: fn(&dyn CustomList, &mut Slices<'_>, Newcomers),
 }
 
 impl CustomCode {
@@ -55,21 +56,19 @@ impl CustomCode {
 }
 
 /// Rows that have come in.
-pub(crate) struct Newcomers<'a> {
-    /// The first of them.
+pub(crate) struct Newcomers {
+    /// The first of them, and the number of all rows.
     pub(crate) first: usize,
-    /// The serials of all rows.
-    pub(crate) serial: &'a [u32],
+    pub(crate) len: usize,
     /// Serials below are those of the scene's start.
     pub(crate) start: u32,
-    /// The columns, each as long as the capacity.
-    pub(crate) values: &'a mut [f32],
-    pub(crate) capacity: usize,
+    pub(crate) layout: Layout,
 }
 
-fn give(list: &dyn CustomList, rows: Newcomers<'_>) {
-    let Newcomers { first, serial, start, values, capacity } = rows;
-    for (number, column) in values.chunks_mut(capacity.max(1)).enumerate().take(list.count()) {
+fn give(list: &dyn CustomList, memory: &mut Slices<'_>, rows: Newcomers) {
+    let Newcomers { first, len, start, layout } = rows;
+    let (serial, (values, _)) = (&memory.serial[..len], layout.kept(memory.kept));
+    for (number, column) in values.chunks_mut(layout.capacity().max(1)).enumerate().take(list.count()) {
         let Some(custom) = list.get(number) else { continue };
         for (to, &serial) in column.iter_mut().zip(serial).skip(first) {
             let given = custom.start.get(serial as usize).filter(|_| serial < start);

@@ -2,6 +2,7 @@
 
 use crate::force::Friction;
 use crate::math::{max, sqrt};
+use crate::memory::{Layout, Slices};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -235,27 +236,12 @@ pub trait MaterialList: Sync {
 pub struct MaterialCode {
     /// Words that are kept of each particle.
     pub(crate) kept: fn(&dyn MaterialList) -> usize,
-    /// Sets drags and masses.
-    pub(crate) age: fn(&dyn MaterialList, Ageing<'_>),
+    /// Sets drags and masses of the first so many rows, in a step, of memory that is laid out so.
+    pub(crate) age: fn(&dyn MaterialList, [Time; 2], usize, Layout, &mut Slices<'_>),
     /// Tells whether anything floats.
     pub(crate) floats: fn(&dyn MaterialList) -> bool,
     /// Takes from the weights of rows, under this gravity, what carries them.
     pub(crate) carry: fn(&dyn MaterialList, &Floating<'_>, Range<usize>, Vec3, &mut [Vec3]),
-}
-
-/// Rows that grow older, in a step.
-pub(crate) struct Ageing<'a> {
-    /// The step: the middle of each row's part of it counts.
-    pub(crate) during: [Time; 2],
-    pub(crate) born: &'a [Time],
-    pub(crate) dies: &'a [Time],
-    pub(crate) material: &'a [u16],
-    pub(crate) key: &'a [u32],
-    pub(crate) drag: &'a mut [f32],
-    pub(crate) mass: &'a mut [f32],
-    pub(crate) inverse_mass: &'a mut [f32],
-    /// Their own drags and masses, as bits; zero: not known yet.
-    pub(crate) own: [&'a mut [u32]; 2],
 }
 
 /// Rows that may float.
@@ -291,11 +277,13 @@ fn floats(list: &dyn MaterialList) -> bool {
     lives(list).any(|life| life.buoyancy.is_some())
 }
 
-fn age(list: &dyn MaterialList, rows: Ageing<'_>) {
-    let Ageing { during: [from, to], born, dies, material, key, drag, mass, inverse_mass, own: [own_drag, own_mass] } =
-        rows;
-    for (row, &material) in material.iter().enumerate() {
-        let Some(life) = life_of(list, material).filter(Life::ages) else { continue };
+/// Sets drags and masses to what they are in the middle of each row's part of a step.
+fn age(list: &dyn MaterialList, [from, to]: [Time; 2], len: usize, layout: Layout, memory: &mut Slices<'_>) {
+    let Slices { born, dies, material, key, drag, mass, inverse_mass, kept, .. } = memory;
+    let (drag, mass, inverse_mass) = (drag.own(), mass.own(), inverse_mass.own());
+    let [own_drag, own_mass] = layout.ageing(kept);
+    for row in 0..len {
+        let Some(life) = life_of(list, material[row]).filter(Life::ages) else { continue };
         let first = if born[row] > from { born[row] } else { from };
         let now = Age::of(born[row], dies[row], to - (to - first).part(1, 2));
         if let Some(curve) = life.drag {

@@ -12,8 +12,44 @@ use glam::Vec3;
 pub fn sqrt(x: f32) -> f32 {
     #[cfg(feature = "std")]
     return std::primitive::f32::sqrt(x);
-    #[cfg(not(feature = "std"))]
+    #[cfg(all(not(feature = "std"), all(target_os = "none", not(target_has_atomic = "32"))))]
+    return root_by_bits(x);
+    #[cfg(all(not(feature = "std"), not(all(target_os = "none", not(target_has_atomic = "32")))))]
     return libm::sqrtf(x);
+}
+
+/// The same by shifts and differences, one bit of the root after the other (as FDLIBM's `e_sqrtf.c`; Sun Microsystems, 1993): for the
+/// smallest chips, those without a compare-and-swap, which have no wide multiplication either. There it is no slower than libm's, which
+/// takes three times the flash.
+#[cfg(any(test, all(target_os = "none", not(target_has_atomic = "32"))))]
+#[inline(never)]
+fn root_by_bits(x: f32) -> f32 {
+    let bits = x.to_bits();
+    if bits.wrapping_sub(1) >= f32::INFINITY.to_bits() - 1 {
+        return if x < 0.0 { f32::NAN } else { x };
+    }
+    // x = mantissa × 2^(even exponent), the root's exponent being half of that, and its first bit of weight 2²⁴.
+    let (mut exponent, mut mantissa) = ((bits >> 23) + 127, bits & 0x007F_FFFF | 0x0080_0000);
+    if bits < 0x0080_0000 {
+        (exponent, mantissa) = (exponent + 1, bits);
+        while mantissa < 0x0080_0000 {
+            (exponent, mantissa) = (exponent - 1, mantissa << 1);
+        }
+    }
+    let mut rest = mantissa << (1 + (exponent & 1));
+    let (mut root, mut twice, mut bit) = (0, 0, 1 << 24);
+    while bit != 0 {
+        let least = twice + bit;
+        if least <= rest {
+            twice = least + bit;
+            rest -= least;
+            root += bit;
+        }
+        rest <<= 1;
+        bit >>= 1;
+    }
+    // The last bit is behind those of an f32, and no root lies halfway between two numbers.
+    f32::from_bits(((exponent / 2) << 23) - 0x0080_0000 + ((root + (root & 1)) >> 1))
 }
 
 /// The product of two vectors, in the order x, y, z.
@@ -38,6 +74,30 @@ pub(crate) fn along(place: Vec3, direction: Vec3, far: f32) -> Vec3 {
 #[must_use]
 pub(crate) fn minus(a: Vec3, b: Vec3) -> Vec3 {
     a - b
+}
+
+/// The sum of two vectors: `a` + `b`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn plus(a: Vec3, b: Vec3) -> Vec3 {
+    a + b
+}
+
+/// A vector so many times as long: `v` × `k`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn scaled(v: Vec3, k: f32) -> Vec3 {
+    v * k
+}
+
+/// A vector over a number: `v` / `k`.
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
+#[must_use]
+pub(crate) fn over(v: Vec3, k: f32) -> Vec3 {
+    v / k
 }
 
 /// Tells whether all coordinates of a vector are zero.
@@ -74,8 +134,8 @@ pub fn unit(v: Vec3) -> Vec3 {
     if !(largest > 0.0 && largest < f32::INFINITY) {
         return Vec3::ZERO;
     }
-    let scaled = v / largest;
-    scaled / length(scaled)
+    let near_one = over(v, largest);
+    over(near_one, length(near_one))
 }
 
 /// The larger of two numbers, the second where they are equal: unlike `f32::max` it treats −0 alike everywhere.
@@ -330,6 +390,16 @@ mod tests {
             assert!((f64::from(s) - libm::sin(exact)).abs() < 1.2e-7, "sin at {turns} turns");
             assert!((f64::from(c) - libm::cos(exact)).abs() < 1.2e-7, "cos at {turns} turns");
         }
+    }
+
+    #[test]
+    fn roots_bit_by_bit_are_those_of_the_host() {
+        let edges = [0, 1, 2, 0x007F_FFFF, 0x0080_0000, 0x3F80_0000, 0x7F7F_FFFF, 0x7F80_0000, 0x8000_0000];
+        for bits in edges.into_iter().chain((0..0x7F80_0000).step_by(2039)) {
+            let x = f32::from_bits(bits);
+            assert_eq!(root_by_bits(x).to_bits(), std::primitive::f32::sqrt(x).to_bits(), "{x:e}");
+        }
+        assert!(root_by_bits(-1.0).is_nan() && root_by_bits(f32::NAN).is_nan());
     }
 
     #[test]

@@ -29,7 +29,8 @@ pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3])
 }
 
 /// `sum` += `h` × `rate`, row by row.
-#[inline]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline)]
 pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
     let (sum, rate) = (flat_mut(sum), flat(rate));
     widest(

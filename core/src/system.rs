@@ -66,11 +66,12 @@ impl<B: Storage> System<B> {
     pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), InsufficientMemory> {
         self.status = Status { seed, ..Status::NEW };
         let have = self.memory.columns().size();
-        let differs = self.workspace().differs(scene);
+        let mut workspace = self.workspace();
+        let differs = workspace.differs(scene);
         if differs.is_some() || !scene.fits(have) {
             return Err(InsufficientMemory { need: scene.size_for(have.particles), have, differs });
         }
-        self.workspace().start(scene);
+        workspace.start(scene);
         Ok(())
     }
 
@@ -98,9 +99,11 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         self.status.is_reaped |= !scene.reapers.is_empty();
-        if scene.fits(self.memory.columns().size()) && self.workspace().lacks(scene).is_none() {
-            self.status.kept = scene.plan().kept();
-            self.workspace().step(scene, dt, &mut report, observer);
+        let have = self.memory.columns().size();
+        let mut workspace = self.workspace();
+        if scene.fits(have) && workspace.lacks(scene).is_none() {
+            workspace.status.kept = scene.plan().kept();
+            workspace.step(scene, dt, &mut report, observer);
         } else {
             report.caps.insufficient_memory = 1;
         }
@@ -219,6 +222,7 @@ impl<B: Storage> System<B> {
         hash.finish()
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     fn workspace(&mut self) -> Workspace<'_> {
         let memory = self.memory.slices();
         Workspace { capacity: memory.capacity(), memory, status: &mut self.status }

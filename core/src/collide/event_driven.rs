@@ -70,10 +70,10 @@ impl EventDriven<'_> {
             }
             // Who is born where a sub-step ends is let go in that.
             if is_newborn && born > now {
-                let path = self.sweep(row).let_go(path);
+                let path = self.sweep(row).let_go(&path);
                 self.go(row, &path);
             } else if path.lags() {
-                let path = self.sweep(row).pressed_on(path);
+                let path = self.sweep(row).pressed_on(&path);
                 self.go(row, &path);
             }
             let hull = self.path(row).hull(0.0);

@@ -22,12 +22,15 @@ pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, 
     if !(length(way) <= reach) || !path.is_finite() {
         return (None, false);
     }
-    let chords = path.chords();
-    let count = chords.min(MAX_CHORDS);
-    let touch = path.pieces(count, 0.0).zip(0_u8..).find_map(|(piece, i)| {
+    let cubic = path.cubic();
+    let chords = cubic.chords();
+    let count = chords.min(MAX_CHORDS) as u8;
+    let part = |whole: u8, part: f32| (f32::from(whole) + part) / f32::from(count);
+    let touch = (0..count).find_map(|i| {
+        let begun = part(i, 0.0);
+        let piece = path.piece(&cubic, [begun, part(i + 1, 0.0)], 0.0);
         let parts = along_chord(piece.from, piece.step(), reach, slack)?;
-        let begun = f32::from(i) / count as f32;
-        let [found, nearest] = parts.map(|part| (f32::from(i) + part) / count as f32);
+        let [found, nearest] = parts.map(|share| part(i, share));
         Some(on_path(path, reach, [begun, found, nearest]))
     });
     (touch, chords > MAX_CHORDS)

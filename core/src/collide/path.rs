@@ -1,6 +1,6 @@
 //! The path of a particle through a step, and the chords along which its collisions are sought.
 
-use crate::math::{along, dot, high, is_zero, length, low, max, minus, sqrt};
+use crate::math::{along, dot, high, is_zero, length, low, max, minus, over, plus, scaled, sqrt};
 use crate::rows::are_finite;
 use crate::shape::{Aabb, Segment};
 use crate::time::Time;
@@ -81,7 +81,7 @@ impl Path {
         let third = self.duration() * (1.0 / 3.0);
         let (a, b) = (along(self.x0, self.v0, third), along(self.x1, self.v1, -third));
         let (min, max) = (low(low(self.x0, self.x1), low(a, b)), high(high(self.x0, self.x1), high(a, b)));
-        Aabb { min: min - radius, max: max + radius }.with_slack()
+        Aabb { min, max }.grown(radius).with_slack()
     }
 
     /// It as a polynomial.
@@ -89,8 +89,8 @@ impl Path {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn cubic(&self) -> Cubic {
         let (duration, excess) = (self.duration(), self.excess());
-        let bend = along(minus(self.v1, self.v0) * (0.5 * duration), excess, 3.0);
-        Cubic { start: self.x0, coefficients: [self.v0 * duration, bend, excess * -2.0] }
+        let bend = along(scaled(minus(self.v1, self.v0), 0.5 * duration), excess, 3.0);
+        Cubic { start: self.x0, coefficients: [scaled(self.v0, duration), bend, scaled(excess, -2.0)] }
     }
 
     /// The point at a fraction of the time.
@@ -103,7 +103,7 @@ impl Path {
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
         let (change, excess) = (minus(self.v1, self.v0), self.excess());
-        let (steady, bend) = (along(self.v0, change, s), change * (0.5 * self.duration()));
+        let (steady, bend) = (along(self.v0, change, s), scaled(change, 0.5 * self.duration()));
         let is_smooth = !is_zero(excess) && dot(excess, excess) < 0.0625 * dot(bend, bend);
         if is_smooth { along(steady, excess, 6.0 * s * (1.0 - s) / self.duration()) } else { steady }
     }
@@ -112,8 +112,8 @@ impl Path {
     /// nothing: as a velocity it would be noise.
     #[cfg_attr(target_os = "none", inline(never))]
     fn excess(&self) -> Vec3 {
-        let excess = along(minus(self.x1, self.x0), self.v0 + self.v1, -0.5 * self.duration());
-        let rounding = (self.x0.abs() + self.x1.abs()) * f32::EPSILON;
+        let excess = along(minus(self.x1, self.x0), plus(self.v0, self.v1), -0.5 * self.duration());
+        let rounding = scaled(plus(self.x0.abs(), self.x1.abs()), f32::EPSILON);
         Vec3::select(excess.abs().cmple(rounding), Vec3::ZERO, excess)
     }
 
@@ -141,19 +141,19 @@ impl Path {
 
     /// Tells whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
     pub(super) fn lags(&self) -> bool {
-        let bend = minus(self.v1, self.v0) * (0.5 * self.duration());
+        let bend = scaled(minus(self.v1, self.v0), 0.5 * self.duration());
         dot(self.excess(), bend) < -0.5 * dot(bend, bend)
     }
 
     /// The parabola from its beginning with the velocities of its ends.
     pub(super) fn caught_up(&self) -> Self {
-        Self { x1: along(self.x0, self.v0 + self.v1, 0.5 * self.duration()), ..*self }
+        Self { x1: along(self.x0, plus(self.v0, self.v1), 0.5 * self.duration()), ..*self }
     }
 
     /// Straight from its beginning to its end.
     pub(super) fn straightened(&self) -> Self {
         let duration = self.duration();
-        let velocity = if duration > 0.0 { minus(self.x1, self.x0) / duration } else { Vec3::ZERO };
+        let velocity = if duration > 0.0 { over(minus(self.x1, self.x0), duration) } else { Vec3::ZERO };
         Self { v0: velocity, v1: velocity, ..*self }
     }
 
@@ -161,36 +161,19 @@ impl Path {
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();
-        if duration > 0.0 { minus(self.v1, self.v0) / duration } else { Vec3::ZERO }
+        if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
     }
 
-    /// The number of chords that stay within `CHORD_ERROR` of it.
-    pub(super) fn chords(&self) -> u32 {
-        self.cubic().chords()
-    }
-
-    /// The straight line between two fractions of its time, for a ball.
+    /// The straight line between two fractions of its time, for a ball; `cubic` is it as a polynomial.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn piece(&self, [from, to]: [f32; 2], radius: f32) -> Segment {
+    pub(super) fn piece(&self, cubic: &Cubic, [from, to]: [f32; 2], radius: f32) -> Segment {
         let end = |s: f32| match s {
             0.0 => (self.x0, self.during[0]),
             1.0 => (self.x1, self.during[1]),
-            s => (self.at(s), self.instant(s)),
+            s => (cubic.at(s), self.instant(s)),
         };
         let ((from, start), (to, end)) = (end(from), end(to));
         Segment { from, to, radius, during: [start, end] }
-    }
-
-    /// Its pieces, so many, for a ball: each begins where and when the one before ends.
-    pub(super) fn pieces(&self, count: u32, radius: f32) -> impl Iterator<Item = Segment> + use<> {
-        let (path, mut from, mut start) = (*self, self.x0, self.during[0]);
-        (1..=count).map(move |i| {
-            let s = i as f32 / count as f32;
-            let (to, end) = if i == count { (path.x1, path.during[1]) } else { (path.at(s), path.instant(s)) };
-            let piece = Segment { from, to, radius, during: [start, end] };
-            (from, start) = (to, end);
-            piece
-        })
     }
 }
 
@@ -212,7 +195,7 @@ mod tests {
         let (v0, a, h) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(0.0, -9.8, 0.0), 0.05);
         let during = [Time::ZERO, Time::from_seconds(h)];
         let path = Path { x0: Vec3::ZERO, v0, x1: (v0 + a * (h / 2.0)) * h, v1: v0 + a * h, during };
-        let n = path.chords();
+        let n = path.cubic().chords();
         assert!(n > 1 && n < MAX_CHORDS);
         for i in 0..n {
             let (s, t) = (i as f32 / n as f32, (i + 1) as f32 / n as f32);
@@ -221,7 +204,7 @@ mod tests {
         }
         assert!((path.at(0.5) - (v0 + a * (h / 4.0)) * (h / 2.0)).length() < 1e-6);
         let straight = Path { x1: v0, v1: v0, during: [Time::ZERO, Time::from_seconds(1.0)], ..path };
-        assert_eq!(straight.chords(), 1);
+        assert_eq!(straight.cubic().chords(), 1);
         assert_eq!(unit(straight.at(0.3)), unit(v0));
     }
 
@@ -230,7 +213,8 @@ mod tests {
         let during = [Time::from_seconds(3.0), Time::from_seconds(3.25)];
         let path = Path { x0: Vec3::ZERO, v0: Vec3::X, x1: Vec3::ONE, v1: Vec3::Y, during };
         let (mut place, mut instant) = (path.x0, during[0]);
-        for piece in path.pieces(5, 0.0) {
+        for i in 0..5_u8 {
+            let piece = path.piece(&path.cubic(), [i, i + 1].map(|end| f32::from(end) / 5.0), 0.0);
             assert_eq!((piece.from, piece.during[0]), (place, instant));
             (place, instant) = (piece.to, piece.during[1]);
         }

@@ -1,7 +1,7 @@
 //! A particle that rests on a surface: it slides, stops and stays by Coulomb's law.
 
 use crate::force::Friction;
-use crate::math::{self, dot, length, unit};
+use crate::math::{self, dot, length, over, plus, scaled, unit};
 use glam::Vec3;
 
 /// How something moves along a surface that presses back, for a while: all vectors lie in the surface.
@@ -26,26 +26,26 @@ impl Slide {
         }
         let held = self.friction.kinetic * self.pressing;
         let going = |acceleration: Vec3| {
-            let way = math::along(self.velocity, acceleration, 0.5 * time) * time;
+            let way = scaled(math::along(self.velocity, acceleration, 0.5 * time), time);
             (way, math::along(self.velocity, acceleration, time))
         };
         if !(held > 0.0) {
             return going(self.drive);
         }
-        let along = self.velocity / speed;
-        let acceleration = self.drive - along * held;
+        let along = over(self.velocity, speed);
+        let acceleration = math::along(self.drive, along, -held);
         let braking = -dot(acceleration, along);
         if braking * time > speed {
             let until = speed / braking;
-            let way = math::along(self.velocity, acceleration, 0.5 * until) * until;
+            let way = scaled(math::along(self.velocity, acceleration, 0.5 * until), until);
             // The rest beside the old direction is what the drive has turned it to: friction takes that up anew.
             let (rest, velocity) = self.starting(time - until);
-            return (way + rest, velocity);
+            return (plus(way, rest), velocity);
         }
         // Friction is against the motion all along. Told by the direction at the end it only ever shortens a velocity;
         // by that at the beginning it would throw a slow one from side to side.
         let along = unit(math::along(self.velocity, self.drive, time));
-        going(self.drive - along * held)
+        going(math::along(self.drive, along, -held))
     }
 
     fn starting(&self, time: f32) -> (Vec3, Vec3) {
@@ -55,8 +55,8 @@ impl Slide {
         }
         let left = pull - self.friction.kinetic * self.pressing;
         // Where the sliding coefficient is the larger one, it only creeps loose.
-        let acceleration = self.drive * (if left > 0.0 { left } else { 0.0 } / pull);
-        (acceleration * (0.5 * time * time), acceleration * time)
+        let acceleration = scaled(self.drive, if left > 0.0 { left } else { 0.0 } / pull);
+        (scaled(acceleration, 0.5 * time * time), scaled(acceleration, time))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use crate::material::on_surface;
-use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, sqrt, unit};
+use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, plus, scaled, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
@@ -91,8 +91,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let path = match lying {
             Some(path) => path,
             None if !self.may_touch(&path.hull(self.radius)) => return None,
-            None if is_newborn => self.let_go(*path),
-            None if path.lags() => self.pressed_on(*path),
+            None if is_newborn => self.let_go(path),
+            None if path.lags() => self.pressed_on(path),
             None => *path,
         };
         Some(self.follow(path))
@@ -106,7 +106,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
     /// on whichever side rounding put it, and leaves it the way its velocity points.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn let_go(&self, path: Path) -> Path {
+    pub(super) fn let_go(&self, path: &Path) -> Path {
         let [start, _] = path.during;
         let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, self.dt)) };
         let hits = [self.walls.first_hit(&ahead), self.sinks.and_then(|sinks| sinks.first_hit(&ahead))];
@@ -118,17 +118,17 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         };
         let beyond = |hit: Hit| along(ahead.at(hit.time), unit(step), 4.0 * hit.slack);
         let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
-        Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..path }
+        Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..*path }
     }
 
     /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
     /// past what it is pressed onto, and meet that only a step later.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn pressed_on(&mut self, path: Path) -> Path {
+    pub(super) fn pressed_on(&mut self, path: &Path) -> Path {
         let pressed = path.caught_up();
         match self.first_meeting(&pressed) {
             Some(meeting) if !meeting.is_sink && has_touched(&pressed, &meeting) => pressed,
-            _ => path,
+            _ => *path,
         }
     }
 
@@ -150,7 +150,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let world = [acceleration, way, slip, end];
             observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
         }
-        Some(Path { x0: place, v0: slip, x1: place + way, v1: end, during: path.during })
+        Some(Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during })
     }
 
     /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
@@ -194,14 +194,17 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         if chords > MAX_CHORDS {
             self.report.caps.chords += 1;
         }
-        let chords = chords.min(MAX_CHORDS);
-        let whole = chords as f32;
-        path.pieces(chords, self.radius).zip(0_u8..).find_map(|(chord, i)| {
+        let count = chords.min(MAX_CHORDS) as u8;
+        let (whole, mut from) = (f32::from(count), 0.0);
+        (0..count).find_map(|i| {
+            let end = f32::from(i + 1) / whole;
+            let begun = core::mem::replace(&mut from, end);
+            let chord = path.piece(&cubic, [begun, end], self.radius);
             let (hit, is_sink) = self.first_hit(&chord)?;
-            let begun = f32::from(i) / whole;
             let (time, place) = ((f32::from(i) + hit.time) / whole, chord.at(hit.time));
-            let meeting = Meeting { time, place, chord, begun, hit, is_sink };
-            Some(self.on_path(path, &cubic, meeting, f32::from(i + 1) / whole))
+            let mut meeting = Meeting { time, place, chord, begun, hit, is_sink };
+            self.put_on_path(path, &cubic, &mut meeting, end);
+            Some(meeting)
         })
     }
 
@@ -214,32 +217,31 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         }
     }
 
-    /// The meeting that a chord has found before `end`, at its instant on the path: where that crosses the plane that
-    /// touches the surface. A place far along the surface from that on the chord asks for the surface there, and where that is another
-    /// plane, for the crossing of it.
-    fn on_path(&self, path: &Path, cubic: &Cubic, meeting: Meeting, end: f32) -> Meeting {
-        let Meeting { begun, hit, .. } = meeting;
+    /// Puts a meeting that a chord has found before `end` to its instant on the path: where that crosses the plane that touches the
+    /// surface. A place far along the surface from that on the chord asks for the surface there, and where that is another plane, for the
+    /// crossing of it.
+    fn put_on_path(&self, path: &Path, cubic: &Cubic, meeting: &mut Meeting, end: f32) {
+        let Meeting { begun, hit, place, .. } = *meeting;
         let drift = dot(hit.velocity, hit.normal) * path.duration();
-        let time = crossing(cubic, drift, &hit, meeting.place, [begun, meeting.time, end]);
-        let place = cubic.at(time);
-        if !(length(minus(place, meeting.place)) > 16.0 * hit.slack) {
-            return Meeting { time, place, ..meeting };
+        let time = crossing(cubic, drift, &hit, place, [begun, meeting.time, end]);
+        (meeting.time, meeting.place) = (time, cubic.at(time));
+        if !(length(minus(meeting.place, place)) > 16.0 * hit.slack) {
+            return;
         }
         let reach = (end - begun) * (1.0 / 16.0);
         let [from, to] = [max(time - reach, begun), min(time + reach, end)];
-        let piece = path.piece([from, to], self.radius);
-        match self.first_hit(&piece) {
-            Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
-                let found = from + (to - from) * near.time;
-                let (nearby, turn) = (piece.at(near.time), dot(near.velocity, near.normal) * path.duration());
-                let is_flat = near.normal == hit.normal && drift == 0.0 && turn == 0.0;
-                if is_flat && dot(minus(nearby, meeting.place), hit.normal).abs() <= 0.5 * near.slack {
-                    return Meeting { time, place, hit: near, ..meeting };
-                }
-                let time = crossing(cubic, turn, &near, nearby, [from, found, to]);
-                Meeting { time, place: cubic.at(time), hit: near, ..meeting }
-            }
-            _ => Meeting { time, place, ..meeting },
+        let piece = path.piece(cubic, [from, to], self.radius);
+        let Some((near, is_sink)) = self.first_hit(&piece) else { return };
+        if is_sink != meeting.is_sink || !(dot(near.normal, hit.normal) > 0.0) {
+            return;
+        }
+        meeting.hit = near;
+        let found = from + (to - from) * near.time;
+        let (nearby, turn) = (piece.at(near.time), dot(near.velocity, near.normal) * path.duration());
+        let is_flat = near.normal == hit.normal && drift == 0.0 && turn == 0.0;
+        if !(is_flat && dot(minus(nearby, place), hit.normal).abs() <= 0.5 * near.slack) {
+            let time = crossing(cubic, turn, &near, nearby, [from, found, to]);
+            (meeting.time, meeting.place) = (time, cubic.at(time));
         }
     }
 
@@ -272,16 +274,16 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
             _ => Vec3::ZERO,
         };
-        let surface = surface + whole;
+        let surface = plus(surface, whole);
         let came = along(minus(before, surface), normal, -incoming);
-        let slip = came + mixed.friction.answer(came, outgoing - incoming);
+        let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
         let Self { id, row, mass, .. } = *self;
-        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(surface + slip, normal, outgoing));
+        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
         if let Some(observer) = &mut self.observer {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
-            return Path::onward(beside, along(surface + slip, normal, onward), acceleration, during);
+            return Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
         }
         let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
@@ -291,12 +293,18 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             // have kept it from.
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
-            let crept = if lay { came * (0.5 * fell) } else { Vec3::ZERO };
-            Path { x0: beside, v0: after, x1: ride.place + way - crept, v1: ride.velocity[1] + end, during }
+            let crept = if lay { scaled(came, 0.5 * fell) } else { Vec3::ZERO };
+            Path {
+                x0: beside,
+                v0: after,
+                x1: minus(plus(ride.place, way), crept),
+                v1: plus(ride.velocity[1], end),
+                during,
+            }
         } else {
             let stays = stays && has_lain(path, meeting, place);
             let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
-            Path { x0, v0: after, x1: along(x0, surface, rest) + way, v1: surface + end, during }
+            Path { x0, v0: after, x1: plus(along(x0, surface, rest), way), v1: plus(surface, end), during }
         };
         if let Some(observer) = &mut self.observer {
             let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];

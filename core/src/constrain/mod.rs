@@ -11,6 +11,7 @@ mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;
+mod moved;
 mod rigid;
 mod rope;
 mod shape_matching;
@@ -29,6 +30,8 @@ pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
+pub use moved::ConstraintCode;
+pub(crate) use moved::{Moment, Moved};
 pub use rigid::{Hull, HullEdge, HullFace, HullList, RigidBodies, RigidBox};
 #[cfg(feature = "alloc")]
 pub use rigid::{HullBuf, HullError};
@@ -117,35 +120,6 @@ pub trait Constraint: Sync {
     /// Changes velocities at a sub-step's end, when all have been projected: restitution, friction, viscosity.
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let _ = (bodies, share);
-    }
-}
-
-/// The function that constraints call for in a step. A program without constraints does not carry it about.
-#[derive(Clone, Copy, Debug)]
-pub struct ConstraintCode(pub(crate) fn(&dyn Constraint, Moment, &mut Bodies<'_>, &mut Share<'_>));
-
-impl ConstraintCode {
-    /// All of it.
-    pub const ALL: Self = Self(constrain);
-}
-
-/// The phases of a sub-step in which constraints are called.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Moment {
-    /// The one before the method moves everything.
-    Before,
-    /// The one after that.
-    After,
-}
-
-fn constrain(constraints: &dyn Constraint, moment: Moment, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-    match moment {
-        Moment::Before => constraints.prepare(bodies, share),
-        Moment::After => {
-            constraints.begin(bodies, share);
-            constraints.project(bodies, share);
-            constraints.settle(bodies, share);
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A surface that gives birth to particles.
 
 use super::{Births, Emit, Spread, Varied};
-use crate::math::{along, divide, unit};
+use crate::math::{along, divide, scaled, unit};
 use crate::motion::Script;
 use crate::particles::{Color, Particle, WHITE};
 use crate::rng::Stream;
@@ -148,33 +148,18 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
     }
 
     fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
-        let mean = self.color.unwrap_or(WHITE);
-        for side in [-1.0, 1.0] {
-            let end = |varied: Varied| varied.mean + side * varied.half_width;
-            let tint =
-                |i| if side < 0.0 { u8::saturating_sub } else { u8::saturating_add }(mean[i], self.color_half_width[i]);
-            visit(&Particle {
-                radius: end(self.radius),
-                mass: end(self.mass),
-                fixed: self.fixed,
-                drag: end(self.drag),
-                charge: end(self.charge),
-                elasticity: end(self.elasticity),
-                material: self.material,
-                color: Some(core::array::from_fn(tint)),
-                ..Particle::REST
-            });
-        }
+        visit(&self.extreme(0.0));
+        visit(&self.extreme(1.0));
     }
 
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
         let (start, stop) = (Time::from_seconds(self.start), self.stop.map_or(Time::NEVER, Time::from_seconds));
+        let (first, last) = (from.max(start), to.min(stop));
         if let Some(burst) = &self.burst {
             let number = births.claim();
-            self.emit_bursts(burst, [from.max(start), to.min(stop)], births, number);
+            self.emit_bursts(burst, [first, last], births, number);
         }
-        let (first, last) = (from.max(start), to.min(stop));
         if first < last {
             let mut due = births.due(number, self.rate, first, last);
             while !births.is_full() {
@@ -249,16 +234,15 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         if burst.count == 0 {
             return;
         }
-        // The number of the first burst that is not before `from`.
-        let mut index = divide(u128::from(from.ticks().saturating_sub(first)), every.max(1)).0;
-        index = if every == 0 { 0 } else { index };
-        if first.saturating_add(index.saturating_mul(every)) < from.ticks() {
-            index += 1;
+        // The first burst that is not before `from`, if there is more than one.
+        let (_, past) = divide(u128::from(from.ticks().saturating_sub(first)), every.max(1));
+        let mut ticks = first;
+        if first < from.ticks() && every > 0 {
+            ticks = if past == 0 { from.ticks() } else { from.ticks().saturating_add(every - past) };
         }
         loop {
-            let ticks = first.saturating_add(index.saturating_mul(every));
             let at = Time::from_ticks(ticks);
-            if at < from || at >= to || (every == 0 && index > 0) {
+            if at < from || at >= to {
                 return;
             }
             let mut fits = true;
@@ -269,13 +253,16 @@ impl<S: Surface, M: Script> Emitter<S, M> {
                 }
                 fits = self.bear(births, number, at);
             }
+            if every == 0 {
+                return;
+            }
             // Once nothing fits, what is left of this step's bursts is only counted.
-            if (births.is_full() || !fits) && every > 0 {
+            if births.is_full() || !fits {
                 let (rest, _) = divide(u128::from(to.ticks() - 1 - ticks), every);
                 births.refuse(number, rest.saturating_mul(u64::from(burst.count)));
                 return;
             }
-            index += 1;
+            ticks = ticks.saturating_add(every);
         }
     }
 
@@ -289,6 +276,26 @@ impl<S: Surface, M: Script> Emitter<S, M> {
             (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
         });
         true
+    }
+
+    /// A particle whose attributes are the least that a birth may have, for zero, or for one the greatest.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn extreme(&self, u: f32) -> Particle {
+        let mut tint = self.color.unwrap_or(WHITE);
+        for (channel, half_width) in tint.iter_mut().zip(self.color_half_width) {
+            *channel = if u == 0.0 { channel.saturating_sub(half_width) } else { channel.saturating_add(half_width) };
+        }
+        Particle {
+            radius: self.radius.pick(u),
+            mass: self.mass.pick(u),
+            fixed: self.fixed,
+            drag: self.drag.pick(u),
+            charge: self.charge.pick(u),
+            elasticity: self.elasticity.pick(u),
+            material: self.material,
+            color: Some(tint),
+            ..Particle::REST
+        }
     }
 
     /// A place inside the shape: the first that falls there of several in its bounding box.
@@ -312,14 +319,14 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         let direction = self.spread.direction(axis, [p, q]);
         Particle {
             position: along(spot, self.velocity, at.seconds()),
-            velocity: along(along_with * self.inherit, direction, self.speed.pick(|| speed)),
-            radius: self.radius.pick(|| random.units(7)[1]),
-            mass: self.mass.pick(|| random.units(3)[0]),
+            velocity: along(scaled(along_with, self.inherit), direction, self.speed.pick(speed)),
+            radius: self.radius.draw(random, 7, 1),
+            mass: self.mass.draw(random, 3, 0),
             fixed: self.fixed,
-            drag: self.drag.pick(|| random.units(3)[1]),
-            charge: self.charge.pick(|| random.units(7)[0]),
-            elasticity: self.elasticity.pick(|| bounce),
-            lifetime: self.lifetime.pick(|| life),
+            drag: self.drag.draw(random, 3, 1),
+            charge: self.charge.draw(random, 7, 0),
+            elasticity: self.elasticity.pick(bounce),
+            lifetime: self.lifetime.pick(life),
             material: self.material,
             color: Some(self.tint(random)),
         }

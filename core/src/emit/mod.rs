@@ -193,6 +193,7 @@ impl Births<'_> {
     }
 
     /// Counts a birth that finds no room.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn miss(&mut self, at: Time) {
         self.report.refused = self.report.refused.saturating_add(1);
         self.observer.refused(1, at);

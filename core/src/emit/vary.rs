@@ -1,6 +1,7 @@
 //! Numbers and directions that vary from birth to birth.
 
-use crate::math::{along, frame, max, sin_cos, sin_cos_turns, sqrt};
+use crate::math::{along, frame, max, scaled, sin_cos, sin_cos_turns, sqrt};
+use crate::rng::Stream;
 use glam::Vec3;
 
 /// A number that varies: its mean, and how far it may be from that, evenly on both sides (Reeves, "Particle Systems",
@@ -36,15 +37,16 @@ impl Varied {
         Self { mean, half_width: 0.0 }
     }
 
-    /// Uniform from mean − half_width to mean + half_width; `u` is asked for only if there is a half-width.
-    pub(super) fn pick(self, u: impl FnOnce() -> f32) -> f32 {
-        if self.half_width == 0.0 { self.mean } else { self.at(u()) }
+    /// Uniform from mean − half_width to mean + half_width, as a number uniform in [0, 1) picks.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(super) fn pick(self, u: f32) -> f32 {
+        if self.half_width == 0.0 { self.mean } else { self.mean + self.half_width * (2.0 * u - 1.0) }
     }
 
-    /// The number that one uniform in [0, 1) picks.
+    /// The same by one of a pair of random numbers, which are drawn only if there is a half-width.
     #[cfg_attr(target_os = "none", inline(never))]
-    fn at(self, u: f32) -> f32 {
-        self.mean + self.half_width * (2.0 * u - 1.0)
+    pub(super) fn draw(self, random: Stream, place: u32, which: usize) -> f32 {
+        if self.half_width == 0.0 { self.mean } else { self.pick(random.units(place)[which]) }
     }
 }
 
@@ -67,7 +69,7 @@ impl Spread {
         };
         let (a, b) = frame(axis);
         let (along_b, along_a) = sin_cos_turns(v);
-        along(axis * cos, along(a * along_a, b, along_b), sin)
+        along(scaled(axis, cos), along(scaled(a, along_a), b, along_b), sin)
     }
 }
 

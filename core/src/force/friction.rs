@@ -1,6 +1,6 @@
 //! Dry friction, for whatever makes contacts.
 
-use crate::math::length;
+use crate::math::{length, scaled};
 use glam::Vec3;
 
 /// Coulomb's law of dry friction between two surfaces: it holds what slides up to a share of what presses them together.
@@ -33,7 +33,7 @@ impl Friction {
             return Vec3::ZERO;
         }
         let held = self.kinetic * press;
-        if speed <= self.static_ * press || speed <= held { -slip } else { slip * (-held / speed) }
+        if speed <= self.static_ * press || speed <= held { -slip } else { scaled(slip, -held / speed) }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod aerodynamics;
 mod all_pairs;
+mod attributes;
 mod charge;
 mod curl;
 mod cylinder_drag;
@@ -29,6 +30,7 @@ mod wind;
 
 pub use aerodynamics::Aerodynamics;
 pub use all_pairs::AllPairs;
+pub(crate) use attributes::Attributes;
 pub use charge::Coulomb;
 pub use curl::Curl;
 pub use cylinder_drag::CylinderDrag;
@@ -39,8 +41,8 @@ pub use goal::Goal;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
-pub(crate) use needs::Then;
-pub use needs::{BuildTrees, Listing, Needs};
+pub use needs::{BuildTrees, Listing, Needs, Writing};
+pub(crate) use needs::{Then, Written};
 pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
@@ -102,7 +104,8 @@ pub trait Force: Sync {
 
     /// Tells whether the force on a particle depends on nothing but its own row and the time. By default it says no, which is always
     /// right; yes is for speed. A step then takes a few
-    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it.
+    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it. Chips without an operating
+    /// system do not ask.
     fn is_local(&self) -> bool {
         false
     }
@@ -239,6 +242,7 @@ macro_rules! sum_of {
             }
             needs
         }
+        #[cfg(not(target_os = "none"))]
         fn is_local(&self) -> bool {
             let $this = self;
             $parts.into_iter().all(|part| part.is_local())
@@ -291,6 +295,7 @@ macro_rules! same_as {
             let $this = self;
             $force.needs()
         }
+        #[cfg(not(target_os = "none"))]
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()

@@ -1,16 +1,40 @@
 //! The needs of forces: all that they have to find in the state.
 
-use super::State;
-use crate::index::{BarnesHut, Found, IndexChoice, Search, find};
+use super::{Attributes, State};
+use crate::custom::CustomColumnsMut;
+use crate::index::{BarnesHut, Found, IndexChoice, ListMemory, Search, find};
+use crate::integrate::Field;
 use crate::math::max;
+use crate::memory::Layout;
+use crate::report::Effort;
+use crate::scene::Scene;
+use crate::time::Time;
+use glam::Vec3;
 
 /// Makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
 #[derive(Clone, Copy, Debug)]
-pub struct BuildTrees(pub(crate) fn(Needs, &mut [u32], &State<'_>, Then<'_>));
+pub struct BuildTrees(pub(crate) fn(&mut Field<'_>, &State<'_>, Then<'_>));
 
 /// Finds neighbours, likewise.
 #[derive(Clone, Copy, Debug)]
-pub struct Listing(pub(crate) fn(Search<'_>, &State<'_>, Then<'_>) -> Found);
+pub struct Listing(pub(crate) fn(&mut Field<'_>, &State<'_>, Then<'_>));
+
+/// Lets forces change columns of a user's own, likewise.
+#[derive(Clone, Copy, Debug)]
+pub struct Writing(pub(crate) fn(Written<'_>));
+
+/// All rows at a step's end, the memory that is laid out for them, and the step's length.
+pub(crate) struct Written<'a> {
+    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) attributes: &'a Attributes<'a>,
+    pub(crate) ends: [&'a [Vec3]; 2],
+    pub(crate) kept: &'a mut [u32],
+    pub(crate) work: &'a mut [Vec3],
+    pub(crate) layout: Layout,
+    pub(crate) end: Time,
+    pub(crate) dt: f32,
+    pub(crate) effort: &'a mut Effort,
+}
 
 /// The continuation with a state in which all is found.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(&State<'_>);
@@ -25,7 +49,37 @@ impl Listing {
     pub const KEPT: Self = Self(look_up);
 }
 
-fn build(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
+impl Writing {
+    /// That of all columns.
+    pub const COLUMNS: Self = Self(write);
+}
+
+fn write(rows: Written<'_>) {
+    let Written { scene, attributes, ends: [position, velocity], kept, work, layout, end, dt, effort } = rows;
+    let values = layout.kept(kept).0;
+    let mut custom = CustomColumnsMut::new(scene.custom, values, layout.capacity(), position.len());
+    let mut scratch = layout.shares(work).scratch;
+    let ([tree, near], _) = scratch.moving();
+    let (needs, observer) = (scene.forces.needs(), &mut ());
+    let seen = attributes.lives.custom;
+    let mut field = Field {
+        scene,
+        attributes,
+        custom: seen,
+        needs,
+        tree,
+        near,
+        lists: None,
+        first: 0,
+        effort: Effort::NONE,
+        observer,
+    };
+    field.with_state(end, position, velocity, &mut |state| scene.forces.write(state, &mut custom, dt));
+    effort.found(&field.effort);
+}
+
+fn build(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
+    let (needs, memory) = (field.needs, core::mem::take(&mut field.tree));
     // No more memory than these particles call for: more would make other nodes, and so other bits.
     let words = 3 * BarnesHut::COLUMNS * state.position.len();
     let first = if needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
@@ -34,16 +88,22 @@ fn build(needs: Needs, memory: &mut [u32], state: &State<'_>, then: Then<'_>) {
     let mass_tree = needs.mass_tree.and_then(|_| BarnesHut::over(of_mass, state.position, state.mass));
     let of_charge = &mut of_charge[..second];
     let charge_tree = needs.charge_tree.and_then(|_| BarnesHut::over(of_charge, state.position, state.charge));
-    then(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state });
+    field.with_near(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state }, then);
+    field.tree = memory;
 }
 
-fn look_up(search: Search<'_>, state: &State<'_>, then: Then<'_>) -> Found {
+fn look_up(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
+    let (index, reach) = (field.scene.index, field.needs.reach);
+    let words = (3 * index.columns() * state.position.len()).min(field.near.len());
+    let (memory, lists) = (&mut field.near[..words], field.lists.as_mut().map(ListMemory::again));
     let mut found = Found::AllPairs;
-    find(search, [state.position, state.velocity], &mut |near, how| {
+    find(Search { index, memory, lists, reach }, [state.position, state.velocity], &mut |near, how| {
         found = how;
         then(&State { near, ..*state });
     });
-    found
+    field.effort.lists += u64::from(found == Found::Listed);
+    field.effort.streamed += u64::from(found == Found::Streamed);
+    field.effort.all_pairs += u64::from(found == Found::AllPairs);
 }
 
 /// The needs of a force: all that it has to find in the state, beyond the particles.
@@ -57,8 +117,9 @@ pub struct Needs {
     pub reach: f32,
     /// The finder: [`Listing::KEPT`]. A function, likewise; without it all pairs are looked at, which is counted.
     pub lists: Option<Listing>,
-    /// To change columns of a user's own, by [`Force::write`](super::Force::write); else a force is not asked to.
-    pub write: bool,
+    /// To change columns of a user's own, by [`Force::write`](super::Force::write): [`Writing::COLUMNS`]. A function, likewise; without it a
+    /// force is not asked to.
+    pub write: Option<Writing>,
 }
 
 impl Needs {
@@ -76,7 +137,7 @@ impl Needs {
             charge_tree: self.charge_tree.or(other.charge_tree),
             reach: max(self.reach, other.reach),
             lists: self.lists.or(other.lists),
-            write: self.write || other.write,
+            write: self.write.or(other.write),
         }
     }
 

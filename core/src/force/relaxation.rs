@@ -1,6 +1,6 @@
 //! A column of a user's own that comes to rest: heat that is lost, fuel that burns down.
 
-use super::{Force, Needs, State};
+use super::{Force, Needs, State, Writing};
 use crate::custom::CustomColumnsMut;
 use crate::math::exp;
 use core::ops::Range;
@@ -30,7 +30,7 @@ impl<N: AsRef<str> + Sync> Force for Relaxation<N> {
     }
 
     fn needs(&self) -> Needs {
-        Needs { write: true, ..Needs::default() }
+        Needs { write: Some(Writing::COLUMNS), ..Needs::default() }
     }
 
     fn write(&self, _: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {

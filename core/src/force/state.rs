@@ -92,49 +92,33 @@ impl<'a> State<'a> {
     where
         'a: 's,
     {
-        let len = position.len();
         State {
             time,
             position,
             velocity,
-            radius: &self.radius[..len],
-            mass: &self.mass[..len],
-            drag: &self.drag[..len],
-            charge: &self.charge[..len],
-            born: &self.born[..len],
-            dies: &self.dies[..len],
-            slot: &self.slot[..len],
-            key: &self.key[..len],
-            color: &self.color[..len],
-            material: &self.material[..len],
-            materials: self.materials,
-            custom: self.custom.rows(0..len),
-            springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
             near: self.near.at(position),
             mass_tree: None,
             charge_tree: None,
+            ..self.attributes_of(0..position.len())
         }
     }
 
     /// The attributes of some rows, without places and velocities.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
-        Self {
-            position: &[],
-            velocity: &[],
-            radius: &self.radius[rows.clone()],
-            mass: &self.mass[rows.clone()],
-            drag: &self.drag[rows.clone()],
-            charge: &self.charge[rows.clone()],
-            born: &self.born[rows.clone()],
-            dies: &self.dies[rows.clone()],
-            slot: &self.slot[rows.clone()],
-            key: &self.key[rows.clone()],
-            color: &self.color[rows.clone()],
-            material: &self.material[rows.clone()],
-            custom: self.custom.rows(rows.clone()),
-            springs: Springs { serial: &self.springs.serial[rows], ..self.springs },
-            ..*self
+        // Changed in a copy: to write out the whole of it would take a chip more flash.
+        let mut some = *self;
+        (some.position, some.velocity) = (&[], &[]);
+        for column in [&mut some.radius, &mut some.mass, &mut some.drag, &mut some.charge] {
+            *column = &column[rows.clone()];
         }
+        for column in [&mut some.slot, &mut some.key, &mut some.springs.serial] {
+            *column = &column[rows.clone()];
+        }
+        (some.born, some.dies) = (&some.born[rows.clone()], &some.dies[rows.clone()]);
+        (some.color, some.material) = (&some.color[rows.clone()], &some.material[rows.clone()]);
+        some.custom = some.custom.rows(rows);
+        some
     }
 
     /// Counts the particles within `radius` \[m\] of a place, whoever lies there included: by the index, or by looking

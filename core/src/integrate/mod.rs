@@ -17,6 +17,7 @@
 mod adaptive;
 mod embedded;
 mod euler;
+mod field;
 mod implicit;
 mod midpoint;
 mod named;
@@ -26,6 +27,7 @@ mod verlet;
 pub use adaptive::Adaptive;
 pub use embedded::Embedded;
 pub use euler::{Euler, Symplectic};
+pub(crate) use field::Field;
 pub use implicit::Implicit;
 pub use midpoint::{LectureMidpoint, Midpoint};
 pub use named::{Method, Tuned, Tuning, UnknownMethod};
@@ -57,31 +59,37 @@ pub trait Dynamics {
 
 /// The forces about a state.
 pub struct Linear<'a> {
-    /// All of them.
-    pub forces: &'a dyn Force,
+    /// All of them: the scene's, and that of its springs.
+    pub forces: [&'a dyn Force; 2],
     /// The state.
     pub state: State<'a>,
     /// Inverse masses \[1/kg\], by row; zero for what is fixed.
     pub inverse_mass: &'a [f32],
 }
 
-impl Linear<'_> {
+impl<'a> Linear<'a> {
+    /// Those about a state, springs among them.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn about(state: &'a State<'a>, forces: &'a dyn Force, inverse_mass: &'a [f32]) -> Self {
+        Self { forces: [forces, state.springs.force().unwrap_or(&())], state: *state, inverse_mass }
+    }
+
     /// The force on every particle \[N\].
     pub fn force(&self, total: &mut [Vec3]) {
         total.fill(Vec3::ZERO);
-        self.forces.add_to(&self.state, 0..total.len(), total);
+        self.forces.iter().for_each(|part| part.add_to(&self.state, 0..total.len(), total));
     }
 
     /// How it changes with the state \[N\]: [`Force::add_jacobian`].
     pub fn jacobian(&self, change: &Perturbation<'_>, total: &mut [Vec3]) {
         total.fill(Vec3::ZERO);
-        self.forces.add_jacobian(&self.state, change, total);
+        self.forces.iter().for_each(|part| part.add_jacobian(&self.state, change, total));
     }
 
     /// The diagonal of that, its sign turned round: [`Force::add_stiffness`].
     pub fn stiffness(&self, weights: [f32; 2], total: &mut [Vec3]) {
         total.fill(Vec3::ZERO);
-        self.forces.add_stiffness(&self.state, weights, total);
+        self.forces.iter().for_each(|part| part.add_stiffness(&self.state, weights, total));
     }
 }
 

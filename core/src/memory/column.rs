@@ -13,18 +13,11 @@ pub enum Column<'a, T> {
 
 impl<'a, T: Copy + PartialEq> Column<'a, T> {
     /// The same column, borrowed again.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn again(&mut self) -> Column<'_, T> {
         match self {
             Self::Own(rows) => Column::Own(rows),
             Self::Common(rows) => Column::Common(rows),
-        }
-    }
-
-    /// All of it, for reading.
-    pub(crate) fn read(self) -> &'a [T] {
-        match self {
-            Self::Own(rows) => rows,
-            Self::Common(rows) => rows,
         }
     }
 
@@ -39,14 +32,6 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
     /// Tells whether it exists.
     pub(crate) fn is_own(&self) -> bool {
         matches!(self, Self::Own(_))
-    }
-
-    /// Tells whether a particle with this number may be in any row.
-    pub(crate) fn takes(&self, value: T) -> bool {
-        match self {
-            Self::Own(_) => true,
-            Self::Common(rows) => rows.first().is_none_or(|common| *common == value),
-        }
     }
 
     /// Gives a row its number, if that may be in it, and says whether it may.

@@ -16,6 +16,7 @@ impl Words {
     pub const NONE: Self = Self { per_row: 0, fixed: 0 };
 
     /// For so many particles.
+    #[cfg_attr(target_os = "none", inline(never))]
     #[must_use]
     pub const fn of(self, capacity: usize) -> usize {
         self.per_row.saturating_mul(capacity).saturating_add(self.fixed)

@@ -89,26 +89,19 @@ macro_rules! storage {
                 $(storage!(@unless_by_number $c { self.$c.move_row(from, to); });)+
             }
 
-            /// The first attribute that a particle has otherwise than this memory holds it for all, if there is one.
-            #[inline(never)]
-            pub(crate) fn differs(&self, particle: &Particle) -> Option<&'static str> {
+            /// Gives a row those attributes of a particle that need not be kept of each.
+            ///
+            /// # Errors
+            /// The first of them that the particle has otherwise than this memory holds it for all.
+            #[cfg_attr(target_os = "none", inline(never))]
+            pub(crate) fn give(&mut self, row: usize, particle: &Particle) -> Result<(), &'static str> {
                 $(storage!(@unless_by_number $c {
                     let $particle = particle;
-                    if !self.$c.takes($c_of) {
-                        return Some(stringify!($c));
+                    if !self.$c.put(row, $c_of) {
+                        return Err(stringify!($c));
                     }
                 });)+
-                None
-            }
-
-            /// Gives a row those attributes of a particle that need not be kept of each, and says whether it may have them.
-            pub(crate) fn give(&mut self, row: usize, particle: &Particle) -> bool {
-                let mut fits = true;
-                $(storage!(@unless_by_number $c {
-                    let $particle = particle;
-                    fits &= self.$c.put(row, $c_of);
-                });)+
-                fits
+                Ok(())
             }
         }
 
@@ -476,6 +469,7 @@ impl<T: Storage + ?Sized> Storage for alloc::boxed::Box<T> {
 
 impl Columns<'_> {
     /// How much there is.
+    #[cfg_attr(target_os = "none", inline(never))]
     #[must_use]
     pub fn size(&self) -> Size {
         let particles = self.capacity();

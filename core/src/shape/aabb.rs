@@ -32,7 +32,14 @@ impl Aabb {
     #[must_use]
     pub fn with_slack(self) -> Self {
         let room = 8.0 * f32::EPSILON * max(largest(self.min), largest(self.max));
-        Self { min: self.min - room, max: self.max + room }
+        self.grown(room)
+    }
+
+    /// The box that reaches farther by so much on all sides \[m\].
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(crate) fn grown(self, by: f32) -> Self {
+        Self { min: self.min - by, max: self.max + by }
     }
 
     /// Tells whether the two share a point, rounding errors of a few units in the last place allowed for.

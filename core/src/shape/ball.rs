@@ -5,7 +5,7 @@
 //! ball fits are the same solid, smaller by the radius, which the path leaves where the ball touches.
 
 use super::{Contact, Hit, Segment};
-use crate::math::{clamp, dot, length, max, sqrt, unit};
+use crate::math::{clamp, dot, length, max, minus, sqrt, unit};
 use glam::Vec3;
 
 /// The largest number of times that Newton's method looks again.
@@ -55,14 +55,19 @@ pub(super) fn lean_on(set: &impl Filled, center: Vec3, reach: [f32; 2], visit: &
     lean(center, gap, unit(gap), reach, visit);
 }
 
-/// Visits the place `gap` before `center`, if it is within reach and there is a normal; the surface itself reaches so far
-/// from the origin.
-pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32; 2], visit: &mut dyn FnMut(&Contact)) {
+/// Visits the place that a ball leans on, if there is one.
+pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, reach: [f32; 2], visit: &mut dyn FnMut(&Contact)) {
+    leaning(center, gap, normal, reach).iter().for_each(visit);
+}
+
+/// The place `gap` before `center`, if it is within reach and there is a normal; the surface itself reaches so far from the origin.
+pub(super) fn leaning(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32; 2]) -> Option<Contact> {
     let distance = dot(gap, normal);
-    if distance <= reach && normal != Vec3::ZERO {
-        let slack = Segment { radius: distance, ..Segment::new(center, center) }.slack(size);
-        visit(&Contact { point: center - gap, normal, distance, slack, velocity: Vec3::ZERO, material: None });
+    if !(distance <= reach && normal != Vec3::ZERO) {
+        return None;
     }
+    let slack = Segment { radius: distance, ..Segment::new(center, center) }.slack(size);
+    Some(Contact { point: minus(center, gap), normal, distance, slack, velocity: Vec3::ZERO, material: None })
 }
 
 /// When what moves from `offset` by `step` leaves the circle or sphere of `radius` about the origin, and the unit normal

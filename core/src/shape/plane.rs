@@ -1,8 +1,8 @@
 //! An infinite plane.
 
-use super::ball::lean;
+use super::ball::leaning;
 use super::{Aabb, Affine, Collider, Contact, Face, Hit, Mapped, Segment, Spot, Surface, earlier};
-use crate::math::{clamp, dot, largest, max, unit};
+use crate::math::{clamp, dot, largest, max, minus, plus, scaled, unit};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -55,11 +55,12 @@ impl Collider for Plane {
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
-        let (middle, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
-        let distance = dot(self.normal, middle - self.point).abs();
-        let room = (bounds.min.abs() + bounds.max.abs() + self.point.abs()) * (8.0 * f32::EPSILON);
+        let (middle, half) = (scaled(plus(bounds.min, bounds.max), 0.5), scaled(minus(bounds.max, bounds.min), 0.5));
+        let distance = dot(self.normal, minus(middle, self.point)).abs();
+        let room = plus(plus(bounds.min.abs(), bounds.max.abs()), self.point.abs());
+        let room = scaled(room, 8.0 * f32::EPSILON);
         // The distance of an endless box is no number.
-        !(distance > dot(self.normal.abs(), half + room))
+        !(distance > dot(self.normal.abs(), plus(half, room)))
     }
 
     #[cfg(not(target_os = "none"))]
@@ -84,6 +85,7 @@ impl Mapped for Plane {
 
 impl Plane {
     /// It for many who ask.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn face(&self) -> Face {
         Face::new(self.point, self.normal)
     }
@@ -102,10 +104,11 @@ impl Collider for Face {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let [point, _, unit] = self.vectors();
-        let distance = dot(unit, center - point);
+        let distance = dot(unit, minus(center, point));
         let toward = if distance < 0.0 { -unit } else { unit };
-        let made = &mut |contact: &Contact| visit(&Contact { material: self.material(), ..*contact });
-        lean(center, unit * distance, toward, [reach, self.size()], made);
+        if let Some(contact) = leaning(center, scaled(unit, distance), toward, [reach, self.size()]) {
+            visit(&Contact { material: self.material(), ..contact });
+        }
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
@@ -118,7 +121,7 @@ impl Collider for Face {
 #[cfg_attr(not(target_os = "none"), inline(always))]
 fn touched(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
     let [point, _, unit] = face.vectors();
-    let start = dot(unit, segment.from - point);
+    let start = dot(unit, minus(segment.from, point));
     let normal = if start < 0.0 { -unit } else { unit };
     let (room, closing) = (start.abs() - segment.radius, -dot(normal, segment.step()));
     let time = max(room, 0.0) / closing;
@@ -130,7 +133,7 @@ fn touched(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
 fn passed(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
     let [point, normal, unit] = face.vectors();
     // Which side, and when, does not depend on the normal's length.
-    let side = |x: Vec3| dot(normal, x - point);
+    let side = |x: Vec3| dot(normal, minus(x, point));
     crossing(unit, side(segment.from), side(segment.to)).map(|(time, normal)| Hit::new(time, normal, slack))
 }
 

@@ -1,12 +1,11 @@
 //! Update: the old go through a sub-step; the newborn fly on from their births.
 
-use super::field::Field;
-use super::substeps::{Carried, Moved, custom};
+use super::substeps::Carried;
 use super::tile::Tile;
-use crate::constrain::{SHIFTED, Substep};
+use crate::constrain::{Moved, SHIFTED, Substep};
 use crate::force::Steady;
 use crate::index::ListMemory;
-use crate::integrate::{Drift, Dynamics};
+use crate::integrate::{Drift, Dynamics, Field};
 use crate::math::along;
 use crate::memory::{Past, Shares};
 use crate::observe::Observer;
@@ -42,7 +41,7 @@ impl Tile<'_> {
         let needs = scene.forces.needs();
         if old < len {
             let ([tree, near], memory) = scratch.moving();
-            let custom = custom(scene, attributes, kept, capacity);
+            let custom = attributes.custom(scene, kept, capacity);
             let mut field = Field {
                 scene,
                 attributes,
@@ -129,7 +128,8 @@ fn fly(
     field.accelerations(now, position, velocity, a);
     for (row, &a) in newborn.zip(a.iter()) {
         let flight = (end - born[row]).min(end - now).seconds();
-        position[row] = along(position[row], along(velocity[row], a, 0.5 * flight), flight);
-        velocity[row] = along(velocity[row], a, flight);
+        let (x, v) = (&mut position[row], &mut velocity[row]);
+        *x = along(*x, along(*v, a, 0.5 * flight), flight);
+        *v = along(*v, a, flight);
     }
 }

@@ -3,7 +3,7 @@
 use super::Workspace;
 use crate::emit::Births;
 use crate::index::SpatialIndex;
-use crate::memory::{Layout, Slices, Storage};
+use crate::memory::Storage;
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -20,25 +20,33 @@ impl Workspace<'_> {
         observer: &mut dyn Observer,
     ) -> usize {
         let (old, now) = (self.status.len, self.status.time);
-        let capacity = self.capacity();
-        let (layout, reach) = (Layout::of(scene.plan(), capacity), scene.emitters.reach());
-        let (mut memory, status) = (self.memory.slices(), &mut *self.status);
-        let mut emit = |memory: &mut Slices<'_>, near: Option<&dyn SpatialIndex>| {
-            let workspace = Workspace { memory: memory.slices(), capacity, status: &mut *status };
-            let (report, observer) = (&mut *report, &mut *observer);
-            scene.emitters.emit(
-                now,
-                end,
-                &mut Births { workspace, scene, report, observer, near, old, end, number: 0 },
-            );
-        };
+        let reach = scene.emitters.reach();
         if reach > 0.0 {
-            let (places, words) = layout.crowd(core::mem::take(&mut memory.work), old);
-            places.copy_from_slice(&memory.position[..old]);
-            scene.index.with_index(words, places, reach, scene.index.room(), &mut |near| emit(&mut memory, near));
+            let work = core::mem::take(&mut self.memory.work);
+            let (places, words) = self.layout(scene).crowd(work, old);
+            places.copy_from_slice(&self.memory.position[..old]);
+            scene.index.with_index(words, places, reach, scene.index.room(), &mut |near| {
+                self.emit(scene, near, [now, end], report, observer);
+            });
+            self.memory.work = work;
         } else {
-            emit(&mut memory, None);
+            self.emit(scene, None, [now, end], report, observer);
         }
         old
+    }
+
+    /// The same with those who were there before in an index, if anybody asks.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn emit(
+        &mut self,
+        scene: &Scene<'_>,
+        near: Option<&dyn SpatialIndex>,
+        [now, end]: [Time; 2],
+        report: &mut Report,
+        observer: &mut dyn Observer,
+    ) {
+        let (old, capacity) = (self.len(), self.capacity);
+        let workspace = Workspace { memory: self.memory.slices(), capacity, status: &mut *self.status };
+        scene.emitters.emit(now, end, &mut Births { workspace, scene, report, observer, near, old, end, number: 0 });
     }
 }

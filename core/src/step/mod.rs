@@ -3,7 +3,6 @@
 mod advance;
 mod age;
 mod create;
-mod field;
 mod population;
 mod reap;
 mod snap;
@@ -43,8 +42,8 @@ impl Workspace<'_> {
         } else {
             self.phase_by_phase(scene, span, old, report, observer);
         }
-        if scene.forces.needs().write {
-            self.write(scene, span, report);
+        if let Some(code) = scene.forces.needs().write {
+            self.write(code, scene, span, report);
         }
         let len = self.len();
         scene.index.wrap(&mut self.memory.position[..len]);

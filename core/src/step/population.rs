@@ -28,7 +28,7 @@ impl Workspace<'_> {
         }
         let (m, capacity, status) = (&mut self.memory, self.capacity, &mut *self.status);
         let row = status.len;
-        if !m.give(row, particle) {
+        if m.give(row, particle).is_err() {
             return Err(Full);
         }
         let slot = if status.free > 0 {

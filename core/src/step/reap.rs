@@ -1,7 +1,6 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
 use super::{TILED, Workspace};
-use crate::memory::Layout;
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
 use crate::reap::{CHUNK, Cause, FEW, Judged, PendingDeath, ReaperCode};
@@ -37,7 +36,7 @@ impl Workspace<'_> {
     #[inline(never)]
     fn judge_all(&mut self, scene: &Scene<'_>, code: ReaperCode) {
         let (time, len, capacity) = (self.status.time, self.len(), self.capacity());
-        let layout = Layout::of(scene.plan(), capacity);
+        let layout = self.layout(scene);
         let tile = self.tile(scene, [time, Time::ZERO], len, 0..len, capacity);
         let state = tile.attributes.lives.moved(time, tile.position, tile.velocity);
         let (places, words) = layout.crowd(tile.work, len);

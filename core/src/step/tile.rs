@@ -1,15 +1,14 @@
 //! Rows that go through a step together: all that there are, or few enough to stay in the cache meanwhile.
 
-use super::field::Attributes;
 use super::substeps::Carried;
 use super::{Status, TILED, Workspace};
 use crate::collide::each_by_itself;
 use crate::constrain::Substep;
 use crate::custom::CustomColumns;
-use crate::force::{Springs, State, Steady};
+use crate::force::{Attributes, Springs, State, Steady};
 use crate::index::{Listed, Neighbours};
 use crate::integrate::Drift;
-use crate::memory::{Layout, Storage};
+use crate::memory::Layout;
 use crate::observe::Observer;
 use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
 use crate::report::Report;
@@ -60,7 +59,7 @@ impl Scene<'_> {
     }
 
     /// The forces that one pass over the columns can work out, if there are no others.
-    pub(super) fn steady(&self) -> Option<Steady> {
+    pub(crate) fn steady(&self) -> Option<Steady> {
         let floats = || self.materials.code().is_some_and(|code| (code.floats)(self.materials));
         let is_alone = BLOCKS && self.springs.list().is_empty() && !floats();
         if is_alone { self.forces.steady() } else { None }
@@ -131,20 +130,19 @@ impl Workspace<'_> {
         rows: Range<usize>,
         capacity: usize,
     ) -> Tile<'s> {
-        let whole = self.capacity();
-        let m = self.memory.slices();
+        let (whole, m) = (self.capacity(), &mut self.memory);
         let springs = Springs {
             springs: scene.springs.list(),
             code: scene.springs.code(),
             start: self.status.start,
             serial: m.serial,
             row_of: m.row_of,
-            last_spring: m.last_spring.read(),
+            last_spring: &m.last_spring,
             incident: m.incident,
         };
-        let (radius, mass, drag, charge) = (m.radius.read(), m.mass.read(), m.drag.read(), m.charge.read());
+        let (radius, mass, drag, charge) = (&*m.radius, &*m.mass, &*m.drag, &*m.charge);
         let (born, dies, slot, key) = (&*m.born, &*m.dies, &*m.slot, &*m.key);
-        let (color, material, materials) = (m.color.read(), m.material.read(), scene.materials);
+        let (color, material, materials) = (&*m.color, &*m.material, scene.materials);
         let custom = CustomColumns::kept(scene.custom, m.kept, whole, whole);
         let lives = State {
             radius,
@@ -163,7 +161,7 @@ impl Workspace<'_> {
             near: Neighbours::among(&[]).in_room(scene.index.room()),
             ..State::EMPTY
         };
-        let (inverse_mass, elasticity) = (m.inverse_mass.read(), m.elasticity.read());
+        let (inverse_mass, elasticity) = (&*m.inverse_mass, &*m.elasticity);
         let are_alike = self.status.inertias.are_alike();
         let attributes = Attributes { lives, inverse_mass, elasticity, are_alike };
         Tile {

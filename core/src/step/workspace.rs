@@ -148,6 +148,12 @@ impl Workspace<'_> {
         self.capacity
     }
 
+    /// Where the memory that a scene's step asks for lies.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn layout(&self, scene: &Scene<'_>) -> Layout {
+        Layout::of(scene.plan(), self.capacity)
+    }
+
     #[inline(never)]
     pub(crate) fn start(&mut self, scene: &Scene<'_>) {
         self.memory.emitter_states.fill(Default::default());
@@ -184,10 +190,16 @@ impl Workspace<'_> {
         (!scene.springs.list().is_empty() && !last_spring.is_own()).then_some("last_spring")
     }
 
-    /// The same, or one in which a particle that the scene begins with or bears differs from what all have.
-    pub(crate) fn differs(&self, scene: &Scene<'_>) -> Option<&'static str> {
+    /// The same, or one in which a particle that the scene begins with or bears differs from what all have. It is put in the first row to
+    /// find out, where nobody lives yet.
+    pub(crate) fn differs(&mut self, scene: &Scene<'_>) -> Option<&'static str> {
         let mut differs = self.lacks(scene);
-        let mut ask = |particle: &Particle| differs = differs.or(self.memory.differs(particle));
+        let has_room = self.capacity() > 0;
+        let mut ask = |particle: &Particle| {
+            if has_room && differs.is_none() {
+                differs = self.memory.give(0, particle).err();
+            }
+        };
         scene.start.iter().for_each(&mut ask);
         scene.emitters.extremes(&mut ask);
         differs
@@ -201,16 +213,15 @@ impl Workspace<'_> {
     /// Columns of a user's own, for writing.
     pub(crate) fn custom_mut<'s>(&'s mut self, scene: &Scene<'s>) -> CustomColumnsMut<'s> {
         let (capacity, len) = (self.capacity(), self.len());
-        let (values, _) = Layout::of(scene.plan(), capacity).kept(self.memory.kept);
+        let (values, _) = self.layout(scene).kept(self.memory.kept);
         CustomColumnsMut::new(scene.custom, values, capacity, len)
     }
 
     /// Gives rows from `first` on what they begin with in columns of a user's own.
     pub(crate) fn give_custom(&mut self, scene: &Scene<'_>, first: usize) {
         let Some(code) = scene.custom.code() else { return };
-        let (capacity, len, start) = (self.capacity(), self.len(), self.status.start);
-        let Slices { serial, kept, .. } = self.memory.slices();
-        let (values, _) = Layout::of(scene.plan(), capacity).kept(kept);
-        (code.give)(scene.custom, Newcomers { first, serial: &serial[..len], start, values, capacity });
+        let layout = self.layout(scene);
+        let rows = Newcomers { first, len: self.len(), start: self.status.start, layout };
+        (code.give)(scene.custom, &mut self.memory, rows);
     }
 }

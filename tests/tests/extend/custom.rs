@@ -3,7 +3,7 @@
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::Births;
-use pointmass::force::{Needs, State};
+use pointmass::force::{Needs, State, Writing};
 use pointmass::index::{IndexChoice, Structure};
 use pointmass::reap::Verdicts;
 use pointmass::{
@@ -25,7 +25,7 @@ impl Force for Smoke {
         true
     }
     fn needs(&self) -> Needs {
-        Needs { write: true, ..Needs::default() }
+        Needs { write: Some(Writing::COLUMNS), ..Needs::default() }
     }
     fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
         assert!(state.custom.get("heat").is_none_or(<[f32]>::is_empty));

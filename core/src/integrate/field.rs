@@ -1,9 +1,9 @@
 //! Forces over masses: what a method asks for accelerations.
 
+use super::{Dynamics, Linear};
 use crate::custom::CustomColumns;
-use crate::force::{BuildTrees, Force, Inertia, Needs, State, Steady, Then};
-use crate::index::{BarnesHut, Found, ListMemory, Search};
-use crate::integrate::{Dynamics, Linear};
+use crate::force::{Attributes, Force, Inertia, Needs, State, Steady, Then};
+use crate::index::{BarnesHut, ListMemory};
 use crate::observe::{Observer, Phase};
 use crate::report::Effort;
 use crate::rows::each_row_with;
@@ -12,100 +12,49 @@ use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
 
-/// The attributes of particles besides places and velocities: one entry a row.
-#[derive(Clone, Copy)]
-pub(crate) struct Attributes<'a> {
-    /// All that forces see of them.
-    pub(crate) lives: State<'a>,
-    pub(crate) inverse_mass: &'a [f32],
-    pub(crate) elasticity: &'a [f32],
-    /// True if all are known to have the same mass and drag.
-    pub(crate) are_alike: bool,
-}
-
-impl<'a> Attributes<'a> {
-    /// The first rows somewhere, at some time, with columns of a user's own.
-    pub(super) fn state<'s>(&self, custom: CustomColumns<'s>, time: Time, [x, v]: [&'s [Vec3]; 2]) -> State<'s>
-    where
-        'a: 's,
-    {
-        State { custom: custom.rows(0..x.len()), ..self.lives.moved(time, x, v) }
-    }
-
-    /// The columns that tell how some rows fall.
-    pub(super) fn inertia(&self, rows: Range<usize>) -> Inertia<'a> {
-        let Self { lives, inverse_mass, are_alike, .. } = *self;
-        let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
-        Inertia { mass, drag, inverse_mass, are_alike }
-    }
-
-    /// Those of some rows.
-    pub(super) fn rows(&self, rows: Range<usize>) -> Self {
-        Self {
-            inverse_mass: &self.inverse_mass[rows.clone()],
-            elasticity: &self.elasticity[rows.clone()],
-            lives: self.lives.attributes_of(rows),
-            are_alike: self.are_alike,
-        }
-    }
-}
-
 /// Inertia that look at all others for less than it takes to make an index and to look up all in it.
 const FEW: usize = 64;
 
 /// The scene's forces over the masses, from row `first` on.
 pub(crate) struct Field<'a> {
-    pub(super) scene: &'a Scene<'a>,
-    pub(super) attributes: &'a Attributes<'a>,
+    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) attributes: &'a Attributes<'a>,
     /// Columns of a user's own.
-    pub(super) custom: CustomColumns<'a>,
+    pub(crate) custom: CustomColumns<'a>,
     /// The parts of the state that the forces need to find there, and memory for them.
-    pub(super) needs: Needs,
-    pub(super) tree: &'a mut [u32],
-    pub(super) near: &'a mut [u32],
+    pub(crate) needs: Needs,
+    pub(crate) tree: &'a mut [u32],
+    pub(crate) near: &'a mut [u32],
     /// Lists of neighbours, where there is memory for them.
-    pub(super) lists: Option<ListMemory<'a>>,
-    pub(super) first: usize,
-    pub(super) effort: Effort,
-    pub(super) observer: &'a mut dyn Observer,
+    pub(crate) lists: Option<ListMemory<'a>>,
+    pub(crate) first: usize,
+    pub(crate) effort: Effort,
+    pub(crate) observer: &'a mut dyn Observer,
 }
 
 impl Field<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
-    pub(super) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
+    pub(crate) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
         self.effort.evaluations += u64::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         match self.needs.mass_tree.or(self.needs.charge_tree) {
-            Some(trees) if position.len() >= BarnesHut::FEWEST => self.with_trees(trees, &state, then),
+            Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
             _ => self.with_near(&state, then),
         }
     }
 
-    /// Apart, so that whoever needs no trees has no room for them on the stack.
-    #[inline(never)]
-    fn with_trees(&mut self, trees: BuildTrees, state: &State<'_>, then: Then<'_>) {
-        let memory = core::mem::take(&mut self.tree);
-        (trees.0)(self.needs, memory, state, &mut |state| self.with_near(state, then));
-        self.tree = memory;
-    }
-
     /// Calls `then` with neighbours, where anybody asks for them.
-    fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
+    pub(crate) fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
         // A few newborn look at all others: an index would be made for them alone.
         let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
-        let reach = self.needs.reach;
-        let looks = reach > 0.0 && !are_few;
-        let Some(lists) = self.needs.lists.filter(|_| looks) else {
-            self.effort.all_pairs += u64::from(looks);
-            return then(state);
-        };
-        let index = self.scene.index;
-        let words = (3 * index.columns() * state.position.len()).min(self.near.len());
-        let (memory, kept) = (&mut self.near[..words], self.lists.as_mut().map(ListMemory::again));
-        let found = (lists.0)(Search { index, memory, lists: kept, reach }, state, then);
-        self.effort.lists += u64::from(found == Found::Listed);
-        self.effort.streamed += u64::from(found == Found::Streamed);
-        self.effort.all_pairs += u64::from(found == Found::AllPairs);
+        let looks = self.needs.reach > 0.0 && !are_few;
+        match self.needs.lists.filter(|_| looks) {
+            Some(lists) => (lists.0)(self, state, then),
+            None => {
+                self.effort.all_pairs += u64::from(looks);
+                then(state);
+            }
+        }
     }
 }
 
@@ -124,25 +73,13 @@ impl Dynamics for Field<'_> {
             self.effort.evaluations += u64::from(!position.is_empty());
             return steady.accelerate(columns, &velocity[rows], acceleration);
         }
-        self.with_state(time, position, velocity, &mut |state| {
-            acceleration.fill(Vec3::ZERO);
-            match state.springs.force() {
-                Some(springs) => add_up(&(forces, springs), state, rows.clone(), acceleration),
-                None => add_up(forces, state, rows.clone(), acceleration),
-            }
-        });
+        self.with_state(time, position, velocity, &mut |state| add_all(forces, state, rows.clone(), acceleration));
         divide_by_masses(acceleration, inverse_mass);
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
         let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[..position.len()]);
-        self.with_state(time, position, velocity, &mut |state| {
-            let mut linear = |forces: &dyn Force| then(&Linear { forces, state: *state, inverse_mass });
-            match state.springs.force() {
-                Some(springs) => linear(&(forces, springs)),
-                None => linear(forces),
-            }
-        });
+        self.with_state(time, position, velocity, &mut |state| then(&Linear::about(state, forces, inverse_mass)));
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
@@ -158,6 +95,16 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
         // A fixed particle stays so under a force that is beyond an f32.
         if inverse == 0.0 { 0.0 } else { force * inverse }
     });
+}
+
+/// The forces on some rows, those of springs behind the others.
+#[cfg_attr(target_os = "none", inline(never))]
+fn add_all(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+    total.fill(Vec3::ZERO);
+    add_up(forces, state, rows.clone(), total);
+    if let Some(springs) = state.springs.force() {
+        add_up(springs, state, rows, total);
+    }
 }
 
 /// Inertia that are worth a thread's while.

@@ -1,0 +1,57 @@
+//! What is known of particles besides places and velocities.
+
+use super::{Inertia, State};
+use crate::custom::CustomColumns;
+use crate::scene::Scene;
+use crate::time::Time;
+use core::ops::Range;
+use glam::Vec3;
+
+/// The attributes of particles besides places and velocities: one entry a row.
+#[derive(Clone, Copy)]
+pub(crate) struct Attributes<'a> {
+    /// All that forces see of them.
+    pub(crate) lives: State<'a>,
+    pub(crate) inverse_mass: &'a [f32],
+    pub(crate) elasticity: &'a [f32],
+    /// True if all are known to have the same mass and drag.
+    pub(crate) are_alike: bool,
+}
+
+impl<'a> Attributes<'a> {
+    /// The first rows somewhere, at some time, with columns of a user's own.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn state<'s>(&self, custom: CustomColumns<'s>, time: Time, [x, v]: [&'s [Vec3]; 2]) -> State<'s>
+    where
+        'a: 's,
+    {
+        let mut state = self.lives.moved(time, x, v);
+        state.custom = custom.rows(0..x.len());
+        state
+    }
+
+    /// Columns of a user's own as they are now: where constraints may change them, those that are lent for it.
+    pub(crate) fn custom<'s>(&self, scene: &Scene<'s>, kept: &'s [u32], capacity: usize) -> CustomColumns<'s>
+    where
+        'a: 's,
+    {
+        if kept.is_empty() { self.lives.custom } else { CustomColumns::kept(scene.custom, kept, capacity, capacity) }
+    }
+
+    /// The columns that tell how some rows fall.
+    pub(crate) fn inertia(&self, rows: Range<usize>) -> Inertia<'a> {
+        let Self { lives, inverse_mass, are_alike, .. } = *self;
+        let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
+        Inertia { mass, drag, inverse_mass, are_alike }
+    }
+
+    /// Those of some rows.
+    pub(crate) fn rows(&self, rows: Range<usize>) -> Self {
+        Self {
+            inverse_mass: &self.inverse_mass[rows.clone()],
+            elasticity: &self.elasticity[rows.clone()],
+            lives: self.lives.attributes_of(rows),
+            are_alike: self.are_alike,
+        }
+    }
+}
