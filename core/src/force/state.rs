@@ -105,6 +105,7 @@ impl<'a> State<'a> {
 
     /// The attributes of some rows, without places and velocities.
     #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
         // Changed in a copy: to write out the whole of it would take a chip more flash.
         let mut some = *self;

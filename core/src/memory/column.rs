@@ -35,6 +35,7 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
     }
 
     /// Gives a row its number, if that may be in it, and says whether it may.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(crate) fn put(&mut self, row: usize, value: T) -> bool {
         match self {
             Self::Own(rows) => {
