@@ -22,7 +22,7 @@ fn floor(random: &mut Random, [x, _, z]: [Vec3; 3], half: f32, cells: u32) -> Me
     let at = |u: u32, v: u32| v * (cells + 1) + u;
     let pair = |v: u32, u: u32| {
         let [a, b, c, d] = [at(u, v), at(u, v + 1), at(u + 1, v + 1), at(u + 1, v)];
-        if (u + v) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        if (u + v).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     };
     let triangles = (0..cells).flat_map(|v| (0..cells).flat_map(move |u| pair(v, u)));
     MeshBuf::new(places, triangles.collect::<Vec<_>>()).expect("a floor is a mesh")
