@@ -32,7 +32,7 @@ const GONE: u32 = 2;
 /// farther than edges do.
 #[derive(Default)]
 pub(super) struct Plate<'m> {
-    /// Whether each particle is there in the matrix.
+    /// A word for each particle: it is there in the matrix, or not.
     roll: &'m mut [u32],
     /// The largest of the squares of the curvatures that a radian makes \[1/m²\] and of how slender their triangles are.
     steepest: &'m mut [f32],
@@ -94,8 +94,8 @@ impl<'m> Plate<'m> {
         Self { roll, steepest, own, near, links, numbers }
     }
 
-    /// What so many times bending does to the rows of a strip beyond what is in blocks, `own` being their places; what it does to others is added
-    /// to the sums there.
+    /// Bends the rows of a strip, `own` being their places: tells so many times what that does to them beyond what is in blocks, and takes what it does
+    /// to others from the sums there.
     #[inline(always)]
     pub(super) fn bend<F: Eight>(
         &self,
