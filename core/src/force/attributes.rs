@@ -1,4 +1,4 @@
-//! What is known of particles besides places and velocities.
+//! The attributes of particles besides places and velocities, as a step hands them to forces and constraints.
 
 use super::{Inertia, State};
 use crate::custom::CustomColumns;

@@ -26,7 +26,7 @@ pub(super) const KEYS: usize = 512;
 const MIXED: u32 = 1 << 31;
 /// A mixed entry whose lanes are those of the strip.
 const IN_TURN: u32 = MIXED | 0o7654_3210;
-/// Who is linked with whom, in strips of eight rows: an entry has one link of each to a row of an earlier strip, or none, and names the row itself
+/// Links of a graph, in strips of eight rows: an entry has one link of each to a row of an earlier strip, or none, and names the row itself
 /// then. Rows are named by their places: the lane in the strip, and eight times the strip.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Strips<'m> {
@@ -230,7 +230,7 @@ impl<'m> Entry<'m> {
         self.base & MIXED != 0 && self.base != NONE
     }
 
-    /// What rows have of their own, for the links of each.
+    /// Numbers that rows have of their own, for the links of each.
     #[inline(always)]
     pub(super) fn lent<F: Eight>(&self, like: F, own: F) -> F {
         if self.is_mixed() { self.owners().lent_number(like, own) } else { own }

@@ -6,7 +6,7 @@ use crate::lanes::LANES;
 
 /// So many of eight rows have to be linked with rows that lie one behind the other for these to be taken as they lie.
 const RUN: usize = 4;
-/// How many others a mixed entry has to spare: what it adds up goes to its rows one by one.
+/// The number of others that a mixed entry has to spare: what it adds up goes to its rows one by one.
 const WORTH: usize = 3;
 
 /// Puts the links of a graph into entries, and says where those of each strip begin, and the mixed ones among them.
