@@ -1,6 +1,6 @@
 //! The files that a run was asked for: its states, and what happened in it.
 
-use super::Run;
+use super::args::Run;
 use crate::formats::{Line, RecordFormat};
 use crate::load::{Disk, name};
 use crate::outcome::{Failure, Outcome};
