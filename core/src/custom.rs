@@ -1,6 +1,6 @@
 //! Columns of a user's own: numbers with names that each particle carries along.
 
-use crate::memory::{Layout, Slices};
+use crate::memory::{Columns, Layout, Slices, Workspace};
 use core::fmt;
 use core::ops::Range;
 
@@ -74,6 +74,21 @@ fn give(list: &dyn CustomList, memory: &mut Slices<'_>, rows: Newcomers) {
             let given = custom.start.get(serial as usize).filter(|_| serial < start);
             *to = given.copied().unwrap_or(custom.newborn);
         }
+    }
+}
+
+impl Workspace<'_> {
+    /// Columns of a user's own, for writing.
+    pub(crate) fn custom_mut<'s>(&'s mut self, list: &'s dyn CustomList, layout: &Layout) -> CustomColumnsMut<'s> {
+        let (capacity, len) = (self.capacity(), self.len());
+        CustomColumnsMut::new(list, layout.kept(self.memory.kept).0, capacity, len)
+    }
+
+    /// Gives rows from `first` on what they begin with in columns of a user's own.
+    pub(crate) fn give_custom(&mut self, list: &dyn CustomList, layout: &Layout, first: usize) {
+        let Some(code) = list.code() else { return };
+        let rows = Newcomers { first, len: self.len(), start: self.status.start, layout: *layout };
+        (code.give)(list, &mut self.memory, rows);
     }
 }
 
@@ -184,6 +199,16 @@ impl<'a> CustomColumns<'a> {
     pub(crate) fn kept(list: &'a dyn CustomList, words: &'a [u32], stride: usize, len: usize) -> Self {
         let words = words.get(..list.count().saturating_mul(stride)).unwrap_or(&[]);
         Self::new(list, bytemuck::cast_slice(words), stride, len)
+    }
+
+    /// Those of the first `len` rows of a system.
+    pub(crate) fn of(list: &'a dyn CustomList, memory: Columns<'a>, len: usize) -> Self {
+        Self::kept(list, memory.kept, memory.capacity(), len)
+    }
+
+    /// The list that they are of.
+    pub(crate) fn list(&self) -> &'a dyn CustomList {
+        self.list
     }
 
     /// The column with a number, in the order in which the scene lists them; empty where there is none.

@@ -1,15 +1,13 @@
 //! The state of the world and its one verb, `step`.
 
 use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::force::{self, SpringList, Springs, State};
+use crate::force::{self, State};
 use crate::hash::Fnv;
-use crate::index::Neighbours;
-use crate::memory::{Columns, Layout, Storage};
+use crate::memory::{Columns, Layout, Status, Storage, Workspace};
 use crate::observe::Observer;
 use crate::particles::{Full, Id, Particle};
 use crate::report::Report;
 use crate::scene::{InsufficientMemory, Scene};
-use crate::step::{Status, Workspace};
 use crate::time::Time;
 
 /// The state that a scene acts on, in memory of its owner's choice. An empty one is all zeros.
@@ -163,12 +161,12 @@ impl<B: Storage> System<B> {
 
     /// The particles as forces see them.
     pub fn state<'a>(&'a self, scene: &Scene<'a>) -> State<'a> {
-        self.memory.columns().state(scene, &self.status)
+        self.memory.columns().state(&scene.backdrop(), &self.status)
     }
 
     /// Columns of a user's own, one entry a row: those that `scene` lists.
     pub fn custom<'a>(&'a self, scene: &Scene<'a>) -> CustomColumns<'a> {
-        self.memory.columns().custom(scene, self.status.len)
+        CustomColumns::of(scene.custom, self.memory.columns(), self.status.len)
     }
 
     /// The same, for writing.
@@ -230,45 +228,6 @@ impl<B: Storage> System<B> {
 }
 
 impl<'a> Columns<'a> {
-    /// The living as forces and reapers see them.
-    pub(crate) fn state(self, scene: &Scene<'a>, status: &Status) -> State<'a> {
-        let (springs, custom) = (self.springs(scene.springs, status), self.custom(scene, status.len));
-        let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, color, material, .. } =
-            self;
-        let materials = scene.materials;
-        let lives = State {
-            radius,
-            mass,
-            drag,
-            charge,
-            born,
-            dies,
-            slot,
-            key,
-            color,
-            material,
-            materials,
-            springs,
-            custom,
-            near: Neighbours::among(&[]).in_room(scene.index.room()),
-            ..State::EMPTY
-        };
-        lives.moved(status.time, &position[..status.len], &velocity[..status.len])
-    }
-
-    /// A scene's springs and where their ends are now.
-    pub(crate) fn springs(&self, springs: &'a dyn SpringList, status: &Status) -> Springs<'a> {
-        let Columns { serial, row_of, last_spring, incident, .. } = *self;
-        let serial = &serial[..status.len];
-        let (springs, code, start) = (springs.list(), springs.code(), status.start);
-        Springs { springs, code, start, serial, row_of, last_spring, incident }
-    }
-
-    /// Columns of a user's own, of the first `len` rows.
-    pub(crate) fn custom(&self, scene: &Scene<'a>, len: usize) -> CustomColumns<'a> {
-        CustomColumns::kept(scene.custom, self.kept, self.capacity(), len)
-    }
-
     /// The columns by row, cut to the rows in use.
     fn living(self, len: usize) -> Self {
         Self {

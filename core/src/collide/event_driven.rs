@@ -5,6 +5,7 @@ use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
 use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
 use super::sweep::{Meeting, Sweep};
+use super::tile::Obstacles;
 use crate::index::{Room, SpatialIndex, between as shortest};
 use crate::material::of_two;
 use crate::math::{high, largest, length, max};
@@ -12,7 +13,6 @@ use crate::observe::{Impact, Observer};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::scene::Scene;
 use crate::shape::Segment;
 use crate::time::Time;
 use glam::Vec3;
@@ -24,7 +24,7 @@ const FOUND_A_BOUNCE: u32 = 1 << 11;
 
 /// A step whose meetings are worked through one after the other.
 pub(super) struct EventDriven<'a> {
-    pub(super) scene: &'a Scene<'a>,
+    pub(super) obstacles: Obstacles<'a>,
     pub(super) dt: Time,
     pub(super) end: Time,
     /// Events count in 2 to this power ticks.
@@ -126,8 +126,8 @@ impl EventDriven<'_> {
             return;
         }
         // Whom one meets has to be met in turn: four times as many of these as of bounces off colliders.
-        let most = self.scene.max_bounces.saturating_mul(4);
-        let most_found = self.scene.max_bounces.saturating_mul(FOUND_A_BOUNCE);
+        let most = self.obstacles.max_bounces.saturating_mul(4);
+        let most_found = self.obstacles.max_bounces.saturating_mul(FOUND_A_BOUNCE);
         if (event.turns > most || event.found > most_found) && event.waits == 0 {
             self.wait(row);
         }
@@ -140,7 +140,7 @@ impl EventDriven<'_> {
         let hull = path.hull(self.radius[row]);
         let mut next = NextEvent { until: NEVER, partner: NOBODY, ..event };
         let moves = event.waits == 0;
-        let near_walls = moves && (self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull));
+        let near_walls = moves && (self.obstacles.colliders.may_touch(&hull) || self.obstacles.sinks.may_touch(&hull));
         let meeting = if near_walls { self.sweep(row).first_meeting(&path) } else { None };
         if let Some(meeting) = meeting {
             (next.until, next.partner) = (self.units(path.instant(meeting.time)), WALL);
@@ -233,7 +233,7 @@ impl EventDriven<'_> {
         let share = if end > start { (now - start).seconds() / (end - start).seconds() } else { 0.0 };
         let part = Path { x1: place, v1: path.velocity(share), during: [start, now], ..path };
         let hull = part.hull(self.radius[row]);
-        let near_walls = self.scene.colliders.may_touch(&hull) || self.scene.sinks.may_touch(&hull);
+        let near_walls = self.obstacles.colliders.may_touch(&hull) || self.obstacles.sinks.may_touch(&hull);
         if !near_walls || self.events.event(row).waits != 0 || self.inverse_mass[row] == 0.0 {
             return false;
         }
@@ -285,7 +285,7 @@ impl EventDriven<'_> {
             self.set_apart(rows, waits, &mut paths, normal * overlap);
         }
         let material = rows.map(|row| self.material[row].checked_sub(1));
-        let mixed = of_two(self.scene.materials, rows.map(|row| self.elasticity[row]), material);
+        let mixed = of_two(self.obstacles.materials, rows.map(|row| self.elasticity[row]), material);
         let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
@@ -343,7 +343,7 @@ impl EventDriven<'_> {
             let Path { x0, during: [now, _], .. } = paths[i];
             let radius = self.radius[rows[i]];
             let there = Segment { from: x0, to: x0 + change, radius, during: [now; 2] };
-            change == Vec3::ZERO || self.scene.colliders.first_hit(&there).is_none()
+            change == Vec3::ZERO || self.obstacles.colliders.first_hit(&there).is_none()
         };
         let shares = [[a / (a + b), b / (a + b)], [1.0, 0.0], [0.0, 1.0]];
         let allowed = shares.into_iter().find(|&[first, second]| {
@@ -363,7 +363,7 @@ impl EventDriven<'_> {
             self.report.caps.bounces += 1;
         }
         let during = [self.instant(event.since), self.end];
-        self.ends[0][row] = self.scene.colliders.carry(self.starts[0][row], self.radius[row], during);
+        self.ends[0][row] = self.obstacles.colliders.carry(self.starts[0][row], self.radius[row], during);
         self.ends[1][row] = self.starts[1][row];
         self.events.set(row, NextEvent { waits: 1, ..event });
     }
@@ -391,9 +391,9 @@ impl EventDriven<'_> {
 
     fn sweep(&mut self, row: usize) -> Sweep<'_> {
         Sweep {
-            scene: self.scene,
-            walls: self.scene.colliders,
-            sinks: Some(self.scene.sinks),
+            obstacles: &self.obstacles,
+            walls: self.obstacles.colliders,
+            sinks: Some(self.obstacles.sinks),
             id: self.id(row),
             row,
             radius: self.radius[row],

@@ -12,6 +12,7 @@ mod path;
 mod queue;
 mod slide;
 mod sweep;
+mod tile;
 mod tile_sweep;
 mod waiting;
 
@@ -20,4 +21,5 @@ pub(crate) use passage::Passage;
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub(crate) use sweep::RESTING;
+pub(crate) use tile::{Obstacles, Tile};
 pub(crate) use tile_sweep::each_by_itself;

@@ -2,13 +2,13 @@
 
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
+use super::tile::Obstacles;
 use crate::material::on_surface;
 use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, plus, scaled, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::scene::Scene;
 use crate::shape::{Aabb, Collider, Contact, Facing, Hit, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
@@ -48,7 +48,7 @@ pub(super) struct Meeting {
 
 /// The means to follow one particle past walls of a kind: any, or one that is known, for which the same is shorter.
 pub(super) struct Sweep<'a, C: ?Sized = dyn Collider + 'a> {
-    pub(super) scene: &'a Scene<'a>,
+    pub(super) obstacles: &'a Obstacles<'a>,
     /// The walls that it may run into, and the sinks that remove it, if there are any.
     pub(super) walls: &'a C,
     pub(super) sinks: Option<&'a dyn Collider>,
@@ -80,8 +80,8 @@ impl Meeting {
 impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// The same past other walls.
     pub(super) fn past<W: Collider>(self, walls: &'a W) -> Sweep<'a, W> {
-        let Self { scene, sinks, id, row, radius, mass, elasticity, material, dt, report, observer, .. } = self;
-        Sweep { scene, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
+        let Self { obstacles, sinks, id, row, radius, mass, elasticity, material, dt, report, observer, .. } = self;
+        Sweep { obstacles, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
     }
 
     /// Its way through the step, if it may touch anything.
@@ -137,7 +137,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn lying(&mut self, path: &Path) -> Option<Path> {
         let acceleration = path.acceleration();
         let seat = self.seat(path, acceleration)?;
-        let mixed = on_surface(self.scene.materials, self.elasticity, self.material, seat.material);
+        let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, seat.material);
         let (normal, time) = (seat.normal, path.during[0]);
         let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
         let (slip, drive) = (along(path.v0, normal, -incoming), along(acceleration, normal, pressing));
@@ -173,7 +173,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
-        for _ in 0..self.scene.max_bounces {
+        for _ in 0..self.obstacles.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
                 return Arrival { position: path.x1, velocity: path.v1, pending_death: PendingDeath::Lives };
             };
@@ -253,7 +253,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
-        let mixed = on_surface(self.scene.materials, self.elasticity, self.material, material);
+        let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
         let acceleration = path.acceleration();

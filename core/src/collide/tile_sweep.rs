@@ -7,6 +7,7 @@ use super::near::{BLOCK, Balls, Marks as Bits, Near};
 use super::packet::{Outcome, Paths, Riders};
 use super::sweep::facing;
 use super::waiting::{Packet, Queue, ones};
+use crate::collide::tile::Tile;
 use crate::constrain::CARRIED;
 use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run, widest};
 use crate::material::on_surface;
@@ -15,7 +16,6 @@ use crate::memory::Past;
 use crate::observe::{Attention, Observer};
 use crate::report::Report;
 use crate::shape::{Aabb, Face, Facing, Hulls, Many, Marks};
-use crate::step::Tile;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -52,16 +52,16 @@ struct Waiting {
 pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
     let work = core::mem::take(&mut tile.work);
     let past = tile.layout.past(work);
-    let many = if SHORT_WAY { tile.scene.colliders.many() } else { None };
+    let many = if SHORT_WAY { tile.obstacles.colliders.many() } else { None };
     let outskirts = many.and_then(Many::outskirts);
     let facing = match outskirts {
         Some((face, things)) if things == Aabb::EMPTY => face.map_or(Facing::Nothing, Facing::Face),
-        None if SHORT_WAY && many.is_none() => tile.scene.colliders.facing(&EVERYWHERE),
+        None if SHORT_WAY && many.is_none() => tile.obstacles.colliders.facing(&EVERYWHERE),
         _ => Facing::Several,
     };
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
-    let (has_sinks, has_materials) = (!tile.scene.sinks.is_empty(), tile.scene.materials.count() > 0);
+    let (has_sinks, has_materials) = (!tile.obstacles.sinks.is_empty(), tile.obstacles.materials.count() > 0);
     let mut tile_sweep =
         TileSweep { tile: &mut *tile, past, has_materials, facing, are_points: false, report, observer };
     match (facing, many.zip(outskirts)) {
@@ -107,8 +107,8 @@ impl<const POINTS: bool> Kernel for Bounce<'_, '_, '_, POINTS> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Unsettled {
         let (riders, paths) = self.of.packet::<F, false, POINTS>(like, self.packet.rows, self.face);
-        let Tile { dt, scene, .. } = *self.of.tile;
-        let outcome = riders.bounce(&paths, self.face, self.packet.present(), dt, scene.max_bounces);
+        let Tile { dt, ref obstacles, .. } = *self.of.tile;
+        let outcome = riders.bounce(&paths, self.face, self.packet.present(), dt, obstacles.max_bounces);
         self.of.settle(self.packet, &outcome)
     }
 }
@@ -158,7 +158,7 @@ impl TileSweep<'_, '_> {
         let rows = first..self.tile.position.len().min(first + most);
         let marks = self.past.marks.get(rows.clone()).filter(|_| rows.end <= self.tile.old);
         let are_carried = |marks: &[u32]| marks.iter().fold(CARRIED, |all, mark| all & mark) != 0;
-        self.tile.scene.sinks.is_empty() && marks.is_some_and(are_carried)
+        self.tile.obstacles.sinks.is_empty() && marks.is_some_and(are_carried)
     }
 
     /// Follows all past a face, those who were there before the step in packets.
@@ -213,12 +213,12 @@ impl TileSweep<'_, '_> {
 
     /// The face that an old row is near, if that is all.
     fn face_of(&self, row: usize) -> Option<Face> {
-        let Tile { scene, old, dt, attributes: ref m, .. } = *self.tile;
+        let Tile { ref obstacles, old, dt, attributes: ref m, .. } = *self.tile;
         let path = self.path(row);
         if row >= old || m.inverse_mass[row] == 0.0 || !path.is_finite() {
             return None;
         }
-        match facing(scene.colliders, &path, [m.lives.radius[row], m.elasticity[row]], dt.seconds()) {
+        match facing(obstacles.colliders, &path, [m.lives.radius[row], m.elasticity[row]], dt.seconds()) {
             Facing::Face(face) => Some(face),
             _ => None,
         }
@@ -256,9 +256,9 @@ impl TileSweep<'_, '_> {
 
     /// Tells whether rows may go in another order: nobody asks, nothing removes them, and a hit may follow another.
     fn goes_in_packets(&self) -> bool {
-        let Tile { scene, dt, .. } = *self.tile;
-        let alone = self.observer.is_none() && scene.sinks.is_empty() && self.past.marks.is_empty();
-        alone && scene.max_bounces > 1 && dt > Time::ZERO
+        let Tile { ref obstacles, dt, .. } = *self.tile;
+        let alone = self.observer.is_none() && obstacles.sinks.is_empty() && self.past.marks.is_empty();
+        alone && obstacles.max_bounces > 1 && dt > Time::ZERO
     }
 
     /// Lets those who lie on the face do so; the others bounce.
@@ -368,7 +368,7 @@ impl TileSweep<'_, '_> {
         let [bounces, at_rest, kinetic] = &mut mixed;
         for (i, (&row, &elasticity)) in rows.iter().zip(elasticity).enumerate() {
             let own = self.tile.attributes.lives.material[row].checked_sub(1);
-            let mixed = on_surface(self.tile.scene.materials, elasticity, own, face.material());
+            let mixed = on_surface(self.tile.obstacles.materials, elasticity, own, face.material());
             (bounces[i], at_rest[i], kinetic[i]) = (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
         }
         mixed
@@ -391,14 +391,14 @@ fn words(marks: &Bits) -> impl Iterator<Item = u64> + '_ {
 /// Marks those from a row on that may touch anything in the step. Its hulls are off the stack when anybody is followed.
 #[inline(never)]
 fn marked(tile: &Tile<'_>, past: &Past<'_>, first: usize) -> Marks {
-    let Tile { scene, old, dt, .. } = *tile;
+    let Tile { ref obstacles, old, dt, .. } = *tile;
     let rows = first..tile.position.len().min(first + Hulls::MANY);
     let [start_x, start_v] = past.start;
     let ends = [start_x, start_v, tile.position, tile.velocity].map(|column| &column[rows.clone()]);
     let hulls = Hulls::of_paths(ends, &tile.attributes.lives.radius[rows.clone()], dt.seconds());
     let mut marks = [0; Hulls::MANY];
-    scene.colliders.mark_near(&hulls, &mut marks);
-    scene.sinks.mark_near(&hulls, &mut marks);
+    obstacles.colliders.mark_near(&hulls, &mut marks);
+    obstacles.sinks.mark_near(&hulls, &mut marks);
     // Newborns have come only part of the way: their cubics are others.
     marks[old.clamp(rows.start, rows.end) - first..].fill(u32::MAX);
     marks[rows.len()..].fill(0);

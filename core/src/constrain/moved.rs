@@ -2,13 +2,14 @@
 
 use super::{Bodies, Constraint, Near, Share, Substep};
 use crate::custom::CustomColumnsMut;
-use crate::force::{Attributes, Needs};
-use crate::index::ListMemory;
+use crate::force::Attributes;
+use crate::index::{IndexChoice, ListMemory};
+use crate::integrate::Integrator;
 use crate::memory::{Layout, Scratch};
 use crate::observe::{Observer, Phase};
 use crate::reap::PendingDeath;
 use crate::report::Report;
-use crate::scene::Scene;
+use crate::shape::Collider;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -32,9 +33,11 @@ pub(crate) enum Moment {
 
 /// The particles that a sub-step moves, and the memory for it.
 pub(crate) struct Moved<'a> {
-    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) constraints: &'a dyn Constraint,
+    pub(crate) colliders: &'a dyn Collider,
+    pub(crate) index: &'a dyn IndexChoice,
+    pub(crate) integrator: &'a dyn Integrator,
     pub(crate) attributes: &'a Attributes<'a>,
-    pub(crate) needs: Needs,
     pub(crate) position: &'a mut [Vec3],
     pub(crate) velocity: &'a mut [Vec3],
     /// Places and velocities at the sub-step's beginning; empty where nobody asks.
@@ -47,7 +50,7 @@ pub(crate) struct Moved<'a> {
     /// The words kept from step to step, for writing where there are constraints.
     pub(crate) kept: &'a mut [u32],
     pub(crate) scratch: Scratch<'a>,
-    pub(crate) capacity: usize,
+    pub(crate) layout: &'a Layout,
     pub(crate) report: &'a mut Report,
     pub(crate) observer: &'a mut dyn Observer,
 }
@@ -55,7 +58,7 @@ pub(crate) struct Moved<'a> {
 impl Moved<'_> {
     /// Says that the sub-step has come so far.
     fn tell(&mut self, phase: Phase, time: Time) {
-        let custom = self.attributes.custom(self.scene, self.kept, self.capacity);
+        let custom = self.attributes.custom(self.kept, self.layout.capacity());
         let state = self.attributes.state(custom, time, [self.position, self.velocity]);
         self.observer.after(phase, &state);
     }
@@ -82,11 +85,11 @@ fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
 /// Lends the constraints what they move and the memory that they work in.
 #[inline(never)]
 fn lend(moved: &mut Moved<'_>, substep: Substep, go: fn(&dyn Constraint, &mut Bodies<'_>, &mut Share<'_>)) {
-    let Moved { scene, capacity, .. } = *moved;
+    let Moved { constraints, colliders, index, integrator, layout, .. } = *moved;
     let Attributes { lives, inverse_mass, elasticity, .. } = *moved.attributes;
     let len = moved.position.len();
     let [memory, scratch] = moved.scratch.constraining();
-    let (custom, kept) = Layout::of(scene.plan(), capacity).kept(moved.kept);
+    let (custom, kept) = layout.kept(moved.kept);
     let mut bodies = Bodies {
         position: moved.position,
         velocity: moved.velocity,
@@ -96,11 +99,11 @@ fn lend(moved: &mut Moved<'_>, substep: Substep, go: fn(&dyn Constraint, &mut Bo
         inverse_mass: &inverse_mass[..len],
         elasticity: &elasticity[..len],
         material: &lives.material[..len],
-        custom: CustomColumnsMut::new(scene.custom, custom, capacity, len),
+        custom: CustomColumnsMut::new(lives.custom.list(), custom, layout.capacity(), len),
         substep,
-        colliders: scene.colliders,
-        materials: scene.materials,
-        near: Near { index: scene.index, memory },
+        colliders,
+        materials: lives.materials,
+        near: Near { index, memory },
         report: moved.report,
         slot: &lives.slot[..len],
         serial: &lives.springs.serial[..len],
@@ -108,9 +111,9 @@ fn lend(moved: &mut Moved<'_>, substep: Substep, go: fn(&dyn Constraint, &mut Bo
         pending_death: moved.pending_death,
         start: lives.springs.start,
         marks: moved.marks,
-        lag: scene.integrator.lag(),
+        lag: integrator.lag(),
         observer: moved.observer,
     };
-    let mut share = Share { kept, step: moved.lasting, scratch, capacity };
-    go(scene.constraints, &mut bodies, &mut share);
+    let mut share = Share { kept, step: moved.lasting, scratch, capacity: layout.capacity() };
+    go(constraints, &mut bodies, &mut share);
 }

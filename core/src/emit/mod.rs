@@ -4,21 +4,22 @@
 //! floor(R(t + dt)) − floor(R(t)), R being the rate times the time, and each has an instant of its own.
 
 mod emitter;
+mod state;
 mod vary;
 
 pub use emitter::{Burst, Emitter, WhereSparse};
+pub use state::EmitterState;
 pub use vary::{Spread, Varied};
 
 use crate::custom::CustomColumnsMut;
-use crate::force::State;
+use crate::force::{Backdrop, State};
 use crate::index::{Neighbours, SpatialIndex};
 use crate::math::{divide, max};
+use crate::memory::{Layout, Storage, Workspace};
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::rng::Stream;
-use crate::scene::Scene;
-use crate::step::Workspace;
 use crate::time::{Time, fixed_32};
 use glam::Vec3;
 
@@ -79,20 +80,12 @@ pub trait Emit: Sync {
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>);
 }
 
-/// The state of an emitter; numbers and instants of births go on from here, even when its rate changes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct EmitterState {
-    /// Births so far, those that found no room included.
-    pub(crate) serial: u32,
-    /// How much of the next birth is done, in units of 2⁻⁶⁴.
-    pub(crate) phase: u64,
-}
-
 /// The place that emitters give birth into.
 #[allow(missing_debug_implementations)]
 pub struct Births<'a> {
     pub(crate) workspace: Workspace<'a>,
-    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) layout: &'a Layout,
+    pub(crate) backdrop: &'a Backdrop<'a>,
     pub(crate) report: &'a mut Report,
     pub(crate) observer: &'a mut dyn Observer,
     /// Those who were there when the step began, in an index if anybody asks for it, and how many they were.
@@ -101,10 +94,6 @@ pub struct Births<'a> {
     /// When the step ends.
     pub(crate) end: Time,
     pub(crate) number: usize,
-}
-
-impl EmitterState {
-    pub(crate) const NEW: Self = Self { serial: 0, phase: 0 };
 }
 
 impl Births<'_> {
@@ -138,19 +127,19 @@ impl Births<'_> {
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
         let all = &self.workspace.memory.position[..self.workspace.len()];
         let (old, newborn) = all.split_at(self.old);
-        let near = Neighbours::by(self.near, old).in_room(self.scene.index.room());
+        let near = Neighbours::by(self.near, old).in_room(self.backdrop.room);
         near.count_within(place, radius) + near.at(newborn).count_within(place, radius)
     }
 
     /// The particles there are, those born in this step among them.
     #[must_use]
     pub fn state(&self) -> State<'_> {
-        self.workspace.state(self.scene)
+        self.workspace.memory.columns().state(self.backdrop, self.workspace.status)
     }
 
     /// Columns of a user's own, for writing: the last row is that of the particle just born.
     pub fn custom_mut(&mut self) -> CustomColumnsMut<'_> {
-        self.workspace.custom_mut(self.scene)
+        self.workspace.custom_mut(self.backdrop.custom, self.layout)
     }
 
     /// A birth of emitter `number` at the instant `at`, made from the random numbers that belong to it.
@@ -185,7 +174,7 @@ impl Births<'_> {
 
     fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
         let id = self.workspace.spawn(particle, at, stream.name())?;
-        self.workspace.give_custom(self.scene, self.workspace.len() - 1);
+        self.workspace.give_custom(self.backdrop.custom, self.layout, self.workspace.len() - 1);
         self.report.born += 1;
         let Particle { position: place, velocity, .. } = *particle;
         self.observer.born(&LifeEvent { id, place, velocity, time: at });

@@ -2,7 +2,6 @@
 
 use super::{Inertia, State};
 use crate::custom::CustomColumns;
-use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -31,11 +30,12 @@ impl<'a> Attributes<'a> {
     }
 
     /// Columns of a user's own as they are now: where constraints may change them, those that are lent for it.
-    pub(crate) fn custom<'s>(&self, scene: &Scene<'s>, kept: &'s [u32], capacity: usize) -> CustomColumns<'s>
+    pub(crate) fn custom<'s>(&self, kept: &'s [u32], capacity: usize) -> CustomColumns<'s>
     where
         'a: 's,
     {
-        if kept.is_empty() { self.lives.custom } else { CustomColumns::kept(scene.custom, kept, capacity, capacity) }
+        let custom = self.lives.custom;
+        if kept.is_empty() { custom } else { CustomColumns::kept(custom.list(), kept, capacity, capacity) }
     }
 
     /// The columns that tell how some rows fall.

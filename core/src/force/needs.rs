@@ -1,23 +1,24 @@
 //! The needs of forces: all that they have to find in the state.
 
-use super::{Attributes, State};
-use crate::custom::CustomColumnsMut;
+use super::{Attributes, Force, State};
+use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::index::{BarnesHut, Found, IndexChoice, ListMemory, Search, find};
-use crate::integrate::Field;
 use crate::math::max;
 use crate::memory::Layout;
 use crate::report::Effort;
-use crate::scene::Scene;
 use crate::time::Time;
 use glam::Vec3;
 
+/// Particles that look at all others for less than it takes to make an index and to look up all in it.
+const FEW: usize = 64;
+
 /// Makes trees of masses and charges. A function, so that a program with no force that names it does not carry it about.
 #[derive(Clone, Copy, Debug)]
-pub struct BuildTrees(pub(crate) fn(&mut Field<'_>, &State<'_>, Then<'_>));
+pub struct BuildTrees(pub(crate) fn(&mut Finder<'_>, &State<'_>, Then<'_>));
 
 /// Finds neighbours, likewise.
 #[derive(Clone, Copy, Debug)]
-pub struct Listing(pub(crate) fn(&mut Field<'_>, &State<'_>, Then<'_>));
+pub struct Listing(pub(crate) fn(&mut Finder<'_>, &State<'_>, Then<'_>));
 
 /// Lets forces change columns of a user's own, likewise.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +26,9 @@ pub struct Writing(pub(crate) fn(Written<'_>));
 
 /// All rows at a step's end, the memory that is laid out for them, and the step's length.
 pub(crate) struct Written<'a> {
-    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) forces: &'a dyn Force,
     pub(crate) attributes: &'a Attributes<'a>,
+    pub(crate) index: &'a dyn IndexChoice,
     pub(crate) ends: [&'a [Vec3]; 2],
     pub(crate) kept: &'a mut [u32],
     pub(crate) work: &'a mut [Vec3],
@@ -54,32 +56,64 @@ impl Writing {
     pub const COLUMNS: Self = Self(write);
 }
 
-fn write(rows: Written<'_>) {
-    let Written { scene, attributes, ends: [position, velocity], kept, work, layout, end, dt, effort } = rows;
-    let values = layout.kept(kept).0;
-    let mut custom = CustomColumnsMut::new(scene.custom, values, layout.capacity(), position.len());
-    let mut scratch = layout.shares(work).scratch;
-    let ([tree, near], _) = scratch.moving();
-    let (needs, observer) = (scene.forces.needs(), &mut ());
-    let seen = attributes.lives.custom;
-    let mut field = Field {
-        scene,
-        attributes,
-        custom: seen,
-        needs,
-        tree,
-        near,
-        lists: None,
-        first: 0,
-        effort: Effort::NONE,
-        observer,
-    };
-    field.with_state(end, position, velocity, &mut |state| scene.forces.write(state, &mut custom, dt));
-    effort.found(&field.effort);
+/// The particles that forces are asked about, from row `first` on, and the means to find what they need.
+pub(crate) struct Finder<'a> {
+    pub(crate) attributes: &'a Attributes<'a>,
+    /// Columns of a user's own.
+    pub(crate) custom: CustomColumns<'a>,
+    /// The parts of the state that the forces need to find there, the index for it, and memory.
+    pub(crate) needs: Needs,
+    pub(crate) index: &'a dyn IndexChoice,
+    pub(crate) tree: &'a mut [u32],
+    pub(crate) near: &'a mut [u32],
+    /// Lists of neighbours, where there is memory for them.
+    pub(crate) lists: Option<ListMemory<'a>>,
+    pub(crate) first: usize,
+    pub(crate) effort: Effort,
 }
 
-fn build(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
-    let (needs, memory) = (field.needs, core::mem::take(&mut field.tree));
+impl Finder<'_> {
+    /// Calls `then` with the state as forces see it, trees and index made.
+    pub(crate) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
+        self.effort.evaluations += u64::from(!position.is_empty());
+        let state = self.attributes.state(self.custom, time, [position, velocity]);
+        match self.needs.mass_tree.or(self.needs.charge_tree) {
+            Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
+            _ => self.with_near(&state, then),
+        }
+    }
+
+    /// Calls `then` with neighbours, where anybody asks for them.
+    fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
+        // A few newborn look at all others: an index would be made for them alone.
+        let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
+        let looks = self.needs.reach > 0.0 && !are_few;
+        match self.needs.lists.filter(|_| looks) {
+            Some(lists) => (lists.0)(self, state, then),
+            None => {
+                self.effort.all_pairs += u64::from(looks);
+                then(state);
+            }
+        }
+    }
+}
+
+fn write(rows: Written<'_>) {
+    let Written { forces, attributes, index, ends: [position, velocity], kept, work, layout, end, dt, effort } = rows;
+    let (values, seen) = (layout.kept(kept).0, attributes.lives.custom);
+    let mut custom = CustomColumnsMut::new(seen.list(), values, layout.capacity(), position.len());
+    let mut scratch = layout.shares(work).scratch;
+    let ([tree, near], _) = scratch.moving();
+    let needs = forces.needs();
+    let finding = Effort::NONE;
+    let mut finder =
+        Finder { attributes, custom: seen, needs, index, tree, near, lists: None, first: 0, effort: finding };
+    finder.with_state(end, position, velocity, &mut |state| forces.write(state, &mut custom, dt));
+    effort.found(&finder.effort);
+}
+
+fn build(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
+    let (needs, memory) = (finder.needs, core::mem::take(&mut finder.tree));
     // No more memory than these particles call for: more would make other nodes, and so other bits.
     let words = 3 * BarnesHut::COLUMNS * state.position.len();
     let first = if needs.mass_tree.is_some() { words.min(memory.len()) } else { 0 };
@@ -88,22 +122,22 @@ fn build(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
     let mass_tree = needs.mass_tree.and_then(|_| BarnesHut::over(of_mass, state.position, state.mass));
     let of_charge = &mut of_charge[..second];
     let charge_tree = needs.charge_tree.and_then(|_| BarnesHut::over(of_charge, state.position, state.charge));
-    field.with_near(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state }, then);
-    field.tree = memory;
+    finder.with_near(&State { mass_tree: mass_tree.as_ref(), charge_tree: charge_tree.as_ref(), ..*state }, then);
+    finder.tree = memory;
 }
 
-fn look_up(field: &mut Field<'_>, state: &State<'_>, then: Then<'_>) {
-    let (index, reach) = (field.scene.index, field.needs.reach);
-    let words = (3 * index.columns() * state.position.len()).min(field.near.len());
-    let (memory, lists) = (&mut field.near[..words], field.lists.as_mut().map(ListMemory::again));
+fn look_up(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
+    let (index, reach) = (finder.index, finder.needs.reach);
+    let words = (3 * index.columns() * state.position.len()).min(finder.near.len());
+    let (memory, lists) = (&mut finder.near[..words], finder.lists.as_mut().map(ListMemory::again));
     let mut found = Found::AllPairs;
     find(Search { index, memory, lists, reach }, [state.position, state.velocity], &mut |near, how| {
         found = how;
         then(&State { near, ..*state });
     });
-    field.effort.lists += u64::from(found == Found::Listed);
-    field.effort.streamed += u64::from(found == Found::Streamed);
-    field.effort.all_pairs += u64::from(found == Found::AllPairs);
+    finder.effort.lists += u64::from(found == Found::Listed);
+    finder.effort.streamed += u64::from(found == Found::Streamed);
+    finder.effort.all_pairs += u64::from(found == Found::AllPairs);
 }
 
 /// The needs of a force: all that it has to find in the state, beyond the particles.

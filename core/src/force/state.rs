@@ -1,9 +1,10 @@
 //! The particles as whatever acts on them sees them.
 
-use super::Springs;
-use crate::custom::CustomColumns;
-use crate::index::{BarnesHut, Neighbours, between};
+use super::{Spring, Springs};
+use crate::custom::{CustomColumns, CustomList};
+use crate::index::{BarnesHut, Neighbours, Room, between};
 use crate::material::MaterialList;
+use crate::memory::{Columns, Status};
 use crate::particles::{Color, Id};
 use crate::rng::later;
 use crate::time::Time;
@@ -72,15 +73,7 @@ impl<'a> State<'a> {
         material: &[],
         materials: &(),
         custom: CustomColumns::NONE,
-        springs: Springs {
-            springs: &[],
-            code: None,
-            start: 0,
-            serial: &[],
-            row_of: &[],
-            last_spring: &[],
-            incident: &[],
-        },
+        springs: Springs { springs: &[], start: 0, serial: &[], row_of: &[], last_spring: &[], incident: &[] },
         near: Neighbours::among(&[]),
         mass_tree: None,
         charge_tree: None,
@@ -151,5 +144,43 @@ impl<'a> State<'a> {
     #[must_use]
     pub fn word(&self, row: usize, place: u32) -> Option<u32> {
         Some(later(*self.key.get(row)?, place))
+    }
+}
+
+/// The parts of a scene that show in the state of its particles.
+#[derive(Clone, Copy)]
+pub(crate) struct Backdrop<'a> {
+    pub(crate) springs: &'a [Spring],
+    pub(crate) materials: &'a dyn MaterialList,
+    pub(crate) custom: &'a dyn CustomList,
+    pub(crate) room: Option<&'a Room>,
+}
+
+impl<'a> Columns<'a> {
+    /// The living as forces and reapers see them.
+    pub(crate) fn state(self, scene: &Backdrop<'a>, status: &Status) -> State<'a> {
+        let Backdrop { springs, materials, custom, room } = *scene;
+        let (springs, custom) = (self.springs(springs, status), CustomColumns::of(custom, self, status.len));
+        let Columns { position, velocity, radius, mass, drag, charge, born, dies, slot, key, color, material, .. } =
+            self;
+        let near = Neighbours::among(&[]).in_room(room);
+        let lives = State {
+            radius,
+            mass,
+            drag,
+            charge,
+            born,
+            dies,
+            slot,
+            key,
+            color,
+            material,
+            materials,
+            springs,
+            custom,
+            near,
+            ..State::EMPTY
+        };
+        lives.moved(status.time, &position[..status.len], &velocity[..status.len])
     }
 }

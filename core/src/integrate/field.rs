@@ -1,89 +1,51 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use super::{Dynamics, Linear};
-use crate::custom::CustomColumns;
-use crate::force::{Attributes, Force, Inertia, Needs, State, Steady, Then};
-use crate::index::{BarnesHut, ListMemory};
+use crate::force::{Finder, Force, SpringCode, State, Steady};
 use crate::observe::{Observer, Phase};
-use crate::report::Effort;
-use crate::rows::each_row_with;
-use crate::scene::Scene;
+use crate::rows::{BLOCKS, each_row_with};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Inertia that look at all others for less than it takes to make an index and to look up all in it.
-const FEW: usize = 64;
-
-/// The scene's forces over the masses, from row `first` on.
+/// The scene's forces over the masses.
 pub(crate) struct Field<'a> {
-    pub(crate) scene: &'a Scene<'a>,
-    pub(crate) attributes: &'a Attributes<'a>,
-    /// Columns of a user's own.
-    pub(crate) custom: CustomColumns<'a>,
-    /// The parts of the state that the forces need to find there, and memory for them.
-    pub(crate) needs: Needs,
-    pub(crate) tree: &'a mut [u32],
-    pub(crate) near: &'a mut [u32],
-    /// Lists of neighbours, where there is memory for them.
-    pub(crate) lists: Option<ListMemory<'a>>,
-    pub(crate) first: usize,
-    pub(crate) effort: Effort,
+    pub(crate) forces: &'a dyn Force,
+    /// The functions of its springs, if there may be any.
+    pub(crate) springs: Option<SpringCode>,
+    /// All of that as one pass over the columns works it out, if it is no more.
+    pub(crate) steady: Option<Steady>,
+    /// The particles, from a row on, and what the forces need to find in their state.
+    pub(crate) finder: Finder<'a>,
     pub(crate) observer: &'a mut dyn Observer,
-}
-
-impl Field<'_> {
-    /// Calls `then` with the state as forces see it, trees and index made.
-    pub(crate) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
-        self.effort.evaluations += u64::from(!position.is_empty());
-        let state = self.attributes.state(self.custom, time, [position, velocity]);
-        match self.needs.mass_tree.or(self.needs.charge_tree) {
-            Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
-            _ => self.with_near(&state, then),
-        }
-    }
-
-    /// Calls `then` with neighbours, where anybody asks for them.
-    pub(crate) fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
-        // A few newborn look at all others: an index would be made for them alone.
-        let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
-        let looks = self.needs.reach > 0.0 && !are_few;
-        match self.needs.lists.filter(|_| looks) {
-            Some(lists) => (lists.0)(self, state, then),
-            None => {
-                self.effort.all_pairs += u64::from(looks);
-                then(state);
-            }
-        }
-    }
-}
-
-impl<'a> Field<'a> {
-    /// What one pass over the columns works out, if the forces are no more, and the columns for it.
-    fn steady(&self, len: usize) -> Option<(Steady, Inertia<'a>)> {
-        Some((self.scene.steady()?, self.attributes.inertia(self.first..len)))
-    }
 }
 
 impl Dynamics for Field<'_> {
     fn accelerations(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], acceleration: &mut [Vec3]) {
-        let rows = self.first..position.len();
-        let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[rows.clone()]);
-        if let Some((steady, columns)) = self.steady(position.len()) {
-            self.effort.evaluations += u64::from(!position.is_empty());
-            return steady.accelerate(columns, &velocity[rows], acceleration);
+        let Self { forces, springs, ref mut finder, .. } = *self;
+        let (attributes, rows) = (finder.attributes, finder.first..position.len());
+        if let Some(steady) = self.steady.filter(|_| BLOCKS) {
+            finder.effort.evaluations += u64::from(!position.is_empty());
+            return steady.accelerate(attributes.inertia(rows.clone()), &velocity[rows], acceleration);
         }
-        self.with_state(time, position, velocity, &mut |state| add_all(forces, state, rows.clone(), acceleration));
+        let inverse_mass = &attributes.inverse_mass[rows.clone()];
+        finder.with_state(time, position, velocity, &mut |state| {
+            add_all(forces, springs, state, rows.clone(), acceleration);
+        });
         divide_by_masses(acceleration, inverse_mass);
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
-        let (forces, inverse_mass) = (self.scene.forces, &self.attributes.inverse_mass[..position.len()]);
-        self.with_state(time, position, velocity, &mut |state| then(&Linear::about(state, forces, inverse_mass)));
+        let Self { forces, springs, ref mut finder, .. } = *self;
+        let inverse_mass = &finder.attributes.inverse_mass[..position.len()];
+        finder.with_state(time, position, velocity, &mut |state| {
+            let springs: &dyn Force = springs.map_or(&(), |code| (code.force)(&state.springs));
+            then(&Linear::about(state, [forces, springs], inverse_mass));
+        });
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
-        let state = self.attributes.state(self.custom, time, [position, velocity]);
+        let state = self.finder.attributes.state(self.finder.custom, time, [position, velocity]);
         self.observer.after(Phase::Advance, &state);
     }
 }
@@ -99,15 +61,15 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
 
 /// The forces on some rows, those of springs behind the others.
 #[cfg_attr(target_os = "none", inline(never))]
-fn add_all(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+fn add_all(forces: &dyn Force, springs: Option<SpringCode>, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
     total.fill(Vec3::ZERO);
     add_up(forces, state, rows.clone(), total);
-    if let Some(springs) = state.springs.force() {
-        add_up(springs, state, rows, total);
+    if let Some(code) = springs {
+        add_up((code.force)(&state.springs), state, rows, total);
     }
 }
 
-/// Inertia that are worth a thread's while.
+/// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 2048;
 

@@ -15,6 +15,7 @@
 //! With a force across the velocity (magnetic, Coriolis) both Euler methods and `Verlet` gain energy: take `Rk4` there.
 
 mod adaptive;
+mod drift;
 mod embedded;
 mod euler;
 mod field;
@@ -25,6 +26,7 @@ mod rk4;
 mod verlet;
 
 pub use adaptive::Adaptive;
+pub use drift::Drift;
 pub use embedded::Embedded;
 pub use euler::{Euler, Symplectic};
 pub(crate) use field::Field;
@@ -68,10 +70,10 @@ pub struct Linear<'a> {
 }
 
 impl<'a> Linear<'a> {
-    /// Those about a state, springs among them.
+    /// Those about a state.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub(crate) fn about(state: &'a State<'a>, forces: &'a dyn Force, inverse_mass: &'a [f32]) -> Self {
-        Self { forces: [forces, state.springs.force().unwrap_or(&())], state: *state, inverse_mass }
+    pub(crate) fn about(state: &State<'a>, forces: [&'a dyn Force; 2], inverse_mass: &'a [f32]) -> Self {
+        Self { forces, state: *state, inverse_mass }
     }
 
     /// The force on every particle \[N\].
@@ -153,15 +155,6 @@ pub trait Integrator: Sync {
 
     /// Moves everything from `time` to `time` + `step`.
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics);
-}
-
-/// The velocity by which an Euler method moves places.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drift {
-    /// That of the step's beginning: the explicit method.
-    Before,
-    /// That of its end: the symplectic one.
-    After,
 }
 
 /// The state that an integrator moves. All slices are equally long.

@@ -3,6 +3,7 @@
 mod column;
 mod layout;
 mod storage;
+mod workspace;
 
 pub use column::Column;
 pub use layout::{Demand, Kept, Words};
@@ -10,3 +11,4 @@ pub(crate) use layout::{Layout, Past, Plan, Scratch, Shares, take, take_vectors}
 #[cfg(feature = "alloc")]
 pub use storage::Heap;
 pub use storage::{Alike, Columns, Common, Inline, Size, Slices, Storage};
+pub(crate) use workspace::{Inertias, Status, TILED, Workspace};

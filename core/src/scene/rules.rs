@@ -1,10 +1,10 @@
 //! The scene as a system steps through it.
 
-use crate::collide::Meetings;
+use crate::collide::{Meetings, Obstacles};
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
-use crate::force::{Force, SpringList};
+use crate::force::{Backdrop, Force, SpringList};
 use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
 use crate::material::MaterialList;
@@ -179,6 +179,20 @@ impl Scene<'_> {
         let need = self.size_for(have.particles);
         let pairs = [[need.emitters, have.emitters], [need.springs, have.springs], [need.columns, have.columns]];
         pairs.iter().all(|[need, have]| need <= have) && need.kept <= have.kept
+    }
+}
+
+impl<'a> Scene<'a> {
+    /// What shows of it in the state of its particles.
+    pub(crate) fn backdrop(&self) -> Backdrop<'a> {
+        let Self { springs, materials, custom, index, .. } = *self;
+        Backdrop { springs: springs.list(), materials, custom, room: index.room() }
+    }
+
+    /// What the paths of its particles are held against.
+    pub(crate) fn obstacles(&self) -> Obstacles<'a> {
+        let Self { colliders, sinks, materials, max_bounces, .. } = *self;
+        Obstacles { colliders, sinks, materials, max_bounces }
     }
 }
 

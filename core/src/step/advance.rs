@@ -1,9 +1,9 @@
 //! Update: the old go through a sub-step; the newborn fly on from their births.
 
 use super::substeps::Carried;
-use super::tile::Tile;
+use crate::collide::Tile;
 use crate::constrain::{Moved, SHIFTED, Substep};
-use crate::force::Steady;
+use crate::force::{Finder, Steady};
 use crate::index::ListMemory;
 use crate::integrate::{Drift, Dynamics, Field};
 use crate::math::along;
@@ -11,6 +11,7 @@ use crate::memory::{Past, Shares};
 use crate::observe::Observer;
 use crate::reap::PendingDeath;
 use crate::report::{Effort, Report};
+use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -20,6 +21,7 @@ impl Tile<'_> {
     /// acceleration they have there at its beginning; they act on the old from the next step on.
     pub(super) fn advance(
         &mut self,
+        scene: &Scene<'_>,
         substep: Substep,
         Carried { kept, hint, listed, changes }: Carried<'_>,
         report: &mut Report,
@@ -27,41 +29,33 @@ impl Tile<'_> {
     ) {
         let [now, end] = substep.during;
         (self.now, self.dt) = (now, end - now);
-        if let Some(leap) = self.scene.leap().filter(|_| self.old == self.position.len()) {
+        if let Some(leap) = scene.leap().filter(|_| self.old == self.position.len()) {
             return self.leap(leap, report);
         }
-        let Self { scene, old, layout, ref attributes, .. } = *self;
+        let Self { old, ref layout, ref attributes, .. } = *self;
         let len = self.position.len();
         let Shares { start, marks, step: lasting, mut scratch, lists } = layout.shares(self.work);
-        let capacity = layout.capacity();
         if scene.needs_start() {
             start[0][..len].copy_from_slice(self.position);
             start[1][..len].copy_from_slice(self.velocity);
         }
-        let needs = scene.forces.needs();
         if old < len {
             let ([tree, near], memory) = scratch.moving();
-            let custom = attributes.custom(scene, kept, capacity);
-            let mut field = Field {
-                scene,
-                attributes,
-                custom,
-                needs,
-                tree,
-                near,
-                first: old,
-                lists: None,
-                effort: Effort::NONE,
-                observer,
-            };
+            let (custom, needs, index) =
+                (attributes.custom(kept, layout.capacity()), scene.forces.needs(), scene.index);
+            let (lists, effort) = (None, Effort::NONE);
+            let finder = Finder { attributes, custom, needs, index, tree, near, lists, first: old, effort };
+            let mut field = scene.field(finder, observer);
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
-            report.effort.found(&field.effort);
+            report.effort.found(&field.finder.effort);
         }
         let mut moved = Moved {
-            scene,
+            constraints: scene.constraints,
+            colliders: scene.colliders,
+            index: scene.index,
+            integrator: scene.integrator,
             attributes,
-            needs,
             position: &mut self.position[..old],
             velocity: &mut self.velocity[..old],
             start: start.map(|column| &*first(column, old)),
@@ -71,11 +65,11 @@ impl Tile<'_> {
             lists: ListMemory::new(lists, listed, changes, substep.step.seconds(), scene.index.room()),
             kept,
             scratch,
-            capacity,
+            layout,
             report,
             observer,
         };
-        moved.go(substep, hint);
+        moved.go(scene, substep, hint);
         if substep.number > 0 && !scene.sinks.is_empty() {
             self.hold_doomed();
         }

@@ -1,7 +1,6 @@
 //! Age: materials change drags and masses over the lives of particles.
 
-use super::Workspace;
-use super::workspace::Inertias;
+use crate::memory::{Inertias, Workspace};
 use crate::scene::Scene;
 use crate::time::Time;
 

@@ -1,9 +1,8 @@
 //! Create: emitters emit into the step.
 
-use super::Workspace;
 use crate::emit::Births;
 use crate::index::SpatialIndex;
-use crate::memory::Storage;
+use crate::memory::{Storage, Workspace};
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -45,8 +44,12 @@ impl Workspace<'_> {
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
-        let (old, capacity) = (self.len(), self.capacity);
+        let (old, capacity, layout, backdrop) = (self.len(), self.capacity, &self.layout(scene), &scene.backdrop());
         let workspace = Workspace { memory: self.memory.slices(), capacity, status: &mut *self.status };
-        scene.emitters.emit(now, end, &mut Births { workspace, scene, report, observer, near, old, end, number: 0 });
+        scene.emitters.emit(
+            now,
+            end,
+            &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0 },
+        );
     }
 }

@@ -8,21 +8,15 @@ mod reap;
 mod snap;
 mod substeps;
 mod tile;
-mod workspace;
 mod write;
-
-pub(crate) use tile::Tile;
-pub(crate) use workspace::{Status, Workspace};
 
 use crate::collide::Passage;
 use crate::index::Listed;
+use crate::memory::{TILED, Workspace};
 use crate::observe::{Attention, Observer, Phase};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
-
-/// True if there may be a cache that a few rows fit into: chips without an operating system are spared the code.
-const TILED: bool = !cfg!(target_os = "none");
 
 impl Workspace<'_> {
     /// The whole of a step: create, update, collide, delete.
@@ -79,9 +73,14 @@ impl Workspace<'_> {
             }
             if scene.is_swept() {
                 let met = report.hits + report.contacts;
-                let (report, observer, dt) = (&mut *report, &mut *observer, end - now);
-                let passage = Passage { workspace: &mut *self, scene, old, now, dt, report: &mut *report, observer };
-                scene.meetings.follow(passage);
+                let (rows, capacity) = (0..self.len(), self.capacity());
+                let tile = &mut self.tile(scene, [now, end - now], old, rows, capacity);
+                scene.meetings.follow(Passage {
+                    tile,
+                    index: scene.index,
+                    report: &mut *report,
+                    observer: &mut *observer,
+                });
                 if report.hits + report.contacts > met {
                     self.status.hint = Time::ZERO;
                 }
@@ -117,10 +116,10 @@ impl Workspace<'_> {
             let mut tile = self.tile(scene, span, old, rows, capacity);
             #[cfg(feature = "rayon")]
             if observer.attention() == Attention::Nothing && rayon::current_thread_index().is_some() {
-                *report += tile.pass_side_by_side(h);
+                *report += tile.pass_side_by_side(scene, h);
                 continue;
             }
-            tile.pass(h, report, observer);
+            tile.pass(scene, h, report, observer);
         }
         self.status.time = span[0] + span[1];
     }

@@ -1,67 +1,74 @@
-//! Rows taken by the newborn and given back by the dead.
+//! The system as a step finds it: what a scene begins with is put in, who has died is taken out.
 
-use super::{TILED, Workspace};
-use crate::force::SpringList;
-use crate::memory::Storage;
-use crate::particles::{Full, Id, Particle};
-use crate::reap::PendingDeath;
+use crate::force::{SpringList, State};
+use crate::memory::{Layout, Slices, Storage, Workspace};
+use crate::particles::{Full, Particle};
 use crate::report::Report;
-use crate::rng::Stream;
+use crate::scene::Scene;
 use crate::time::Time;
-use glam::Vec3;
-
-/// The number, instead of an emitter's, of those that are put in without one.
-const NO_EMITTER: u32 = u32::MAX;
 
 impl Workspace<'_> {
-    /// Puts a particle in that no emitter brings. Its random numbers are those of the number in which it was put in.
-    pub(crate) fn put(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
-        let number = self.status.given;
-        self.status.given = number.wrapping_add(1);
-        self.spawn(particle, born, Stream::new(self.status.seed, NO_EMITTER, number).name())
+    /// Where the memory that a scene's step asks for lies.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn layout(&self, scene: &Scene<'_>) -> Layout {
+        Layout::of(scene.plan(), self.capacity)
     }
 
-    /// Puts a particle into the next row; `key` is what its random numbers are drawn by as long as it lives.
-    pub(crate) fn spawn(&mut self, particle: &Particle, born: Time, key: u32) -> Result<Id, Full> {
-        if self.is_full() {
-            return Err(Full);
+    #[inline(never)]
+    pub(crate) fn start(&mut self, scene: &Scene<'_>) {
+        self.memory.emitter_states.fill(Default::default());
+        self.status.emitters = scene.emitters.count();
+        self.status.is_reaped = !scene.reapers.is_empty();
+        self.status.kept = scene.plan().kept();
+        self.memory.kept.fill(0);
+        let mut report = Report::default();
+        for particle in scene.start {
+            match self.put(particle, Time::ZERO) {
+                Ok(_) => report.initial += 1,
+                Err(Full) => report.refused = report.refused.saturating_add(1),
+            }
         }
-        let (m, capacity, status) = (&mut self.memory, self.capacity, &mut *self.status);
-        let row = status.len;
-        if m.give(row, particle).is_err() {
-            return Err(Full);
+        self.status.start = self.status.taken;
+        let layout = self.layout(scene);
+        self.give_custom(scene.custom, &layout, 0);
+        self.memory.last_spring.own().fill(0);
+        // Entries beyond the lists count in the fingerprint: an earlier scene's broken springs must not.
+        self.memory.incident.fill(0);
+        if let Some(code) = scene.springs.code() {
+            let (last, incident) = (self.memory.last_spring.own(), &mut *self.memory.incident);
+            report.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
         }
-        let slot = if status.free > 0 {
-            let slot = status.free - 1;
-            status.free = m.row_of[slot as usize];
-            slot
-        } else {
-            status.slots += 1;
-            (status.slots - 1) as u32
+        self.status.totals = report;
+    }
+
+    /// An attribute that the memory holds for all alike, where the scene changes it or sorts by it.
+    pub(crate) fn lacks(&self, scene: &Scene<'_>) -> Option<&'static str> {
+        let Slices { drag, mass, inverse_mass, last_spring, .. } = &self.memory;
+        let changes = scene.materials.code().is_some_and(|code| (code.kept)(scene.materials) > 0);
+        if changes && !(drag.is_own() && mass.is_own() && inverse_mass.is_own()) {
+            return Some("drag, mass and inverse_mass");
+        }
+        (!scene.springs.list().is_empty() && !last_spring.is_own()).then_some("last_spring")
+    }
+
+    /// The same, or one in which a particle that the scene begins with or bears differs from what all have. It is put in the first row to
+    /// find out, where nobody lives yet.
+    pub(crate) fn differs(&mut self, scene: &Scene<'_>) -> Option<&'static str> {
+        let mut differs = self.lacks(scene);
+        let has_room = self.capacity() > 0;
+        let mut ask = |particle: &Particle| {
+            if has_room && differs.is_none() {
+                differs = self.memory.give(0, particle).err();
+            }
         };
-        let serial = status.taken;
-        m.row_of[slot as usize] = row as u32;
-        m.slot[row] = slot;
-        m.serial[row] = serial;
-        m.key[row] = key;
-        m.position[row] = particle.position;
-        // A particle with a number that cannot be used is taken out at the step's end, whichever number it is. Any
-        // lifetime can be used: one that is no number or beyond all is for ever.
-        let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
-        m.velocity[row] = if particle.is_usable() { velocity } else { Vec3::NAN };
-        m.born[row] = born;
-        let dies = death(born, particle.lifetime);
-        m.dies[row] = dies;
-        if TILED {
-            status.ends_at(dies);
-            status.inertias.add(particle);
-        }
-        m.pending_death[row] = PendingDeath::Lives;
-        (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);
-        status.len += 1;
-        status.changes = status.changes.wrapping_add(1);
-        status.taken = serial.wrapping_add(1);
-        Ok(Id { slot, serial })
+        scene.start.iter().for_each(&mut ask);
+        scene.emitters.extremes(&mut ask);
+        differs
+    }
+
+    /// The particles as forces see them.
+    pub(crate) fn state<'s>(&'s self, scene: &Scene<'s>) -> State<'s> {
+        self.memory.columns().state(&scene.backdrop(), self.status)
     }
 
     /// Takes the particle in `row` out; the last row fills the gap.
@@ -70,7 +77,7 @@ impl Workspace<'_> {
         let len = self.status.len;
         let last = len - 1;
         if let Some(code) = springs.code() {
-            let table = self.memory.columns().springs(springs, self.status);
+            let table = self.memory.columns().springs(springs.list(), self.status);
             report.caps.springs += (code.held_by)(&table, row);
         }
 
@@ -87,16 +94,5 @@ impl Workspace<'_> {
         self.status.free = slot + 1;
         self.status.len = last;
         self.status.changes = self.status.changes.wrapping_add(1);
-    }
-}
-
-/// When a particle born at `born` dies of age. A lifetime counts as over within the rounding of its `f32` and of a
-/// tick, so that one of 0.1 s ends with the sixth of sixty frames a second.
-fn death(born: Time, lifetime: f32) -> Time {
-    if lifetime > 0.0 {
-        let ticks = Time::from_seconds(lifetime).ticks();
-        born + Time::from_ticks(ticks.saturating_sub((ticks >> 24) + 1))
-    } else {
-        Time::NEVER
     }
 }

@@ -1,6 +1,6 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
-use super::{TILED, Workspace};
+use crate::memory::{TILED, Workspace};
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
 use crate::reap::{CHUNK, Cause, FEW, Judged, PendingDeath, ReaperCode};

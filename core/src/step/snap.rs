@@ -1,7 +1,7 @@
 //! Springs that are stretched too far break.
 
-use super::Workspace;
 use crate::force::SpringCode;
+use crate::memory::Workspace;
 use crate::report::Report;
 use crate::scene::Scene;
 

@@ -1,9 +1,12 @@
 //! A sub-step: the method moves everything, then constraints move it to where they are met.
 
 use crate::constrain::{DONE, Moment, Moved, Substep};
+use crate::force::Finder;
 use crate::index::Listed;
 use crate::integrate::{Field, Motion, Work};
+use crate::observe::Observer;
 use crate::report::Effort;
+use crate::scene::Scene;
 use crate::time::Time;
 
 /// The memory that goes on from step to step beside the particles, in tiles nothing.
@@ -17,51 +20,57 @@ pub(super) struct Carried<'a> {
     pub(super) changes: u32,
 }
 
+impl Scene<'_> {
+    /// Its forces over the masses of what a finder knows.
+    pub(super) fn field<'f>(&'f self, finder: Finder<'f>, observer: &'f mut dyn Observer) -> Field<'f> {
+        Field { forces: self.forces, springs: self.springs.code(), steady: self.steady(), finder, observer }
+    }
+}
+
 impl Moved<'_> {
     /// Moves all through a sub-step.
-    pub(super) fn go(&mut self, substep: Substep, hint: &mut Time) {
-        let constraints = self.scene.constraints.code().filter(|_| !self.marks.is_empty());
+    pub(super) fn go(&mut self, scene: &Scene<'_>, substep: Substep, hint: &mut Time) {
+        let constraints = self.constraints.code().filter(|_| !self.marks.is_empty());
         // How far constraints keep particles off the scenery is told once a step.
         let lasts = if substep.number == 0 { 0 } else { !DONE };
         self.marks.iter_mut().for_each(|mark| *mark &= lasts);
         if let Some(code) = constraints {
             (code.0)(self, Moment::Before, substep);
         }
-        self.integrate(substep, hint);
+        self.integrate(scene, substep, hint);
         if let Some(code) = constraints {
             (code.0)(self, Moment::After, substep);
         }
     }
 
     /// Lets the method move all by the forces.
-    fn integrate(&mut self, substep: Substep, hint: &mut Time) {
+    fn integrate(&mut self, scene: &Scene<'_>, substep: Substep, hint: &mut Time) {
         let [from, to] = substep.during;
-        let len = self.position.len();
+        let (len, stride) = (self.position.len(), self.layout.capacity());
         let ([tree, near], memory) = self.scratch.moving();
-        let (scene, attributes, needs) = (self.scene, self.attributes, self.needs);
-        let custom = attributes.custom(scene, self.kept, self.capacity);
-        let mut field = Field {
-            scene,
-            attributes,
+        let custom = self.attributes.custom(self.kept, stride);
+        let finder = Finder {
+            attributes: self.attributes,
             custom,
-            needs,
+            needs: scene.forces.needs(),
+            index: self.index,
             tree,
             near,
             lists: Some(self.lists.again()),
             first: 0,
             effort: Effort::NONE,
-            observer: self.observer,
         };
+        let mut field = scene.field(finder, self.observer);
         let motion = Motion {
             position: self.position,
             velocity: self.velocity,
             start: self.start,
-            work: Work { memory, stride: self.capacity, len },
+            work: Work { memory, stride, len },
             hint,
             effort: &mut self.report.effort,
         };
-        scene.integrator.advance(motion, from, to - from, &mut field);
-        let effort = field.effort;
+        self.integrator.advance(motion, from, to - from, &mut field);
+        let effort = field.finder.effort;
         self.report.effort.found(&effort);
     }
 }

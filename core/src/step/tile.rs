@@ -1,16 +1,15 @@
 //! Rows that go through a step together: all that there are, or few enough to stay in the cache meanwhile.
 
 use super::substeps::Carried;
-use super::{Status, TILED, Workspace};
-use crate::collide::each_by_itself;
+use crate::collide::{Tile, each_by_itself};
 use crate::constrain::Substep;
 use crate::custom::CustomColumns;
 use crate::force::{Attributes, Springs, State, Steady};
 use crate::index::{Listed, Neighbours};
 use crate::integrate::Drift;
-use crate::memory::Layout;
+use crate::memory::{Layout, Status, TILED, Workspace};
 use crate::observe::Observer;
-use crate::reap::{Lifetime, Nonfinite, PendingDeath, Reaper, Verdicts};
+use crate::reap::{Lifetime, Nonfinite, Reaper, Verdicts};
 use crate::report::Report;
 use crate::rows::{BLOCKS, Extents, farthest_of_finite};
 use crate::scene::Scene;
@@ -28,29 +27,6 @@ const ONE_PASS: usize = 4 * TILE;
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 4 * TILE;
-
-/// Rows in the middle of a step.
-pub(crate) struct Tile<'a> {
-    pub(crate) scene: &'a Scene<'a>,
-    /// When the sub-step begins, and how long it takes.
-    pub(crate) now: Time,
-    pub(crate) dt: Time,
-    /// The number of the first row.
-    pub(crate) first: usize,
-    /// The number of rows that there were before the step; those behind are newborn.
-    pub(crate) old: usize,
-    pub(crate) position: &'a mut [Vec3],
-    pub(crate) velocity: &'a mut [Vec3],
-    pub(crate) pending_death: &'a mut [PendingDeath],
-    pub(crate) attributes: Attributes<'a>,
-    /// Memory to work with, and how that is laid out.
-    pub(crate) work: &'a mut [Vec3],
-    pub(crate) layout: Layout,
-    /// True if any of them may come to the end of its life in the step.
-    pub(crate) may_end: bool,
-    /// How far the step has taken them, where that is known.
-    pub(crate) reached: Option<Extents>,
-}
 
 impl Scene<'_> {
     /// Rows of a tile.
@@ -108,7 +84,7 @@ impl Workspace<'_> {
         let kept = core::mem::take(&mut self.memory.kept);
         let carried = Carried { kept: &mut *kept, hint: &mut hint, listed: &mut listed, changes };
         let span = [substep.during[0], Time::ZERO];
-        self.tile(scene, span, old, rows, capacity).advance(substep, carried, report, observer);
+        self.tile(scene, span, old, rows, capacity).advance(scene, substep, carried, report, observer);
         self.memory.kept = kept;
         self.status.listed = listed;
         self.status.hint = hint;
@@ -133,7 +109,6 @@ impl Workspace<'_> {
         let (whole, m) = (self.capacity(), &mut self.memory);
         let springs = Springs {
             springs: scene.springs.list(),
-            code: scene.springs.code(),
             start: self.status.start,
             serial: m.serial,
             row_of: m.row_of,
@@ -165,7 +140,7 @@ impl Workspace<'_> {
         let are_alike = self.status.inertias.are_alike();
         let attributes = Attributes { lives, inverse_mass, elasticity, are_alike };
         Tile {
-            scene,
+            obstacles: scene.obstacles(),
             now,
             dt,
             first: rows.start,
@@ -186,7 +161,7 @@ impl<'a> Tile<'a> {
     /// Some of the rows, with memory to work with.
     fn part<'s>(&'s mut self, rows: Range<usize>, work: &'s mut [Vec3]) -> Tile<'s> {
         Tile {
-            scene: self.scene,
+            obstacles: self.obstacles,
             now: self.now,
             dt: self.dt,
             first: self.first + rows.start,
@@ -204,8 +179,8 @@ impl<'a> Tile<'a> {
 
     /// Takes the rows through all phases, a few at a time; sub-steps take `h` \[s\]. Forces that are evaluated for one tile
     /// after the other are evaluated once.
-    pub(super) fn pass(&mut self, h: f32, report: &mut Report, observer: &mut dyn Observer) {
-        let (scene, span, len) = (self.scene, [self.now, self.dt], self.position.len());
+    pub(super) fn pass(&mut self, scene: &Scene<'_>, h: f32, report: &mut Report, observer: &mut dyn Observer) {
+        let (span, len) = ([self.now, self.dt], self.position.len());
         let most = scene.tile_rows();
         let before = report.effort.evaluations;
         let mut evaluations = 0;
@@ -215,7 +190,7 @@ impl<'a> Tile<'a> {
             report.effort.evaluations = before;
             let mut tile = self.part(first..len.min(first + most), work);
             for substep in scene.parts(span) {
-                tile.go(substep, report, observer);
+                tile.go(scene, substep, report, observer);
             }
             evaluations = report.effort.evaluations - before;
             report.caps.stalled += tile.judge(h);
@@ -225,11 +200,11 @@ impl<'a> Tile<'a> {
     }
 
     /// Takes the rows through a sub-step.
-    fn go(&mut self, substep: Substep, report: &mut Report, observer: &mut dyn Observer) {
+    fn go(&mut self, scene: &Scene<'_>, substep: Substep, report: &mut Report, observer: &mut dyn Observer) {
         let (mut hint, mut listed) = (Time::ZERO, Listed::NONE);
         let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
-        self.advance(substep, carried, report, observer);
-        if self.scene.is_swept() {
+        self.advance(scene, substep, carried, report, observer);
+        if scene.is_swept() {
             each_by_itself(self, report, observer);
         }
     }
@@ -237,12 +212,12 @@ impl<'a> Tile<'a> {
     /// The first so many rows, and the others, each with its memory.
     #[cfg(feature = "rayon")]
     fn split_at(self, rows: usize, work: [&'a mut [Vec3]; 2]) -> [Self; 2] {
-        let Self { scene, now, dt, first, old, attributes, layout, may_end, .. } = self;
+        let Self { obstacles, now, dt, first, old, attributes, layout, may_end, .. } = self;
         let len = self.position.len();
         let (position, velocity) = (self.position.split_at_mut(rows), self.velocity.split_at_mut(rows));
         let (pending_death, [front, back]) = (self.pending_death.split_at_mut(rows), work);
         let part = |position, velocity, pending_death, work, rows: Range<usize>| Self {
-            scene,
+            obstacles,
             now,
             dt,
             first: first + rows.start,
@@ -264,17 +239,18 @@ impl<'a> Tile<'a> {
 
     /// The same on all threads of the pool that this one belongs to, each with its share of the rows and of the memory.
     #[cfg(feature = "rayon")]
-    pub(super) fn pass_side_by_side(mut self, h: f32) -> Report {
+    pub(super) fn pass_side_by_side(mut self, scene: &Scene<'_>, h: f32) -> Report {
         let len = self.position.len();
         if len < 2 * SHARE {
             let mut report = Report::default();
-            self.pass(h, &mut report, &mut ());
+            self.pass(scene, h, &mut report, &mut ());
             return report;
         }
         let rows = (len / 2).next_multiple_of(TILE);
         let work = Layout::divided(core::mem::take(&mut self.work), rows, len);
         let [front, back] = self.split_at(rows, work.into());
-        let (mut report, others) = rayon::join(|| front.pass_side_by_side(h), || back.pass_side_by_side(h));
+        let (mut report, others) =
+            rayon::join(|| front.pass_side_by_side(scene, h), || back.pass_side_by_side(scene, h));
         let evaluations = report.effort.evaluations.max(others.effort.evaluations);
         report += others;
         report.effort.evaluations = evaluations;
@@ -283,11 +259,6 @@ impl<'a> Tile<'a> {
 }
 
 impl Tile<'_> {
-    /// When the sub-step ends.
-    pub(crate) fn end(&self) -> Time {
-        self.now + self.dt
-    }
-
     /// Finds out who has come to the end of its life, and who is nowhere any more. Returns how many stall in parts of a step
     /// of `h` \[s\].
     #[inline(never)]

@@ -1,8 +1,9 @@
 //! Columns of a user's own, changed once in each step: by forces, then by whoever looks on.
 
-use super::{Tile, Workspace};
+use crate::collide::Tile;
 use crate::custom::CustomColumnsMut;
 use crate::force::{Writing, Written};
+use crate::memory::Workspace;
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -17,7 +18,8 @@ impl Workspace<'_> {
         let Tile { attributes, position, velocity, work, layout, .. } =
             self.tile(scene, [now, dt], len, 0..len, capacity);
         let (ends, end, dt, effort) = ([&*position, &*velocity], now + dt, dt.seconds(), &mut report.effort);
-        (code.0)(Written { scene, attributes: &attributes, ends, kept: &mut *kept, work, layout, end, dt, effort });
+        let (forces, index, attributes) = (scene.forces, scene.index, &attributes);
+        (code.0)(Written { forces, attributes, index, ends, kept: &mut *kept, work, layout, end, dt, effort });
         self.memory.kept = kept;
     }
 

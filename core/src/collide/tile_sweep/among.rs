@@ -3,11 +3,11 @@
 use super::{EVERYWHERE, TileSweep, Waiting, words};
 use crate::collide::near::BLOCK;
 use crate::collide::sweep::surroundings;
+use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
 use crate::lanes::{Eight, Kernel, LANES, Vectors, max as larger, run, widest};
 use crate::math::{largest, max};
 use crate::shape::{Aabb, Face, Facing, Many};
-use crate::step::Tile;
 use glam::Vec3;
 
 /// Boxes around rows wherever they may get in the step, none of which is the tile's last.
@@ -104,7 +104,7 @@ impl TileSweep<'_, '_> {
             let near = if gains { all } else { self.are_near(first, all, &EVERYWHERE, many, size) };
             for row in rows {
                 if near >> (row - first) & 1 == 0 || !self.go_between(row, many, size) {
-                    self.follow_past(row, self.tile.scene.colliders, Some(known));
+                    self.follow_past(row, self.tile.obstacles.colliders, Some(known));
                 }
             }
         }

@@ -3,12 +3,12 @@
 use super::{SHORT_WAY, TileSweep};
 use crate::collide::path::Path;
 use crate::collide::sweep::{Sweep, facing};
+use crate::collide::tile::Tile;
 use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
 use crate::observe::Observer;
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::shape::{Collider, Facing};
-use crate::step::Tile;
 
 impl TileSweep<'_, '_> {
     /// A row's path through the sub-step.
@@ -31,7 +31,7 @@ impl TileSweep<'_, '_> {
     /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
     pub(super) fn follow(&mut self, row: usize) {
         let known = Some(self.facing).filter(|known| *known != Facing::Several);
-        self.follow_past(row, self.tile.scene.colliders, known);
+        self.follow_past(row, self.tile.obstacles.colliders, known);
     }
 
     /// The same past these, of which so much is known.
@@ -46,7 +46,7 @@ impl TileSweep<'_, '_> {
             Some(observer) => Some(&mut **observer),
             None => None,
         };
-        let Tile { scene, old, now, dt, attributes: ref m, .. } = **tile;
+        let Tile { ref obstacles, old, now, dt, attributes: ref m, .. } = **tile;
         let lives = &m.lives;
         // Constraints know nothing of the newborn.
         let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
@@ -58,7 +58,7 @@ impl TileSweep<'_, '_> {
         if !path.is_finite() {
             return;
         }
-        let sinks = (!scene.sinks.is_empty()).then_some(scene.sinks);
+        let sinks = (!obstacles.sinks.is_empty()).then_some(obstacles.sinks);
         if mark & CARRIED != 0 && sinks.is_none() {
             return;
         }
@@ -66,7 +66,7 @@ impl TileSweep<'_, '_> {
             if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
         let before = report.hits + report.caps.bounces;
         let sweep = Sweep {
-            scene,
+            obstacles,
             walls,
             sinks,
             id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },

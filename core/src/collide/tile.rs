@@ -1,0 +1,50 @@
+//! Rows that go through a step together, and what their paths are held against.
+
+use crate::force::Attributes;
+use crate::material::MaterialList;
+use crate::memory::Layout;
+use crate::reap::PendingDeath;
+use crate::rows::Extents;
+use crate::shape::Collider;
+use crate::time::Time;
+use glam::Vec3;
+
+/// The parts of a scene that paths are held against.
+#[derive(Clone, Copy)]
+pub(crate) struct Obstacles<'a> {
+    pub(crate) colliders: &'a dyn Collider,
+    pub(crate) sinks: &'a dyn Collider,
+    pub(crate) materials: &'a dyn MaterialList,
+    /// How often a particle may bounce in one sub-step.
+    pub(crate) max_bounces: u32,
+}
+
+/// Rows in the middle of a step.
+pub(crate) struct Tile<'a> {
+    pub(crate) obstacles: Obstacles<'a>,
+    /// When the sub-step begins, and how long it takes.
+    pub(crate) now: Time,
+    pub(crate) dt: Time,
+    /// The number of the first row.
+    pub(crate) first: usize,
+    /// The number of rows that there were before the step; those behind are newborn.
+    pub(crate) old: usize,
+    pub(crate) position: &'a mut [Vec3],
+    pub(crate) velocity: &'a mut [Vec3],
+    pub(crate) pending_death: &'a mut [PendingDeath],
+    pub(crate) attributes: Attributes<'a>,
+    /// Memory to work with, and how that is laid out.
+    pub(crate) work: &'a mut [Vec3],
+    pub(crate) layout: Layout,
+    /// True if any of them may come to the end of its life in the step.
+    pub(crate) may_end: bool,
+    /// How far the step has taken them, where that is known.
+    pub(crate) reached: Option<Extents>,
+}
+
+impl Tile<'_> {
+    /// When the sub-step ends.
+    pub(crate) fn end(&self) -> Time {
+        self.now + self.dt
+    }
+}
