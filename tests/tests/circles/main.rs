@@ -28,7 +28,6 @@ const KNOWN: &[(&str, usize)] = &[
     ("lanes.rs", 5),
     ("motion.rs", 2),
     ("rays/bsp.rs", 11),
-    ("rays/nearest.rs", 22),
     ("scene/boxes.rs", 12),
 ];
 
