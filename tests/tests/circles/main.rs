@@ -23,7 +23,6 @@ const KNOWN: &[(&str, usize)] = &[
     ("constrain/strand/mod.rs", 2),
     ("constrain/walls/mod.rs", 2),
     ("draw.rs", 3),
-    ("force/curl.rs", 2),
     ("index/mod.rs", 2),
     ("lanes.rs", 5),
     ("motion.rs", 2),
