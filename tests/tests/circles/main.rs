@@ -19,7 +19,6 @@ const KNOWN: &[(&str, usize)] = &[
     ("constrain/sheet_contacts/lists.rs", 12),
     ("constrain/shell/cycle.rs", 10),
     ("constrain/shell/strips.rs", 2),
-    ("constrain/strain_limits/cell.rs", 2),
     ("constrain/walls/mod.rs", 2),
     ("draw.rs", 3),
     ("index/mod.rs", 2),
