@@ -16,7 +16,6 @@ use std::path::Path;
 const KNOWN: &[(&str, usize)] = &[
     ("cloth.rs", 55),
     ("constrain/rigid/balls.rs", 24),
-    ("constrain/sheet_contacts/lists.rs", 12),
     ("constrain/shell/cycle.rs", 10),
     ("constrain/shell/strips.rs", 2),
     ("constrain/walls/mod.rs", 2),
