@@ -23,7 +23,6 @@ const KNOWN: &[(&str, usize)] = &[
     ("index/mod.rs", 2),
     ("lanes.rs", 5),
     ("motion.rs", 2),
-    ("rays/bsp.rs", 11),
     ("scene/boxes.rs", 12),
 ];
 
