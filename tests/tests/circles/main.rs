@@ -16,8 +16,6 @@ use std::path::Path;
 const KNOWN: &[(&str, usize)] = &[
     ("cloth.rs", 55),
     ("constrain/rigid/balls.rs", 24),
-    ("constrain/shell/cycle.rs", 10),
-    ("constrain/shell/strips.rs", 2),
     ("constrain/walls/mod.rs", 2),
     ("draw.rs", 3),
     ("index/mod.rs", 2),
