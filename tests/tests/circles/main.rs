@@ -21,7 +21,6 @@ const KNOWN: &[(&str, usize)] = &[
     ("index/mod.rs", 2),
     ("lanes.rs", 5),
     ("motion.rs", 2),
-    ("scene/boxes.rs", 12),
 ];
 
 /// Files each of which imports, directly or through others of them, all others.
