@@ -149,6 +149,16 @@ fn a_parent_that_uses_what_its_children_define_imports_them() {
 }
 
 #[test]
+fn a_name_that_a_function_binds_is_no_import() {
+    let child = ("m/child.rs", "use super::Of; pub fn child() {}");
+    let of = |parent: &str| told(&[("lib.rs", "mod m;"), ("m/mod.rs", parent), child]);
+    for bound in ["fn a(child: u32) { child; }", "impl Of { fn a() { let (b, child) = (1, 2); |c| c + child; } }"] {
+        assert_eq!(of(&format!("mod child; pub use child::child; pub struct Of; {bound}")), "", "{bound}");
+    }
+    assert_ne!(of("mod child; pub use child::child; pub struct Of; fn a(b: u32) { child(); }"), "");
+}
+
+#[test]
 fn paths_in_code_and_in_macros_are_imports() {
     let files = |body| [("lib.rs", "mod a; mod b;"), ("a.rs", body), ("b.rs", "use crate::a::a; pub struct B;")];
     for body in [

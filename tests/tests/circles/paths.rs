@@ -3,7 +3,9 @@
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
-use syn::{Attribute, ImplItem, Item, ItemUse, Macro, UseTree, Visibility};
+use syn::{
+    Attribute, Block, ImplItem, ImplItemFn, Item, ItemFn, ItemUse, Macro, PatIdent, Signature, UseTree, Visibility,
+};
 
 /// What a file says.
 #[derive(Default)]
@@ -18,6 +20,19 @@ pub(super) struct Module {
     pub(super) uses: Vec<(String, Vec<String>)>,
     /// Paths that its code goes, its imports' included.
     pub(super) paths: Vec<Mention>,
+    /// Names that the functions around bind themselves: what they name is not what the file imports by that name.
+    bound: Vec<BTreeSet<String>>,
+}
+
+/// The names that patterns bind.
+#[derive(Default)]
+struct Bound(BTreeSet<String>);
+
+impl<'a> Visit<'a> for Bound {
+    fn visit_pat_ident(&mut self, pattern: &'a PatIdent) {
+        self.0.insert(pattern.ident.to_string());
+        visit::visit_pat_ident(self, pattern);
+    }
 }
 
 /// A path in code.
@@ -113,6 +128,16 @@ impl Module {
         self.paths.push(Mention { path, import: false, export: false });
     }
 
+    /// Visits a function, whose own names count for nothing.
+    fn function(&mut self, head: &Signature, body: &Block, visit: impl FnOnce(&mut Self)) {
+        let mut bound = Bound::default();
+        bound.visit_signature(head);
+        bound.visit_block(body);
+        self.bound.push(bound.0);
+        visit(self);
+        self.bound.pop();
+    }
+
     /// Takes what a `use` line says after the path `before`.
     fn import(&mut self, before: &[String], tree: &UseTree, export: bool) {
         let with = |last: &syn::Ident| [before, &[last.to_string()]].concat();
@@ -173,6 +198,14 @@ impl<'a> Visit<'a> for Module {
         }
     }
 
+    fn visit_item_fn(&mut self, item: &'a ItemFn) {
+        self.function(&item.sig, &item.block, |this| visit::visit_item_fn(this, item));
+    }
+
+    fn visit_impl_item_fn(&mut self, item: &'a ImplItemFn) {
+        self.function(&item.sig, &item.block, |this| visit::visit_impl_item_fn(this, item));
+    }
+
     fn visit_item_use(&mut self, item: &'a ItemUse) {
         if item.leading_colon.is_none() {
             self.import(&[], &item.tree, !matches!(item.vis, Visibility::Inherited));
@@ -180,7 +213,8 @@ impl<'a> Visit<'a> for Module {
     }
 
     fn visit_path(&mut self, path: &'a syn::Path) {
-        if path.leading_colon.is_none() {
+        let is_bound = |name: &syn::Ident| self.bound.iter().any(|names| names.contains(&name.to_string()));
+        if path.leading_colon.is_none() && !path.get_ident().is_some_and(is_bound) {
             self.mention(path.segments.iter().map(|s| s.ident.to_string()).collect());
         }
         visit::visit_path(self, path);
