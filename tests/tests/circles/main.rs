@@ -138,14 +138,21 @@ fn a_parent_that_uses_what_its_children_define_imports_them() {
     assert_eq!(told(&files("mod child; pub use child::Child; pub struct Of;")), "");
     let circle = "a circle of 2:\n  m/child.rs -> m/mod.rs\n  m/mod.rs -> m/child.rs\n";
     assert_eq!(told(&files("mod child; use child::Child; pub struct Of;")), circle);
-    assert_eq!(told(&files("mod child; pub use child::Child; pub struct Of(Child);")), circle);
+    for of in ["struct Of(Child);", "struct Of; fn of(a: Of) { match a { Child => {}, _ => {} } }"] {
+        let parent = format!("mod child; pub use child::Child; pub {of}");
+        assert_eq!(told(&[("lib.rs", "mod m;"), ("m/mod.rs", &parent), child]), circle, "{of}");
+    }
 }
 
 #[test]
 fn a_name_that_a_function_binds_is_no_import() {
     let child = ("m/child.rs", "use super::Of; pub fn child() {}");
     let of = |parent: &str| told(&[("lib.rs", "mod m;"), ("m/mod.rs", parent), child]);
-    for bound in ["fn a(child: u32) { child; }", "impl Of { fn a() { let (b, child) = (1, 2); |c| c + child; } }"] {
+    for bound in [
+        "fn a(child: u32) { child; }",
+        "impl Of { fn a() { let (b, child) = (1, 2); |c| c + child; } }",
+        "trait A { fn a(b: u32) { if let child @ 1 = b { child; } } }",
+    ] {
         assert_eq!(of(&format!("mod child; pub use child::child; pub struct Of; {bound}")), "", "{bound}");
     }
     assert_ne!(of("mod child; pub use child::child; pub struct Of; fn a(b: u32) { child(); }"), "");

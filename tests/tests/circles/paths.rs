@@ -4,7 +4,8 @@ use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
 use syn::{
-    Attribute, Block, ImplItem, ImplItemFn, Item, ItemFn, ItemUse, Macro, PatIdent, Signature, UseTree, Visibility,
+    Attribute, Block, ImplItem, ImplItemFn, Item, ItemFn, ItemUse, Macro, PatIdent, Signature, TraitItemFn, UseTree,
+    Visibility,
 };
 
 /// What a file says.
@@ -24,13 +25,20 @@ pub(super) struct Module {
     bound: Vec<BTreeSet<String>>,
 }
 
+/// Whether a name in a pattern is that of a constant, and not bound there: only case tells.
+fn is_constant(pattern: &PatIdent) -> bool {
+    pattern.ident.to_string().starts_with(char::is_uppercase)
+}
+
 /// The names that patterns bind.
 #[derive(Default)]
 struct Bound(BTreeSet<String>);
 
 impl<'a> Visit<'a> for Bound {
     fn visit_pat_ident(&mut self, pattern: &'a PatIdent) {
-        self.0.insert(pattern.ident.to_string());
+        if !is_constant(pattern) {
+            self.0.insert(pattern.ident.to_string());
+        }
         visit::visit_pat_ident(self, pattern);
     }
 }
@@ -129,10 +137,10 @@ impl Module {
     }
 
     /// Visits a function, whose own names count for nothing.
-    fn function(&mut self, head: &Signature, body: &Block, visit: impl FnOnce(&mut Self)) {
+    fn function(&mut self, head: &Signature, body: Option<&Block>, visit: impl FnOnce(&mut Self)) {
         let mut bound = Bound::default();
         bound.visit_signature(head);
-        bound.visit_block(body);
+        body.into_iter().for_each(|body| bound.visit_block(body));
         self.bound.push(bound.0);
         visit(self);
         self.bound.pop();
@@ -199,11 +207,15 @@ impl<'a> Visit<'a> for Module {
     }
 
     fn visit_item_fn(&mut self, item: &'a ItemFn) {
-        self.function(&item.sig, &item.block, |this| visit::visit_item_fn(this, item));
+        self.function(&item.sig, Some(&item.block), |this| visit::visit_item_fn(this, item));
     }
 
     fn visit_impl_item_fn(&mut self, item: &'a ImplItemFn) {
-        self.function(&item.sig, &item.block, |this| visit::visit_impl_item_fn(this, item));
+        self.function(&item.sig, Some(&item.block), |this| visit::visit_impl_item_fn(this, item));
+    }
+
+    fn visit_trait_item_fn(&mut self, item: &'a TraitItemFn) {
+        self.function(&item.sig, item.default.as_ref(), |this| visit::visit_trait_item_fn(this, item));
     }
 
     fn visit_item_use(&mut self, item: &'a ItemUse) {
@@ -218,6 +230,13 @@ impl<'a> Visit<'a> for Module {
             self.mention(path.segments.iter().map(|s| s.ident.to_string()).collect());
         }
         visit::visit_path(self, path);
+    }
+
+    fn visit_pat_ident(&mut self, pattern: &'a PatIdent) {
+        if is_constant(pattern) {
+            self.mention(vec![pattern.ident.to_string()]);
+        }
+        visit::visit_pat_ident(self, pattern);
     }
 
     fn visit_macro(&mut self, code: &'a Macro) {
