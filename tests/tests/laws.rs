@@ -8,6 +8,8 @@ mod barnes_hut;
 mod births;
 mod blows;
 mod carried;
+#[path = "circles/main.rs"]
+mod circles;
 mod clusters;
 mod collisions;
 mod constraints;

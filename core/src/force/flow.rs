@@ -1,6 +1,5 @@
 //! How air moves: a velocity at every place and instant.
 
-use super::Curl;
 use crate::math::{sin_cos_turns, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -88,41 +87,6 @@ impl Flow for Vortex {
         let round = unit(self.axis).cross(place - self.center);
         let square = self.core * self.core + round.dot(round);
         if square > 0.0 { round * (2.0 * self.speed * self.core / square) } else { Vec3::ZERO }
-    }
-}
-
-/// A flow as files name it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum FlowKind {
-    /// The same everywhere and always.
-    Uniform(Uniform),
-    /// The same everywhere, and now stronger, now weaker.
-    Gusts(Gusts),
-    /// A whirl about an axis.
-    Vortex(Vortex),
-    /// Turbulence that neither gathers nor spreads.
-    Curl(Curl),
-}
-
-impl FlowKind {
-    fn get(&self) -> &dyn Flow {
-        match self {
-            Self::Uniform(flow) => flow,
-            Self::Gusts(flow) => flow,
-            Self::Vortex(flow) => flow,
-            Self::Curl(flow) => flow,
-        }
-    }
-}
-
-impl Flow for FlowKind {
-    fn velocity(&self, place: Vec3, time: Time) -> Vec3 {
-        self.get().velocity(place, time)
-    }
-    fn everywhere(&self, time: Time) -> Option<Vec3> {
-        self.get().everywhere(time)
     }
 }
 

@@ -1,11 +1,11 @@
 //! No structure at all: every query looks at every point. What the others are held against.
 
-use super::domain::{Domain, Image};
+use super::domain::{Domain, Image, constructors};
 use super::partition::Partition;
 use super::region::{Region, Run};
-use super::search::Search;
+use super::search::{Search, answers};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
 use core::ops::Range;
 use glam::Vec3;
 

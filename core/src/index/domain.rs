@@ -120,3 +120,28 @@ pub(super) fn around(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
         [math::low(point, low), math::high(point, high)]
     })
 }
+
+/// Makes an index in open space or in a periodic box, by its `in_domain`.
+macro_rules! constructors {
+    () => {
+        /// An empty one in so much memory, see [`Structure::words`](super::Structure::words).
+        #[must_use]
+        pub fn new(memory: &'m mut [u32]) -> Self {
+            Self::in_domain(memory, Domain::OPEN)
+        }
+
+        /// An empty one in a box from `low` on with these sides \[m\], whose opposite faces are one. Sides that are zero
+        /// are open; points outside are wrapped in.
+        #[must_use]
+        pub fn periodic(memory: &'m mut [u32], low: Vec3, sides: Vec3) -> Self {
+            Self::in_domain(memory, Domain::of(crate::index::Room::new(low, sides)))
+        }
+
+        /// An empty one in a room, or in all of space.
+        #[must_use]
+        pub fn in_room(memory: &'m mut [u32], room: Option<&crate::index::Room>) -> Self {
+            Self::in_domain(memory, room.map_or(Domain::OPEN, |room| Domain::of(*room)))
+        }
+    };
+}
+pub(super) use constructors;

@@ -1,12 +1,12 @@
 //! Cells of one size in a bounded box.
 
 use super::cells::{self, sort_by_cell};
-use super::domain::{Domain, Image};
+use super::domain::{Domain, Image, constructors};
 use super::partition::Partition;
 use super::region::{Region, Run, widened};
-use super::search::Search;
+use super::search::{Search, answers};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;

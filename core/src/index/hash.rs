@@ -1,13 +1,13 @@
 //! Cells of one size in all of space, found by hashing.
 
 use super::cells::{self, sort_by_cell};
-use super::domain::{Domain, Image};
+use super::domain::{Domain, Image, constructors};
 use super::grid::Layout;
 use super::partition::Partition;
 use super::region::{Region, Run, widened};
-use super::search::Search;
+use super::search::{Search, answers};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
 use crate::math::{floor, largest, max, min};
 use core::ops::Range;
 use glam::Vec3;

@@ -331,3 +331,41 @@ impl<const BOTH: bool> Sweep for Lists<'_, BOTH> {
 fn without(run: Range<usize>, slots: &Range<usize>) -> [Range<usize>; 2] {
     [run.start..run.end.min(slots.start).max(run.start), run.start.max(slots.end).min(run.end)..run.end]
 }
+
+/// Answers a trait's queries by a partition.
+macro_rules! answers {
+    () => {
+        fn order(&self) -> &[u32] {
+            self.sorted().order()
+        }
+        fn parts(&self, visit: &mut dyn FnMut(core::ops::Range<usize>)) {
+            self.groups(&mut |slots: core::ops::Range<usize>, _| visit(slots));
+        }
+        fn count(&self, center: Vec3, radius: f32) -> Cost {
+            Search(self).count(center, radius)
+        }
+        fn within(&self, center: Vec3, radius: f32, visit: &mut dyn FnMut(&[u32])) -> Cost {
+            Search(self).within(center, radius, visit)
+        }
+        fn nearest(&self, center: Vec3, radius: f32, found: &mut [Neighbour]) -> Cost {
+            Search(self).nearest(center, radius, found)
+        }
+        fn counts(&self, radius: f32, counts: &mut [u32]) -> Cost {
+            Search(self).counts(radius, counts)
+        }
+        fn neighbours(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+            Search(self).neighbours(radius, visit)
+        }
+        fn in_order(&self, places: core::ops::Range<usize>, radius: f32, visit: &mut dyn FnMut(usize, &[u32])) -> bool {
+            // A chip has no room for lists, nor on its stack for what it takes to make them.
+            !cfg!(target_os = "none") && Search(self).in_order(places, radius, visit)
+        }
+        fn pairs(&self, radius: f32, visit: &mut dyn FnMut(u32, &[u32])) -> Cost {
+            Search(self).pairs(radius, visit)
+        }
+        fn all_nearest(&self, radius: f32, found: &mut [Neighbour], visit: &mut dyn FnMut(u32, &[Neighbour])) -> Cost {
+            Search(self).all_nearest(radius, found, visit)
+        }
+    };
+}
+pub(super) use answers;

@@ -4,15 +4,15 @@
 //! Nodes come in the order of a walk that goes down first, and each knows where to go on if its points are of no
 //! interest, so that a walk needs neither pointers nor a stack. The trees differ in how they split, and only there.
 
-use super::domain::{Domain, Image};
+use super::domain::{Domain, Image, constructors};
 use super::frames::Frames;
 use super::nearest::Nearest;
 use super::partition::Partition;
 use super::region::{Region, Run};
-use super::search::Search;
+use super::search::{Search, answers};
 use super::sorted::{LANES, Probe, Sorted};
 use super::split::{CHILDREN, Split, bounds};
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall, answers, constructors};
+use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
 use crate::math;
 use core::ops::{ControlFlow, Range};
 use glam::Vec3;

@@ -106,30 +106,6 @@ pub(crate) trait Kernel {
     fn run<F: Eight>(self, like: F) -> Self::Output;
 }
 
-/// Runs a kernel in the widest registers that it is compiled for.
-#[inline(always)]
-pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(all(feature = "std", target_arch = "x86_64"))]
-    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
-        return fearless_simd::Simd::vectorize(
-            avx2,
-            #[inline(always)]
-            || kernel.run(super::avx2::Wide::zero(avx2)),
-        );
-    }
-    kernel.run(wide::f32x8::ZERO)
-}
-
-/// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
-#[inline(always)]
-pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
-    #[cfg(all(feature = "std", target_arch = "x86_64"))]
-    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
-        return fearless_simd::Simd::vectorize(avx2, f);
-    }
-    f()
-}
-
 /// The larger of two numbers, as [`crate::math::max`] has it.
 #[inline(always)]
 pub(crate) fn max<F: Eight>(a: F, b: F) -> F {
@@ -222,7 +198,7 @@ impl Eight for wide::f32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::One;
+    use crate::lanes::{One, run};
 
     /// Everything that can be done with two times eight numbers.
     #[derive(Clone, Copy)]

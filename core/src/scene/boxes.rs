@@ -1,13 +1,10 @@
 //! Rigid boxes and other convex bodies in scene files: one, or a block of many that differ by chance.
 
-use super::numbers::{Checked, above_zero, finite, zero_or_more};
-use super::{SceneError, SceneFile};
 use crate::constrain::{Hull, HullBuf, HullError, RigidBox};
 use crate::math::{high, length, low, sin_cos, unit};
 use crate::particles::{Color, Particle};
 use crate::rng::Stream;
 use crate::shape::MeshBuf;
-use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
@@ -148,12 +145,9 @@ const fn one() -> [u32; 3] {
     [1; 3]
 }
 
-/// As many boxes as a scene may have: they take about 6 kB each.
-const MOST: u64 = 1 << 16;
-
 impl Boxes {
     /// How many there are.
-    fn number(&self) -> u64 {
+    pub(super) fn number(&self) -> u64 {
         self.count.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n)))
     }
 
@@ -223,40 +217,5 @@ impl Boxes {
             ..Particle::REST
         };
         (body, whole, self.spin + vary(3, chance.spin))
-    }
-}
-
-impl SceneFile {
-    pub(super) fn check_boxes(&self) -> Checked {
-        let mut count = 0u64;
-        for (i, boxes) in self.boxes.iter().enumerate() {
-            let at = |field: &str| format!("boxes[{i}].{field}");
-            for side in boxes.sides.to_array() {
-                above_zero(&at("sides"), side)?;
-            }
-            above_zero(&at("mass"), boxes.mass)?;
-            let spacing = boxes.spacing.unwrap_or_default();
-            let vectors = [boxes.position, spacing, boxes.turn, boxes.velocity, boxes.spin, boxes.load];
-            let names = ["position", "spacing", "turn", "velocity", "spin", "load"];
-            for (name, vector) in names.into_iter().zip(vectors) {
-                finite(&at(name), &vector.to_array())?;
-            }
-            if boxes.load.to_array().into_iter().any(|load| load.abs() >= 1.0) {
-                return Err(SceneError::value(at("load"), "has to be within -1 and 1, a share of the mass of a side"));
-            }
-            let Scatter { position, turn, velocity, spin, seed: _ } = boxes.scatter.unwrap_or_default();
-            for (name, number) in [("position", position), ("turn", turn), ("velocity", velocity), ("spin", spin)] {
-                zero_or_more(&at(&format!("scatter.{name}")), number)?;
-            }
-            finite(&at("drag"), &[boxes.drag])?;
-            finite(&at("elasticity"), &[boxes.elasticity])?;
-            count = count.saturating_add(boxes.number());
-            if count > MOST {
-                let message = format!("makes {} boxes; a scene may have {MOST}", boxes.number());
-                return Err(SceneError::value(at("count"), message));
-            }
-            self.check_material(&format!("boxes[{i}]"), boxes.material)?;
-        }
-        Ok(())
     }
 }

@@ -1,14 +1,16 @@
 //! Checks of a declared scene: every number is finite, every reference is to something that is there.
 
 use super::check_force::check_force;
+use super::check_shape::check_shape;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
-use super::{Boxes, Fog, Group, Light, Material, SceneError, SceneFile, Sky};
+use super::references::{MAX_GROUPS, MAX_MATERIALS};
+use super::{Boxes, Fog, Light, Material, SceneError, SceneFile, Sky};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::force::Spring;
 use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
 use crate::reap::ReaperKind;
-use crate::shape::{Affine, Shape};
+use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -16,12 +18,6 @@ use glam::Vec3;
 
 /// The largest number of births a second: rates are kept as fixed-point numbers.
 const MAX_RATE: f32 = 4e9;
-
-/// The largest number of materials: particles keep their number plus one in 16 bits.
-pub(super) const MAX_MATERIALS: usize = u16::MAX as usize;
-
-/// How deep groups may stand in each other.
-pub(super) const MAX_GROUPS: usize = 1024;
 
 impl SceneFile {
     /// Checks every value.
@@ -107,24 +103,6 @@ impl SceneFile {
         Ok(())
     }
 
-    /// The groups around a piece of scenery, the outermost first.
-    pub(super) fn chain(&self, group: Option<u32>) -> Vec<u32> {
-        let mut chain = Vec::new();
-        let mut next = group;
-        while let Some(index) = next {
-            chain.push(index);
-            // Parents come before their children, so this ends.
-            next = self.groups.get(index as usize).and_then(|g| g.parent).filter(|&parent| parent < index);
-        }
-        chain.reverse();
-        chain
-    }
-
-    /// The material that a group gives, or the nearest around it that has one.
-    pub(super) fn material_of(&self, group: Option<u32>) -> Option<u16> {
-        self.chain(group).iter().rev().find_map(|&index| self.groups.get(index as usize)?.material)
-    }
-
     fn check_run(&self) -> Checked {
         let run = &self.run;
         let longest = f64::from(1u32 << 31);
@@ -175,17 +153,6 @@ impl SceneFile {
             }
         }
         Ok(())
-    }
-
-    pub(super) fn check_material(&self, at: &str, material: Option<u16>) -> Checked {
-        match material {
-            Some(number) if usize::from(number) >= self.materials.len() => {
-                let count = self.materials.len();
-                let message = format!("{number} is out of range; there are {count}, from 0");
-                Err(SceneError::value(format!("{at}.material"), message))
-            }
-            _ => Ok(()),
-        }
     }
 
     fn check_emitter(&self, at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -> Checked {
@@ -254,17 +221,6 @@ impl SceneFile {
         Ok(())
     }
 
-    fn check_group(&self, at: &str, group: Option<u32>) -> Checked {
-        let count = self.groups.len();
-        match group {
-            Some(group) if group as usize >= count => {
-                let message = format!("{group} is out of range; there are {count}, from 0");
-                Err(SceneError::value(format!("{at}.group"), message))
-            }
-            _ => Ok(()),
-        }
-    }
-
     fn check_goals(&self) -> Checked {
         for (i, goal) in self.goals.iter().enumerate() {
             let at = format!("goals[{i}]");
@@ -311,39 +267,6 @@ impl SceneFile {
         }
         finite("ambient", &self.ambient)?;
         finite("background", &self.background)
-    }
-}
-
-impl Group {
-    /// Its matrix as a map of space.
-    ///
-    /// # Errors
-    /// If the last row is not 0 0 0 1, or the map cannot be undone.
-    pub fn affine(&self) -> Result<Affine, &'static str> {
-        super::inline::affine(self.matrix)
-    }
-}
-
-pub(super) fn check_shape(at: &str, shape: &Shape<String>) -> Checked {
-    let rows = |rows: &[Vec3]| rows.iter().try_for_each(|row| finite(at, &row.to_array()));
-    let sizes = |sizes: &[f32]| {
-        finite(at, sizes)?;
-        match sizes.iter().find(|&&size| size < 0.0) {
-            Some(size) => Err(SceneError::value(at, format!("radius and height have to be zero or more, not {size}"))),
-            None => Ok(()),
-        }
-    };
-    match shape {
-        Shape::Line(s) => rows(&[s.from, s.to]),
-        Shape::Box(s) => rows(&[s.min, s.max]),
-        Shape::Sphere(s) => rows(&[s.center]).and(sizes(&[s.radius])),
-        Shape::Cylinder(s) => rows(&[s.center]).and(sizes(&[s.radius, s.height])),
-        Shape::Cone(s) => rows(&[s.center]).and(sizes(&[s.radius, s.height])),
-        Shape::Circle(s) => rows(&[s.center]).and(sizes(&[s.radius])).and(check_direction(at, s.normal)),
-        Shape::Capsule(s) => rows(&[s.from, s.to]).and(sizes(&[s.radius])),
-        Shape::Triangle(s) => rows(&s.corners),
-        Shape::Plane(s) => rows(&[s.point]).and(check_direction(at, s.normal)),
-        Shape::Mesh(_) | Shape::HeightField(_) => Ok(()),
     }
 }
 

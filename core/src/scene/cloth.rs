@@ -1,14 +1,12 @@
 //! Sheets and meshes of particles in scene files: what holds them together, and what they are made into.
 
-use super::numbers::{above_zero, check_breaking, finite, zero_or_more};
-use super::{PatchBuf, SceneError, SceneFile, SheetContactsBuf};
 use crate::cloth::{ClothSprings, Sheet, mesh_hinges, mesh_springs};
-use crate::constrain::{ConstraintKind, Shell, ShellParams, StrainLimitParams, StrainLimits};
+use crate::constrain::{ConstraintKind, SheetContacts, Shell, ShellParams, StrainLimitParams, StrainLimits};
+use crate::draw::Patch;
 use crate::force::{Aerodynamics, FlowKind, ForceKind, Pressure, Spring};
 use crate::math::{length, min};
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
-use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
@@ -116,14 +114,35 @@ pub enum Form {
     Mesh(String),
 }
 
+/// The contacts of cloths with each other.
+pub type SheetContactsBuf = SheetContacts<Vec<u32>, Vec<[u32; 3]>, Vec<f32>>;
+
+/// The particles that a surface spans: a [`Patch`] that owns its triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchBuf {
+    /// The number that its first corner has among all particles.
+    pub first: u32,
+    /// The number of its corners.
+    pub count: u32,
+    /// Its triangles, by corners counted from 0.
+    pub triangles: Vec<[u32; 3]>,
+    /// The number of its material, if it has one.
+    pub material: Option<u16>,
+}
+
+impl PatchBuf {
+    /// It, lent.
+    #[must_use]
+    pub fn lend(&self) -> Patch<'_> {
+        Patch { first: self.first, count: self.count, triangles: &self.triangles }
+    }
+}
+
 /// The flows of all winds among a scene's forces.
 pub(super) fn winds(forces: &[ForceKind]) -> Vec<FlowKind> {
     let winds = forces.iter().filter_map(|force| if let ForceKind::Wind(wind) = force { Some(wind) } else { None });
     winds.flat_map(|wind| wind.field.iter().copied()).collect()
 }
-
-/// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
-const MOST: u64 = 1 << 22;
 
 impl Cloth {
     /// Its particles and springs, the first particle having number `first` in the scene's start; `mesh` is that of its form.
@@ -233,118 +252,12 @@ impl Cloth {
     }
 
     /// The particles of a sheet; those of a mesh are known once it is read.
-    fn count(&self) -> Option<u64> {
+    pub(super) fn count(&self) -> Option<u64> {
         match &self.form {
             Form::Sheet(sheet) => {
                 Some(sheet.cells.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n) + 1)))
             }
             Form::Mesh(_) => None,
         }
-    }
-}
-
-impl Cloth {
-    /// Checks what it weighs, what it is made of and the air around it.
-    fn check_material(&self, at: &str) -> Result<(), SceneError> {
-        match self.density {
-            Some(_) if self.mass != 0.0 => {
-                return Err(SceneError::value(format!("{at}.density"), "say either density or mass"));
-            }
-            Some(density) => above_zero(&format!("{at}.density"), density)?,
-            None => above_zero(&format!("{at}.mass"), self.mass)?,
-        }
-        if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
-            return Err(SceneError::value(format!("{at}.shell.{field}"), message));
-        }
-        if let Some(thickness) = self.thickness {
-            above_zero(&format!("{at}.thickness"), thickness)?;
-        }
-        self.check_limits(at)?;
-        let Some(Air { density, drag, lift, friction }) = self.air else { return Ok(()) };
-        let numbers = [("density", density), ("drag", drag), ("lift", lift), ("friction", friction)];
-        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
-    }
-}
-
-impl Cloth {
-    fn check_limits(&self, at: &str) -> Result<(), SceneError> {
-        let Some(params) = self.limits else { return Ok(()) };
-        if self.shell.is_some() {
-            let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
-            return Err(SceneError::value(format!("{at}.limits"), message));
-        }
-        if self.breaks_at.is_some() {
-            let message = "hold triangles together whose springs have broken; it has to go without breaks_at";
-            return Err(SceneError::value(format!("{at}.limits"), message));
-        }
-        let Some((name, message)) = params.fault() else { return Ok(()) };
-        let value = match name {
-            "warp" => format!("{:?}", params.warp.unwrap_or_default()),
-            "weft" => format!("{:?}", params.weft.unwrap_or_default()),
-            "shear" => format!("{}", params.shear.unwrap_or_default()),
-            "compliance" => format!("{}", params.compliance),
-            _ => format!("{}", params.damping),
-        };
-        let is_empty = params.warp.is_none() && name == "warp";
-        let message = if is_empty { message.into() } else { format!("{message}, not {value}") };
-        Err(SceneError::value(format!("{at}.limits.{name}"), message))
-    }
-}
-
-impl SceneFile {
-    pub(super) fn check_fabrics(&self) -> Result<(), SceneError> {
-        let mut count = 0u64;
-        for (i, cloth) in self.cloths.iter().enumerate() {
-            let at = format!("cloths[{i}]");
-            let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
-            let ClothSprings { structural, shear, bend } = cloth.springs;
-            for (name, params) in [("structural", structural), ("shear", shear), ("bend", bend)] {
-                let Some(params) = params else { continue };
-                zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
-                zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
-            }
-            if cloth.shell.is_none() && [structural, shear, bend].iter().all(Option::is_none) {
-                return refuse(
-                    "springs",
-                    "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
-                );
-            }
-            cloth.check_material(&at)?;
-            finite(&format!("{at}.drag"), &[cloth.drag])?;
-            finite(&format!("{at}.elasticity"), &[cloth.elasticity])?;
-            finite(&format!("{at}.velocity"), &cloth.velocity.to_array())?;
-            check_breaking(&format!("{at}.breaks_at"), cloth.breaks_at)?;
-            if let Some(gas) = cloth.gas {
-                zero_or_more(&format!("{at}.gas.amount"), gas.amount)?;
-                finite(&format!("{at}.gas.outside"), &[gas.outside])?;
-            }
-            if cloth.gas.is_some() && matches!(cloth.form, Form::Sheet(_)) {
-                return refuse("gas", "a sheet has no inside; only a closed mesh can hold gas");
-            }
-            let place = |sheet: &Sheet| [sheet.corner, sheet.sides[0], sheet.sides[1]];
-            if matches!(&cloth.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
-                return refuse("form", "corner and sides have to be finite");
-            }
-            if matches!(&cloth.form, Form::Sheet(sheet) if !(length(sheet.sides[0].cross(sheet.sides[1])) > 0.0)) {
-                return refuse("form", "its sides have to be longer than zero and not parallel: they span no area");
-            }
-            let more = cloth.count().unwrap_or(0);
-            count = count.saturating_add(more);
-            if count > MOST {
-                let message =
-                    format!("makes {more} particles; the sheets of a scene may have {MOST}: take fewer cells");
-                return refuse("form", &message);
-            }
-            if let Some(number) =
-                cloth.fixed.iter().find(|&&n| cloth.count().is_some_and(|count| u64::from(n) >= count))
-            {
-                return refuse(
-                    "fixed",
-                    &format!("particle {number} is out of range; there are {}, from 0", cloth.count().unwrap_or(0)),
-                );
-            }
-            self.check_material(&at, cloth.material)?;
-        }
-        Ok(())
     }
 }

@@ -3,6 +3,7 @@
 use super::{Boxes, Cloth, Fog, Material, PeriodicRoom, Response, Sky, Tuft};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
+use crate::draw::StrandLight;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Sink, Spring};
 use crate::index::Structure;
@@ -14,6 +15,7 @@ use crate::reap::ReaperKind;
 use crate::shape::Shape;
 use alloc::string::String;
 use alloc::vec::Vec;
+use glam::Vec3;
 
 /// Everything that a scene file says. Meshes are named by file, relative to the scene's.
 #[derive(Clone, Debug, PartialEq)]
@@ -266,6 +268,18 @@ impl SceneFile {
             sky: None,
             fog: None,
         }
+    }
+
+    /// The light on strands for an eye at a place \[m\]: the first of the scene's lights that comes from far away, or one from above where there
+    /// is none, and what there is of it everywhere.
+    #[must_use]
+    pub fn light_on_strands(&self, eye: Vec3) -> StrandLight {
+        let far = self.lights.iter().find_map(|light| match light {
+            Light::Directional { direction, .. } => Some(Vec3::from_array(*direction)),
+            _ => None,
+        });
+        let ambient = (self.ambient.iter().sum::<f32>() / 3.0).clamp(0.0, 1.0);
+        StrandLight { direction: far.unwrap_or(Vec3::new(-0.4, -0.7, -0.8)), eye, ambient, gloss: 0.25 }
     }
 }
 

@@ -1,6 +1,7 @@
 //! A `.scn` scene in inline arrays: what firmware reads at start, without a heap.
 
 use super::Scene;
+use super::color::shown;
 use super::scn::{Command, Located, Place, Scenery, ScnError, Source, commands};
 use crate::collide::Meetings;
 use crate::emit::{Emitter, Spread, Varied};
@@ -193,7 +194,7 @@ impl<const P: usize, const S: usize, const N: usize> Reader<'_, P, S, N> {
             Command::Begin { material, matrix } => self.begin(material.value, matrix),
             Command::End => self.groups.pop().map(drop).ok_or("there is no 'begin' it could end"),
             Command::Material { colors: [_, diffuse, _, _, emission], .. } => {
-                let color = super::shown(diffuse, emission);
+                let color = shown(diffuse, emission);
                 self.colors.push(color).map_err(|_| "too many materials for this array")
             }
             Command::Include(_) => Err("files cannot be included here"),

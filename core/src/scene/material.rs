@@ -1,6 +1,7 @@
 //! Materials in scene files: how surfaces and particles look, how they feel, and what becomes of them.
 
 use super::SceneError;
+use super::color::shown;
 use super::numbers::finite;
 use crate::material::{
     self, Blend, ContactMaterial, Curve, Facing, Heading, Life, MaterialList, Over, SpriteMaterial, TrailMaterial,
@@ -319,7 +320,7 @@ impl Material {
     /// The colour of particles of this material: diffuse, or emitted where that is black.
     #[must_use]
     pub fn color(&self) -> Color {
-        super::shown(self.diffuse, self.emission)
+        shown(self.diffuse, self.emission)
     }
 }
 

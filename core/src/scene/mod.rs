@@ -13,11 +13,20 @@ mod check;
 #[cfg(feature = "alloc")]
 mod check_force;
 #[cfg(feature = "alloc")]
+mod check_room;
+#[cfg(feature = "alloc")]
+mod check_shape;
+#[cfg(feature = "alloc")]
+mod check_start;
+#[cfg(feature = "alloc")]
 mod cloth;
+mod color;
 #[cfg(feature = "alloc")]
 mod error;
 #[cfg(feature = "alloc")]
 mod file;
+#[cfg(feature = "alloc")]
+mod files;
 mod inline;
 #[cfg(feature = "json")]
 mod json;
@@ -31,6 +40,8 @@ mod numbers;
 mod placing;
 #[cfg(feature = "alloc")]
 mod read;
+#[cfg(feature = "alloc")]
+mod references;
 #[cfg(feature = "alloc")]
 mod remarks;
 mod response;
@@ -52,18 +63,22 @@ pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
 pub use boxes::{BoxForm, Boxes, Scatter};
 #[cfg(feature = "alloc")]
-pub use cloth::{Air, Cloth, Form, Gas};
+pub use cloth::{Air, Cloth, Form, Gas, PatchBuf, SheetContactsBuf};
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
 #[cfg(feature = "alloc")]
 pub use file::{Camera, Group, Item, Light, Run, SceneFile};
+#[cfg(feature = "alloc")]
+pub use files::{Files, beside};
 pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use material::{CurveBuf, LifeBuf, Material, ParticleShape, Sides, Sprite, VaryingBuf};
 #[cfg(feature = "alloc")]
-pub use model::{Constraints, Forces, Model, PatchBuf, SheetContactsBuf, Solid};
+pub use model::{Constraints, Forces, Model};
 #[cfg(feature = "alloc")]
-pub use read::{Files, Reading, Unknown, beside, read_scn, read_scn_with};
+pub use placing::Solid;
+#[cfg(feature = "alloc")]
+pub use read::{Reading, Unknown, read_scn, read_scn_with};
 pub use response::{Position, Response};
 #[cfg(feature = "alloc")]
 pub use room::PeriodicRoom;
@@ -74,11 +89,3 @@ pub use schema::schema;
 pub use tuft::{Curl, Field, Growth, StrandAir, Tuft};
 #[cfg(feature = "alloc")]
 pub use write::write_scn;
-
-/// The colour of particles of a material: diffuse, or emitted where that is black.
-fn shown(diffuse: [f32; 3], emission: [f32; 3]) -> crate::Color {
-    let [r, g, b] = if diffuse == [0.0; 3] { emission } else { diffuse };
-    // The casts saturate.
-    let byte = |x: f32| (x * 255.0 + 0.5) as u8;
-    [byte(r), byte(g), byte(b), 255]
-}

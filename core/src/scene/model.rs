@@ -1,12 +1,13 @@
 //! A declared scene made ready to run: meshes loaded, transforms multiplied out, colours settled.
 
-use super::placing::{Placing, colliders};
+use super::cloth::{PatchBuf, SheetContactsBuf};
+use super::placing::{Placing, Solid, colliders};
 use super::start::{Start, widest};
 use super::{Files, Material, Response, Scene, SceneError, SceneFile};
 use crate::collide::Meetings;
-use crate::constrain::{ConstraintKind, Contacts, HullBuf, RigidBodies, RigidBox, SheetContacts};
+use crate::constrain::{ConstraintKind, Contacts, HullBuf, RigidBodies, RigidBox};
 use crate::custom::CustomBuf;
-use crate::draw::{Lock, Patch};
+use crate::draw::Lock;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Penalty, Sink, Spring};
 use crate::index::{Periodic, Room, Structure};
@@ -15,7 +16,7 @@ use crate::memory::{Heap, Size};
 use crate::motion::MotionBuf;
 use crate::particles::Particle;
 use crate::reap::ReaperKind;
-use crate::shape::{Affine, MeshBuf, Moving, Placed, Scenery, Shape};
+use crate::shape::{MeshBuf, Moving, Placed, Scenery, Shape};
 use crate::system::System;
 use alloc::collections::TryReserveError;
 use alloc::sync::Arc;
@@ -23,9 +24,6 @@ use alloc::vec::Vec;
 
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
-
-/// The contacts of cloths with each other.
-pub type SheetContactsBuf = SheetContacts<Vec<u32>, Vec<[u32; 3]>, Vec<f32>>;
 
 /// The constraints of files, of cloths that are shells and of strands, the rigid bodies, then contacts by position, and those of cloths.
 pub type Constraints =
@@ -74,40 +72,6 @@ pub struct Model {
     pub locks: Vec<Lock>,
     /// The shapes that particles are drawn as, by the numbers of their materials.
     pub shapes: Vec<Option<Shape<Arc<MeshBuf>>>>,
-}
-
-/// The particles that a surface spans: a [`Patch`] that owns its triangles.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PatchBuf {
-    /// The number that its first corner has among all particles.
-    pub first: u32,
-    /// The number of its corners.
-    pub count: u32,
-    /// Its triangles, by corners counted from 0.
-    pub triangles: Vec<[u32; 3]>,
-    /// The number of its material, if it has one.
-    pub material: Option<u16>,
-}
-
-impl PatchBuf {
-    /// It, lent.
-    #[must_use]
-    pub fn lend(&self) -> Patch<'_> {
-        Patch { first: self.first, count: self.count, triangles: &self.triangles }
-    }
-}
-
-/// A piece of scenery where it stands.
-#[derive(Clone, Debug)]
-pub struct Solid {
-    /// Its shape.
-    pub shape: Shape<Arc<MeshBuf>>,
-    /// Where it stands.
-    pub to_world: Affine,
-    /// Its material's number, if it has one.
-    pub material: Option<u16>,
-    /// How it moves from there.
-    pub motion: MotionBuf,
 }
 
 impl Model {

@@ -1,7 +1,7 @@
 //! Things with a shape in a scene file, placed where their groups take them: each mesh is read once.
 
-use super::start::color;
-use super::{Files, SceneError, SceneFile, Solid, beside};
+use super::references::color;
+use super::{Files, SceneError, SceneFile, beside};
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Goal, Sink};
 use crate::motion::MotionBuf;
@@ -19,6 +19,19 @@ type Loaded = Shape<Arc<MeshBuf>>;
 
 /// The things that particles bounce off.
 pub(super) type Colliders = Scenery<Moving<Placed<Loaded>, MotionBuf>>;
+
+/// A piece of scenery where it stands.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    /// Its shape.
+    pub shape: Shape<Arc<MeshBuf>>,
+    /// Where it stands.
+    pub to_world: Affine,
+    /// Its material's number, if it has one.
+    pub material: Option<u16>,
+    /// How it moves from there.
+    pub motion: MotionBuf,
+}
 
 /// Puts things where they stand, and keeps the meshes that it has read, by name.
 pub(super) struct Placing<'a> {

@@ -1,12 +1,12 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
-use super::check::{MAX_GROUPS, MAX_MATERIALS};
+use super::references::{MAX_GROUPS, MAX_MATERIALS};
 use super::remarks::{MOST, odd_elasticity, odd_ends};
 use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands};
-use super::{Camera, Group, Item, Light, Material, SceneError, SceneFile};
+use super::{Camera, Files, Group, Item, Light, Material, SceneError, SceneFile, beside};
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
-use crate::shape::{MeshBuf, Shape};
+use crate::shape::Shape;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -15,30 +15,6 @@ use alloc::vec::Vec;
 const MAX_INCLUDE_DEPTH: usize = 64;
 /// The largest number of includes of a scene in all: two files that each include the next twice grow without measure.
 const MAX_INCLUDES: usize = 4096;
-
-/// Where scenes and meshes come from; errors are one line of text that names the file.
-pub trait Files {
-    /// The text of a file.
-    ///
-    /// # Errors
-    /// If it cannot be read.
-    fn text(&mut self, path: &str) -> Result<String, String>;
-
-    /// A mesh.
-    ///
-    /// # Errors
-    /// If it cannot be read or is no mesh.
-    fn mesh(&mut self, path: &str) -> Result<MeshBuf, String>;
-
-    /// Tells whether there is such a file.
-    fn exists(&mut self, path: &str) -> bool;
-
-    /// The name of a file that differs from this in capitals alone, where there is one.
-    fn alike(&mut self, path: &str) -> Option<String> {
-        let _ = path;
-        None
-    }
-}
 
 /// A scene that was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,21 +35,6 @@ pub enum Unknown {
     Refuse,
     /// It is passed over with a warning, up to the next line that begins with a command.
     Skip,
-}
-
-/// No files at all: for scenes that name none.
-impl Files for () {
-    fn text(&mut self, path: &str) -> Result<String, String> {
-        Err(format!("there is no file '{path}'"))
-    }
-
-    fn mesh(&mut self, path: &str) -> Result<MeshBuf, String> {
-        Err(format!("there is no file '{path}'"))
-    }
-
-    fn exists(&mut self, _: &str) -> bool {
-        false
-    }
 }
 
 /// Reads a `.scn` text that lies at `path`, and what it includes; the strings are warnings.
@@ -114,28 +75,6 @@ pub fn read_scn_with(path: &str, text: &str, files: &mut dyn Files, unknown: Unk
     }
     let Reader { scene, warnings, remarks, .. } = reader;
     Ok(Reading { scene, warnings, remarks })
-}
-
-/// The path of `name`, which the file at `path` names: relative to its folder, with `.` and `..` resolved.
-#[must_use]
-pub fn beside(path: &str, name: &str) -> String {
-    if name.starts_with('/') {
-        return name.to_string();
-    }
-    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
-    let rooted = path.starts_with('/');
-    let mut parts: Vec<&str> = Vec::new();
-    for part in folder.split('/').chain(name.split('/')) {
-        match part {
-            "" | "." => {}
-            ".." if parts.last().is_some_and(|&last| last != "..") => {
-                parts.pop();
-            }
-            part => parts.push(part),
-        }
-    }
-    let joined = parts.join("/");
-    if rooted { format!("/{joined}") } else { joined }
 }
 
 struct Reader<'a> {

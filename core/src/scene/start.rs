@@ -1,14 +1,14 @@
 //! The particles and springs that a scene begins with: its own, and those of its cloths, boxes and strands.
 
-use super::model::{PatchBuf, SheetContactsBuf};
 use super::placing::Placing;
-use super::{BoxForm, Form, Growth, SceneError, SceneFile};
+use super::references::color;
+use super::{BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
 use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts};
 use crate::draw::Lock;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Spring};
 use crate::math::max;
-use crate::particles::{Color, Particle};
+use crate::particles::Particle;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -162,9 +162,4 @@ impl Start {
 pub(super) fn widest<S, M>(particles: &[Particle], emitters: &[Emitter<S, M>]) -> f32 {
     let born = emitters.iter().map(|emitter| emitter.radius.mean + emitter.radius.half_width.abs());
     particles.iter().map(|particle| particle.radius).chain(born).fold(0.0, max)
-}
-
-/// The colour that a particle has by itself, or by its material.
-pub(super) fn color(file: &SceneFile, own: Option<Color>, material: Option<u16>) -> Option<Color> {
-    own.or_else(|| Some(file.materials.get(usize::from(material?))?.color()))
 }

@@ -1,18 +1,15 @@
 //! Strands in scene files: hair and grass that grow on a surface, wires and cables along curves.
 
 use super::cloth::winds;
-use super::numbers::{Checked, above_zero, finite, zero_or_more};
-use super::{Light, SceneError, SceneFile};
 use crate::constrain::{Attach, ConstraintKind, StrandParams, Strands};
-use crate::draw::{Lock, StrandLight};
+use crate::draw::Lock;
 use crate::force::{CylinderDrag, ForceKind};
 use crate::math::{frame, length, sin_cos, sqrt, unit};
-use crate::motion::{Motion, MotionBuf};
+use crate::motion::MotionBuf;
 use crate::particles::{Color, Particle};
 use crate::rng::Stream;
 use crate::shape::{MeshBuf, Shape, Surface};
 use alloc::boxed::Box;
-use alloc::format;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -148,8 +145,6 @@ const fn usual_poisson() -> f32 {
     0.35
 }
 
-/// As many particles as the strands of a scene may have.
-const MOST: u64 = 1 << 22;
 /// How often a place outside the box is tried again.
 const TRIES: u32 = 64;
 
@@ -228,52 +223,6 @@ impl Tuft {
         let field = winds(forces);
         Some(ForceKind::CylinderDrag(CylinderDrag { segments, field, diameter, density, viscosity, friction }))
     }
-
-    /// Checks the air around it.
-    fn check_air(&self, at: &str) -> Checked {
-        let Some(StrandAir { diameter, density, viscosity, friction }) = self.air else { return Ok(()) };
-        if self.drag != 0.0 {
-            return Err(SceneError::value(format!("{at}.drag"), "say either drag or air"));
-        }
-        above_zero(&format!("{at}.air.diameter"), diameter.unwrap_or(1.0))?;
-        let numbers = [("density", density), ("viscosity", viscosity), ("friction", friction)];
-        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
-    }
-
-    fn check(&self, at: &str, file: &SceneFile) -> Checked {
-        let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
-        if !(1..=10_000).contains(&self.segments) {
-            return refuse("segments", &format!("has to be from 1 to 10000, not {}", self.segments));
-        }
-        for (name, number) in [("radius", self.radius), ("young", self.young), ("density", self.density)] {
-            above_zero(&format!("{at}.{name}"), number)?;
-        }
-        for (name, number) in [("damping", self.damping), ("drag", self.drag), ("width", self.width)] {
-            zero_or_more(&format!("{at}.{name}"), number)?;
-        }
-        if !(0.0..=0.5).contains(&self.poisson) {
-            return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
-        }
-        self.check_air(at)?;
-        finite(&format!("{at}.elasticity"), &[self.elasticity])?;
-        if let Some(message) = self.motion.as_ref().and_then(Motion::fault) {
-            return refuse("motion", message);
-        }
-        if let Some(number) = self.fixed.iter().find(|&&number| number > self.segments) {
-            return refuse("fixed", &format!("point {number} is out of range; the last is {}", self.segments));
-        }
-        match &self.form {
-            Growth::Curve(places) => {
-                finite(&format!("{at}.form.curve"), &places.iter().flat_map(Vec3::to_array).collect::<Vec<_>>())?;
-                let way: f32 = places.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
-                if !(way > 0.0 && way.is_finite()) {
-                    return refuse("form.curve", "has to lead through two places at least that are not the same");
-                }
-            }
-            Growth::On(field) => field.check(&format!("{at}.form.on"))?,
-        }
-        file.check_material(at, self.material)
-    }
 }
 
 impl Field {
@@ -313,20 +262,6 @@ impl Field {
         };
         core::iter::once(root - direction * segment).chain((0..=segments).map(place)).collect()
     }
-
-    fn check(&self, at: &str) -> Checked {
-        above_zero(&format!("{at}.length"), self.length)?;
-        zero_or_more(&format!("{at}.spread"), self.spread)?;
-        finite(&format!("{at}.lean"), &self.lean.to_array())?;
-        for corner in self.within.into_iter().flatten() {
-            finite(&format!("{at}.within"), &corner.to_array())?;
-        }
-        if let Some(Curl { radius, pitch }) = self.curl {
-            zero_or_more(&format!("{at}.curl.radius"), radius)?;
-            above_zero(&format!("{at}.curl.pitch"), pitch)?;
-        }
-        super::check::check_shape(&format!("{at}.shape"), &self.shape)
-    }
 }
 
 /// Places at equal ways along a line through others.
@@ -344,32 +279,4 @@ fn along(places: &[Vec3], segments: u32) -> Vec<Vec3> {
         places.last().copied().unwrap_or(Vec3::ZERO)
     };
     (0..=segments).map(place).collect()
-}
-
-impl SceneFile {
-    /// The light on strands for an eye at a place \[m\]: the first of the scene's lights that comes from far away, or one from above where there
-    /// is none, and what there is of it everywhere.
-    #[must_use]
-    pub fn light_on_strands(&self, eye: Vec3) -> StrandLight {
-        let far = self.lights.iter().find_map(|light| match light {
-            Light::Directional { direction, .. } => Some(Vec3::from_array(*direction)),
-            _ => None,
-        });
-        let ambient = (self.ambient.iter().sum::<f32>() / 3.0).clamp(0.0, 1.0);
-        StrandLight { direction: far.unwrap_or(Vec3::new(-0.4, -0.7, -0.8)), eye, ambient, gloss: 0.25 }
-    }
-
-    pub(super) fn check_strands(&self) -> Checked {
-        let mut count = 0u64;
-        for (i, tuft) in self.strands.iter().enumerate() {
-            let at = format!("strands[{i}]");
-            tuft.check(&at, self)?;
-            count = count.saturating_add(tuft.particles());
-            if count > MOST {
-                let message = format!("makes {} particles; the strands of a scene may have {MOST}", tuft.particles());
-                return Err(SceneError::value(at, message));
-            }
-        }
-        Ok(())
-    }
 }

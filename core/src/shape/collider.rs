@@ -1,7 +1,7 @@
 //! Things that a moving point can run into, one by one or in lists.
 
-use super::{Aabb, Affine, Facing, Hulls, Many, Marks};
-use crate::math::{along, high, largest, low, max, minus};
+use super::hit::earlier;
+use super::{Aabb, Affine, Contact, Face, Facing, Hit, Hulls, Marks, Ride, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -130,108 +130,20 @@ impl<T: Mapped + ?Sized> Mapped for &T {
     }
 }
 
-/// A straight piece of a particle's path, travelled at a steady speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// Its beginning \[m\].
-    pub from: Vec3,
-    /// Its end \[m\].
-    pub to: Vec3,
-    /// The radius of the ball that moves along it \[m\]; zero: a point.
-    pub radius: f32,
-    /// The instants of its beginning and its end, which only what moves itself asks for.
-    pub during: [Time; 2],
-}
+/// Many things, of which few are near any place.
+pub trait Many: Sync {
+    /// The box outside which there is nothing but one flat face, or nothing at all; none, if that is not known.
+    fn outskirts(&self) -> Option<(Option<Face>, Aabb)>;
 
-/// Where a segment meets a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
-    /// The fraction of the segment that is free, in [0, 1].
-    pub time: f32,
-    /// Unit normal of the surface, on the side that the segment comes from.
-    pub normal: Vec3,
-    /// How far from the computed point the surface may really be \[m\]: a few units in the last place of the
-    /// coordinates involved, never an absolute epsilon.
-    pub slack: f32,
-    /// How the surface itself moves there \[m/s\].
-    pub velocity: Vec3,
-    /// Number of its material in the scene, if it has one.
-    pub material: Option<u16>,
-    /// Which triangle of a mesh; zero for what has but one part.
-    pub face: u32,
-}
+    /// Calls `then` with what answers as it does itself, and sooner where no question leads out of `bounds`: the few things there.
+    /// Where there is nothing but the flat face it does not, and says so by false.
+    fn near(&self, bounds: &Aabb, then: &mut dyn FnMut(&dyn Collider)) -> bool;
 
-/// A place of a surface near a ball.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// The place \[m\].
-    pub point: Vec3,
-    /// Unit vector from there toward the ball's centre.
-    pub normal: Vec3,
-    /// How far the centre is \[m\].
-    pub distance: f32,
-    /// How far from the computed place the surface may really be \[m\], as for a [`Hit`].
-    pub slack: f32,
-    /// How the surface itself moves there \[m/s\].
-    pub velocity: Vec3,
-    /// Number of its material in the scene, if it has one.
-    pub material: Option<u16>,
-}
-
-/// Where what moves takes a particle that rests on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ride {
-    /// Where the particle is in the end \[m\].
-    pub place: Vec3,
-    /// How it moves in the beginning and in the end \[m/s\]: as what takes it along does at its centre, since it does not spin.
-    pub velocity: [Vec3; 2],
-    /// How that changes in the beginning \[m/s²\].
-    pub acceleration: Vec3,
-}
-
-impl Hit {
-    /// A hit on something at rest and of no material.
-    #[inline]
-    #[must_use]
-    pub const fn new(time: f32, normal: Vec3, slack: f32) -> Self {
-        Self { time, normal, slack, velocity: Vec3::ZERO, material: None, face: 0 }
-    }
-}
-
-impl Segment {
-    /// The path of a point, at no particular time.
-    #[inline]
-    #[must_use]
-    pub const fn new(from: Vec3, to: Vec3) -> Self {
-        Self { from, to, radius: 0.0, during: [Time::ZERO; 2] }
-    }
-
-    /// From one end to the other \[m\].
-    #[inline]
-    #[must_use]
-    pub fn step(&self) -> Vec3 {
-        minus(self.to, self.from)
-    }
-
-    /// The point at a fraction of it.
-    #[inline]
-    #[must_use]
-    pub fn at(&self, time: f32) -> Vec3 {
-        along(self.from, self.step(), time)
-    }
-
-    /// A box around all that the point or ball touches, with room for rounding.
-    #[must_use]
-    pub fn bounds(&self) -> Aabb {
-        let (min, max) = (low(self.from, self.to), high(self.from, self.to));
-        Aabb { min: min - self.radius, max: max + self.radius }.with_slack()
-    }
-
-    /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline)]
-    pub(crate) fn slack(&self, size: f32) -> f32 {
-        4.0 * f32::EPSILON * (max(largest(self.from), largest(self.to)) + self.radius + size)
+    /// A mask of the boxes, of which there are eight at the most, that there may be more in: the first in the lowest bit, and never fewer
+    /// than `near` says so of.
+    fn are_near(&self, bounds: &[Aabb]) -> u8 {
+        let _ = bounds;
+        u8::MAX
     }
 }
 
@@ -414,11 +326,3 @@ tuples!(A B C);
 tuples!(A B C D);
 tuples!(A B C D E);
 tuples!(A B C D E F);
-
-/// The earlier of two hits, the first where they tie.
-pub(crate) fn earlier(a: Option<Hit>, b: Option<Hit>) -> Option<Hit> {
-    match (a, b) {
-        (Some(x), Some(y)) => Some(if y.time < x.time { y } else { x }),
-        (a, b) => a.or(b),
-    }
-}

@@ -1,6 +1,5 @@
 //! The parts of a collider that are near: nothing, one flat face that stands still, or more than that.
 
-use super::{Aabb, Collider};
 use crate::math::{largest, unit};
 use glam::Vec3;
 
@@ -33,23 +32,6 @@ impl Facing {
             Self::Face(face) => Self::Face(Face { material, ..face }),
             other => other,
         }
-    }
-}
-
-/// Many things, of which few are near any place.
-pub trait Many: Sync {
-    /// The box outside which there is nothing but one flat face, or nothing at all; none, if that is not known.
-    fn outskirts(&self) -> Option<(Option<Face>, Aabb)>;
-
-    /// Calls `then` with what answers as it does itself, and sooner where no question leads out of `bounds`: the few things there.
-    /// Where there is nothing but the flat face it does not, and says so by false.
-    fn near(&self, bounds: &Aabb, then: &mut dyn FnMut(&dyn Collider)) -> bool;
-
-    /// A mask of the boxes, of which there are eight at the most, that there may be more in: the first in the lowest bit, and never fewer
-    /// than `near` says so of.
-    fn are_near(&self, bounds: &[Aabb]) -> u8 {
-        let _ = bounds;
-        u8::MAX
     }
 }
 

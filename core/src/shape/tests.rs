@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::rng::Stream;
+use glam::Vec3;
 use proptest::prelude::*;
 
 fn all() -> [Shape<Mesh<'static>>; 6] {

@@ -1,53 +1,19 @@
 //! Loose balls among bodies: particles with a radius that are near one are bodies themselves for as long as they are.
 
 use super::super::Bodies;
+use super::ball::{Ball, CAME, FREE, LEAVES, STAYS};
 use super::body::Body;
 use super::forms::Forms;
-use super::lists::Kept;
-use super::scenery::{self, DIRECTIONS};
+use super::kept::Kept;
+use super::manifold::DIRECTIONS;
+use super::scenery;
 use crate::math::{length, max};
 use glam::Vec3;
-
-/// A ball that is near a body: its particle.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(super) struct Ball {
-    slot: u32,
-    serial: u32,
-    state: u32,
-}
-
-/// The place of a ball is free.
-const FREE: u32 = 0;
-/// A ball was there when the lists were made the last time but one, as well.
-const STAYS: u32 = 1;
-/// A ball has come when the lists were made.
-const CAME: u32 = 2;
-/// A ball was there, and has not been found near a body yet.
-const LEAVES: u32 = 3;
-
-impl Ball {
-    /// Its row while it is there.
-    pub(super) fn row(&self, bodies: &Bodies<'_>) -> Option<usize> {
-        if self.state == FREE {
-            return None;
-        }
-        let row = *bodies.row_of.get(self.slot as usize)? as usize;
-        (bodies.serial.get(row) == Some(&self.serial)).then_some(row)
-    }
-
-    /// Tells whether it has come when the lists were made: what is known of another that had its number says nothing of it.
-    pub(super) fn is_new(&self) -> bool {
-        self.state == CAME
-    }
-}
 
 /// The row belongs to nobody.
 const NOBODY: u32 = 0;
 /// The row belongs to a body.
 const MEMBER: u32 = u32::MAX;
-/// Pairs of a ball and a body that there is room for, for each ball.
-pub(super) const NEAR: usize = 2;
 
 /// Where balls look for bodies.
 pub(super) struct Around<'a> {

@@ -1,10 +1,10 @@
 //! How boxes are apart: by separating axes, eight times two of them side by side.
 
 use super::body::Body;
-use super::boxes::{FACES_FIRST, Oriented, PARALLEL, facing};
-use super::facets::{Apart, By};
+use super::boxes::{Oriented, facing};
+use super::facets::{Apart, By, FACES_FIRST, PARALLEL};
+use super::fours::fours;
 use super::manifold::Manifold;
-use super::pack::fours;
 use crate::lanes::{ABREAST, Eight, Kernel, LANES, Row, Vectors, load, min, not, saved};
 use crate::math::length;
 use bytemuck::Zeroable;

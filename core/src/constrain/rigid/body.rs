@@ -3,9 +3,8 @@
 use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
-use super::bound::Blow;
+use super::made::Made;
 use crate::math::{length, max, min, sqrt};
-use core::ops::Range;
 use glam::{Mat3, Vec3};
 
 /// It is not there: its particles are dead or nowhere.
@@ -14,6 +13,18 @@ const ABSENT: u32 = 0;
 const FIXED: u32 = 1;
 /// It moves.
 const MOVING: u32 = 2;
+
+/// What is reckoned of a body over a blow, and summed up for those that touch each other.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Blow {
+    /// Its kinetic energy over its mass when the sub-step began \[m²/s²\].
+    pub(super) begun: f32,
+    /// What there was more than before the blow, and what the blow gives: in proportion to it, and to its square \[J\].
+    pub(super) spare: f32,
+    pub(super) linear: f32,
+    pub(super) square: f32,
+}
 
 /// A body between two calls. All places within it are told in its box's frame.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -87,41 +98,6 @@ pub(super) struct Body {
     pub(super) blow: Blow,
 }
 
-/// The make of a body: its box, and the places of its particles in it, three words each.
-#[derive(Clone, Copy)]
-pub(super) struct Made<'a> {
-    pub(super) of: &'a RigidBox,
-    pub(super) places: &'a [u32],
-}
-
-impl Made<'_> {
-    /// The rows of its particles, where all live, one behind the other.
-    pub(super) fn run(&self, bodies: &Bodies<'_>) -> Option<Range<usize>> {
-        let (first, count) = (self.of.first as usize, self.of.count as usize);
-        let end = first.checked_add(count).filter(|&end| end <= bodies.start as usize)?;
-        let rows = bodies.row_of.get(first..end)?;
-        let row = *rows.first()? as usize;
-        let serials = bodies.serial.get(row..row.checked_add(count)?)?;
-        // Words that differ leave bits, which are looked at once: so many go side by side.
-        let (row, first) = (row as u32, first as u32);
-        let differs = |i: usize, at: u32, serial: u32| {
-            (at ^ row.wrapping_add(i as u32)) | (serial ^ first.wrapping_add(i as u32))
-        };
-        let both = rows.iter().zip(serials).enumerate();
-        let differ = both.fold(0, |any, (i, (&at, &serial))| any | differs(i, at, serial));
-        (differ == 0).then_some(row as usize..row as usize + count)
-    }
-
-    /// Visits its living particles: row, and place in the box's frame \[m\].
-    fn each(&self, bodies: &Bodies<'_>, visit: &mut dyn FnMut(usize, Vec3)) {
-        for (i, &[x, y, z]) in self.places.as_chunks().0.iter().enumerate() {
-            if let Some(row) = bodies.row_of_start(self.of.first.saturating_add(i as u32)) {
-                visit(row, Vec3::from_array([x, y, z].map(f32::from_bits)));
-            }
-        }
-    }
-}
-
 impl Body {
     /// The world: what stands still and has no box.
     pub(super) fn world() -> Self {
@@ -136,6 +112,16 @@ impl Body {
     /// Tells whether it is there and moves.
     pub(super) fn moves(&self) -> bool {
         self.state == MOVING
+    }
+
+    /// Tells whether it moves and does not sleep.
+    pub(super) fn is_awake(&self) -> bool {
+        self.moves() && self.asleep == 0
+    }
+
+    /// Tells whether it sleeps.
+    pub(super) fn sleeps(&self) -> bool {
+        self.asleep != 0
     }
 
     /// Tells whether it is pushed by one that touches it, and has lain there (1) since before it fell asleep or not.
@@ -348,6 +334,16 @@ impl Body {
         self.before = [self.velocity, self.omega];
         self.pressed = 0;
         self.blow.begun = self.vigour();
+    }
+
+    /// Its kinetic energy over its mass \[m²/s²\].
+    pub(super) fn vigour(&self) -> f32 {
+        0.5 * (self.velocity.dot(self.velocity) + self.omega.dot(self.spin))
+    }
+
+    /// Counts what forces have given a ball, whose drive nobody knows, to what it began with.
+    pub(super) fn count_forces(&mut self) {
+        self.blow.begun = max(self.blow.begun, self.vigour());
     }
 
     /// Takes in what has been done to its particles in a sub-step of so many seconds: what [`gather`](Self::gather) sums up.

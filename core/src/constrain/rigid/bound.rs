@@ -1,37 +1,13 @@
 //! Blows give no energy to speak of. Newton's restitution, asked for at several points of a body at once, or of a chain of bodies, can part them with more
 //! than they came with; of that so much is taken back, evenly from all impulses of those that touch each other, that nothing is gained.
 
-use super::body::Body;
+use super::body::{Blow, Body};
 use super::moving::Moving;
 use super::order::{Order, is_scenery};
 use super::pack::Pack;
-use super::solver::Span;
+use super::span::Span;
 use crate::lanes::ABREAST;
 use crate::math::{dot, max, min, sqrt};
-
-/// What is reckoned of a body over a blow, and summed up for those that touch each other.
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(super) struct Blow {
-    /// Its kinetic energy over its mass when the sub-step began \[m²/s²\].
-    pub(super) begun: f32,
-    /// What there was more than before the blow, and what the blow gives: in proportion to it, and to its square \[J\].
-    spare: f32,
-    linear: f32,
-    square: f32,
-}
-
-impl Body {
-    /// Its kinetic energy over its mass \[m²/s²\].
-    pub(super) fn vigour(&self) -> f32 {
-        0.5 * (self.velocity.dot(self.velocity) + self.omega.dot(self.spin))
-    }
-
-    /// Counts what forces have given a ball, whose drive nobody knows, to what it began with.
-    pub(super) fn count_forces(&mut self) {
-        self.blow.begun = max(self.blow.begun, self.vigour());
-    }
-}
 
 /// Takes back from what a blow has made of how bodies move, while these do not know it yet, what it has given.
 pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {

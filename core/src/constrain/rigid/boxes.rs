@@ -16,21 +16,10 @@ pub(super) struct Oriented {
     pub(super) half: Vec3,
 }
 
-/// By how much of the smaller boxes' size an axis of edges has to be the better one: faces hold steadier.
-pub(super) const FACES_FIRST: f32 = 0.02;
-/// The squared sine of an angle at which edges count as parallel.
-pub(super) const PARALLEL: f32 = 1e-4;
-
 impl Oriented {
     /// That of a body.
     pub(super) fn of(body: &Body) -> Self {
         Self { middle: body.middle(), axes: body.rotation, half: body.half }
-    }
-
-    /// Its corner with a number from 0 to 7, from its middle along its own axes \[m\].
-    pub(super) fn corner(half: Vec3, number: u32) -> Vec3 {
-        let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
-        half * Vec3::new(side(0), side(1), side(2))
     }
 }
 

@@ -1,12 +1,16 @@
 //! Where two bodies with faces and edges touch: by clipping one's face to the other's, or by the nearest points of two edges.
 
-use super::boxes::PARALLEL;
 use super::hull::SIDES;
 use crate::math::{clamp, dot, max};
 use glam::Vec3;
 
 /// The corners of a face that has been clipped to another, at the most: each side cuts off one corner and leaves two.
 const CLIPPED: usize = 2 * SIDES;
+
+/// By how much of the smaller body's size an axis of edges has to be the better one: faces hold steadier.
+pub(super) const FACES_FIRST: f32 = 0.02;
+/// The squared sine of an angle at which edges count as parallel.
+pub(super) const PARALLEL: f32 = 1e-4;
 
 /// The direction along which two bodies are farthest apart, or overlap least.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +101,11 @@ pub(super) fn nearest_of(
     let s = clamp((dot(u, way) - cos * dot(v, way)) / sine, -half, half);
     let t = clamp(cos * s - dot(v, way), -other, other);
     [p + u * s, q + v * t]
+}
+
+/// The middle of a spot.
+pub(super) fn middle([p, q]: Spot) -> Vec3 {
+    (p + q) * 0.5
 }
 
 /// Visits the places where the face of `of` that looks at a face is within `reach` of it, clipped to that: on the face, and on `of`

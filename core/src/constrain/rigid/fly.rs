@@ -2,7 +2,7 @@
 
 use super::super::turn::{EVEN, ROUNDING, ROUNDS, THIN};
 use super::body::Body;
-use super::pack::{fours, put};
+use super::fours::{fours, put};
 use crate::lanes::{ABREAST, Eight, Kernel, LANES, Vectors, mask_of, negated, not, run};
 use bytemuck::Zeroable;
 use core::mem::offset_of;

@@ -2,9 +2,9 @@
 
 use super::RigidBox;
 use super::body::Body;
-use super::boxes::{self, FACES_FIRST, Oriented, PARALLEL};
-use super::facets::{Apart, By, Edge, Facet, Faceted};
-use super::hull::{CORNERS, FACES, Hull, HullEdge, HullFace, HullList};
+use super::boxes;
+use super::facets::{Apart, By, Edge, FACES_FIRST, Facet, Faceted, PARALLEL};
+use super::hull::{CORNERS, FACES, Hull, HullEdge, HullFace, HullList, corner};
 use crate::math::{dot, length, min, sqrt};
 use glam::{Mat3, Vec3};
 
@@ -66,7 +66,7 @@ impl Form<'_> {
     pub(super) fn corner(&self, body: &Body, number: usize) -> Vec3 {
         match self {
             Self::Hull(hull) => hull.corners.get(number).copied().unwrap_or(Vec3::ZERO),
-            _ => Oriented::corner(body.half, number as u32),
+            _ => corner(body.half, number as u32),
         }
     }
 }
@@ -124,7 +124,7 @@ impl BoxHull {
             normal[number / 2] = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
             HullFace { normal, offset: half[number / 2], first: 4 * number as u16, count: 4 }
         };
-        Self { corners: core::array::from_fn(|i| Oriented::corner(half, i as u32)), faces: core::array::from_fn(face) }
+        Self { corners: core::array::from_fn(|i| corner(half, i as u32)), faces: core::array::from_fn(face) }
     }
 
     fn lend(&self) -> Hull<'_> {

@@ -194,7 +194,7 @@ impl<'a> Hull<'a> {
         let e = (y.z - c * b) / d;
         let f = root(z.z - c * c - e * e);
         let columns = Mat3::from_cols(Vec3::new(a, b, c), Vec3::new(0.0, d, e), Vec3::new(0.0, 0.0, f));
-        core::array::from_fn(|i| columns * super::boxes::Oriented::corner(Vec3::ONE, i as u32))
+        core::array::from_fn(|i| columns * corner(Vec3::ONE, i as u32))
     }
 
     /// The place on its surface that is nearest to a place \[m\], the way out there, and how far out the place is \[m\]: below zero inside.
@@ -245,4 +245,10 @@ impl<'a> Hull<'a> {
         }
         best.0
     }
+}
+
+/// The corner of a box with a number from 0 to 7, from its middle along its own axes \[m\].
+pub(super) fn corner(half: Vec3, number: u32) -> Vec3 {
+    let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
+    half * Vec3::new(side(0), side(1), side(2))
 }

@@ -2,8 +2,9 @@
 
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
-use super::body::{Body, Made};
-use super::lists::Kept;
+use super::body::Body;
+use super::kept::{Kept, Lain};
+use super::made::Made;
 use super::sleep::{ALIKE, STIRRED};
 use crate::lanes::{ABREAST, Eight, Kernel, LANES, not, run};
 use crate::math::{length, min};
@@ -50,26 +51,6 @@ pub(super) fn lie(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, boxes: &[RigidBo
         (number, place) = (end, place + len);
     }
     is_stirred
-}
-
-/// What forces did to bodies in the last sub-step in which all of them lay as one.
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(super) struct Lain {
-    /// The change of their velocities \[m/s\], in so long \[s\]; zero: they did not.
-    change: Vec3,
-    h: f32,
-    /// How far the method may have moved them beyond that \[m\].
-    far: f32,
-}
-
-impl Lain {
-    /// Tells whether forces do the same again, to the bit.
-    fn is_so(&self, change: Vec3, h: f32) -> bool {
-        self.h > 0.0
-            && self.h.to_bits() == h.to_bits()
-            && self.change.to_array().map(f32::to_bits) == change.to_array().map(f32::to_bits)
-    }
 }
 
 /// Lets the particles of some bodies lie where they are, if they are one behind the other and forces do the same to all; tells whether that is so.

@@ -1,11 +1,6 @@
 //! Two bodies that touch, or a body and the scenery: where, and what they have done to each other.
 
-use super::beside::Gaps;
-use super::body::Body;
-use super::boxes::{Oriented, touching};
-use super::facets::{Apart, Spot, Spots, four};
-use super::forms::{Form, with_hulls};
-use super::solver::Span;
+use super::span::Span;
 use crate::material::Mixed;
 use crate::math::{dot, max, min};
 use core::mem::offset_of;
@@ -40,6 +35,9 @@ impl Point {
 
 /// Points that two have at the most.
 pub(super) const POINTS: usize = 4;
+
+/// Directions that one body can be pressed in by the scenery at a time.
+pub(super) const DIRECTIONS: usize = 3;
 
 /// Two that may touch.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -114,88 +112,25 @@ impl Manifold {
             *place = Point { places, ..bytemuck::Zeroable::zeroed() };
         }
     }
-
-    /// Looks where two bodies touch that are not both boxes, or will when they have gone `reach` \[m\] against each other.
-    pub(super) fn find(&mut self, [a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) {
-        let [form, other] = forms;
-        if let Form::Ball = other {
-            let small = min(a.small(), b.small());
-            let (on, out, far) = form.nearest(a, a.place(b.center));
-            let gap = far - b.radius;
-            if gap > reach + small {
-                self.part(gap);
-                return;
-            }
-            let before = self.begin(small);
-            self.normal = out;
-            self.put([on, a.rotation * out * -b.radius], &before, f32::INFINITY, &a.rotation);
-            return;
-        }
-        // Bodies farther apart than this are let go for as long as they stay so.
-        let (far, mut is_found) = (f32::MAX, false);
-        with_hulls([a, b], forms, far, &mut |apart, features| {
-            is_found = true;
-            self.meet([a, b], apart, reach, &mut |reach, spots| apart.touching(features, reach, spots));
-        });
-        if !is_found {
-            self.part(0.0);
-        }
-    }
-
-    /// The same of two boxes, of which is known how they are apart; none: not at all.
-    pub(super) fn find_boxes(&mut self, [a, b]: [&Body; 2], (gaps, lane): (&Gaps, usize), reach: f32) {
-        match gaps.gap(lane) {
-            Some(gap) if gap <= reach + min(a.small(), b.small()) => {
-                let [one, other] = [Oriented::of(a), Oriented::of(b)];
-                let apart = gaps.apart(lane, [&one, &other]);
-                self.meet([a, b], &apart, reach, &mut |reach, spots| touching([&one, &other], &apart, reach, spots));
-            }
-            gap => self.part(gap.unwrap_or(0.0)),
-        }
-    }
-
-    /// Notes that they do not touch, and are so far apart \[m\].
-    fn part(&mut self, gap: f32) {
-        (self.count, self.spare) = (0, gap);
-    }
-
-    /// Forgets the points, and hands them out.
-    fn begin(&mut self, small: f32) -> heapless::Vec<Point, POINTS> {
-        let mut before = heapless::Vec::new();
-        before.extend(self.points().iter().copied());
-        (self.count, self.spare) = (0, small);
-        before
-    }
-
-    /// Takes the places where two touch that are apart in a way, or will when they have gone `reach` \[m\] against each other: `find` adds those that
-    /// are so far apart at the most.
-    fn meet(&mut self, [a, b]: [&Body; 2], apart: &Apart, reach: f32, find: &mut dyn FnMut(f32, &mut Spots)) {
-        let small = min(a.small(), b.small());
-        if !(apart.gap <= reach + small) {
-            self.part(apart.gap);
-            return;
-        }
-        let before = self.begin(small);
-        self.normal = a.rotation.transpose() * apart.normal;
-        let mut spots = Spots::new();
-        find(reach + small, &mut spots);
-        for [p, q] in four(apart.normal, &spots) {
-            self.put([a.place(p), b.place(q)], &before, 5.0 * small, &a.rotation);
-        }
-    }
 }
 
-/// Tells whether two bodies that are not both boxes are within `reach` \[m\] of each other.
-pub(super) fn are_near([a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) -> bool {
-    if let [form, Form::Ball] = forms {
-        return form.nearest(a, a.place(b.center)).2 - b.radius <= reach;
-    }
-    let mut is_near = false;
-    with_hulls([a, b], forms, reach, &mut |_, _| is_near = true);
-    is_near
+/// Pairs, and what touches the scenery: so many for each body as it can be pressed in directions.
+pub(super) struct Manifolds<'a> {
+    pub(super) pairs: &'a mut [Manifold],
+    pub(super) scenery: &'a mut [Manifold],
 }
 
-/// The middle of a spot.
-pub(super) fn middle([p, q]: Spot) -> Vec3 {
-    (p + q) * 0.5
+impl Manifolds<'_> {
+    /// Those of the scenery are numbered after the pairs.
+    #[inline(always)]
+    pub(super) fn get(&self, number: u32) -> Option<&Manifold> {
+        let number = number as usize;
+        self.pairs.get(number).or_else(|| self.scenery.get(number.wrapping_sub(self.pairs.len())))
+    }
+
+    #[inline(always)]
+    pub(super) fn get_mut(&mut self, number: u32) -> Option<&mut Manifold> {
+        let (number, pairs) = (number as usize, self.pairs.len());
+        self.pairs.get_mut(number).or_else(|| self.scenery.get_mut(number.wrapping_sub(pairs)))
+    }
 }

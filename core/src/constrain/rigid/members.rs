@@ -2,9 +2,10 @@
 
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
-use super::body::{Body, Made};
-use super::lists::Kept;
-use super::pack::Pose;
+use super::body::Body;
+use super::kept::Kept;
+use super::made::Made;
+use super::pose::Pose;
 use crate::lanes::{ABREAST, Eight, Kernel, LANES, Vectors, run};
 use bytemuck::Zeroable;
 use core::ops::Range;

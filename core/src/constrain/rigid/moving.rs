@@ -1,8 +1,8 @@
 //! How bodies move while impulses change that: what passes go over again and again, apart from all else that is known of them.
 
 use super::body::Body;
-use super::pack::Motion;
-use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors};
+use super::pose::Inverse;
+use crate::lanes::{ABREAST, Eight, LANES, Vectors};
 use glam::Vec3;
 
 /// How a body moves, in fours: one over its mass and its velocity; its spin and how it turns; the tick of the clock of passes at which it was changed
@@ -68,9 +68,6 @@ pub(super) fn take(all: &mut [Moving], bodies: &[Body]) {
 pub(super) fn tell(all: &[Moving], bodies: &mut [Body]) {
     all.iter().zip(bodies).filter(|(_, body)| body.moves()).for_each(|(moving, body)| moving.tell(body));
 }
-
-/// The inverses of the inertias of those of a pack over their masses in the world \[1/m²\].
-pub(super) type Inverse = [[Row; 3]; 3];
 
 /// Four words of each.
 #[inline(always)]
@@ -150,14 +147,5 @@ impl<F: Eight> Moves<F> {
     pub(super) fn yielding(&self, inverse: &Inverse, arm: Vectors<F>, direction: Vectors<F>) -> F {
         let lever = arm.cross(direction);
         self.inverse_mass * (self.inverse_mass.all(1.0) + lever.dot(Self::turned_by(inverse, lever)))
-    }
-}
-
-impl<F: Eight> Motion<F> {
-    /// The inverses of their inertias, as passes want them.
-    #[inline(always)]
-    pub(super) fn inverse(&self) -> Inverse {
-        let [a, b, c] = self.inverse;
-        [a.saved(), b.saved(), c.saved()]
     }
 }

@@ -1,10 +1,9 @@
 //! The order in which all that touch are gone over: those that share no moving body side by side.
 
 use super::body::Body;
-use super::manifold::{Manifold, POINTS};
+use super::manifold::{DIRECTIONS, Manifold, Manifolds, POINTS};
 use super::moving::Moving;
 use super::pack::Pack;
-use super::scenery::DIRECTIONS;
 use crate::lanes::ABREAST;
 use crate::memory::take;
 use core::ops::Range;
@@ -17,27 +16,6 @@ const ALL: usize = COLOURS + DIRECTIONS;
 
 /// Those of a colour by how many points they have, most first: who go side by side then have about as many.
 const SHELVES: usize = ALL * POINTS;
-
-/// Pairs, and what touches the scenery: so many for each body as it can be pressed in directions.
-pub(super) struct Manifolds<'a> {
-    pub(super) pairs: &'a mut [Manifold],
-    pub(super) scenery: &'a mut [Manifold],
-}
-
-impl Manifolds<'_> {
-    /// Those of the scenery are numbered after the pairs.
-    #[inline(always)]
-    pub(super) fn get(&self, number: u32) -> Option<&Manifold> {
-        let number = number as usize;
-        self.pairs.get(number).or_else(|| self.scenery.get(number.wrapping_sub(self.pairs.len())))
-    }
-
-    #[inline(always)]
-    pub(super) fn get_mut(&mut self, number: u32) -> Option<&mut Manifold> {
-        let (number, pairs) = (number as usize, self.pairs.len());
-        self.pairs.get_mut(number).or_else(|| self.scenery.get_mut(number.wrapping_sub(pairs)))
-    }
-}
 
 /// All that touch and are not asleep, packed colour by colour.
 pub(super) struct Order<'a> {

@@ -1,11 +1,10 @@
 //! Eight times two that touch, side by side in memory through a sub-step: what passes go over again and again.
 
 use super::body::Body;
-use super::manifold::{Manifold, POINTS, Point};
-use super::moving::Inverse;
-use super::order::Manifolds;
+use super::fours::{fours, put};
+use super::manifold::{Manifold, Manifolds, POINTS, Point};
+use super::pose::Inverse;
 use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors, load};
-use bytemuck::Pod;
 use core::mem::offset_of;
 use glam::Vec3;
 
@@ -200,141 +199,6 @@ impl Pack {
 #[inline(always)]
 fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
     Vec3::new(x, y, z)
-}
-
-/// Four words of a thing, as numbers.
-#[inline(always)]
-fn four<T: Pod>(of: &T, first: usize) -> [f32; 4] {
-    let words: &[f32] = bytemuck::cast_slice(core::slice::from_ref(of));
-    words.get(first..).and_then(|words| words.first_chunk()).copied().unwrap_or([0.0; 4])
-}
-
-/// Writes four words of a thing.
-#[inline(always)]
-pub(super) fn put<T: Pod>(to: &mut T, first: usize, four: [f32; 4]) {
-    let words: &mut [f32] = bytemuck::cast_slice_mut(core::slice::from_mut(to));
-    if let Some(words) = words.get_mut(first..).and_then(|words| words.first_chunk_mut()) {
-        *words = four;
-    }
-}
-
-/// Four words of each, from a place on.
-#[inline(always)]
-pub(super) fn fours<F: Eight, T: Pod>(like: F, all: &[&T; LANES], first: usize) -> [F; 4] {
-    let mut rows = [[0.0; 4]; LANES];
-    for (row, &of) in rows.iter_mut().zip(all) {
-        *row = four(of, first);
-    }
-    like.quads_of(rows)
-}
-
-/// How bodies move, while impulses change that.
-#[derive(Clone, Copy)]
-pub(super) struct Motion<F> {
-    pub(super) inverse_mass: F,
-    pub(super) velocity: Vectors<F>,
-    pub(super) omega: Vectors<F>,
-    pub(super) inverse: [Vectors<F>; 3],
-}
-
-/// Where the words of a body are that are read in one go.
-const MOTION: usize = offset_of!(Body, inverse_mass) / 4;
-
-impl<F: Eight> Motion<F> {
-    #[inline(always)]
-    pub(super) fn of(like: F, bodies: &[&Body; LANES]) -> Self {
-        let [inverse_mass, x, y, z] = fours(like, bodies, MOTION);
-        let [_, _, _, p] = fours(like, bodies, MOTION + 4);
-        let [q, r, xx, xy] = fours(like, bodies, MOTION + 8);
-        let [xz, yx, yy, yz] = fours(like, bodies, MOTION + 12);
-        let [zx, zy, zz, _] = fours(like, bodies, MOTION + 16);
-        Self {
-            inverse_mass,
-            velocity: Vectors([x, y, z]),
-            omega: Vectors([p, q, r]),
-            inverse: [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])],
-        }
-    }
-
-    /// The change of their spins by an angular impulse over the mass.
-    #[inline(always)]
-    pub(super) fn turned_by(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
-        let [a, b, c] = self.inverse;
-        a * x + b * y + c * z
-    }
-
-    #[inline(always)]
-    pub(super) fn at(&self, arm: Vectors<F>) -> Vectors<F> {
-        self.velocity + self.omega.cross(arm)
-    }
-}
-
-/// Where bodies are, and how they move.
-#[derive(Clone, Copy)]
-pub(super) struct Pose<F> {
-    pub(super) motion: Motion<F>,
-    pub(super) center: Vectors<F>,
-    rest: Vectors<F>,
-    rotation: [Vectors<F>; 3],
-    /// How they moved when the sub-step began.
-    before: [Vectors<F>; 2],
-}
-
-impl<F: Eight> Pose<F> {
-    #[inline(always)]
-    pub(super) fn of(like: F, bodies: &[&Body; LANES]) -> Self {
-        let [_, _, _, a] = fours(like, bodies, MOTION + 16);
-        let [b, c, i, j] = fours(like, bodies, MOTION + 20);
-        let [k, xx, xy, xz] = fours(like, bodies, MOTION + 24);
-        let [yx, yy, yz, zx] = fours(like, bodies, MOTION + 28);
-        let [zy, zz, x, y] = fours(like, bodies, MOTION + 32);
-        let [z, p, q, r] = fours(like, bodies, MOTION + 36);
-        Self {
-            motion: Motion::of(like, bodies),
-            center: Vectors([a, b, c]),
-            rest: Vectors([i, j, k]),
-            rotation: [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])],
-            before: [Vectors([x, y, z]), Vectors([p, q, r])],
-        }
-    }
-
-    /// Those parts of their frames that are in the world.
-    #[inline(always)]
-    pub(super) fn turned(&self, Vectors([x, y, z]): Vectors<F>) -> Vectors<F> {
-        let [a, b, c] = self.rotation;
-        a * x + b * y + c * z
-    }
-
-    /// Those parts of the world that are in their frames.
-    #[inline(always)]
-    pub(super) fn turned_back(&self, v: Vectors<F>) -> Vectors<F> {
-        let [a, b, c] = self.rotation;
-        Vectors([a.dot(v), b.dot(v), c.dot(v)])
-    }
-
-    /// From their centres to a place in their frames.
-    #[inline(always)]
-    pub(super) fn arm(&self, place: Vectors<F>) -> Vectors<F> {
-        self.turned(place - self.rest)
-    }
-
-    /// The place in the world of a place in their frames.
-    #[inline(always)]
-    pub(super) fn point(&self, place: Vectors<F>) -> Vectors<F> {
-        self.center + self.arm(place)
-    }
-
-    #[inline(always)]
-    pub(super) fn at_before(&self, arm: Vectors<F>) -> Vectors<F> {
-        let [velocity, omega] = self.before;
-        velocity + omega.cross(arm)
-    }
-
-    /// How much faster they have become since.
-    #[inline(always)]
-    pub(super) fn gained(&self) -> F {
-        (self.motion.velocity - self.before[0]).length()
-    }
 }
 
 /// A point of each, as it is kept.

@@ -7,9 +7,11 @@ use super::body::Body;
 use super::moving::Moving;
 use super::order::{Order, is_in_turn, is_scenery};
 use super::pack::Pack;
-use super::solver::PASSES;
 use super::touch::Touch;
 use crate::lanes::{ABREAST, Eight, Kernel, load, max};
+
+/// Passes at the most where nothing bounces.
+pub(super) const PASSES: u32 = 4;
 
 /// All that touch, and how they are gone over.
 pub(super) struct Passes<'a, 'b> {

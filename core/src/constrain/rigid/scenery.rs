@@ -3,14 +3,12 @@
 use super::super::Bodies;
 use super::body::Body;
 use super::forms::Form;
-use super::manifold::Manifold;
+use super::manifold::{DIRECTIONS, Manifold};
 use crate::material::on_surface;
 use crate::math::{dot, length, max, min};
 use crate::shape::{Aabb, Contact, Segment};
 use glam::{Mat3, Vec3};
 
-/// Directions that one body can be pressed in by the scenery at a time.
-pub(super) const DIRECTIONS: usize = 3;
 /// The cosine of the angle within which two faces are one.
 const ONE_FACE: f32 = 0.9999;
 /// The cosine of the angle within which a corner of the scenery presses no otherwise than a corner of the body.

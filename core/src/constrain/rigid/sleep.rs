@@ -9,10 +9,10 @@
 use super::super::Bodies;
 use super::super::union::{Bound, root, unite};
 use super::body::Body;
-use super::lists::Kept;
-use super::manifold::Manifold;
-use super::scenery::{self, DIRECTIONS};
-use super::solver::{self, Span};
+use super::kept::Kept;
+use super::manifold::{DIRECTIONS, Manifold};
+use super::span::Span;
+use super::{scenery, solver};
 use crate::math::{length, max, sqrt};
 use glam::Vec3;
 
@@ -57,16 +57,6 @@ impl Bound for Body {
 }
 
 impl Body {
-    /// Tells whether it moves and does not sleep.
-    pub(super) fn is_awake(&self) -> bool {
-        self.moves() && self.asleep == 0
-    }
-
-    /// Tells whether it sleeps.
-    pub(super) fn sleeps(&self) -> bool {
-        self.asleep != 0
-    }
-
     /// Tells whether its particles have to be told where they are: not while it sleeps.
     pub(super) fn has_news(&mut self) -> bool {
         let has_news = self.asleep != ASLEEP;

@@ -2,10 +2,12 @@
 
 use super::body::Body;
 use super::bound::bound;
-use super::manifold::{Manifold, middle};
+use super::facets::middle;
+use super::manifold::{Manifold, Manifolds};
 use super::moving::{self, Moving};
-use super::order::{Manifolds, Order};
-use super::pass::Passes;
+use super::order::Order;
+use super::pass::{PASSES, Passes};
+use super::span::Span;
 use super::stand::{Begin, HoldOn, Stand, Tell};
 use crate::lanes::run_abreast;
 use crate::math::{dot, max};
@@ -13,27 +15,6 @@ use glam::Vec3;
 
 /// Passes at the most where anything bounces, for the points of bodies that touch share one blow.
 const BLOWS: u32 = 8;
-/// Passes at the most where nothing does.
-pub(super) const PASSES: u32 = 4;
-/// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
-/// by in a sub-step, or of the speed that they shall part with.
-pub(super) const SETTLED: f32 = 1e-2;
-/// The share of the last sub-step's impulses that the next one begins with: all of them would let towers swing.
-pub(super) const AGAIN: f32 = 0.9;
-
-/// The share of an overlap that is taken back in a sub-step.
-pub(super) const RECOVERY: f32 = 0.1;
-
-/// The share of the friction there can be below which a point counts as held.
-pub(super) const HOLDS: f32 = 0.99;
-
-/// A sub-step \[s\], and the step it is a part of.
-#[derive(Clone, Copy)]
-pub(super) struct Span {
-    pub(super) h: f32,
-    pub(super) step: f32,
-}
-
 /// How fast two come together that may touch within a sub-step of `h` \[s\], driven as they were \[m/s\].
 pub(super) fn meeting(bodies: &[Body], manifold: &Manifold, h: f32) -> Option<f32> {
     let [a, b] = manifold.bodies.map(|number| bodies.get(number as usize));

@@ -1,14 +1,25 @@
 //! How eight times two that touch stand to each other: before impulses are sought, and when all have gone.
 
 use super::body::Body;
-use super::manifold::Manifold;
+use super::manifold::{Manifold, Manifolds};
 use super::moving::{Moves, Moving};
-use super::order::{Manifolds, Order, is_in_turn, is_scenery};
-use super::pack::{Kept, Motion, Pack, Places, Pose, surfaces};
-use super::solver::{AGAIN, HOLDS, RECOVERY, SETTLED, Span};
+use super::order::{Order, is_in_turn, is_scenery};
+use super::pack::{Kept, Pack, Places, surfaces};
+use super::pose::{Motion, Pose};
+use super::span::Span;
 use crate::collide::RESTING;
 use crate::lanes::{Eight, Kernel, Vectors, load, mask_of, max, negated, not, saved};
 use bytemuck::Zeroable;
+
+/// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
+/// by in a sub-step, or of the speed that they shall part with.
+const SETTLED: f32 = 1e-2;
+/// The share of the last sub-step's impulses that the next one begins with: all of them would let towers swing.
+const AGAIN: f32 = 0.9;
+/// The share of an overlap that is taken back in a sub-step.
+const RECOVERY: f32 = 0.1;
+/// The share of the friction there can be below which a point counts as held.
+const HOLDS: f32 = 0.99;
 
 /// Looks how all stand to each other when forces have changed their velocities, and what impulses do to them, and says how fast they shall part.
 pub(super) struct Begin<'a, 'b, 'c> {

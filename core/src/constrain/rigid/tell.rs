@@ -1,11 +1,11 @@
 //! Whoever looks on is told of the blows that bodies give and take.
 
 use super::super::Bodies;
-use super::balls::Ball;
+use super::ball::Ball;
 use super::forms::Forms;
-use super::lists::Kept;
+use super::kept::Kept;
 use super::manifold::{Manifold, Point};
-use super::solver::Span;
+use super::span::Span;
 use crate::math::dot;
 use crate::observe::{Attention, Impact};
 use glam::Vec3;

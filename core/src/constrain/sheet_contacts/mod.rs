@@ -1,9 +1,11 @@
 //! Sheets of triangles that are kept apart from each other, from themselves and from the scenery.
 
 mod closest;
+mod contact;
 mod lists;
 mod near;
 mod pair;
+mod renew;
 mod rest;
 mod scenery;
 mod search;
@@ -89,12 +91,6 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, W: AsRef<[f32]>> SheetContacts<P, T,
         [self.particles.as_ref().len(), self.triangles.as_ref().len()]
     }
 
-    /// How thick a triangle is.
-    fn thickness(&self, triangle: usize) -> f32 {
-        let all = self.thickness.as_ref();
-        all.get(triangle).or(all.last()).copied().unwrap_or(0.0)
-    }
-
     /// The first of its numbers that cannot be used, and what it has to be.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
@@ -129,7 +125,8 @@ where
         share.claim(*b"shee", &self.counts());
         let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()) else { return };
         if !rest.is_known() && !self.is_empty() && self.fault().is_none() {
-            rest.learn(self, bodies, share.scratch);
+            let (particles, triangles) = (self.particles.as_ref(), self.triangles.as_ref());
+            rest.learn(particles, triangles, self.thickness.as_ref(), bodies, share.scratch);
         }
         if rest.is_known() && bodies.substep.number == 0 {
             for (&particle, &half) in self.particles.as_ref().iter().zip(&*rest.half) {

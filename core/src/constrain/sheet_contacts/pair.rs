@@ -2,7 +2,7 @@
 //! two alone, however they were found.
 
 use super::closest::{Closest, Kind, Meeting};
-use super::lists::Contact;
+use super::contact::Contact;
 use super::rest::{Face, Rest};
 use super::tree::Bounds;
 use crate::math::{high, length, low, max, min};

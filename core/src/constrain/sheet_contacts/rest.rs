@@ -3,7 +3,6 @@
 
 use super::super::Bodies;
 pub(super) use super::super::union::{root, unite};
-use super::SheetContacts;
 use crate::math::{length, max, min};
 use crate::memory::take;
 use glam::Vec3;
@@ -86,21 +85,23 @@ impl<'m> Rest<'m> {
         face.corners.iter().fold(0.0, |most, &corner| max(half(corner), most))
     }
 
-    /// Takes all that from where the particles are.
-    pub(super) fn learn<P, T, W>(&mut self, of: &SheetContacts<P, T, W>, bodies: &Bodies<'_>, scratch: &mut [u32])
-    where
-        P: AsRef<[u32]>,
-        T: AsRef<[[u32; 3]]>,
-        W: AsRef<[f32]>,
-    {
-        for (place, &number) in self.places.iter_mut().zip(of.particles.as_ref()) {
+    /// Takes all that from where the particles are; of thicknesses the last holds for all further triangles.
+    pub(super) fn learn(
+        &mut self,
+        particles: &[u32],
+        triangles: &[[u32; 3]],
+        thickness: &[f32],
+        bodies: &Bodies<'_>,
+        scratch: &mut [u32],
+    ) {
+        for (place, &number) in self.places.iter_mut().zip(particles) {
             *place = bodies.row_of_start(number).map_or(Vec3::NAN, |row| bodies.position[row]);
         }
         self.half.fill(0.0);
         let mut thinnest = f32::INFINITY;
-        for (i, (face, &corners)) in self.faces.iter_mut().zip(of.triangles.as_ref()).enumerate() {
+        for (i, (face, &corners)) in self.faces.iter_mut().zip(triangles).enumerate() {
             *face = Face { corners, owns: 0 };
-            let thickness = of.thickness(i);
+            let thickness = thickness.get(i).or(thickness.last()).copied().unwrap_or(0.0);
             thinnest = min(thickness, thinnest);
             for corner in corners {
                 if let Some(half) = self.half.get_mut(corner as usize) {

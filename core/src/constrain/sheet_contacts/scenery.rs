@@ -2,7 +2,8 @@
 
 use super::super::contacts::Touch;
 use super::super::{Bodies, Substep};
-use super::lists::{Kept, NOBODY, Surface, Work};
+use super::contact::Surface;
+use super::lists::{Kept, NOBODY, Work};
 use super::rest::Rest;
 use crate::material::on_surface;
 use crate::math::{high, length, low, max, min};

@@ -3,9 +3,10 @@
 use super::super::Bodies;
 use super::super::contacts::Touch;
 use super::closest::Kind;
-use super::lists::{Contact, Kept, Work};
-use super::near;
+use super::contact::Contact;
+use super::lists::{Kept, Work};
 use super::pair::{Look, Pair, SHARE};
+use super::renew::ready;
 use super::rest::Rest;
 use super::tree::Ways;
 use crate::material::of_two;
@@ -18,7 +19,7 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     let known = kept.counts.contacts as usize;
     work.old[..known].copy_from_slice(&kept.contacts[..known]);
     let drift = drift(work);
-    let astray = near::ready(rest, kept, work, bodies, drift);
+    let astray = ready(rest, kept, work, bodies, drift);
     let mut found = look(rest, kept, work, (drift, astray));
     if found.lost > 0 && astray.is_some() {
         // Which of them find room is for the order to say in which a search of all meets them.

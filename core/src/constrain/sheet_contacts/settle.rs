@@ -2,7 +2,8 @@
 
 use super::super::Bodies;
 use super::super::contacts::{Touch, bounce};
-use super::lists::{Contact, Kept, NOBODY, Surface};
+use super::contact::{Contact, Surface};
+use super::lists::{Kept, NOBODY};
 use super::solver::ease;
 use super::zones::{LITTLE, Whole};
 use crate::math::{aside, length, min};

@@ -1,7 +1,8 @@
 //! Sheets kept apart in a sub-step by position.
 
 use super::super::Bodies;
-use super::lists::{Contact, Kept, NOBODY, Surface, Work};
+use super::contact::{Contact, Surface};
+use super::lists::{Kept, NOBODY, Work};
 use super::rest::Rest;
 use super::{scenery, search, taut, zones};
 use crate::math::{aside, length, min};

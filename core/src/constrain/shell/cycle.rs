@@ -6,6 +6,7 @@ use super::mesh::{Graph, LEVELS, Room};
 use super::plate::Plate;
 use super::strips;
 use super::sweep::{self, BLOCK, Level, Quad, invert};
+use super::words::structs;
 use crate::constrain::walls::Wall;
 use crate::lanes;
 use crate::memory::take;
@@ -53,7 +54,7 @@ impl<'m> Levels<'m> {
             let mut numbers = |len| bytemuck::cast_slice_mut(take(&mut rest, len));
             let blocks = numbers(BLOCK * graph.links.len());
             let [whole, inverse] = [0, 1].map(|_| numbers(BLOCK * rows));
-            let [r, x] = [0, 1].map(|_| super::whole(take(&mut rest, 4 * rows)));
+            let [r, x] = [0, 1].map(|_| structs(take(&mut rest, 4 * rows)));
             count += 1;
             Level { graph, blocks, whole, inverse, r, x }
         });

@@ -5,6 +5,7 @@ use super::parts::{Parts, PartsMut};
 use super::plate::Plate;
 use super::strips::{self, NONE, Place, Strips};
 use super::sweep::Quad;
+use super::words::structs;
 use crate::lanes::{Eight, Kernel, LANES, Vectors};
 use crate::memory::take;
 use glam::Vec3;
@@ -218,10 +219,10 @@ impl<'m> Finest<'m> {
     /// In words, with how it bends.
     pub(super) fn of(into: &'m [u32], links: Links<'m>, plate: Plate<'m>, words: &mut &'m mut [u32]) -> Self {
         let strips = links.strips.len();
-        let blocks = super::whole(take(words, 9 * LANES * links.strips.entries()));
-        let [whole, inverse] = [0, 1].map(|_| super::whole(take(words, 6 * LANES * strips)));
-        let [soft, mass] = [0, 1].map(|_| super::whole(take(words, LANES * strips)));
-        let [r, x, sum] = [0, 1, 2].map(|_| super::whole(take(words, 3 * LANES * strips)));
+        let blocks = structs(take(words, 9 * LANES * links.strips.entries()));
+        let [whole, inverse] = [0, 1].map(|_| structs(take(words, 6 * LANES * strips)));
+        let [soft, mass] = [0, 1].map(|_| structs(take(words, LANES * strips)));
+        let [r, x, sum] = [0, 1, 2].map(|_| structs(take(words, 3 * LANES * strips)));
         Self { links, into, blocks, whole, inverse, soft, mass, plate, bending: 0.0, r, x, sum }
     }
 }

@@ -1,7 +1,8 @@
 //! Bending of triangles about their common edges.
 
-use super::membrane::frame;
-use super::solver::Step;
+use super::membrane::{Cell, Strain, frame};
+use super::step::Step;
+use crate::cloth::Hinge;
 use crate::math::{angle, dot, length, max, min, sqrt};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
@@ -232,4 +233,28 @@ impl Fold {
         let [x, y] = self.foot;
         [-(c * (1.0 - x) + d * (1.0 - y)), -(c * x + d * y), c, d]
     }
+}
+
+/// Adds the curvature that a change of a fold's angle makes.
+#[cfg_attr(not(target_os = "none"), inline(always))]
+pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &RestFold, change: f32) {
+    let [first, second] = hinge.faces;
+    if let Some(strain) = strains.get_mut(first as usize) {
+        bend.curve(0, change, &mut strain.curvature);
+    }
+    if let Some(strain) = strains.get_mut(second as usize) {
+        bend.curve(1, change, &mut strain.curvature);
+    }
+}
+
+/// The moment about an edge that the curvatures of its triangles make.
+#[cfg_attr(not(target_os = "none"), inline(always))]
+pub(super) fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &RestFold, bending: f32) -> f32 {
+    let mut sum = 0.0;
+    for (side, face) in hinge.faces.into_iter().enumerate() {
+        if let (Some(strain), Some(cell)) = (strains.get(face as usize), cells.get(face as usize)) {
+            sum += bend.moment(side, strain.curvature) * cell.area;
+        }
+    }
+    sum * bending
 }

@@ -1,11 +1,13 @@
 //! The forces of a shell where the method has moved it, and the directions in which they act, eight triangles or folds side by side: by the
 //! operations of one, in their order, so that the bits are the same.
 
+use super::corners::{add_all, add_pair};
 use super::eights::{WIDE, all_corners, at_rest, column, eight, eight_mut, gathered, vector};
-use super::fold::{Fold, RestFold, TOGETHER};
+use super::fold::{Fold, RestFold, TOGETHER, curve, moment};
 use super::membrane::{Cell, Strain};
 use super::resist::{columns, spread};
-use super::solver::{Solver, Step, Vectors as Columns, add_all, add_pair, curve, moment};
+use super::solver::{Solver, Vectors as Columns};
+use super::step::Step;
 use super::{Bodies, ShellParams};
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};

@@ -1,7 +1,7 @@
 //! Strain in the plane of triangles.
 
 use super::ShellParams;
-use super::solver::Step;
+use super::step::Step;
 use crate::math::{dot, length, max, sqrt};
 use glam::{Mat3, Vec3};
 

@@ -1,6 +1,7 @@
 //! Thin sheets that stretch, shear and bend by the numbers of their material: cloth, paper, sails, leaves, foil.
 
 mod assemble;
+mod corners;
 mod cycle;
 mod eights;
 mod finest;
@@ -9,13 +10,18 @@ mod folded;
 mod linear;
 mod membrane;
 mod mesh;
+mod params;
 mod parts;
 mod plate;
 mod resist;
 mod solver;
+mod step;
 mod strips;
 mod sweep;
 mod taut;
+mod words;
+
+pub use params::ShellParams;
 
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
@@ -27,46 +33,9 @@ use glam::Vec3;
 use membrane::{Cell, Strain};
 use mesh::{Graph, Room};
 use plate::{Plate, Shape};
-use solver::{Solver, Step};
-
-/// What a sheet is made of, by numbers that do not depend on its mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ShellParams {
-    /// Young's modulus times thickness along the warp and along the weft \[N/m\]: a strip of that width is stretched by a share
-    /// s of its length with a pull of s times as much for each metre of its width. Woven cotton has about 2,000, jersey 100.
-    pub stretch: [f32; 2],
-    /// Shear modulus times thickness \[N/m\], for the angle between warp and weft. Half the stretch is what a material has that
-    /// is the same in all directions; cloth has much less.
-    pub shear: f32,
-    /// Bending stiffness \[N m\]: a strip is bent to a radius R by a moment of so much over R for each metre of its width. Silk has
-    /// about 1e-6, cotton 1e-5, denim 1e-4, paper 1e-3.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub bending: f32,
-    /// How long stresses take to fade whose strain stands still \[s\] (Kelvin and Voigt): a stress is that of the strain and of so
-    /// many seconds of its rate.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub damping: f32,
-}
-
-impl ShellParams {
-    /// The first of its numbers that cannot be used, and what it has to be.
-    #[must_use]
-    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
-        let [warp, weft] = self.stretch;
-        [
-            ("stretch", warp, "must not be below zero, in N/m"),
-            ("stretch", weft, "must not be below zero, in N/m"),
-            ("shear", self.shear, "must not be below zero, in N/m"),
-            ("bending", self.bending, "must not be below zero, in N m"),
-            ("damping", self.damping, "must not be below zero, in s"),
-        ]
-        .into_iter()
-        .find(|&(_, value, _)| !(0.0..f32::INFINITY).contains(&value))
-        .map(|(name, _, message)| (name, message))
-    }
-}
+use solver::Solver;
+use step::Step;
+use words::structs;
 
 /// A thin shell of triangles, in the shape in which it begins at rest.
 ///
@@ -178,13 +147,13 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let [_, triangles, hinges] = self.counts();
         let mut rest = kept;
         let _name = take(&mut rest, 1);
-        let cells = whole(take(&mut rest, triangles.saturating_mul(KEPT[0])));
-        let bends = whole(take(&mut rest, hinges.saturating_mul(KEPT[1])));
+        let cells = structs(take(&mut rest, triangles.saturating_mul(KEPT[0])));
+        let bends = structs(take(&mut rest, hinges.saturating_mul(KEPT[1])));
         let room = Room::of(self.counts());
         let graphs = take(&mut rest, room.words());
         let links = take(&mut rest, finest::pattern(&room, triangles));
         let plate = take(&mut rest, plate::words(&room));
-        Rest { cells, bends, graphs, links, plate, last: whole(take(&mut rest, 3 * room.rows[0])) }
+        Rest { cells, bends, graphs, links, plate, last: structs(take(&mut rest, 3 * room.rows[0])) }
     }
 
     fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [RestFold]) -> Shape<'s> {
@@ -243,13 +212,6 @@ struct Rest<'m> {
     last: &'m mut [Vec3],
 }
 
-/// As many whole structs as there are in so many words.
-fn whole<S: bytemuck::Pod>(words: &mut [u32]) -> &mut [S] {
-    let size = size_of::<S>() / 4;
-    let count = words.len() / size;
-    bytemuck::cast_slice_mut(&mut words[..count * size])
-}
-
 impl<P, T, H> Constraint for Shell<P, T, H>
 where
     P: AsRef<[u32]> + Sync,
@@ -299,8 +261,8 @@ where
         let room = Room::of(self.counts());
         let Rest { cells, bends, graphs, links, plate, last } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
-        let strains = whole(take(&mut rest, triangles.saturating_mul(WORK[0])));
-        let folds = whole(take(&mut rest, hinges.saturating_mul(WORK[1])));
+        let strains = structs(take(&mut rest, triangles.saturating_mul(WORK[0])));
+        let folds = structs(take(&mut rest, hinges.saturating_mul(WORK[1])));
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);

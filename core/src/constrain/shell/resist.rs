@@ -1,10 +1,11 @@
 //! How shells resist small shifts, eight triangles or folds side by side: by the operations of one, in their order, so that the bits are the same.
 
 use super::ShellParams;
+use super::corners::{add_all, add_pair, all_at};
 use super::eights::{WIDE, all_corners, at_rest, column, eight, eight_mut, gathered, vector, vectors};
-use super::fold::{Fold, RestFold};
+use super::fold::{Fold, RestFold, curve, moment};
 use super::membrane::{Cell, Strain};
-use super::solver::{Step, add_all, add_pair, all_at, curve, moment};
+use super::step::Step;
 use crate::cloth::Hinge;
 use crate::lanes::{Eight, Kernel, LANES, Vectors};
 use glam::Vec3;

@@ -4,6 +4,8 @@ use super::cycle::Levels;
 use super::fold::{Fold, RestFold};
 use super::membrane::{Cell, Strain};
 use super::resist::Resist;
+use super::step::Step;
+use super::words::structs;
 use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
 use crate::constrain::turn::turn_of;
@@ -32,23 +34,6 @@ const CLOSER: f32 = 0.1;
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
-/// A sub-step.
-pub(super) struct Step {
-    /// How long it is \[s\].
-    pub(super) h: f32,
-    /// The seconds of a strain's rate that count as strain.
-    pub(super) lag: f32,
-    /// How much stiffer that makes a change within the sub-step.
-    pub(super) rate: f32,
-}
-
-impl Step {
-    /// A strain that was another when the sub-step began, and what its rate adds: a strain that stands still is felt as it is.
-    pub(super) fn felt(&self, now: f32, before: f32) -> f32 {
-        now + self.lag / self.h * (now - before)
-    }
-}
-
 /// The particles of a shell in a sub-step, by their place in its list.
 pub(super) struct Vectors<'m> {
     pub(super) rows: &'m mut [u32],
@@ -75,7 +60,7 @@ impl<'m> Vectors<'m> {
         let rows = take(&mut rest, count);
         let weight: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, count));
         let pressing = take(&mut rest, count);
-        let [shift, r, p, q, met] = core::array::from_fn(|_| super::whole(take(&mut rest, 3 * count)));
+        let [shift, r, p, q, met] = core::array::from_fn(|_| structs(take(&mut rest, 3 * count)));
         for ((row, weight), &number) in rows.iter_mut().zip(&mut *weight).zip(particles) {
             let found = bodies.row_of_start(number);
             let sound = |row: usize| bodies.position[row].is_finite() && bodies.velocity[row].is_finite();
@@ -381,54 +366,6 @@ impl Solver<'_> {
             if weight > 0.0 && shift.is_finite() {
                 bodies.shift(row as usize, shift);
             }
-        }
-    }
-}
-
-/// Adds the curvature that a change of a fold's angle makes.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &RestFold, change: f32) {
-    let [first, second] = hinge.faces;
-    if let Some(strain) = strains.get_mut(first as usize) {
-        bend.curve(0, change, &mut strain.curvature);
-    }
-    if let Some(strain) = strains.get_mut(second as usize) {
-        bend.curve(1, change, &mut strain.curvature);
-    }
-}
-
-/// The moment about an edge that the curvatures of its triangles make.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &RestFold, bending: f32) -> f32 {
-    let mut sum = 0.0;
-    for (side, face) in hinge.faces.into_iter().enumerate() {
-        if let (Some(strain), Some(cell)) = (strains.get(face as usize), cells.get(face as usize)) {
-            sum += bend.moment(side, strain.curvature) * cell.area;
-        }
-    }
-    sum * bending
-}
-
-/// The vectors of four corners, if there are all. Where one is missing nothing acts: see `linearise`.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn all_at(vectors: &[Vec3], [a, b, c, d]: [u32; 4]) -> Option<[Vec3; 4]> {
-    let at = |corner: u32| vectors.get(corner as usize);
-    let (Some(&a), Some(&b), Some(&c), Some(&d)) = (at(a), at(b), at(c), at(d)) else { return None };
-    Some([a, b, c, d])
-}
-
-/// Adds forces on the second and third corner of a triangle, and against them on the first.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn add_pair(total: &mut [Vec3], corners: [u32; 3], [p, q]: [Vec3; 2]) {
-    add_all(total, corners, [-(p + q), p, q]);
-}
-
-/// Adds forces on corners.
-#[cfg_attr(not(target_os = "none"), inline(always))]
-pub(super) fn add_all<const N: usize>(total: &mut [Vec3], corners: [u32; N], forces: [Vec3; N]) {
-    for (corner, force) in corners.into_iter().zip(forces) {
-        if let Some(total) = total.get_mut(corner as usize) {
-            *total += force;
         }
     }
 }

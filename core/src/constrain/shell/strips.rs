@@ -13,9 +13,7 @@
 
 mod make;
 
-use super::mesh::Graph;
 use crate::lanes::{Eight, LANES, Vectors, mask_of};
-use crate::memory::take;
 use core::ops::Range;
 
 /// Where nothing is.
@@ -72,18 +70,6 @@ impl<'m> Strips<'m> {
         };
         let (starts, bases) = (next(ends(rows)), next(entries));
         Self { starts, bases, columns: bytemuck::cast_slice(next(entries.saturating_mul(LANES))) }
-    }
-
-    /// Puts the links of a graph into words, with others to work with; tells whether there is room, as there is for so many links as `entries`
-    /// has been told.
-    pub(super) fn make(graph: &Graph<'_>, entries: usize, words: &mut [u32], work: &mut [u32]) -> Option<()> {
-        let rows = graph.starts.len().saturating_sub(1);
-        let mut rest = words;
-        let starts = take(&mut rest, ends(rows));
-        let bases = take(&mut rest, entries);
-        let columns = bytemuck::cast_slice_mut(take(&mut rest, entries.saturating_mul(LANES)));
-        make::fill(graph, work.get_mut(..KEYS)?, starts, bases, columns)?;
-        Some(())
     }
 
     /// The number of entries.

@@ -1,6 +1,6 @@
 //! Triangles: their strains, and how each is held.
 
-use super::{Bodies, NEARLY};
+use crate::constrain::Bodies;
 use crate::math::{dot, largest, length, max, min, sqrt};
 use glam::Vec3;
 
@@ -9,6 +9,9 @@ const COSINE: f32 = 0.5;
 
 /// The share of its length at rest below which warp or weft is crushed: it then shears the more freely, the shorter it is.
 const CRUSHED: f32 = 0.25;
+
+/// How far a strain may be beyond its limit.
+pub(super) const NEARLY: f32 = 1e-4;
 
 /// What is kept of a triangle.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]

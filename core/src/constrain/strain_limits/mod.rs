@@ -4,7 +4,7 @@ mod cell;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{clamp, dot, max, sin_cos};
-use cell::{Cell, Held, Past};
+use cell::{Cell, Held, NEARLY, Past};
 use glam::Vec3;
 
 /// How far warp and weft may stretch and shrink, and turn against each other. A limit that is none does not hold.
@@ -123,8 +123,6 @@ pub struct StrainLimits<T> {
 
 /// How often all triangles are gone through at the most.
 const ROUNDS: u32 = 16;
-/// How far a strain may be beyond its limit.
-const NEARLY: f32 = 1e-4;
 /// So many rounds bring what is neither crushed nor squeezed within its limits.
 const CALM: u32 = 4;
 /// The share that a sub-step gives back of how far a strain was beyond its limit already.

@@ -2,7 +2,8 @@
 
 use super::band::Band;
 use super::frame::{Edge, bring, gradients, strain};
-use super::{Joint, StrandParams};
+use super::joint::Joint;
+use super::params::StrandParams;
 use crate::constrain::Bodies;
 use crate::constrain::turn::{Turn, outer, solve};
 use crate::math::{clamp, dot, length, max};

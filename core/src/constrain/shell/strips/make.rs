@@ -1,16 +1,36 @@
 //! How the links of a mesh are put into strips: those that lie one behind the other as runs, others by lanes of their own, the rest mixed.
 
-use super::{IN_TURN, NONE};
+use super::{IN_TURN, KEYS, NONE, Strips, ends};
 use crate::constrain::shell::mesh::Graph;
 use crate::lanes::LANES;
+use crate::memory::take;
 
 /// So many of eight rows have to be linked with rows that lie one behind the other for these to be taken as they lie.
 const RUN: usize = 4;
 /// The number of others that a mixed entry has to spare: what it adds up goes to its rows one by one.
 const WORTH: usize = 3;
 
+impl Strips<'_> {
+    /// Puts the links of a graph into words, with others to work with; tells whether there is room, as there is for so many links as `entries`
+    /// has been told.
+    pub(in crate::constrain::shell) fn make(
+        graph: &Graph<'_>,
+        entries: usize,
+        words: &mut [u32],
+        work: &mut [u32],
+    ) -> Option<()> {
+        let rows = graph.starts.len().saturating_sub(1);
+        let mut rest = words;
+        let starts = take(&mut rest, ends(rows));
+        let bases = take(&mut rest, entries);
+        let columns = bytemuck::cast_slice_mut(take(&mut rest, entries.saturating_mul(LANES)));
+        fill(graph, work.get_mut(..KEYS)?, starts, bases, columns)?;
+        Some(())
+    }
+}
+
 /// Puts the links of a graph into entries, and says where those of each strip begin, and the mixed ones among them.
-pub(super) fn fill(
+fn fill(
     graph: &Graph<'_>,
     keys: &mut [u32],
     starts: &mut [u32],

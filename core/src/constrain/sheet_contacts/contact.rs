@@ -1,0 +1,73 @@
+//! What is kept apart: points and triangles, edges and edges, particles and faces of the scenery.
+
+use super::super::contacts::{TangentImpulse, Touch};
+use super::closest::Kind;
+use glam::Vec3;
+
+/// A point and a triangle, or two edges, that are kept apart.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Contact {
+    pub(super) corners: [u32; 4],
+    /// The number of the corners that are the first one's.
+    pub(super) split: u32,
+    /// The shares of the corners in the places that touch; they add up to zero.
+    pub(super) weights: [f32; 4],
+    /// Unit vector from the second to the first.
+    pub(super) normal: Vec3,
+    /// How far apart they are to be at the sub-step's end \[m\].
+    pub(super) target: f32,
+    /// How much of that gives a gap back that was missing \[m\].
+    pub(super) recovery: f32,
+    /// 1 if the two would pass each other.
+    pub(super) meets: u32,
+    pub(super) touch: Touch,
+    pub(super) tangent: TangentImpulse,
+}
+
+impl Contact {
+    pub(super) fn key(&self) -> ([u32; 4], u32) {
+        (self.corners, self.split)
+    }
+
+    pub(super) fn meets(&self) -> bool {
+        self.meets != 0
+    }
+
+    /// Tells whether it is other than a point over a triangle: the line between the two can lean against both sheets.
+    pub(super) fn leans(&self) -> bool {
+        self.split != Kind::PointTriangle.split() as u32 || self.weights.contains(&0.0)
+    }
+
+    /// The particles that stand for both.
+    pub(super) fn sides(&self) -> [usize; 2] {
+        let second = if self.split == Kind::PointTriangle.split() as u32 { 1 } else { 2 };
+        [self.corners[0] as usize, self.corners[second] as usize]
+    }
+
+    /// The weighted sum of something of its corners: how the first differs from the second in it.
+    pub(super) fn between(&self, of: impl Fn(usize) -> Vec3) -> Vec3 {
+        let [a, b, c, d] = self.corners.map(|corner| of(corner as usize));
+        let [_, p, q, r] = self.weights;
+        (b - a) * p + (c - a) * q + (d - a) * r
+    }
+}
+
+/// A face of the scenery that a particle is kept from.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Surface {
+    pub(super) particle: u32,
+    pub(super) normal: Vec3,
+    /// How far along the normal the particle is to be from the origin at the sub-step's end \[m\], and at the least.
+    pub(super) offset: f32,
+    pub(super) limit: f32,
+    /// How much of the first gives a gap back that was missing \[m\].
+    pub(super) recovery: f32,
+    /// How far off it is as the sub-step begins \[m\].
+    pub(super) distance: f32,
+    /// How it moves there \[m/s\].
+    pub(super) velocity: Vec3,
+    pub(super) touch: Touch,
+    pub(super) tangent: TangentImpulse,
+}

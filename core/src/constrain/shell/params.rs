@@ -1,0 +1,40 @@
+//! What shells are made of.
+
+/// What a sheet is made of, by numbers that do not depend on its mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ShellParams {
+    /// Young's modulus times thickness along the warp and along the weft \[N/m\]: a strip of that width is stretched by a share
+    /// s of its length with a pull of s times as much for each metre of its width. Woven cotton has about 2,000, jersey 100.
+    pub stretch: [f32; 2],
+    /// Shear modulus times thickness \[N/m\], for the angle between warp and weft. Half the stretch is what a material has that
+    /// is the same in all directions; cloth has much less.
+    pub shear: f32,
+    /// Bending stiffness \[N m\]: a strip is bent to a radius R by a moment of so much over R for each metre of its width. Silk has
+    /// about 1e-6, cotton 1e-5, denim 1e-4, paper 1e-3.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub bending: f32,
+    /// How long stresses take to fade whose strain stands still \[s\] (Kelvin and Voigt): a stress is that of the strain and of so
+    /// many seconds of its rate.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub damping: f32,
+}
+
+impl ShellParams {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let [warp, weft] = self.stretch;
+        [
+            ("stretch", warp, "must not be below zero, in N/m"),
+            ("stretch", weft, "must not be below zero, in N/m"),
+            ("shear", self.shear, "must not be below zero, in N/m"),
+            ("bending", self.bending, "must not be below zero, in N m"),
+            ("damping", self.damping, "must not be below zero, in s"),
+        ]
+        .into_iter()
+        .find(|&(_, value, _)| !(0.0..f32::INFINITY).contains(&value))
+        .map(|(name, _, message)| (name, message))
+    }
+}

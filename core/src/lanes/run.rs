@@ -1,0 +1,38 @@
+//! Kernels in the registers of the machine that a program finds itself on.
+
+use super::Kernel;
+#[cfg(target_os = "none")]
+use super::One;
+
+/// Runs a kernel in the widest registers that it is compiled for.
+#[inline(always)]
+pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(
+            avx2,
+            #[inline(always)]
+            || kernel.run(super::avx2::Wide::zero(avx2)),
+        );
+    }
+    kernel.run(wide::f32x8::ZERO)
+}
+
+/// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
+#[inline(always)]
+pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(avx2, f);
+    }
+    f()
+}
+
+/// Runs a kernel that goes over so many at a time in the first lanes.
+#[inline(always)]
+pub(crate) fn run_abreast<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_os = "none")]
+    return kernel.run(One(0.0));
+    #[cfg(not(target_os = "none"))]
+    run(kernel)
+}

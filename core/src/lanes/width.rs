@@ -1,0 +1,11 @@
+//! How many numbers go side by side.
+
+/// The number of lanes.
+pub(crate) const LANES: usize = 8;
+
+/// Where a lane that stands for nothing is put, without weight: so far that whatever is divided by its distance is zero,
+/// and so near that its square is a number.
+pub(crate) const NOWHERE: f32 = 1e19;
+
+/// The number that goes side by side where eight may: on chips, where lanes would be taken one after the other, one.
+pub(crate) const ABREAST: usize = if cfg!(target_os = "none") { 1 } else { LANES };

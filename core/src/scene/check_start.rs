@@ -1,0 +1,235 @@
+//! Checks of what a scene begins with beside its own particles: cloths, boxes and strands.
+
+use super::check_shape::check_shape;
+use super::numbers::{Checked, above_zero, check_breaking, finite, zero_or_more};
+use super::{Air, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
+use crate::cloth::{ClothSprings, Sheet};
+use crate::math::length;
+use crate::motion::Motion;
+use alloc::format;
+use alloc::vec::Vec;
+use glam::Vec3;
+
+/// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
+const MOST_OF_SHEETS: u64 = 1 << 22;
+/// As many boxes as a scene may have: they take about 6 kB each.
+const MOST_BOXES: u64 = 1 << 16;
+/// As many particles as the strands of a scene may have.
+const MOST_OF_STRANDS: u64 = 1 << 22;
+
+impl SceneFile {
+    pub(super) fn check_fabrics(&self) -> Result<(), SceneError> {
+        let mut count = 0u64;
+        for (i, cloth) in self.cloths.iter().enumerate() {
+            let at = format!("cloths[{i}]");
+            let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
+            let ClothSprings { structural, shear, bend } = cloth.springs;
+            for (name, params) in [("structural", structural), ("shear", shear), ("bend", bend)] {
+                let Some(params) = params else { continue };
+                zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
+                zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
+            }
+            if cloth.shell.is_none() && [structural, shear, bend].iter().all(Option::is_none) {
+                return refuse(
+                    "springs",
+                    "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
+                );
+            }
+            cloth.check_material(&at)?;
+            finite(&format!("{at}.drag"), &[cloth.drag])?;
+            finite(&format!("{at}.elasticity"), &[cloth.elasticity])?;
+            finite(&format!("{at}.velocity"), &cloth.velocity.to_array())?;
+            check_breaking(&format!("{at}.breaks_at"), cloth.breaks_at)?;
+            if let Some(gas) = cloth.gas {
+                zero_or_more(&format!("{at}.gas.amount"), gas.amount)?;
+                finite(&format!("{at}.gas.outside"), &[gas.outside])?;
+            }
+            if cloth.gas.is_some() && matches!(cloth.form, Form::Sheet(_)) {
+                return refuse("gas", "a sheet has no inside; only a closed mesh can hold gas");
+            }
+            let place = |sheet: &Sheet| [sheet.corner, sheet.sides[0], sheet.sides[1]];
+            if matches!(&cloth.form, Form::Sheet(sheet) if !place(sheet).iter().all(|v| v.is_finite())) {
+                return refuse("form", "corner and sides have to be finite");
+            }
+            if matches!(&cloth.form, Form::Sheet(sheet) if !(length(sheet.sides[0].cross(sheet.sides[1])) > 0.0)) {
+                return refuse("form", "its sides have to be longer than zero and not parallel: they span no area");
+            }
+            let more = cloth.count().unwrap_or(0);
+            count = count.saturating_add(more);
+            if count > MOST_OF_SHEETS {
+                let message = format!(
+                    "makes {more} particles; the sheets of a scene may have {MOST_OF_SHEETS}: take fewer cells"
+                );
+                return refuse("form", &message);
+            }
+            if let Some(number) =
+                cloth.fixed.iter().find(|&&n| cloth.count().is_some_and(|count| u64::from(n) >= count))
+            {
+                return refuse(
+                    "fixed",
+                    &format!("particle {number} is out of range; there are {}, from 0", cloth.count().unwrap_or(0)),
+                );
+            }
+            self.check_material(&at, cloth.material)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_boxes(&self) -> Checked {
+        let mut count = 0u64;
+        for (i, boxes) in self.boxes.iter().enumerate() {
+            let at = |field: &str| format!("boxes[{i}].{field}");
+            for side in boxes.sides.to_array() {
+                above_zero(&at("sides"), side)?;
+            }
+            above_zero(&at("mass"), boxes.mass)?;
+            let spacing = boxes.spacing.unwrap_or_default();
+            let vectors = [boxes.position, spacing, boxes.turn, boxes.velocity, boxes.spin, boxes.load];
+            let names = ["position", "spacing", "turn", "velocity", "spin", "load"];
+            for (name, vector) in names.into_iter().zip(vectors) {
+                finite(&at(name), &vector.to_array())?;
+            }
+            if boxes.load.to_array().into_iter().any(|load| load.abs() >= 1.0) {
+                return Err(SceneError::value(at("load"), "has to be within -1 and 1, a share of the mass of a side"));
+            }
+            let Scatter { position, turn, velocity, spin, seed: _ } = boxes.scatter.unwrap_or_default();
+            for (name, number) in [("position", position), ("turn", turn), ("velocity", velocity), ("spin", spin)] {
+                zero_or_more(&at(&format!("scatter.{name}")), number)?;
+            }
+            finite(&at("drag"), &[boxes.drag])?;
+            finite(&at("elasticity"), &[boxes.elasticity])?;
+            count = count.saturating_add(boxes.number());
+            if count > MOST_BOXES {
+                let message = format!("makes {} boxes; a scene may have {MOST_BOXES}", boxes.number());
+                return Err(SceneError::value(at("count"), message));
+            }
+            self.check_material(&format!("boxes[{i}]"), boxes.material)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_strands(&self) -> Checked {
+        let mut count = 0u64;
+        for (i, tuft) in self.strands.iter().enumerate() {
+            let at = format!("strands[{i}]");
+            tuft.check(&at, self)?;
+            count = count.saturating_add(tuft.particles());
+            if count > MOST_OF_STRANDS {
+                let message =
+                    format!("makes {} particles; the strands of a scene may have {MOST_OF_STRANDS}", tuft.particles());
+                return Err(SceneError::value(at, message));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Cloth {
+    /// Checks what it weighs, what it is made of and the air around it.
+    fn check_material(&self, at: &str) -> Result<(), SceneError> {
+        match self.density {
+            Some(_) if self.mass != 0.0 => {
+                return Err(SceneError::value(format!("{at}.density"), "say either density or mass"));
+            }
+            Some(density) => above_zero(&format!("{at}.density"), density)?,
+            None => above_zero(&format!("{at}.mass"), self.mass)?,
+        }
+        if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
+            return Err(SceneError::value(format!("{at}.shell.{field}"), message));
+        }
+        if let Some(thickness) = self.thickness {
+            above_zero(&format!("{at}.thickness"), thickness)?;
+        }
+        self.check_limits(at)?;
+        let Some(Air { density, drag, lift, friction }) = self.air else { return Ok(()) };
+        let numbers = [("density", density), ("drag", drag), ("lift", lift), ("friction", friction)];
+        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+
+    fn check_limits(&self, at: &str) -> Result<(), SceneError> {
+        let Some(params) = self.limits else { return Ok(()) };
+        if self.shell.is_some() {
+            let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
+            return Err(SceneError::value(format!("{at}.limits"), message));
+        }
+        if self.breaks_at.is_some() {
+            let message = "hold triangles together whose springs have broken; it has to go without breaks_at";
+            return Err(SceneError::value(format!("{at}.limits"), message));
+        }
+        let Some((name, message)) = params.fault() else { return Ok(()) };
+        let value = match name {
+            "warp" => format!("{:?}", params.warp.unwrap_or_default()),
+            "weft" => format!("{:?}", params.weft.unwrap_or_default()),
+            "shear" => format!("{}", params.shear.unwrap_or_default()),
+            "compliance" => format!("{}", params.compliance),
+            _ => format!("{}", params.damping),
+        };
+        let is_empty = params.warp.is_none() && name == "warp";
+        let message = if is_empty { message.into() } else { format!("{message}, not {value}") };
+        Err(SceneError::value(format!("{at}.limits.{name}"), message))
+    }
+}
+
+impl Tuft {
+    /// Checks the air around it.
+    fn check_air(&self, at: &str) -> Checked {
+        let Some(StrandAir { diameter, density, viscosity, friction }) = self.air else { return Ok(()) };
+        if self.drag != 0.0 {
+            return Err(SceneError::value(format!("{at}.drag"), "say either drag or air"));
+        }
+        above_zero(&format!("{at}.air.diameter"), diameter.unwrap_or(1.0))?;
+        let numbers = [("density", density), ("viscosity", viscosity), ("friction", friction)];
+        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+
+    fn check(&self, at: &str, file: &SceneFile) -> Checked {
+        let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
+        if !(1..=10_000).contains(&self.segments) {
+            return refuse("segments", &format!("has to be from 1 to 10000, not {}", self.segments));
+        }
+        for (name, number) in [("radius", self.radius), ("young", self.young), ("density", self.density)] {
+            above_zero(&format!("{at}.{name}"), number)?;
+        }
+        for (name, number) in [("damping", self.damping), ("drag", self.drag), ("width", self.width)] {
+            zero_or_more(&format!("{at}.{name}"), number)?;
+        }
+        if !(0.0..=0.5).contains(&self.poisson) {
+            return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
+        }
+        self.check_air(at)?;
+        finite(&format!("{at}.elasticity"), &[self.elasticity])?;
+        if let Some(message) = self.motion.as_ref().and_then(Motion::fault) {
+            return refuse("motion", message);
+        }
+        if let Some(number) = self.fixed.iter().find(|&&number| number > self.segments) {
+            return refuse("fixed", &format!("point {number} is out of range; the last is {}", self.segments));
+        }
+        match &self.form {
+            Growth::Curve(places) => {
+                finite(&format!("{at}.form.curve"), &places.iter().flat_map(Vec3::to_array).collect::<Vec<_>>())?;
+                let way: f32 = places.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
+                if !(way > 0.0 && way.is_finite()) {
+                    return refuse("form.curve", "has to lead through two places at least that are not the same");
+                }
+            }
+            Growth::On(field) => field.check(&format!("{at}.form.on"))?,
+        }
+        file.check_material(at, self.material)
+    }
+}
+
+impl Field {
+    fn check(&self, at: &str) -> Checked {
+        above_zero(&format!("{at}.length"), self.length)?;
+        zero_or_more(&format!("{at}.spread"), self.spread)?;
+        finite(&format!("{at}.lean"), &self.lean.to_array())?;
+        for corner in self.within.into_iter().flatten() {
+            finite(&format!("{at}.within"), &corner.to_array())?;
+        }
+        if let Some(Curl { radius, pitch }) = self.curl {
+            zero_or_more(&format!("{at}.curl.radius"), radius)?;
+            above_zero(&format!("{at}.curl.pitch"), pitch)?;
+        }
+        check_shape(&format!("{at}.shape"), &self.shape)
+    }
+}
