@@ -30,7 +30,6 @@ pub use contacts::Contacts;
 pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
-pub use moved::ConstraintCode;
 pub(crate) use moved::{Moment, Moved};
 pub use rigid::{Hull, HullEdge, HullFace, HullList, RigidBodies, RigidBox};
 #[cfg(feature = "alloc")]
@@ -48,6 +47,7 @@ pub use crate::cloth::mesh_hinges;
 pub use crate::memory::{Demand, Kept, Words};
 
 use crate::composed::composed;
+use crate::observe::Phase;
 
 /// Something that the places and velocities of particles have to satisfy.
 ///
@@ -120,6 +120,35 @@ pub trait Constraint: Sync {
     /// Changes velocities at a sub-step's end, when all have been projected: restitution, friction, viscosity.
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let _ = (bodies, share);
+    }
+}
+
+/// The function that constraints call for in a step. A program without constraints does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct ConstraintCode(pub(crate) fn(&dyn Constraint, &mut Moved<'_>, Moment, Substep));
+
+impl ConstraintCode {
+    /// All of it.
+    pub const ALL: Self = Self(constrain);
+}
+
+/// Lets constraints move what the method has moved, or look on before, and says how far that has come.
+fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
+    let [_, end] = substep.during;
+    match moment {
+        Moment::Before => {
+            let (mut bodies, mut share) = moved.lend(substep);
+            constraints.prepare(&mut bodies, &mut share);
+        }
+        Moment::After => {
+            moved.tell(Phase::Advance, end);
+            moved.tell(Phase::Project, end);
+            let (mut bodies, mut share) = moved.lend(substep);
+            constraints.begin(&mut bodies, &mut share);
+            constraints.project(&mut bodies, &mut share);
+            constraints.settle(&mut bodies, &mut share);
+            moved.tell(Phase::Constrain, end);
+        }
     }
 }
 

@@ -1,6 +1,6 @@
-//! The particles that a sub-step moves, and how constraints are called upon to.
+//! The particles that a sub-step moves, and what constraints are lent of them.
 
-use super::{Bodies, Constraint, Near, Share, Substep};
+use super::{Bodies, Near, Share, Substep};
 use crate::custom::CustomColumnsMut;
 use crate::force::Attributes;
 use crate::index::{IndexChoice, ListMemory};
@@ -13,15 +13,6 @@ use crate::shape::Collider;
 use crate::time::Time;
 use glam::Vec3;
 
-/// The function that constraints call for in a step. A program without constraints does not carry it about.
-#[derive(Clone, Copy, Debug)]
-pub struct ConstraintCode(pub(crate) fn(&mut Moved<'_>, Moment, Substep));
-
-impl ConstraintCode {
-    /// All of it.
-    pub const ALL: Self = Self(constrain);
-}
-
 /// The phases of a sub-step in which constraints are called.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moment {
@@ -33,7 +24,6 @@ pub(crate) enum Moment {
 
 /// The particles that a sub-step moves, and the memory for it.
 pub(crate) struct Moved<'a> {
-    pub(crate) constraints: &'a dyn Constraint,
     pub(crate) colliders: &'a dyn Collider,
     pub(crate) index: &'a dyn IndexChoice,
     pub(crate) integrator: &'a dyn Integrator,
@@ -57,63 +47,43 @@ pub(crate) struct Moved<'a> {
 
 impl Moved<'_> {
     /// Says that the sub-step has come so far.
-    fn tell(&mut self, phase: Phase, time: Time) {
+    pub(super) fn tell(&mut self, phase: Phase, time: Time) {
         let custom = self.attributes.custom(self.kept, self.layout.capacity());
         let state = self.attributes.state(custom, time, [self.position, self.velocity]);
         self.observer.after(phase, &state);
     }
-}
 
-/// Lets constraints move what the method has moved, or look on before, and says how far that has come.
-fn constrain(moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
-    let [_, end] = substep.during;
-    match moment {
-        Moment::Before => lend(moved, substep, |constraints, bodies, share| constraints.prepare(bodies, share)),
-        Moment::After => {
-            moved.tell(Phase::Advance, end);
-            moved.tell(Phase::Project, end);
-            lend(moved, substep, |constraints, bodies, share| {
-                constraints.begin(bodies, share);
-                constraints.project(bodies, share);
-                constraints.settle(bodies, share);
-            });
-            moved.tell(Phase::Constrain, end);
-        }
+    /// What constraints move, and the memory that they work in.
+    #[inline(never)]
+    pub(super) fn lend(&mut self, substep: Substep) -> (Bodies<'_>, Share<'_>) {
+        let Attributes { lives, inverse_mass, elasticity, .. } = *self.attributes;
+        let (len, capacity) = (self.position.len(), self.layout.capacity());
+        let [memory, scratch] = self.scratch.constraining();
+        let (custom, kept) = self.layout.kept(self.kept);
+        let bodies = Bodies {
+            position: self.position,
+            velocity: self.velocity,
+            before: self.start,
+            radius: &lives.radius[..len],
+            mass: &lives.mass[..len],
+            inverse_mass: &inverse_mass[..len],
+            elasticity: &elasticity[..len],
+            material: &lives.material[..len],
+            custom: CustomColumnsMut::new(lives.custom.list(), custom, capacity, len),
+            substep,
+            colliders: self.colliders,
+            materials: lives.materials,
+            near: Near { index: self.index, memory },
+            report: self.report,
+            slot: &lives.slot[..len],
+            serial: &lives.springs.serial[..len],
+            row_of: lives.springs.row_of,
+            pending_death: self.pending_death,
+            start: lives.springs.start,
+            marks: self.marks,
+            lag: self.integrator.lag(),
+            observer: self.observer,
+        };
+        (bodies, Share { kept, step: self.lasting, scratch, capacity })
     }
-}
-
-/// Lends the constraints what they move and the memory that they work in.
-#[inline(never)]
-fn lend(moved: &mut Moved<'_>, substep: Substep, go: fn(&dyn Constraint, &mut Bodies<'_>, &mut Share<'_>)) {
-    let Moved { constraints, colliders, index, integrator, layout, .. } = *moved;
-    let Attributes { lives, inverse_mass, elasticity, .. } = *moved.attributes;
-    let len = moved.position.len();
-    let [memory, scratch] = moved.scratch.constraining();
-    let (custom, kept) = layout.kept(moved.kept);
-    let mut bodies = Bodies {
-        position: moved.position,
-        velocity: moved.velocity,
-        before: moved.start,
-        radius: &lives.radius[..len],
-        mass: &lives.mass[..len],
-        inverse_mass: &inverse_mass[..len],
-        elasticity: &elasticity[..len],
-        material: &lives.material[..len],
-        custom: CustomColumnsMut::new(lives.custom.list(), custom, layout.capacity(), len),
-        substep,
-        colliders,
-        materials: lives.materials,
-        near: Near { index, memory },
-        report: moved.report,
-        slot: &lives.slot[..len],
-        serial: &lives.springs.serial[..len],
-        row_of: lives.springs.row_of,
-        pending_death: moved.pending_death,
-        start: lives.springs.start,
-        marks: moved.marks,
-        lag: integrator.lag(),
-        observer: moved.observer,
-    };
-    let mut share = Share { kept, step: moved.lasting, scratch, capacity: layout.capacity() };
-    go(constraints, &mut bodies, &mut share);
 }

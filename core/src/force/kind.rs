@@ -1,12 +1,18 @@
 //! The forces that a file can name.
 
+#[cfg(feature = "std")]
+use super::Entry;
 #[cfg(feature = "alloc")]
 use super::{Aerodynamics, CylinderDrag, FlowKind, Pressure, Relaxation, Wind};
 use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
+use super::{Needs, Perturbation, State, Steady, same_as};
+use crate::custom::CustomColumnsMut;
 #[cfg(feature = "alloc")]
 use alloc::string::String;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
+use core::ops::Range;
+use glam::Vec3;
 
 /// Declares the forces that have a name.
 macro_rules! kinds {
@@ -27,7 +33,7 @@ macro_rules! kinds {
             }
 
             /// The force itself.
-            pub(super) fn get(&self) -> &dyn Force {
+            fn get(&self) -> &dyn Force {
                 match self { $($(#[cfg(feature = $feature)])? Self::$kind(force) => force,)+ }
             }
         }
@@ -61,4 +67,8 @@ kinds! {
     Aerodynamics = "aerodynamics", Aerodynamics<Vec<[u32; 3]>, Vec<FlowKind>>, if "alloc";
     /// Drag of what is long and thin, by the segment.
     CylinderDrag = "cylinder_drag", CylinderDrag<Vec<[u32; 2]>, Vec<FlowKind>>, if "alloc";
+}
+
+impl Force for ForceKind {
+    same_as!(this => this.get());
 }

@@ -345,12 +345,10 @@ macro_rules! same_as {
     };
 }
 
+use same_as;
+
 impl<T: Force + ?Sized> Force for &T {
     same_as!(this => **this);
-}
-
-impl Force for ForceKind {
-    same_as!(this => this.get());
 }
 
 composed!(Force by sum_of);

@@ -1,6 +1,6 @@
 //! The needs of forces: all that they have to find in the state.
 
-use super::{Attributes, Force, State};
+use super::{Attributes, State};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::index::{BarnesHut, Found, IndexChoice, ListMemory, Search, find};
 use crate::math::max;
@@ -24,9 +24,9 @@ pub struct Listing(pub(crate) fn(&mut Finder<'_>, &State<'_>, Then<'_>));
 #[derive(Clone, Copy, Debug)]
 pub struct Writing(pub(crate) fn(Written<'_>));
 
-/// All rows at a step's end, the memory that is laid out for them, and the step's length.
+/// All rows at a step's end, and the memory that is laid out for them.
 pub(crate) struct Written<'a> {
-    pub(crate) forces: &'a dyn Force,
+    pub(crate) needs: Needs,
     pub(crate) attributes: &'a Attributes<'a>,
     pub(crate) index: &'a dyn IndexChoice,
     pub(crate) ends: [&'a [Vec3]; 2],
@@ -34,8 +34,9 @@ pub(crate) struct Written<'a> {
     pub(crate) work: &'a mut [Vec3],
     pub(crate) layout: Layout,
     pub(crate) end: Time,
-    pub(crate) dt: f32,
     pub(crate) effort: &'a mut Effort,
+    /// What changes the columns.
+    pub(crate) write: &'a mut dyn FnMut(&State<'_>, &mut CustomColumnsMut<'_>),
 }
 
 /// The continuation with a state in which all is found.
@@ -99,16 +100,15 @@ impl Finder<'_> {
 }
 
 fn write(rows: Written<'_>) {
-    let Written { forces, attributes, index, ends: [position, velocity], kept, work, layout, end, dt, effort } = rows;
+    let Written { needs, attributes, index, ends: [position, velocity], kept, work, layout, end, effort, write } = rows;
     let (values, seen) = (layout.kept(kept).0, attributes.lives.custom);
     let mut custom = CustomColumnsMut::new(seen.list(), values, layout.capacity(), position.len());
     let mut scratch = layout.shares(work).scratch;
     let ([tree, near], _) = scratch.moving();
-    let needs = forces.needs();
     let finding = Effort::NONE;
     let mut finder =
         Finder { attributes, custom: seen, needs, index, tree, near, lists: None, first: 0, effort: finding };
-    finder.with_state(end, position, velocity, &mut |state| forces.write(state, &mut custom, dt));
+    finder.with_state(end, position, velocity, &mut |state| write(state, &mut custom));
     effort.found(&finder.effort);
 }
 

@@ -1,6 +1,8 @@
 //! The reapers that a file can name.
 
-use super::{Chance, Dense, Reaper};
+use super::{Chance, Dense, Reaper, ReaperCode, Verdicts, same_as};
+use crate::force::State;
+use core::ops::Range;
 
 /// Declares the reapers that have a name.
 macro_rules! kinds {
@@ -21,7 +23,7 @@ macro_rules! kinds {
             }
 
             /// The reaper itself.
-            pub(super) fn get(&self) -> &dyn Reaper {
+            fn get(&self) -> &dyn Reaper {
                 match self { $(Self::$kind(reaper) => reaper,)+ }
             }
         }
@@ -33,4 +35,8 @@ kinds! {
     Chance = "chance", Chance;
     /// Death where too many are.
     Dense = "dense", Dense;
+}
+
+impl Reaper for ReaperKind {
+    same_as!(this => this.get());
 }

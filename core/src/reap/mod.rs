@@ -206,12 +206,10 @@ macro_rules! same_as {
     };
 }
 
+use same_as;
+
 impl<T: Reaper + ?Sized> Reaper for &T {
     same_as!(this => **this);
-}
-
-impl Reaper for ReaperKind {
-    same_as!(this => this.get());
 }
 
 composed!(Reaper by any_of);

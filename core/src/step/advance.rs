@@ -51,7 +51,6 @@ impl Tile<'_> {
             report.effort.found(&field.finder.effort);
         }
         let mut moved = Moved {
-            constraints: scene.constraints,
             colliders: scene.colliders,
             index: scene.index,
             integrator: scene.integrator,

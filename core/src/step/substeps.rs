@@ -30,16 +30,16 @@ impl Scene<'_> {
 impl Moved<'_> {
     /// Moves all through a sub-step.
     pub(super) fn go(&mut self, scene: &Scene<'_>, substep: Substep, hint: &mut Time) {
-        let constraints = self.constraints.code().filter(|_| !self.marks.is_empty());
+        let constraints = scene.constraints.code().filter(|_| !self.marks.is_empty());
         // How far constraints keep particles off the scenery is told once a step.
         let lasts = if substep.number == 0 { 0 } else { !DONE };
         self.marks.iter_mut().for_each(|mark| *mark &= lasts);
         if let Some(code) = constraints {
-            (code.0)(self, Moment::Before, substep);
+            (code.0)(scene.constraints, self, Moment::Before, substep);
         }
         self.integrate(scene, substep, hint);
         if let Some(code) = constraints {
-            (code.0)(self, Moment::After, substep);
+            (code.0)(scene.constraints, self, Moment::After, substep);
         }
     }
 

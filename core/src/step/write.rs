@@ -2,7 +2,7 @@
 
 use crate::collide::Tile;
 use crate::custom::CustomColumnsMut;
-use crate::force::{Writing, Written};
+use crate::force::{State, Writing, Written};
 use crate::memory::Workspace;
 use crate::observe::Observer;
 use crate::report::Report;
@@ -17,9 +17,12 @@ impl Workspace<'_> {
         let kept = core::mem::take(&mut self.memory.kept);
         let Tile { attributes, position, velocity, work, layout, .. } =
             self.tile(scene, [now, dt], len, 0..len, capacity);
-        let (ends, end, dt, effort) = ([&*position, &*velocity], now + dt, dt.seconds(), &mut report.effort);
-        let (forces, index, attributes) = (scene.forces, scene.index, &attributes);
-        (code.0)(Written { forces, attributes, index, ends, kept: &mut *kept, work, layout, end, dt, effort });
+        let (ends, end, effort, index) = ([&*position, &*velocity], now + dt, &mut report.effort, scene.index);
+        let (needs, attributes, kept_of) = (scene.forces.needs(), &attributes, &mut *kept);
+        let write = &mut |state: &State<'_>, custom: &mut CustomColumnsMut<'_>| {
+            scene.forces.write(state, custom, dt.seconds());
+        };
+        (code.0)(Written { needs, attributes, index, ends, kept: kept_of, work, layout, end, effort, write });
         self.memory.kept = kept;
     }
 
