@@ -5,7 +5,7 @@ use super::Entry;
 #[cfg(feature = "alloc")]
 use super::{Aerodynamics, CylinderDrag, FlowKind, Pressure, Relaxation, Wind};
 use super::{Coulomb, Drag, Force, Gravity, LennardJones, MutualGravity, PowerLaw, QuadraticDrag, Radial, Viscosity};
-use super::{Needs, Perturbation, State, Steady, same_as};
+use super::{Needs, Perturbation, State, same_as};
 use crate::custom::CustomColumnsMut;
 #[cfg(feature = "alloc")]
 use alloc::string::String;

@@ -306,7 +306,7 @@ macro_rules! same_as {
             $force.is_local()
         }
         #[cfg(not(target_os = "none"))]
-        fn steady(&self) -> Option<Steady> {
+        fn steady(&self) -> Option<$crate::force::Steady> {
             let $this = self;
             $force.steady()
         }
