@@ -797,3 +797,48 @@ fn cloths_are_triangles_for_as_long_as_they_hold() {
     let record = ply(&folder, "b_000001.ply");
     assert_eq!((record.faces, record.edges), (vec![vec![0, 1, 2], vec![2, 1, 3]], vec![]));
 }
+
+/// What constraints bind together is told as edges and faces, of those who live; each once, whoever else binds it.
+#[test]
+fn what_constraints_bind_is_edges_and_faces() {
+    let particle = |i: u32, rest: &str| format!(r#"{{"position": [{}, {}, {}]{rest}}}"#, i % 4, i / 4, (i * i) % 3);
+    // The tenth dies in the second step, and so does its link.
+    let particles: Vec<String> =
+        (0..12).map(|i| particle(i, if i == 9 { r#", "lifetime": 0.015"# } else { "" })).collect();
+    let scene = format!(
+        r#"{{"run": {{"dt": 0.01}}, "particles": [{}],
+        "springs": [{{"ends": [1, 0], "rest_length": 1, "ks": 1}}, {{"ends": [10, 11], "rest_length": 1, "ks": 1}}],
+        "constraints": [
+            {{"rope": {{"particles": [0, 1, 2, 3], "lengths": [1], "compliance": 1, "closed": true}}}},
+            {{"distance": {{"ends": [3, 4], "length": 1, "compliance": 1}}}},
+            {{"distance": {{"ends": [9, 4], "length": 1, "compliance": 1}}}},
+            {{"strands": {{"particles": [5, 6, 7, 8, 10], "points": [2, 3], "params": {{"bending": [1, 1], "twisting": 1}}}}}},
+            {{"shell": {{"particles": [0, 4, 5], "triangles": [[0, 1, 2]], "hinges": [],
+                "warp": [1, 0, 0], "params": {{"stretch": [1, 1], "shear": 1, "bending": 0}}}}}}
+        ]}}"#,
+        particles.join(", ")
+    );
+    let folder = Folder::with("a.json", scene);
+    folder.run("run a.json --steps 2 --out a.ply --out a.vtp --out a.jsonl --line record").fine();
+    let bound: [[u64; 2]; 10] = [[0, 1], [3, 0], [1, 2], [2, 3], [3, 4], [9, 4], [5, 6], [7, 8], [8, 10], [10, 11]];
+    for (step, gone) in [(0, false), (1, false), (2, true)] {
+        let name = |end: &str| format!("a_{step:06}.{end}");
+        let told = [
+            ply(&folder, &name("ply")),
+            vtp(&folder.read(&name("vtp"))),
+            frames(&folder.read("a.jsonl"))[step].clone(),
+        ];
+        let lives = bound.iter().filter(|pair| !(gone && pair.contains(&9)));
+        // Rows behind the dead one move up.
+        let place = |number: u64| number - u64::from(gone && number > 9);
+        let mut expected: Vec<_> = lives.map(|&[a, b]| [place(a.min(b)), place(a.max(b))]).collect();
+        expected.sort_unstable();
+        for record in told {
+            let mut edges: Vec<_> =
+                record.edges.iter().map(|ends| [ends[0].min(ends[1]), ends[0].max(ends[1])]).collect();
+            edges.sort_unstable();
+            assert_eq!(edges, expected, "step {step}");
+            assert_eq!(record.faces, [[0, 4, 5]], "step {step}");
+        }
+    }
+}

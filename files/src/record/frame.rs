@@ -235,10 +235,12 @@ fn faces(plan: &Plan, springs: &Springs<'_>, place: &[u32]) -> Vec<[u32; 3]> {
     plan.triangles.iter().filter_map(face).collect()
 }
 
-/// The springs that are edges and hold, by places of rows; between two particles one.
+/// The springs that are edges and hold, and the links of constraints whose ends live, by places of rows; between two particles one.
 fn edges(plan: &Plan, springs: &Springs<'_>, place: &[u32]) -> Vec<[u32; 2]> {
     let held = springs.held().filter(|held| plan.edges.get(held.number) == Some(&true));
-    let ends = held.map(|held| held.rows.map(|row| place[row]));
+    let row = |number: u32| springs.row(number);
+    let links = plan.links.iter().filter_map(|&[a, b]| Some([row(a)?, row(b)?]));
+    let ends = held.map(|held| held.rows).chain(links).map(|rows| rows.map(|row| place[row]));
     let once: BTreeMap<_, _> = ends.map(|[a, b]| ([a.min(b), a.max(b)], [a, b])).collect();
     once.into_values().collect()
 }

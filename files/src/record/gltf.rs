@@ -1,4 +1,4 @@
-//! glTF 2.0: particles as points, cloths as triangles, other springs as lines; each record a node of its own, which an
+//! glTF 2.0: particles as points, cloths as triangles, other springs, ropes, rods and strands as lines; each record a node of its own, which an
 //! animation shows from its instant to the next record's. Binary (`.glb`), or text with its numbers inside (`.gltf`).
 
 use super::{Frame, Out, Writer};

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: particles as vertices with colours, cloths as faces, other springs as lines, the rest as points.
+//! Wavefront OBJ: particles as vertices with colours, cloths as faces, other springs, ropes, rods and strands as lines, the rest as points.
 
 use super::{Frame, Out, Writer};
 use std::io::{self, Write};

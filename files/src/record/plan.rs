@@ -1,8 +1,10 @@
 //! The columns that a recording holds of each particle, decided by the scene, so that they are the same in every record.
 
 use crate::outcome::{Failure, Outcome};
+use pointmass::constrain::ConstraintKind;
 use pointmass::scene::{Files, Form, Model, SceneFile, beside};
 use pointmass::{Particle, Varied};
+use std::collections::HashSet;
 
 /// The plan of a recording.
 #[derive(Debug)]
@@ -23,10 +25,12 @@ pub struct Plan {
     pub(super) material: bool,
     /// True if some particles may have another colour than opaque white.
     pub(super) color: bool,
-    /// The triangles of cloths, by their particles' numbers in the scene's start.
+    /// The triangles of cloths and shells, by their particles' numbers in the scene's start.
     pub(super) triangles: Vec<[u32; 3]>,
     /// Whether each spring of the scene is an edge; those of cloths with triangles are not.
     pub(super) edges: Vec<bool>,
+    /// The links of ropes, rods, strings and strands, by their ends' numbers in the scene's start.
+    pub(super) links: Vec<[u32; 2]>,
 }
 
 impl Plan {
@@ -54,8 +58,10 @@ impl Plan {
             color: material || remaining || tinted || emitters.iter().any(|e| e.color_half_width != [0; 4]),
             triangles: Vec::new(),
             edges: vec![true; model.springs.len()],
+            links: Vec::new(),
         };
         plan.add_faces(file, model, scene, files)?;
+        model.constraints.0.iter().for_each(|constraint| plan.add_bonds(constraint));
         Ok(plan)
     }
 
@@ -72,6 +78,34 @@ impl Plan {
         }
         Ok(())
     }
+
+    /// Puts in what a constraint binds together: triangles that are not there already, and links.
+    fn add_bonds(&mut self, constraint: &ConstraintKind) {
+        match constraint {
+            ConstraintKind::Distance(distance) => self.links.push(distance.ends),
+            ConstraintKind::Rope(rope) => self.links.extend(chain(&rope.particles, rope.closed)),
+            ConstraintKind::Strands(strands) => {
+                let all = strands.strands().map(|[first, end]| &strands.particles[first..end]);
+                self.links.extend(all.flat_map(|particles| chain(particles, false)));
+            }
+            ConstraintKind::Shell(shell) => {
+                let there: HashSet<_> = self.triangles.iter().copied().collect();
+                // Corners are places in the shell's own list.
+                let particle = |corner: u32| shell.particles.get(corner as usize).copied();
+                let triangles =
+                    shell.triangles.iter().filter_map(|&[a, b, c]| Some([particle(a)?, particle(b)?, particle(c)?]));
+                self.triangles.extend(triangles.filter(|triangle| !there.contains(triangle)));
+            }
+            ConstraintKind::Cluster(_) | ConstraintKind::Attach(_) | ConstraintKind::StrainLimits(_) => {}
+        }
+    }
+}
+
+/// The links of a chain of particles, and one more between its ends if it is closed.
+fn chain(particles: &[u32], is_closed: bool) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let links = particles.windows(2).map(|ends| [ends[0], ends[1]]);
+    let last = particles.last().zip(particles.first()).filter(|_| is_closed);
+    links.chain(last.map(|(&last, &first)| [last, first]))
 }
 
 /// Whether births have no other value than this one.

@@ -1,4 +1,4 @@
-//! PLY, binary: particles as vertices, cloths as faces, other springs as edges.
+//! PLY, binary: particles as vertices, cloths as faces, other springs, ropes, rods and strands as edges.
 
 use super::frame::{Column, Value, Values};
 use super::{Frame, Out, Writer};

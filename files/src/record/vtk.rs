@@ -1,4 +1,4 @@
-//! VTK's XML for ParaView: particles as points, cloths as polygons, other springs as lines, and an index of records.
+//! VTK's XML for ParaView: particles as points, cloths as polygons, other springs, ropes, rods and strands as lines, and an index of records.
 //!
 //! Numbers are in base 64, each array behind its length in bytes, as the format has it.
 
