@@ -85,6 +85,38 @@ fn every_scene_runs_for_two_seconds_and_loses_nothing() {
     }
 }
 
+/// A system with what a file begins with.
+fn started(file: &SceneFile, model: &Model) -> System<Heap> {
+    let particles = (file.run.capacity as usize).max(model.particles.len());
+    let mut system = model.system(particles, file.run.seed).expect("the memory is made for the scene");
+    system.start(&model.scene(), file.run.seed).expect("it fits");
+    system
+}
+
+#[test]
+fn steps_ask_nothing_of_the_heap_and_give_the_same_bits_on_any_number_of_threads() {
+    let frames = if cfg!(debug_assertions) { 4 } else { 60 };
+    for path in scenes() {
+        let file = read(&path);
+        let model = Model::load(&file, &path.to_string_lossy(), &mut Disk).unwrap_or_else(|error| panic!("{error}"));
+        let scene = model.scene();
+        let run = |system: &mut System<Heap>| {
+            for frame in 1..=frames {
+                system.step_to(&scene, Time::frame(frame, 60));
+            }
+        };
+        let mut alone = started(&file, &model);
+        let asked = allocation_counter::measure(|| run(&mut alone));
+        assert_eq!(asked.count_total, 0, "{path:?}");
+        for threads in [1, 2, 8] {
+            let mut system = started(&file, &model);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| run(&mut system));
+            assert_eq!(system.hash(), alone.hash(), "{path:?} on {threads} threads");
+        }
+    }
+}
+
 /// Every method and, scene by scene, most forces: what WebAssembly has to give as well.
 #[test]
 fn worlds_have_their_hashes() {
