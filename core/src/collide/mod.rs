@@ -3,6 +3,7 @@
 mod event_driven;
 mod images;
 mod impulse;
+mod lead;
 mod meeting;
 mod meetings;
 mod near;
@@ -15,6 +16,7 @@ mod sweep;
 mod tile_sweep;
 mod waiting;
 
+pub(crate) use lead::LeadCode;
 pub use meetings::{Impulse, Meetings};
 pub(crate) use passage::Passage;
 #[cfg(feature = "std")]
