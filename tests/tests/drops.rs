@@ -199,6 +199,59 @@ fn no_ground_gives_energy_to_limits_of_strain() {
     assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
 }
 
+/// Where all are at last, as seen from what moves with `drift`.
+fn course(scene: &Scene<'_>, [step, whole]: [Time; 2], drift: Vec3) -> Vec<Vec3> {
+    let mut system = started(scene, scene.start.len(), 1);
+    while system.time() < whole {
+        system.step(scene, step);
+    }
+    let t = system.time().seconds();
+    system.particles().position.iter().map(|x| *x - drift * t).collect()
+}
+
+/// A flat net of undamped springs, which swings, falls flat on a smooth plane that may move, bounces and lies: along that it goes as its method takes it
+/// where there is no plane. But for explicit Euler, whose steps would lead through what they begin on.
+#[test]
+fn a_smooth_ground_leaves_what_springs_do_along_it_to_their_method() {
+    let mut random = Random::new(81);
+    for round in 0..often(300) {
+        let scale: f32 = [1.0, 0.05, 20.0][round % 3];
+        let pace = scale.sqrt();
+        let method = Method::ALL[1 + round % (Method::ALL.len() - 1)];
+        let normal = random.direction();
+        let u = normal.any_orthonormal_vector();
+        let sides = [u * scale, normal.cross(u) * scale];
+        let sheet = Sheet { corner: normal * (0.001 * scale) - (sides[0] + sides[1]) * 0.5, sides, cells: [3, 3] };
+        let drift = if random.unit() < 0.3 { random.vector(1.0) * pace } else { Vec3::ZERO };
+        let elasticity = [0.0, 0.5, 1.0][random.word() as usize % 3];
+        let aside = |v: Vec3| v - normal * normal.dot(v);
+        let knot = Particle { mass: 0.2 / 64.0, drag: 0.0, elasticity, ..Particle::REST };
+        let push = |p: Particle, v: Vec3| Particle { velocity: aside(v) * (0.5 * pace) + drift, ..p };
+        let start: Vec<_> = sheet.particles(knot).map(|p| push(p, random.vector(1.0))).collect();
+        let springs: Vec<_> = sheet.springs(&threads(scale, 0.0), 0).collect();
+        let floor = Plane { point: Vec3::ZERO, normal };
+        let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+        let moving = Moving::new(&floor, &all, Motion { drift, ..Motion::STILL });
+        let weight = Gravity { acceleration: normal * -9.8 };
+        let substeps = [1, 2, 10][random.word() as usize % 3];
+        let free =
+            Scene { start: &start, springs: &springs, integrator: method.integrator(), substeps, ..Scene::EMPTY };
+        let falls = Scene { forces: &weight, ..free };
+        let scene = if drift == Vec3::ZERO {
+            Scene { colliders: &floor, ..falls }
+        } else {
+            Scene { colliders: &moving, ..falls }
+        };
+        let step = f64::from(substeps) / 2400.0 * f64::from(pace);
+        let span = [step, 0.08 * f64::from(pace)].map(Time::from_seconds_f64);
+        let (own, on_it) = (course(&free, span, drift), course(&scene, span, drift));
+        let apart = |(x, y): (&Vec3, &Vec3)| aside(*x - *y).length() / scale;
+        let apart = own.iter().zip(&on_it).map(apart).fold(0.0, f32::max);
+        let what = format!("{}, {substeps} sub-steps, e {elasticity}, {drift} m/s, {scale} m", method.name());
+        assert!(apart < 2e-4, "{what}: {apart}");
+    }
+}
+
 /// What a run comes to: where all are and how they move, to the bit, and how often they have been hit and have waited.
 fn outcome(scene: &Scene<'_>, step: Time, count: u32) -> (Vec<[u32; 3]>, [u64; 2]) {
     let mut system = started(scene, scene.start.len(), 1);

@@ -3,6 +3,7 @@
 mod event_driven;
 mod images;
 mod impulse;
+mod lead;
 mod meeting;
 mod meetings;
 mod near;
@@ -16,6 +17,7 @@ mod tile;
 mod tile_sweep;
 mod waiting;
 
+pub(crate) use lead::LeadCode;
 pub use meetings::{Impulse, Meetings};
 pub(crate) use passage::Passage;
 #[cfg(feature = "std")]

@@ -4,6 +4,7 @@
 //! to that: more hits in a step than are found here, a place that is not free.
 
 mod hits;
+mod leads;
 mod paths;
 
 use super::sweep::{LAIN, RESTING};
@@ -12,6 +13,7 @@ use crate::shape::Face;
 use crate::time::Time;
 use glam::Vec3;
 use hits::{Hits, Meetings, Segments};
+use leads::Leads;
 use paths::Cubics;
 pub(super) use paths::Paths;
 
@@ -22,6 +24,8 @@ pub(super) struct Riders<F, const POINTS: bool> {
     pub(super) radius: F,
     /// True if rounding leaves a path along a face that is braked steadily as straight as [`Paths::hardly_bend`] asks.
     pub(super) are_close: bool,
+    /// True if there are springs, whose method leads beyond parabolas.
+    pub(super) swing: bool,
     pub(super) elasticity: F,
     /// Coefficients of friction.
     pub(super) at_rest: F,
@@ -68,7 +72,11 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
         let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
         let ([way, end], is_steady) = self.slide(slip, drive, pressing, paths.time);
-        let along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
+        let mut along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
+        if self.swing {
+            let leads = Leads::of(&paths.cubics(), paths.time, paths.time.all(0.0), normal);
+            along.x1 = leads.slid(along.x1, drive * paths.time, end - slip);
+        }
         let mut straight = along.hardly_bend();
         if !(self.are_close && is_steady) || (lying & not(straight)).any() {
             straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
@@ -203,7 +211,9 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
             *rest = *left as f32;
         }
         let rest = like.of(rest) / all(Time::SECOND.ticks() as f32);
-        let acceleration = paths.acceleration();
+        let leads = self.swing.then(|| Leads::of(cubics, paths.time, s, normal));
+        let mean = paths.acceleration();
+        let acceleration = leads.map_or(mean, |leads| leads.onward(mean));
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
         let outgoing = incoming.simd_lt(zero).select(negated(incoming) * self.elasticity, incoming);
@@ -217,11 +227,12 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let slip = Vectors::splat(like, Vec3::ZERO) + (came + self.answer(came, outgoing - incoming));
         let velocity = slip + normal * onward;
         let x1 = beside + (velocity + acceleration * (all(0.5) * rest)) * rest;
+        let x1 = leads.map_or(x1, |leads| leads.beyond(x1));
         let flying = Paths { x0: beside, v0: velocity, x1, v1: velocity + acceleration * rest, time: rest };
         if !rests.any() {
             return (flying, is_free);
         }
-        let resting = self.rest(paths, meetings, beside, [came, acceleration], [incoming, pressing, rest]);
+        let resting = self.rest(paths, meetings, leads, beside, [came, acceleration], [incoming, pressing, rest]);
         (Paths::select(rests, resting, flying), is_free)
     }
 
@@ -231,6 +242,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         &self,
         paths: &Paths<F>,
         meetings: &Meetings<F>,
+        leads: Option<Leads<F>>,
         beside: Vectors<F>,
         [came, acceleration]: [Vectors<F>; 2],
         [incoming, pressing, rest]: [F; 3],
@@ -238,14 +250,17 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
         let (zero, still) = (s.all(0.0), Vectors::splat(s, Vec3::ZERO));
         let slip = came + self.answer(came, zero - incoming);
-        let ([way, end], _) = self.slide(slip, acceleration + normal * pressing, pressing, rest);
+        let drive = acceleration + normal * pressing;
+        let ([way, end], _) = self.slide(slip, drive, pressing, rest);
         // Falling onto the face anew each step, what has lain on it has not moved at all.
         let near = s.all(LAIN) * slack;
         let off = paths.x0 - place;
         let has_lain = off.dot(off).simd_le(near * near) & (paths.v0.length() * (paths.time * s)).simd_le(near);
         let stays = slip.is_zero() & end.is_zero() & has_lain;
         let x0 = Vectors::select(stays, paths.x0 + still, beside);
-        Paths { x0, v0: still + slip + normal * zero, x1: x0 + still + way, v1: still + end, time: rest }
+        let x1 = x0 + still + way;
+        let x1 = leads.map_or(x1, |leads| leads.slid(x1, drive * rest, end - slip));
+        Paths { x0, v0: still + slip + normal * zero, x1, v1: still + end, time: rest }
     }
 
     /// Places beside hits, and which of them are reached freely from as little before as that takes.

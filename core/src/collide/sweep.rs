@@ -1,5 +1,6 @@
 //! One particle's way through a step: hit by hit.
 
+use super::lead::{Lead, LeadCode};
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::tile::Obstacles;
@@ -150,7 +151,17 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let world = [acceleration, way, slip, end];
             observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
         }
-        Some(Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during })
+        let mut x1 = plus(place, way);
+        if let Some((lead, code)) = self.lead(path, 0.0, normal) {
+            x1 = (code.beyond)(&lead, x1, Some([scaled(drive, path.duration()), minus(end, slip)]));
+        }
+        Some(Path { x0: place, v0: slip, x1, v1: end, during: path.during })
+    }
+
+    /// By how much a method leads beyond a parabola along a surface that a path meets, if there are springs.
+    fn lead(&self, path: &Path, time: f32, normal: Vec3) -> Option<(Lead, LeadCode)> {
+        let code = self.obstacles.lead?;
+        (code.of)(&path.departure(), time, normal).map(|lead| (lead, code))
     }
 
     /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
@@ -256,7 +267,9 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
-        let acceleration = path.acceleration();
+        let lead = self.lead(path, meeting.time, normal);
+        let mean = path.acceleration();
+        let acceleration = lead.map_or(mean, |(lead, _)| plus(mean, lead.acceleration));
         let (place, before) = (meeting.place, path.velocity(meeting.time));
         let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
@@ -283,7 +296,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
-            return Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
+            let onward = Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
+            return lead.map_or(onward, |(lead, code)| Path { x1: (code.beyond)(&lead, onward.x1, None), ..onward });
         }
         let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
@@ -310,7 +324,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
             observer.slid(&Sliding { mass, raised: minus(onward.x0, place), world, along: [drive, way, slip, end] });
         }
-        onward
+        let slides = [scaled(drive, rest), minus(end, slip)];
+        lead.map_or(onward, |(lead, code)| Path { x1: (code.beyond)(&lead, onward.x1, Some(slides)), ..onward })
     }
 
     /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.

@@ -1,5 +1,6 @@
 //! Rows that go through a step together, and what their paths are held against.
 
+use super::lead::LeadCode;
 use crate::force::Attributes;
 use crate::material::MaterialList;
 use crate::memory::Layout;
@@ -17,6 +18,8 @@ pub(crate) struct Obstacles<'a> {
     pub(crate) materials: &'a dyn MaterialList,
     /// How often a particle may bounce in one sub-step.
     pub(crate) max_bounces: u32,
+    /// What leaves springs to their method along surfaces, if there may be any.
+    pub(crate) lead: Option<LeadCode>,
 }
 
 /// Rows in the middle of a step.

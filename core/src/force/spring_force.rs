@@ -4,6 +4,7 @@
 use super::near::wide_between;
 use super::spring::{BROKEN, place_in};
 use super::{Force, Held, Perturbation, Spring, Springs, State};
+use crate::collide::LeadCode;
 use crate::math::{length, max};
 use core::ops::Range;
 use glam::Vec3;
@@ -75,12 +76,19 @@ pub struct SpringCode {
     pub(crate) held_by: fn(&Springs<'_>, usize) -> u64,
     /// Breaks those that are stretched too far, and says how many if any can: of the state, and the springs by their ends.
     pub(crate) snap: fn(&State<'_>, &mut [u32]) -> Option<u64>,
+    /// What leaves their method alone along surfaces that particles meet.
+    pub(crate) lead: LeadCode,
 }
 
 impl SpringCode {
     /// All of it.
-    pub const ALL: Self =
-        Self { force: |springs| springs, sort: sort_by_ends, held_by: |table, row| table.held_by(row), snap };
+    pub const ALL: Self = Self {
+        force: |springs| springs,
+        sort: sort_by_ends,
+        held_by: |table, row| table.held_by(row),
+        snap,
+        lead: LeadCode::ALL,
+    };
 }
 
 impl Spring {

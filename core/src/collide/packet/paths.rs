@@ -89,12 +89,10 @@ impl<F: Eight> Paths<F> {
     /// Their velocities at fractions of their times.
     #[inline(always)]
     pub(super) fn velocity(&self, cubics: &Cubics<F>, s: F) -> Vectors<F> {
-        let Cubics { bend, excess, .. } = *cubics;
         let steady = self.v0 + (self.v1 - self.v0) * s;
         let all = |x| s.all(x);
-        let is_smooth = not(excess.is_zero()) & excess.dot(excess).simd_lt(all(0.0625) * bend.dot(bend));
         let share = all(6.0) * s * (all(1.0) - s) / self.time;
-        Vectors::select(is_smooth, steady + excess * share, steady)
+        Vectors::select(cubics.are_smooth(), steady + cubics.excess * share, steady)
     }
 }
 
@@ -103,6 +101,14 @@ impl<F: Eight> Cubics<F> {
     pub(super) fn at(&self, s: F) -> Vectors<F> {
         let [c1, c2, c3] = self.coefficients;
         self.start + (c1 + (c2 + c3 * s) * s) * s
+    }
+
+    /// Those that bend as the motion does: their derivatives are the velocities.
+    #[inline(always)]
+    pub(super) fn are_smooth(&self) -> F {
+        let Self { bend, excess, .. } = *self;
+        let square = bend.dot(bend);
+        not(excess.is_zero()) & excess.dot(excess).simd_lt(square.all(0.0625) * square)
     }
 
     /// Those whose ends lag behind their velocities.

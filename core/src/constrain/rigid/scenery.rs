@@ -164,14 +164,12 @@ impl Visit<'_> {
     /// Adds a place, to the points on the same face if there are any.
     fn put(&mut self, bodies: &mut Bodies<'_>, contact: &Contact, place: Vec3) {
         let Contact { point, normal, .. } = *contact;
-        let Some(number) = self.slot(bodies, contact) else {
-            bodies.report.caps.contacts += 1;
-            return;
-        };
-        let Some(slot) = self.slots.get_mut(number) else { return };
         // Where it is over the surface, whatever the way on which that was met.
         let over = self.body.point(place);
-        let on = over - normal * dot(normal, over - point);
+        let gap = dot(normal, over - point);
+        let on = over - normal * gap;
+        let Some(number) = self.slot(bodies, contact).or_else(|| self.give_way(bodies, contact, gap)) else { return };
+        let Some(slot) = self.slots.get_mut(number) else { return };
         if slot.points().iter().any(|other| other.places[1] == place) {
             return;
         }
@@ -186,7 +184,7 @@ impl Visit<'_> {
                     least = (i, gap);
                 }
             }
-            if !(dot(normal, over - point) < least.1) {
+            if !(gap < least.1) {
                 return;
             }
             let last = slot.points[3];
@@ -223,6 +221,27 @@ impl Visit<'_> {
         let number = self.slots.iter().position(|slot| slot.count == 0)?;
         self.slots[number] = fresh();
         Some(number)
+    }
+
+    /// The number of the slot of a face that is left out for another with a gap, if it is farther from the body: of more faces than there are
+    /// slots the deepest count, for what is left out the body sinks into, and beyond its middle it would be pressed out on the other side.
+    fn give_way(&mut self, bodies: &mut Bodies<'_>, contact: &Contact, gap: f32) -> Option<usize> {
+        bodies.report.caps.contacts += 1;
+        let (body, mut farthest) = (self.body, (0, f32::NEG_INFINITY));
+        for (number, slot) in self.slots.iter().enumerate() {
+            let gaps =
+                slot.points().iter().map(|point| dot(slot.normal, body.point(point.places[1]) - point.places[0]));
+            let least = gaps.fold(f32::INFINITY, min);
+            if least > farthest.1 {
+                farthest = (number, least);
+            }
+        }
+        let (number, least) = farthest;
+        if !(gap < least) {
+            return None;
+        }
+        self.slots[number].count = 0;
+        self.slot(bodies, contact)
     }
 }
 
