@@ -5,6 +5,7 @@
 //! bounces on a surface would gain energy in each step, in the directions along that, which the surface has no part in. So where there
 //! are springs, a path keeps along the surface by how much its method led it beyond the parabola, and how fast it made it.
 
+use super::path::Path;
 use crate::math::{along, aside, dot, is_zero, minus, plus, scaled};
 use glam::Vec3;
 
@@ -20,49 +21,24 @@ pub(crate) struct Lead {
 /// The functions that find it and use it: a program without springs does not carry them about.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LeadCode {
-    pub(super) of: fn(&Departure, f32, Vec3) -> Option<Lead>,
-    pub(super) beyond: fn(&Lead, Vec3, Option<[Vec3; 2]>) -> Vec3,
-}
-
-/// How a path differs from a parabola.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Departure {
-    /// How much farther it leads \[m\].
-    pub(super) excess: Vec3,
-    /// Half the change of velocity as a way \[m\].
-    pub(super) bend: Vec3,
-    /// How long it takes \[s\].
-    pub(super) duration: f32,
+    pub(super) of: fn(&Path, f32, Vec3) -> Option<Lead>,
+    pub(super) beyond: fn(&Lead, &Path, Option<&[Vec3; 4]>) -> Vec3,
 }
 
 impl LeadCode {
     pub(crate) const ALL: Self = Self { of: Lead::of, beyond: Lead::beyond };
 }
 
-impl Departure {
-    /// Tells whether the cubic bends as the motion does: its derivative is the velocity.
-    #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn is_smooth(&self) -> bool {
-        let Self { excess, bend, .. } = *self;
-        !is_zero(excess) && dot(excess, excess) < 0.0625 * dot(bend, bend)
-    }
-
-    /// Tells whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
-    pub(super) fn lags(&self) -> bool {
-        dot(self.excess, self.bend) < -0.5 * dot(self.bend, self.bend)
-    }
-}
-
 impl Lead {
     /// That of a path along the surface that it meets after a fraction of its time; none, where it is a parabola or lags behind one.
-    fn of(path: &Departure, s: f32, normal: Vec3) -> Option<Self> {
-        let Departure { excess, duration, .. } = *path;
+    fn of(path: &Path, s: f32, normal: Vec3) -> Option<Self> {
+        let (excess, duration) = (path.excess(), path.duration());
         if is_zero(excess) || path.lags() {
             return None;
         }
         // Both cubics between the place of the hit and the end; the velocity of the one at the hit is its derivative.
-        let (excess, left) = (aside(excess, normal), 1.0 - s);
-        if path.is_smooth() {
+        let (is_smooth, excess, left) = (path.is_smooth(excess), aside(excess, normal), 1.0 - s);
+        if is_smooth {
             let acceleration = scaled(excess, -6.0 * s / (duration * duration));
             Some(Self { way: scaled(excess, left * left * left), acceleration })
         } else {
@@ -70,10 +46,12 @@ impl Lead {
         }
     }
 
-    /// The end of a parabola, led beyond it. If it slides, the changes of its velocity without and with friction say how much of the lead
-    /// friction leaves.
-    fn beyond(&self, end: Vec3, slides: Option<[Vec3; 2]>) -> Vec3 {
-        let Some([free, braked]) = slides else { return plus(end, self.way) };
+    /// The end of a path that goes on as a parabola, led beyond it. If it slides along the surface, its drive there and its velocities at the
+    /// beginning and the end say how much of the lead friction leaves.
+    fn beyond(&self, onward: &Path, slides: Option<&[Vec3; 4]>) -> Vec3 {
+        let end = onward.x1;
+        let Some(&[drive, _, slip, last]) = slides else { return plus(end, self.way) };
+        let (free, braked) = (scaled(drive, onward.duration()), minus(last, slip));
         let square = dot(free, free);
         if is_zero(braked) || !(square > 0.0) {
             return end;

@@ -1,7 +1,6 @@
 //! The path of a particle through a step, and the chords along which its collisions are sought.
 
-use super::lead::Departure;
-use crate::math::{along, dot, high, length, low, max, minus, over, plus, scaled, sqrt};
+use crate::math::{along, dot, high, is_zero, length, low, max, minus, over, plus, scaled, sqrt};
 use crate::rows::are_finite;
 use crate::shape::{Aabb, Segment};
 use crate::time::Time;
@@ -103,25 +102,28 @@ impl Path {
     /// two Euler methods, it is theirs in between: what a hit takes in before and after adds up to the step's.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
-        let (steady, departure) = (along(self.v0, minus(self.v1, self.v0), s), self.departure());
-        let Departure { excess, duration, .. } = departure;
-        if departure.is_smooth() { along(steady, excess, 6.0 * s * (1.0 - s) / duration) } else { steady }
+        let (steady, excess) = (along(self.v0, minus(self.v1, self.v0), s), self.excess());
+        if self.is_smooth(excess) { along(steady, excess, 6.0 * s * (1.0 - s) / self.duration()) } else { steady }
     }
 
     /// How much farther it leads than a parabola with the velocities of its ends. What is within the rounding of the ends is
     /// nothing: as a velocity it would be noise.
     #[cfg_attr(target_os = "none", inline(never))]
-    fn excess(&self) -> Vec3 {
+    pub(super) fn excess(&self) -> Vec3 {
         let excess = along(minus(self.x1, self.x0), plus(self.v0, self.v1), -0.5 * self.duration());
         let rounding = scaled(plus(self.x0.abs(), self.x1.abs()), f32::EPSILON);
         Vec3::select(excess.abs().cmple(rounding), Vec3::ZERO, excess)
     }
 
-    /// How it differs from a parabola.
-    #[cfg_attr(target_os = "none", inline(never))]
-    pub(super) fn departure(&self) -> Departure {
-        let duration = self.duration();
-        Departure { excess: self.excess(), bend: scaled(minus(self.v1, self.v0), 0.5 * duration), duration }
+    /// Half the change of its velocity, as a way \[m\].
+    fn bend(&self) -> Vec3 {
+        scaled(minus(self.v1, self.v0), 0.5 * self.duration())
+    }
+
+    /// Tells whether its cubic bends as the motion does: its derivative is the velocity.
+    pub(super) fn is_smooth(&self, excess: Vec3) -> bool {
+        let bend = self.bend();
+        !is_zero(excess) && dot(excess, excess) < 0.0625 * dot(bend, bend)
     }
 
     /// Its rest from a fraction of the time on, as a path of its own.
@@ -148,7 +150,8 @@ impl Path {
 
     /// Tells whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
     pub(super) fn lags(&self) -> bool {
-        self.departure().lags()
+        let bend = self.bend();
+        dot(self.excess(), bend) < -0.5 * dot(bend, bend)
     }
 
     /// The parabola from its beginning with the velocities of its ends.

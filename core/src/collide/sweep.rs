@@ -1,6 +1,6 @@
 //! One particle's way through a step: hit by hit.
 
-use super::lead::{Lead, LeadCode};
+use super::lead::Lead;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::tile::Obstacles;
@@ -146,22 +146,29 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
         let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
         self.report.hits += 1;
+        let along = [drive, way, slip, end];
         if let Some(observer) = &mut self.observer {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
             let world = [acceleration, way, slip, end];
-            observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along: [drive, way, slip, end] });
+            observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along });
         }
-        let mut x1 = plus(place, way);
-        if let Some((lead, code)) = self.lead(path, 0.0, normal) {
-            x1 = (code.beyond)(&lead, x1, Some([scaled(drive, path.duration()), minus(end, slip)]));
-        }
-        Some(Path { x0: place, v0: slip, x1, v1: end, during: path.during })
+        let mut onward = Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during };
+        self.lead_on(&self.lead(path, 0.0, normal), &mut onward, Some(&along));
+        Some(onward)
     }
 
     /// By how much a method leads beyond a parabola along a surface that a path meets, if there are springs.
-    fn lead(&self, path: &Path, time: f32, normal: Vec3) -> Option<(Lead, LeadCode)> {
-        let code = self.obstacles.lead?;
-        (code.of)(&path.departure(), time, normal).map(|lead| (lead, code))
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn lead(&self, path: &Path, time: f32, normal: Vec3) -> Option<Lead> {
+        self.obstacles.lead.and_then(|code| (code.of)(path, time, normal))
+    }
+
+    /// Leads the way on from a surface farther, as the method does: one that flies, or slides so.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn lead_on(&self, lead: &Option<Lead>, onward: &mut Path, slides: Option<&[Vec3; 4]>) {
+        if let (Some(lead), Some(code)) = (lead, self.obstacles.lead) {
+            onward.x1 = (code.beyond)(lead, onward, slides);
+        }
     }
 
     /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
@@ -268,8 +275,10 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let during = [path.instant(meeting.time), path.during[1]];
         let rest = (during[1] - during[0]).seconds();
         let lead = self.lead(path, meeting.time, normal);
-        let mean = path.acceleration();
-        let acceleration = lead.map_or(mean, |(lead, _)| plus(mean, lead.acceleration));
+        let mut acceleration = path.acceleration();
+        if let Some(lead) = &lead {
+            acceleration = plus(acceleration, lead.acceleration);
+        }
         let (place, before) = (meeting.place, path.velocity(meeting.time));
         let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
@@ -296,13 +305,14 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
-            let onward = Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
-            return lead.map_or(onward, |(lead, code)| Path { x1: (code.beyond)(&lead, onward.x1, None), ..onward });
+            let mut onward = Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
+            self.lead_on(&lead, &mut onward, None);
+            return onward;
         }
         let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
         let stays = is_zero(slip) && is_zero(end);
-        let onward = if let Some(ride) = ride {
+        let mut onward = if let Some(ride) = ride {
             // A particle that falls from where it was set off to goes along the surface meanwhile, which friction would
             // have kept it from.
             let fell = -incoming / pressing;
@@ -320,12 +330,13 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
             Path { x0, v0: after, x1: plus(along(x0, surface, rest), way), v1: plus(surface, end), during }
         };
+        let along = [drive, way, slip, end];
         if let Some(observer) = &mut self.observer {
             let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
-            observer.slid(&Sliding { mass, raised: minus(onward.x0, place), world, along: [drive, way, slip, end] });
+            observer.slid(&Sliding { mass, raised: minus(onward.x0, place), world, along });
         }
-        let slides = [scaled(drive, rest), minus(end, slip)];
-        lead.map_or(onward, |(lead, code)| Path { x1: (code.beyond)(&lead, onward.x1, Some(slides)), ..onward })
+        self.lead_on(&lead, &mut onward, Some(&along));
+        onward
     }
 
     /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.

@@ -54,6 +54,7 @@ pub use relaxation::Relaxation;
 pub use sink::Sink;
 pub(crate) use spring::is_broken;
 pub use spring::{Drive, Held, Spring, Springs};
+pub(crate) use spring_force::SpringForce;
 pub use spring_force::{SpringCode, SpringList};
 pub(crate) use state::Backdrop;
 pub use state::State;

@@ -65,11 +65,14 @@ impl SpringList for alloc::vec::Vec<Spring> {
     }
 }
 
+/// The sum of springs, as a force.
+pub(crate) type SpringForce = for<'s> fn(&'s Springs<'s>) -> &'s dyn Force;
+
 /// The functions that springs call for in a step. A program without springs does not carry them about.
 #[derive(Clone, Copy, Debug)]
 pub struct SpringCode {
     /// Their sum, as a force.
-    pub(crate) force: for<'s> fn(&'s Springs<'s>) -> &'s dyn Force,
+    pub(crate) force: SpringForce,
     /// Sorts them by their ends at the start, and counts those that lack one.
     pub(crate) sort: fn(&[Spring], &mut [u32], &mut [u32], u32) -> u64,
     /// Counts those that hold the particle in a row.

@@ -1,7 +1,7 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use super::{Dynamics, Linear};
-use crate::force::{Finder, Force, SpringCode, State, Steady};
+use crate::force::{Finder, Force, SpringForce, State, Steady};
 use crate::observe::{Observer, Phase};
 use crate::rows::{BLOCKS, each_row_with};
 use crate::time::Time;
@@ -11,8 +11,8 @@ use glam::Vec3;
 /// The scene's forces over the masses.
 pub(crate) struct Field<'a> {
     pub(crate) forces: &'a dyn Force,
-    /// The functions of its springs, if there may be any.
-    pub(crate) springs: Option<SpringCode>,
+    /// The sum of its springs, if there may be any.
+    pub(crate) springs: Option<SpringForce>,
     /// All of that as one pass over the columns works it out, if it is no more.
     pub(crate) steady: Option<Steady>,
     /// The particles, from a row on, and what the forces need to find in their state.
@@ -39,7 +39,7 @@ impl Dynamics for Field<'_> {
         let Self { forces, springs, ref mut finder, .. } = *self;
         let inverse_mass = &finder.attributes.inverse_mass[..position.len()];
         finder.with_state(time, position, velocity, &mut |state| {
-            let springs: &dyn Force = springs.map_or(&(), |code| (code.force)(&state.springs));
+            let springs: &dyn Force = springs.map_or(&(), |force| force(&state.springs));
             then(&Linear::about(state, [forces, springs], inverse_mass));
         });
     }
@@ -61,11 +61,17 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
 
 /// The forces on some rows, those of springs behind the others.
 #[cfg_attr(target_os = "none", inline(never))]
-fn add_all(forces: &dyn Force, springs: Option<SpringCode>, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+fn add_all(
+    forces: &dyn Force,
+    springs: Option<SpringForce>,
+    state: &State<'_>,
+    rows: Range<usize>,
+    total: &mut [Vec3],
+) {
     total.fill(Vec3::ZERO);
     add_up(forces, state, rows.clone(), total);
-    if let Some(code) = springs {
-        add_up((code.force)(&state.springs), state, rows, total);
+    if let Some(force) = springs {
+        add_up(force(&state.springs), state, rows, total);
     }
 }
 

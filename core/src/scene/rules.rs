@@ -193,7 +193,7 @@ impl<'a> Scene<'a> {
     /// What the paths of its particles are held against.
     pub(crate) fn obstacles(&self) -> Obstacles<'a> {
         let Self { colliders, sinks, materials, max_bounces, .. } = *self;
-        let lead = self.springs.code().map(|code| code.lead);
+        let lead = self.springs.code().filter(|_| !self.springs.list().is_empty()).map(|code| code.lead);
         Obstacles { colliders, sinks, materials, max_bounces, lead }
     }
 }

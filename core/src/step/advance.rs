@@ -3,14 +3,14 @@
 use super::substeps::Carried;
 use crate::collide::Tile;
 use crate::constrain::{Moved, SHIFTED, Substep};
-use crate::force::{Finder, Steady};
+use crate::force::Steady;
 use crate::index::ListMemory;
 use crate::integrate::{Drift, Dynamics, Field};
 use crate::math::along;
 use crate::memory::{Past, Shares};
 use crate::observe::Observer;
 use crate::reap::PendingDeath;
-use crate::report::{Effort, Report};
+use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
@@ -40,12 +40,9 @@ impl Tile<'_> {
             start[1][..len].copy_from_slice(self.velocity);
         }
         if old < len {
-            let ([tree, near], memory) = scratch.moving();
-            let (custom, needs, index) =
-                (attributes.custom(kept, layout.capacity()), scene.forces.needs(), scene.index);
-            let (lists, effort) = (None, Effort::NONE);
-            let finder = Finder { attributes, custom, needs, index, tree, near, lists, first: old, effort };
-            let mut field = scene.field(finder, observer);
+            let (words, memory) = scratch.moving();
+            let custom = attributes.custom(kept, layout.capacity());
+            let mut field = scene.field(attributes, custom, old, words, None, observer);
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
             report.effort.found(&field.finder.effort);

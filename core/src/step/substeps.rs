@@ -1,8 +1,9 @@
 //! A sub-step: the method moves everything, then constraints move it to where they are met.
 
 use crate::constrain::{DONE, Moment, Moved, Substep};
-use crate::force::Finder;
-use crate::index::Listed;
+use crate::custom::CustomColumns;
+use crate::force::{Attributes, Finder};
+use crate::index::{ListMemory, Listed};
 use crate::integrate::{Field, Motion, Work};
 use crate::observe::Observer;
 use crate::report::Effort;
@@ -21,9 +22,21 @@ pub(super) struct Carried<'a> {
 }
 
 impl Scene<'_> {
-    /// Its forces over the masses of what a finder knows.
-    pub(super) fn field<'f>(&'f self, finder: Finder<'f>, observer: &'f mut dyn Observer) -> Field<'f> {
-        Field { forces: self.forces, springs: self.springs.code(), steady: self.steady(), finder, observer }
+    /// Its forces over the masses of rows from one on, with memory for trees, an index and lists.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(super) fn field<'f>(
+        &'f self,
+        attributes: &'f Attributes<'f>,
+        custom: CustomColumns<'f>,
+        first: usize,
+        [tree, near]: [&'f mut [u32]; 2],
+        lists: Option<ListMemory<'f>>,
+        observer: &'f mut dyn Observer,
+    ) -> Field<'f> {
+        let (needs, index, effort) = (self.forces.needs(), self.index, Effort::NONE);
+        let finder = Finder { attributes, custom, needs, index, tree, near, lists, first, effort };
+        let springs = self.springs.code().map(|code| code.force);
+        Field { forces: self.forces, springs, steady: self.steady(), finder, observer }
     }
 }
 
@@ -47,20 +60,10 @@ impl Moved<'_> {
     fn integrate(&mut self, scene: &Scene<'_>, substep: Substep, hint: &mut Time) {
         let [from, to] = substep.during;
         let (len, stride) = (self.position.len(), self.layout.capacity());
-        let ([tree, near], memory) = self.scratch.moving();
+        let (words, memory) = self.scratch.moving();
         let custom = self.attributes.custom(self.kept, stride);
-        let finder = Finder {
-            attributes: self.attributes,
-            custom,
-            needs: scene.forces.needs(),
-            index: self.index,
-            tree,
-            near,
-            lists: Some(self.lists.again()),
-            first: 0,
-            effort: Effort::NONE,
-        };
-        let mut field = scene.field(finder, self.observer);
+        let lists = Some(self.lists.again());
+        let mut field = scene.field(self.attributes, custom, 0, words, lists, self.observer);
         let motion = Motion {
             position: self.position,
             velocity: self.velocity,
