@@ -160,7 +160,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
 
     /// By how much a method leads beyond a parabola along a surface that a path meets, if there are springs.
     fn lead(&self, path: &Path, time: f32, normal: Vec3) -> Option<(Lead, LeadCode)> {
-        let code = self.scene.springs.code()?.lead;
+        let code = self.scene.springs.code().filter(|_| !self.scene.springs.list().is_empty())?.lead;
         (code.of)(&path.departure(), time, normal).map(|lead| (lead, code))
     }
 

@@ -353,7 +353,7 @@ impl TileSweep<'_, '_> {
         let riders = Riders {
             are_free,
             are_close,
-            swing: self.tile.scene.springs.code().is_some(),
+            swing: !self.tile.scene.springs.list().is_empty(),
             radius: if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) },
             elasticity: like.of(elasticity),
             at_rest: like.of(at_rest),
