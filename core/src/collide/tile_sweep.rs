@@ -34,6 +34,8 @@ struct TileSweep<'s, 'a> {
     past: Past<'s>,
     /// True if surfaces may have friction, or take more of a bounce than particles do by themselves.
     has_materials: bool,
+    /// True if there are springs.
+    has_springs: bool,
     facing: Facing,
     /// True if all that may wait are points for sure.
     are_points: bool,
@@ -62,8 +64,9 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
     let (has_sinks, has_materials) = (!tile.scene.sinks.is_empty(), tile.scene.materials.count() > 0);
+    let has_springs = !tile.scene.springs.list().is_empty();
     let mut tile_sweep =
-        TileSweep { tile: &mut *tile, past, has_materials, facing, are_points: false, report, observer };
+        TileSweep { tile: &mut *tile, past, has_materials, has_springs, facing, are_points: false, report, observer };
     match (facing, many.zip(outskirts)) {
         (Facing::Face(face), _) if SHORT_WAY && !has_sinks => tile_sweep.go_past(&face),
         (_, Some((many, (face, things)))) if tile_sweep.goes_in_packets() => tile_sweep.go_among(many, face, &things),
@@ -353,7 +356,7 @@ impl TileSweep<'_, '_> {
         let riders = Riders {
             are_free,
             are_close,
-            swing: !self.tile.scene.springs.list().is_empty(),
+            swing: self.has_springs,
             radius: if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) },
             elasticity: like.of(elasticity),
             at_rest: like.of(at_rest),
