@@ -11,6 +11,7 @@ mod tile;
 mod write;
 
 use crate::collide::Passage;
+use crate::constrain::Substep;
 use crate::index::Listed;
 use crate::memory::{TILED, Workspace};
 use crate::observe::{Attention, Observer, Phase};
@@ -63,33 +64,42 @@ impl Workspace<'_> {
         observer: &mut dyn Observer,
     ) {
         for substep in scene.parts(span) {
-            let [now, end] = substep.during;
             self.advance(scene, substep, old, report, observer);
-            self.status.time = end;
+            self.status.time = substep.during[1];
             self.tell(Phase::Move, scene, observer);
             let springs = scene.springs.code().filter(|_| substep.is_last());
             if springs.is_some_and(|code| self.snap(scene, code, report)) {
                 self.tell(Phase::Snap, scene, observer);
             }
             if scene.is_swept() {
-                let met = report.hits + report.contacts;
-                let (rows, capacity) = (0..self.len(), self.capacity());
-                let tile = &mut self.tile(scene, [now, end - now], old, rows, capacity);
-                scene.meetings.follow(Passage {
-                    tile,
-                    index: scene.index,
-                    report: &mut *report,
-                    observer: &mut *observer,
-                });
-                if report.hits + report.contacts > met {
-                    self.status.hint = Time::ZERO;
-                }
+                self.sweep(scene, substep, old, report, observer);
             }
             self.tell(Phase::Collide, scene, observer);
         }
         // The steps that were made of this one: sub-steps, and those that a method chose.
         let steps = u64::from(scene.pieces()).max(report.effort.accepted);
         report.caps.stalled += self.judge(scene, span, old, span[1].seconds() / steps as f32);
+    }
+
+    /// Holds all rows against scenery, sinks and each other at the end of a sub-step.
+    ///
+    /// Apart, as all that takes room on the stack, for which chips have little: paths are followed beyond it.
+    #[inline(never)]
+    fn sweep(
+        &mut self,
+        scene: &Scene<'_>,
+        substep: Substep,
+        old: usize,
+        report: &mut Report,
+        observer: &mut dyn Observer,
+    ) {
+        let ([now, end], met) = (substep.during, report.hits + report.contacts);
+        let (rows, capacity) = (0..self.len(), self.capacity());
+        let tile = &mut self.tile(scene, [now, end - now], old, rows, capacity);
+        scene.meetings.follow(Passage { tile, index: scene.index, report: &mut *report, observer });
+        if report.hits + report.contacts > met {
+            self.status.hint = Time::ZERO;
+        }
     }
 
     /// Says how far the step has come.
