@@ -798,7 +798,7 @@ fn cloths_are_triangles_for_as_long_as_they_hold() {
     assert_eq!((record.faces, record.edges), (vec![vec![0, 1, 2], vec![2, 1, 3]], vec![]));
 }
 
-/// What constraints bind together is told as edges and faces, of those who live; each once, whoever else binds it.
+/// Bonds of constraints are told as edges and faces, of those who live; each once, whoever else binds it.
 #[test]
 fn what_constraints_bind_is_edges_and_faces() {
     let particle = |i: u32, rest: &str| format!(r#"{{"position": [{}, {}, {}]{rest}}}"#, i % 4, i / 4, (i * i) % 3);

@@ -1,4 +1,4 @@
-//! What springs ask of a hit: along the surface it leaves their method alone.
+//! Springs ask of a hit that it leave their method alone along the surface.
 //!
 //! After a hit a particle goes on along a parabola with the mean acceleration of its path. Under steady forces that is the motion. Of what
 //! swings it is a method of its own, x' = x + h v + h² a / 2, v' = v + h a, whose determinant is 1 + (h ω)² / 2: whatever lies, slides or

@@ -18,7 +18,7 @@ pub(crate) struct Obstacles<'a> {
     pub(crate) materials: &'a dyn MaterialList,
     /// How often a particle may bounce in one sub-step.
     pub(crate) max_bounces: u32,
-    /// What leaves springs to their method along surfaces, if there may be any.
+    /// The code that leaves springs to their method along surfaces, if there are any.
     pub(crate) lead: Option<LeadCode>,
 }
 

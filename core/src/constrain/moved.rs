@@ -53,7 +53,7 @@ impl Moved<'_> {
         self.observer.after(phase, &state);
     }
 
-    /// What constraints move, and the memory that they work in.
+    /// The bodies that constraints move, and the memory that they work in.
     #[inline(never)]
     pub(super) fn lend(&mut self, substep: Substep) -> (Bodies<'_>, Share<'_>) {
         let Attributes { lives, inverse_mass, elasticity, .. } = *self.attributes;

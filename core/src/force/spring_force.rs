@@ -79,7 +79,7 @@ pub struct SpringCode {
     pub(crate) held_by: fn(&Springs<'_>, usize) -> u64,
     /// Breaks those that are stretched too far, and says how many if any can: of the state, and the springs by their ends.
     pub(crate) snap: fn(&State<'_>, &mut [u32]) -> Option<u64>,
-    /// What leaves their method alone along surfaces that particles meet.
+    /// The code that leaves their method alone along surfaces that particles meet.
     pub(crate) lead: LeadCode,
 }
 
