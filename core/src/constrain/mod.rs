@@ -7,6 +7,7 @@
 
 mod attach;
 mod bodies;
+mod budget;
 mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
