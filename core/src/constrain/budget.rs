@@ -4,8 +4,10 @@ use super::turn::{Turn, keeping, nearest, outer, solve};
 use crate::math::{dot, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
-/// How often what it is deformed by in a sub-step is halved, before it is nothing.
+/// How often the way to where it would be as a rigid body is halved.
 const HALVINGS: u32 = 6;
+/// The least share of what is no motion of a rigid body that is left without that.
+const LEAST: f32 = 0.5;
 /// Sums that go on side by side, so that rounding does not grow with the number of particles.
 const SUMS: usize = 8;
 
@@ -61,14 +63,27 @@ struct Whole {
     /// Their angular momentum about the middle, and the sum of m r rᵀ.
     spin: Vec3,
     spread: Mat3,
-    /// The energy of turning, and of all motion besides \[J\].
+    /// The energy of turning, of all motion besides, and what both have together: nothing but where all are near one line \[J\].
     turning: f32,
     rest: f32,
+    both: f32,
 }
 
 impl Whole {
     fn velocity(&self, place: Vec3) -> Vec3 {
         self.drift + self.omega.cross(place - self.middle)
+    }
+
+    /// The energy of motion beside that of the middle, where so much is left of what is no motion of a rigid body \[J\].
+    fn energy(&self, share: f32) -> f32 {
+        self.turning + share * (self.both + share * self.rest)
+    }
+
+    /// How much of that may be left where there is so much energy for it, and turning: the larger root.
+    fn share(&self, left: f32) -> f32 {
+        let half = 0.5 * self.both;
+        let share = (sqrt(max(half * half + self.rest * left, 0.0)) - half) / self.rest;
+        if share >= 0.0 { min(share, 1.0) } else { 1.0 }
     }
 
     /// The same where rounding has taken nothing of another's momenta.
@@ -105,28 +120,27 @@ impl Free<'_> {
             spin += arm.cross(v - drift) * m;
             spread += outer(arm * m, arm);
         });
-        let mut whole = Whole { middle, drift, omega: solve(spread, spin), spin, spread, turning: 0.0, rest: 0.0 };
-        let mut sums = [[0.0; SUMS]; 2];
+        let mut whole = Whole { middle, drift, omega: solve(spread, spin), spin, spread, turning: 0.0, rest: 0.0, both: 0.0 };
+        let mut sums = [[0.0; SUMS]; 3];
         self.each(|number, m, x, v| {
             let turning = whole.omega.cross(x - middle);
             let rest = v - drift - turning;
-            for (sums, part) in sums.iter_mut().zip([turning, rest]) {
-                sums[number % SUMS] += 0.5 * m * dot(part, part);
+            for (sums, [a, b]) in sums.iter_mut().zip([[turning; 2], [rest; 2], [turning * 2.0, rest]]) {
+                sums[number % SUMS] += 0.5 * m * dot(a, b);
             }
         });
-        [whole.turning, whole.rest] = sums.map(|sums| sums.iter().sum());
+        [whole.turning, whole.rest, whole.both] = sums.map(|sums| sums.iter().sum());
         whole
     }
 
     /// The energy of their motion, beside that of their middle \[J\].
     pub(super) fn moving(&self) -> f32 {
-        let whole = self.whole();
-        whole.turning + whole.rest
+        self.whole().energy(1.0)
     }
 
     /// Where they would be if they went through a sub-step as a rigid body, from where they were: by the rotation that keeps their angular momentum, as
     /// with [`ShapeMatching`](super::ShapeMatching).
-    fn aim(&mut self, h: f32, whole: Whole, begin: impl Fn(usize) -> Vec3) {
+    fn aim(&mut self, h: f32, whole: Whole, begin: impl Fn(usize) -> Vec3) -> Turn {
         let (mut mass, mut rest, mut first) = (0.0, Vec3::ZERO, None);
         self.each(|number, m, _, _| {
             let origin = *first.get_or_insert(begin(number));
@@ -142,49 +156,56 @@ impl Free<'_> {
             to += outer(x, q);
             torque += y.cross(x) * m;
         });
-        let turn = keeping(Turn::NONE, from, torque, None).unwrap_or_else(|| nearest(Turn::NONE, to, None)).matrix();
+        let turn = keeping(Turn::NONE, from, torque, None).unwrap_or_else(|| nearest(Turn::NONE, to, None));
+        let rotation = turn.matrix();
         for (number, goal) in self.goal.iter_mut().enumerate().filter(|&(number, _)| self.weight[number] > 0.0) {
-            *goal = whole.middle + turn * (begin(number) - rest);
+            *goal = whole.middle + rotation * (begin(number) - rest);
         }
+        turn
     }
 
-    /// Brings them so much nearer to where they would be as a rigid body.
+    /// Leaves such a share of their ways from where they would be as a rigid body.
     fn stiffen(&mut self, share: f32, h: f32) {
         for ((place, velocity), &goal) in self.place.iter_mut().zip(&mut *self.velocity).zip(&*self.goal) {
-            let by = (goal - *place) * share;
-            *place += by;
-            *velocity += by * (1.0 / h);
+            let to = goal + (*place - goal) * share;
+            *velocity += (to - *place) * (1.0 / h);
+            *place = to;
         }
     }
 
-    /// Takes out of how they deform, on their way through a sub-step of `h` \[s\] and in their velocities, what they have more than `most` \[J\] on that
-    /// account: halves of it, until strain leaves some of `most` for motion, then as much of what is no motion of a rigid body as is too much. Both
-    /// momenta stay, and as rigid bodies they have no more than they began with. `stored` tells the energy of strain where they are.
+    /// Takes out of how they deform what they have more than `most` \[J\] on that account: as much as is too much of what is no motion of a rigid body;
+    /// where that would be most of it, of the ways as well on which they deform in a sub-step of `h` \[s\]. Both momenta stay, and as rigid bodies they
+    /// have no more than they began with. `stored` tells the energy of strain where they are, and where they have been brought nearer to where a rigid
+    /// body would be, how that has turned. That is told at the end as well.
     pub(super) fn hold_back(
         &mut self,
         h: f32,
         most: f32,
         begin: impl Fn(usize) -> Vec3,
-        mut stored: impl FnMut(&[Vec3]) -> f32,
-    ) {
+        mut stored: impl FnMut(&[Vec3], Option<Turn>) -> f32,
+    ) -> Option<Turn> {
         let before = self.whole();
-        self.aim(h, before, begin);
-        let (mut whole, mut left) = (before, 0.0);
-        for halvings in 0..=HALVINGS + 1 {
-            if halvings > 0 {
-                self.stiffen(if halvings <= HALVINGS { 0.5 } else { 1.0 }, h);
-                whole = self.whole();
+        let (mut whole, mut left) = (before, most - stored(self.place, None) - before.turning);
+        let mut turned = None;
+        if !(left >= 0.0 && whole.share(left) >= LEAST) {
+            turned = Some(self.aim(h, before, begin));
+            let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let next = 0.5 * (least + far);
+                self.stiffen(next / now, h);
+                now = next;
+                let fits = stored(self.place, turned) + self.whole().energy(1.0) <= most;
+                *if fits { &mut least } else { &mut far } = now;
             }
-            left = most - stored(self.place) - whole.turning;
-            if left >= 0.0 {
-                break;
-            }
+            self.stiffen(least / now, h);
+            whole = self.whole();
+            left = most - stored(self.place, turned) - whole.turning;
         }
-        let share = sqrt(min(max(left, 0.0) / whole.rest, 1.0));
-        let share = if share >= 0.0 { share } else { 1.0 };
+        let share = whole.share(max(left, 0.0));
         let kept = whole.with_momenta_of(&before);
         for (&place, velocity) in self.place.iter().zip(&mut *self.velocity) {
             *velocity = kept.velocity(place) + (*velocity - whole.velocity(place)) * share;
         }
+        turned
     }
 }

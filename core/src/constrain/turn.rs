@@ -46,6 +46,17 @@ impl Turn {
         }
     }
 
+    /// This rotation after another.
+    pub(super) fn after(self, Self([a, b, c, d]): Self) -> Self {
+        let [x, y, z, w] = self.0;
+        Self([
+            w * a + x * d + (y * c - z * b),
+            w * b + y * d + (z * a - x * c),
+            w * c + z * d + (x * b - y * a),
+            w * d - (x * a + y * b + z * c),
+        ])
+    }
+
     pub(super) fn matrix(self) -> Mat3 {
         let [x, y, z, w] = self.0;
         Mat3::from_cols(
@@ -143,8 +154,8 @@ pub(super) fn about(axis: Vec3, b: Mat3, change: Vec3) -> f32 {
     if by.is_finite() { by } else { 0.0 }
 }
 
-/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by Cramer's rule. About an axis on which all
-/// lies there is no moment, and it does not turn.
+/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by elimination, which leaves no more of the change
+/// than rounding, however thin what turns is. About an axis on which all lies there is no moment, and it does not turn.
 pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
     let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
     if !(trace > 0.0 && trace < f32::INFINITY) {
@@ -153,13 +164,23 @@ pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
     // In units of the trace nothing underflows, however small the cluster.
     let change = change / trace;
     let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
-    let plain = [x / trace, y / trace, z / trace];
-    let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
-    let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
-    let columns = if determinant(plain) > THIN { plain } else { ridged };
-    let [x, y, z] = columns;
-    let answer =
-        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
+    let [x, y, z] = [x / trace, y / trace, z / trace];
+    let over = |pivot: f32| if pivot > THIN { 1.0 / pivot } else { 0.0 };
+    let first = over(x.x);
+    let [p, q] = [x.y * first, x.z * first];
+    let second = over(y.y - p * y.x);
+    let [r, s] = [(y.z - q * y.x) * second, z.y - p * z.x];
+    let third = over(z.z - q * z.x - r * s);
+    let middle = change.y - p * change.x;
+    let back = |[one, two, last]: [f32; 3]| {
+        let middle = (two - s * last) * second;
+        Vec3::new((one - y.x * middle - z.x * last) * first, middle, last)
+    };
+    let mut answer = back([change.x, middle, (change.z - q * change.x - r * middle) * third]);
+    if third == 0.0 {
+        let axis = back([0.0, 0.0, 1.0]);
+        answer -= axis * (dot(axis, answer) / dot(axis, axis));
+    }
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
 

@@ -39,7 +39,7 @@ impl Solver<'_> {
         let mut now = self.energy();
         if now > most {
             let (mut free, mut sheet, rows) = self.parts();
-            free.hold_back(h, most, |number| bodies.before[0][rows[number] as usize], |places| sheet.stored(places));
+            free.hold_back(h, most, |number| bodies.before[0][rows[number] as usize], |places, _| sheet.stored(places));
             self.place(bodies);
             now = self.energy();
         } else {

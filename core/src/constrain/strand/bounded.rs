@@ -6,12 +6,14 @@ use super::params::StrandParams;
 use crate::constrain::Bodies;
 use crate::constrain::budget::{Budget, Free};
 use crate::constrain::turn::Turn;
-use crate::math::{dot, length};
+use crate::math::{dot, length, min};
 use crate::memory::take;
 use glam::Vec3;
 
 /// Words to work with, for each point.
 pub(super) const WORDS: usize = 10;
+/// Words for the frames of before, for each point.
+pub(super) const FRAMES: usize = 4;
 
 /// A strand that nothing holds in a sub-step: its points are in these rows.
 pub(super) struct Bounded<'a> {
@@ -22,11 +24,21 @@ pub(super) struct Bounded<'a> {
     pub(super) mass: f32,
 }
 
+/// What it does and works with in a sub-step.
+pub(super) struct Course<'m> {
+    pub(super) joints: &'m mut [Joint],
+    /// The frames of its edges as the sub-step began.
+    pub(super) before: &'m mut [[f32; 4]],
+    pub(super) work: &'m mut [u32],
+}
+
 impl Bounded<'_> {
     /// The most energy that it may have at the sub-step's end.
-    pub(super) fn most(&self, bodies: &Bodies<'_>, joints: &[Joint], budget: &Budget<'_>, work: &mut [u32]) -> f32 {
+    pub(super) fn most(&self, bodies: &Bodies<'_>, course: Course<'_>, budget: &Budget<'_>) -> f32 {
+        let Course { joints, before, work } = course;
+        before.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
         let free = self.free([bodies.before[0], bodies.velocity], bodies, work);
-        budget.most(free.moving() + self.stored(joints, free.place))
+        budget.most(free.moving() + self.stored(joints, None, free.place))
     }
 
     /// Takes out of it what is more than that, and keeps what there is.
@@ -34,20 +46,18 @@ impl Bounded<'_> {
         &self,
         most: f32,
         bodies: &mut Bodies<'_>,
-        joints: &mut [Joint],
+        course: Course<'_>,
         budget: &mut Budget<'_>,
-        work: &mut [u32],
     ) {
+        let Course { joints, before, work } = course;
         let mut free = self.free([bodies.position, bodies.velocity], bodies, work);
-        let mut now = free.moving() + self.stored(joints, free.place);
+        let mut now = free.moving() + self.stored(joints, None, free.place);
         if now > most {
-            let (rows, before) = (self.rows, bodies.before[0]);
-            free.hold_back(
-                self.h,
-                most,
-                |number| before[rows[number] as usize],
-                |places| self.stored(joints, places),
-            );
+            let (rows, places) = (self.rows, bodies.before[0]);
+            let begin = |number: usize| places[rows[number] as usize];
+            let frames = |turned: Option<Turn>| turned.map(|turned| (turned, &*before));
+            let turned =
+                free.hold_back(self.h, most, begin, |places, turned| self.stored(joints, frames(turned), places));
             for ((&row, &x), &v) in self.rows.iter().zip(&*free.place).zip(&*free.velocity) {
                 if x.is_finite() && v.is_finite() {
                     let row = row as usize;
@@ -55,10 +65,10 @@ impl Bounded<'_> {
                     (bodies.position[row], bodies.velocity[row]) = (x, v);
                 }
             }
-            for (ends, joint) in free.place.windows(2).zip(&mut *joints) {
-                joint.turn = turned(joint, ends[1] - ends[0]).0;
+            for (number, ends) in free.place.windows(2).enumerate() {
+                joints[number].turn = frame(joints, frames(turned), number, ends[1] - ends[0]).0;
             }
-            now = free.moving() + self.stored(joints, free.place);
+            now = free.moving() + self.stored(joints, None, free.place);
         }
         budget.keep(now, most);
     }
@@ -75,22 +85,25 @@ impl Bounded<'_> {
         Free { weight, place, velocity, goal }
     }
 
-    /// The energy of strain where its points are in these places \[J\]. What does not stretch is taken for as stiff as it takes to be brought to its
-    /// length in a sub-step.
-    fn stored(&self, joints: &[Joint], places: &[Vec3]) -> f32 {
+    /// The energy of strain where its points are in these places \[J\]. What is stiffer than it takes to be brought to its shape in a
+    /// sub-step is taken for so stiff: of the rest of its strain no motion comes.
+    fn stored(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3]) -> f32 {
         let StrandParams { stretch, bending: [first, second], twisting, .. } = *self.params;
         let (mut sum, mut last) = (0.0, None);
-        for (ends, joint) in places.windows(2).zip(joints) {
+        let shown = 0.5 * self.mass / (self.h * self.h);
+        for (number, (ends, joint)) in places.windows(2).zip(joints).enumerate() {
             let way = ends[1] - ends[0];
-            let stiff = stretch.map_or(0.5 * self.mass / (self.h * self.h), |stretch| stretch / joint.length);
+            let stiff = stretch.map_or(f32::INFINITY, |stretch| stretch / joint.length);
+            let stiff = min(stiff, shown);
             let long = length(way) - joint.length;
             let pulled = 0.5 * stiff * (long * long);
             sum += if pulled.is_finite() { pulled } else { 0.0 };
-            let own = (turned(joint, way), joint.length);
+            let own = (frame(joints, turned, number, way), joint.length);
             if let Some((turn, before)) = last.replace(own) {
                 let bent = strain(turn, own.0) - joint.rest;
-                let moment = bent * Vec3::new(first, second, twisting);
-                let bent = dot(bent, moment) / (before + own.1);
+                let stiff = |stiffness: f32| min(stiffness / (before + own.1), 0.5 * shown * (before * own.1));
+                let moment = bent * Vec3::new(stiff(first), stiff(second), stiff(twisting));
+                let bent = dot(bent, moment);
                 sum += if bent.is_finite() { bent } else { 0.0 };
             }
         }
@@ -98,8 +111,12 @@ impl Bounded<'_> {
     }
 }
 
-/// The frame of an edge that has got into this direction.
-fn turned(joint: &Joint, way: Vec3) -> Turn {
+/// The frame of an edge that has got into this direction: from where it is, or from where it was, turned as a rigid body.
+fn frame(joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, number: usize, way: Vec3) -> Turn {
+    let from = match turned {
+        Some((turn, before)) => turn.after(Turn(before[number])),
+        None => Turn(joints[number].turn),
+    };
     let direction = way / length(way);
-    if direction.is_finite() { bring(Turn(joint.turn), direction) } else { Turn(joint.turn) }
+    if direction.is_finite() { bring(from, direction) } else { from }
 }

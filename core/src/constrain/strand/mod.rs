@@ -16,7 +16,7 @@ use crate::math::{length, sin_cos};
 use crate::memory::take;
 use crate::rows::BLOCKS;
 use band::Band;
-use bounded::Bounded;
+use bounded::{Bounded, Course};
 use bytemuck::Pod;
 use frame::{bring, frame, strain};
 use glam::Vec3;
@@ -243,6 +243,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         let step = Step { params: &self.params, h: bodies.substep.seconds() };
         let mut memory = memory;
         let work = take(&mut memory, bounded::WORDS * longest);
+        let frames: &mut [[f32; 4]] = bytemuck::cast_slice_mut(take(&mut memory, bounded::FRAMES * longest * LANES));
         let bounded = |rows, mass| Bounded { params: &self.params, rows, h: step.h, mass };
         let mut limits = [None; LANES];
         let mut band = Band::<LANES>::new(memory, most * EQUATIONS);
@@ -254,7 +255,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 rows.iter().for_each(|&row| bodies.catch_up(row as usize));
             }
             masses[lane] = mean_mass(bodies, rows);
-            limits[lane] = piece.budget(budgets).map(|budget| bounded(rows, masses[lane]).most(bodies, joints, &budget, work));
+            limits[lane] = piece.budget(budgets).map(|budget| {
+                let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
+                bounded(rows, masses[lane]).most(bodies, course, &budget)
+            });
             Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.write(piece, joints);
         }
         band.solve();
@@ -264,7 +268,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let is_solved = act(&band, lane, bodies, rows, joints, masses[lane]);
             bodies.report.effort.solved(1, 0.0, !is_solved);
             if let (Some(most), Some(mut budget)) = (limits[lane], piece.budget(budgets)) {
-                bounded(rows, masses[lane]).keep_within(most, bodies, joints, &mut budget, work);
+                let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
+                bounded(rows, masses[lane]).keep_within(most, bodies, course, &mut budget);
             }
         }
     }
@@ -285,7 +290,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
         let words = |fixed| Words { per_row: 0, fixed };
         Demand {
             kept: words(joints.saturating_add(1).saturating_add(budget::WORDS * self.strands().count())),
-            scratch: words(longest.saturating_mul(lanes + bounded::WORDS).saturating_add(band)),
+            scratch: words(longest.saturating_mul(lanes + bounded::WORDS + bounded::FRAMES * lanes).saturating_add(band)),
             ..Demand::NONE
         }
     }
