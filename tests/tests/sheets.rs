@@ -271,7 +271,8 @@ fn a_free_sheet_keeps_its_momenta_and_gains_no_energy() {
 fn gains_nothing(frames: u32, cells: u32, bent: bool, stretches: &[f32]) {
     let mut methods = [Method::Symplectic, Method::Verlet, Method::Rk4, Method::Euler].into_iter().cycle();
     for &stretch in stretches {
-        for (bending, substeps) in [1e-6, 1e-4, 1e-2].into_iter().flat_map(|b| [1, 2, 3, 5, 10, 20, 50].map(|n| (b, n))) {
+        for (bending, substeps) in [1e-6, 1e-4, 1e-2].into_iter().flat_map(|b| [1, 2, 3, 5, 10, 20, 50].map(|n| (b, n)))
+        {
             let (mut start, sheet) = flying(cells, bent, 1.0, Vec3::ZERO);
             // What stays where it is does not get where places are coarse.
             let mass: f32 = start.iter().map(|p| p.mass).sum();

@@ -379,11 +379,7 @@ fn keeps_its_momenta(frames: u32, cases: &[(u32, f32, f32)]) {
             for frame in 1..=u64::from(frames) {
                 system.step_to(&scene, Time::frame(frame, 60));
                 let now = Measures::of(&system, &scene).energy.kinetic;
-                assert!(
-                    now < moving * (1.0 + 1e-5),
-                    "{method}, {substeps}, {scale} m, {frame}: {}",
-                    now / moving
-                );
+                assert!(now < moving * (1.0 + 1e-5), "{method}, {substeps}, {scale} m, {frame}: {}", now / moving);
             }
             let after = Measures::of(&system, &scene);
             let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
@@ -410,7 +406,8 @@ fn gains_nothing(frames: u32, edges: u32, stretches: &[Option<f32>]) {
     for (&stretch, wild) in stretches.iter().flat_map(|stretch| [0.1f32, 0.5, 1.0].map(|wild| (stretch, wild))) {
         for (bending, substeps) in [1e-5, 1e-3].into_iter().flat_map(|b| [1, 2, 3, 5, 10, 20, 50].map(|n| (b, n))) {
             let mut random = Random::new(77);
-            let rod = Rod { root: Vec3::NEG_X * (0.05 * edges as f32), along: Vec3::X, long: 0.1 * edges as f32, edges };
+            let rod =
+                Rod { root: Vec3::NEG_X * (0.05 * edges as f32), along: Vec3::X, long: 0.1 * edges as f32, edges };
             let mut start = rod.free(0.5);
             start.iter_mut().for_each(|p| p.velocity = Vec3::Z.cross(p.position) * 3.0 + random.vector(wild));
             let mass: f32 = start.iter().map(|p| p.mass).sum();

@@ -1,6 +1,6 @@
 //! The energy of what nothing holds: a sub-step in which it is solved gives it none.
 
-use super::turn::{Turn, keeping, nearest, outer, solve};
+use super::turn::{Turn, keeping_by, nearest, outer, solve_thin};
 use crate::math::{dot, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
@@ -88,7 +88,7 @@ impl Whole {
 
     /// The same where rounding has taken nothing of another's momenta.
     fn with_momenta_of(self, other: &Self) -> Self {
-        Self { drift: other.drift, omega: solve(self.spread, other.spin), ..self }
+        Self { drift: other.drift, omega: solve_thin(self.spread, other.spin), ..self }
     }
 }
 
@@ -120,7 +120,8 @@ impl Free<'_> {
             spin += arm.cross(v - drift) * m;
             spread += outer(arm * m, arm);
         });
-        let mut whole = Whole { middle, drift, omega: solve(spread, spin), spin, spread, turning: 0.0, rest: 0.0, both: 0.0 };
+        let mut whole =
+            Whole { middle, drift, omega: solve_thin(spread, spin), spin, spread, turning: 0.0, rest: 0.0, both: 0.0 };
         let mut sums = [[0.0; SUMS]; 3];
         self.each(|number, m, x, v| {
             let turning = whole.omega.cross(x - middle);
@@ -156,7 +157,8 @@ impl Free<'_> {
             to += outer(x, q);
             torque += y.cross(x) * m;
         });
-        let turn = keeping(Turn::NONE, from, torque, None).unwrap_or_else(|| nearest(Turn::NONE, to, None));
+        let turn =
+            keeping_by(solve_thin, Turn::NONE, (from, torque), None).unwrap_or_else(|| nearest(Turn::NONE, to, None));
         let rotation = turn.matrix();
         for (number, goal) in self.goal.iter_mut().enumerate().filter(|&(number, _)| self.weight[number] > 0.0) {
             *goal = whole.middle + rotation * (begin(number) - rest);

@@ -80,6 +80,16 @@ pub(super) fn turn_of(spread: Mat3, moment: Vec3) -> Vec3 {
 
 /// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
 pub(super) fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
+    keeping_by(solve, last, (from, torque), axis)
+}
+
+/// The same where the system of each round is solved so.
+pub(super) fn keeping_by(
+    solve: fn(Mat3, Vec3) -> Vec3,
+    last: Turn,
+    (from, torque): (Mat3, Vec3),
+    axis: Option<Vec3>,
+) -> Option<Turn> {
     let (mut turn, mut before) = (last, f32::INFINITY);
     for _ in 0..ROUNDS[0] {
         // Σ m y (R q)ᵀ, and of it what is antisymmetric: Σ m y × R q.
@@ -154,9 +164,28 @@ pub(super) fn about(axis: Vec3, b: Mat3, change: Vec3) -> f32 {
     if by.is_finite() { by } else { 0.0 }
 }
 
-/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by elimination, which leaves no more of the change
-/// than rounding, however thin what turns is. About an axis on which all lies there is no moment, and it does not turn.
+/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by Cramer's rule. About an axis on which all
+/// lies there is no moment, and it does not turn.
 pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
+    let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
+    if !(trace > 0.0 && trace < f32::INFINITY) {
+        return Vec3::ZERO;
+    }
+    // In units of the trace nothing underflows, however small the cluster.
+    let change = change / trace;
+    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
+    let plain = [x / trace, y / trace, z / trace];
+    let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
+    let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
+    let columns = if determinant(plain) > THIN { plain } else { ridged };
+    let [x, y, z] = columns;
+    let answer =
+        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
+    if answer.is_finite() { answer } else { Vec3::ZERO }
+}
+
+/// The same by elimination, which leaves no more of the change than rounding however thin what turns is.
+pub(super) fn solve_thin(b: Mat3, change: Vec3) -> Vec3 {
     let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
     if !(trace > 0.0 && trace < f32::INFINITY) {
         return Vec3::ZERO;

@@ -42,13 +42,7 @@ impl Bounded<'_> {
     }
 
     /// Takes out of it what is more than that, and keeps what there is.
-    pub(super) fn keep_within(
-        &self,
-        most: f32,
-        bodies: &mut Bodies<'_>,
-        course: Course<'_>,
-        budget: &mut Budget<'_>,
-    ) {
+    pub(super) fn keep_within(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>, budget: &mut Budget<'_>) {
         let Course { joints, before, work } = course;
         let mut free = self.free([bodies.position, bodies.velocity], bodies, work);
         let mut now = free.moving() + self.stored(joints, None, free.place);

@@ -290,7 +290,9 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
         let words = |fixed| Words { per_row: 0, fixed };
         Demand {
             kept: words(joints.saturating_add(1).saturating_add(budget::WORDS * self.strands().count())),
-            scratch: words(longest.saturating_mul(lanes + bounded::WORDS + bounded::FRAMES * lanes).saturating_add(band)),
+            scratch: words(
+                longest.saturating_mul(lanes + bounded::WORDS + bounded::FRAMES * lanes).saturating_add(band),
+            ),
             ..Demand::NONE
         }
     }
