@@ -9,7 +9,7 @@ use pointmass::constrain::{Hinge, RigidBox, Shell};
 use pointmass::scene::Model;
 use pointmass::shape::Aabb;
 use pointmass::stability::Limit;
-use pointmass::{ConstraintKind, Strands, Vec3};
+use pointmass::{ConstraintKind, Rope, Strands, Vec3};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -53,6 +53,7 @@ pub(crate) enum Kind {
     Rope,
     Cluster,
     Attach,
+    Tie,
     Shell,
     Strands,
     StrainLimits,
@@ -66,6 +67,7 @@ impl Kind {
             Self::Rope => "rope",
             Self::Cluster => "cluster",
             Self::Attach => "attach",
+            Self::Tie => "tie",
             Self::Shell => "shell",
             Self::Strands => "strands",
             Self::StrainLimits => "strain limits",
@@ -138,6 +140,15 @@ impl Hold {
                 let place = at.filter(|at| at.starts_with("strands")).unwrap_or(this.place);
                 Self { place, count: each(strands).count(), gives: weighed(model, strands), ..this }
             }
+            // Ropes, and what is tied of bodies, stand there in the file.
+            ConstraintKind::Rope(Rope { particles, .. }) => {
+                let at = particles.first().map(|&first| place(model, 0, first as usize));
+                Self { place: at.filter(|at| at.starts_with("ropes")).unwrap_or(this.place), ..this }
+            }
+            ConstraintKind::Tie(tie) => {
+                let at = place(model, 0, tie.particle as usize);
+                Self { place: if at.starts_with("particles") { this.place } else { at }, ..this }
+            }
             _ => this,
         }
     }
@@ -191,6 +202,7 @@ impl Hold {
             Kind::Rope => format!("link by link, directly: exact{}", fades()),
             Kind::Cluster => format!("as one: exact at rest{}", fades()),
             Kind::Attach => "go where the script says".into(),
+            Kind::Tie => format!("one after the other, to places on other bodies{}", fades()),
             Kind::Strands => format!("each as one, directly{}", fades()),
             Kind::StrainLimits => format!("triangle by triangle, there and back, 16 times at most{}", fades()),
             Kind::Shell => format!("as one, {} iterations at most{}", self.iterations(h), fades()),
@@ -236,6 +248,7 @@ fn kind(constraint: &ConstraintKind) -> Kind {
         ConstraintKind::Shell(_) => Kind::Shell,
         ConstraintKind::Strands(_) => Kind::Strands,
         ConstraintKind::StrainLimits(_) => Kind::StrainLimits,
+        ConstraintKind::Tie(_) => Kind::Tie,
     }
 }
 
@@ -245,7 +258,7 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
         particle if particle.fixed => 0.0,
         particle => 1.0 / f64::from(particle.mass),
     };
-    let lightest = || constraint.ends().iter().map(inverse).fold(0.0, f64::max);
+    let lightest = || constraint.ends().map(inverse).fold(0.0, f64::max);
     let (compliance, weight) = match constraint {
         ConstraintKind::Distance(distance) => (distance.compliance, distance.ends.iter().map(inverse).sum()),
         // Beside a link that is stretched those beside it are pressed.
@@ -255,6 +268,8 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
             (cluster.compliance, 1.0 / masses.sum::<f64>())
         }
         ConstraintKind::Attach(_) => (0.0, 0.0),
+        // The place gives way less than the lightest of what it is on.
+        ConstraintKind::Tie(tie) => (tie.compliance, constraint.ends().map(inverse).sum()),
         ConstraintKind::StrainLimits(limits) => (limits.params.compliance, 4.0 * lightest()),
         ConstraintKind::Strands(strands) => {
             let at = |i: u32| model.particles[i as usize].position;

@@ -159,7 +159,7 @@ fn nodes(model: &Model, links: &[Link]) -> Vec<Node> {
             ConstraintKind::Cluster(_) | ConstraintKind::Shell(_) => kind.ends(),
             _ => continue,
         };
-        let (holding, rest): (Vec<usize>, Vec<_>) = ends.iter().map(|&i| i as usize).partition(|i| linked.contains(i));
+        let (holding, rest): (Vec<usize>, Vec<_>) = ends.map(|&i| i as usize).partition(|i| linked.contains(i));
         let share = rest.into_iter().map(mass).sum::<f64>() / holding.len().max(1) as f64;
         holding.iter().for_each(|&i| load[i] += share);
     }

@@ -1,7 +1,7 @@
 //! The constraints that a scene file names.
 
 use super::{
-    Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands,
+    Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands, Tie,
 };
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
@@ -25,6 +25,8 @@ pub enum ConstraintKind {
     Strands(Strands<Vec<u32>, Vec<u32>>),
     /// Triangles that stretch and shear only so far.
     StrainLimits(StrainLimits<Vec<[u32; 3]>>),
+    /// A particle at a place on another body.
+    Tie(Tie<Vec<u32>, Vec<f32>>),
 }
 
 impl ConstraintKind {
@@ -38,6 +40,7 @@ impl ConstraintKind {
             Self::Shell(shell) => shell,
             Self::Strands(strands) => strands,
             Self::StrainLimits(limits) => limits,
+            Self::Tie(tie) => tie,
         }
     }
 
@@ -52,6 +55,7 @@ impl ConstraintKind {
             Self::Shell(shell) => shell.fault().or_else(|| twice(&shell.particles)),
             Self::Strands(strands) => strands.fault().or_else(|| twice(&strands.particles)),
             Self::StrainLimits(limits) => limits.fault(),
+            Self::Tie(tie) => tie.fault().or_else(|| twice(&tie.to).map(|(_, why)| ("to", why))),
         }
     }
 
@@ -60,26 +64,30 @@ impl ConstraintKind {
         let (list, closed) = match self {
             Self::Distance(distance) => (&distance.ends[..], false),
             Self::Rope(rope) => (&rope.particles[..], rope.closed),
-            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) | Self::Strands(_) | Self::StrainLimits(_) => {
-                (&[][..], false)
-            }
+            Self::Cluster(_)
+            | Self::Attach(_)
+            | Self::Shell(_)
+            | Self::Strands(_)
+            | Self::StrainLimits(_)
+            | Self::Tie(_) => (&[][..], false),
         };
         let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
     }
 
     /// The particles of the scene's start that it binds.
-    #[must_use]
-    pub fn ends(&self) -> &[u32] {
-        match self {
-            Self::Distance(distance) => &distance.ends,
-            Self::Rope(rope) => &rope.particles,
-            Self::Cluster(cluster) => &cluster.particles,
-            Self::Attach(attach) => &attach.particles,
-            Self::Shell(shell) => &shell.particles,
-            Self::Strands(strands) => &strands.particles,
-            Self::StrainLimits(limits) => limits.triangles.as_flattened(),
-        }
+    pub fn ends(&self) -> impl Iterator<Item = &u32> {
+        let (list, tied): (&[u32], Option<&u32>) = match self {
+            Self::Distance(distance) => (&distance.ends, None),
+            Self::Rope(rope) => (&rope.particles, None),
+            Self::Cluster(cluster) => (&cluster.particles, None),
+            Self::Attach(attach) => (&attach.particles, None),
+            Self::Shell(shell) => (&shell.particles, None),
+            Self::Strands(strands) => (&strands.particles, None),
+            Self::StrainLimits(limits) => (limits.triangles.as_flattened(), None),
+            Self::Tie(tie) => (&tie.to, Some(&tie.particle)),
+        };
+        list.iter().chain(tied)
     }
 }
 

@@ -75,7 +75,10 @@ impl SceneFile {
         let force = self.forces.iter().enumerate().find_map(|(i, force)| Some((format!("forces[{i}]"), far(force)?)));
         let part = |name: &str, is_empty: bool, what| (!is_empty).then(|| (format!("{name}[0]"), what));
         let bound = |constraint: &ConstraintKind| match constraint {
-            ConstraintKind::Distance(_) | ConstraintKind::Rope(_) | ConstraintKind::Attach(_) => None,
+            ConstraintKind::Distance(_)
+            | ConstraintKind::Rope(_)
+            | ConstraintKind::Attach(_)
+            | ConstraintKind::Tie(_) => None,
             ConstraintKind::Cluster(_) => Some("clusters"),
             ConstraintKind::Shell(_) | ConstraintKind::StrainLimits(_) => Some("surfaces of particles"),
             ConstraintKind::Strands(_) => Some("strands"),
@@ -87,5 +90,6 @@ impl SceneFile {
             .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))
             .or(part("boxes", self.boxes.is_empty(), "rigid bodies"))
             .or(part("strands", self.strands.is_empty(), "strands"))
+            .or(part("ropes", self.ropes.is_empty(), "ropes of their own (a rope among the constraints can)"))
     }
 }

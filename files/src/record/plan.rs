@@ -96,7 +96,10 @@ impl Plan {
                     shell.triangles.iter().filter_map(|&[a, b, c]| Some([particle(a)?, particle(b)?, particle(c)?]));
                 self.triangles.extend(triangles.filter(|triangle| !there.contains(triangle)));
             }
-            ConstraintKind::Cluster(_) | ConstraintKind::Attach(_) | ConstraintKind::StrainLimits(_) => {}
+            ConstraintKind::Cluster(_)
+            | ConstraintKind::Attach(_)
+            | ConstraintKind::StrainLimits(_)
+            | ConstraintKind::Tie(_) => {}
         }
     }
 }
