@@ -5,7 +5,7 @@ use super::statics::Hanging;
 use super::words::{plain, time};
 use crate::report::words::short;
 use crate::stall::gravity;
-use pointmass::constrain::{Hinge, RigidBox, Shell};
+use pointmass::constrain::{Hinge, RigidBox, Shell, TiedRope};
 use pointmass::scene::Model;
 use pointmass::shape::Aabb;
 use pointmass::stability::Limit;
@@ -141,7 +141,8 @@ impl Hold {
                 Self { place, count: each(strands).count(), gives: weighed(model, strands), ..this }
             }
             // Ropes, and what is tied of bodies, stand there in the file.
-            ConstraintKind::Rope(Rope { particles, .. }) => {
+            ConstraintKind::Rope(Rope { particles, .. })
+            | ConstraintKind::TiedRope(TiedRope { rope: Rope { particles, .. }, .. }) => {
                 let at = particles.first().map(|&first| place(model, 0, first as usize));
                 Self { place: at.filter(|at| at.starts_with("ropes")).unwrap_or(this.place), ..this }
             }
@@ -242,7 +243,7 @@ impl Hold {
 fn kind(constraint: &ConstraintKind) -> Kind {
     match constraint {
         ConstraintKind::Distance(_) => Kind::Distance,
-        ConstraintKind::Rope(_) => Kind::Rope,
+        ConstraintKind::Rope(_) | ConstraintKind::TiedRope(_) => Kind::Rope,
         ConstraintKind::Cluster(_) => Kind::Cluster,
         ConstraintKind::Attach(_) => Kind::Attach,
         ConstraintKind::Shell(_) => Kind::Shell,
@@ -262,7 +263,9 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
     let (compliance, weight) = match constraint {
         ConstraintKind::Distance(distance) => (distance.compliance, distance.ends.iter().map(inverse).sum()),
         // Beside a link that is stretched those beside it are pressed.
-        ConstraintKind::Rope(rope) => (rope.compliance, 4.0 * lightest()),
+        ConstraintKind::Rope(rope) | ConstraintKind::TiedRope(TiedRope { rope, .. }) => {
+            (rope.compliance, 4.0 * lightest())
+        }
         ConstraintKind::Cluster(cluster) => {
             let masses = cluster.particles.iter().map(|&i| f64::from(model.particles[i as usize].mass));
             (cluster.compliance, 1.0 / masses.sum::<f64>())

@@ -2,6 +2,7 @@
 
 use super::{
     Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands, Tie,
+    TiedRope,
 };
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
@@ -27,6 +28,8 @@ pub enum ConstraintKind {
     StrainLimits(StrainLimits<Vec<[u32; 3]>>),
     /// A particle at a place on another body.
     Tie(Tie<Vec<u32>, Vec<f32>>),
+    /// A chain of links whose ends are tied to other bodies.
+    TiedRope(TiedRope<Vec<u32>, Vec<f32>, Vec<u32>, Vec<f32>>),
 }
 
 impl ConstraintKind {
@@ -41,6 +44,7 @@ impl ConstraintKind {
             Self::Strands(strands) => strands,
             Self::StrainLimits(limits) => limits,
             Self::Tie(tie) => tie,
+            Self::TiedRope(tied) => tied,
         }
     }
 
@@ -56,6 +60,7 @@ impl ConstraintKind {
             Self::Strands(strands) => strands.fault().or_else(|| twice(&strands.particles)),
             Self::StrainLimits(limits) => limits.fault(),
             Self::Tie(tie) => tie.fault().or_else(|| twice(&tie.to).map(|(_, why)| ("to", why))),
+            Self::TiedRope(tied) => tied.fault().or_else(|| twice(&tied.rope.particles)),
         }
     }
 
@@ -70,6 +75,7 @@ impl ConstraintKind {
             | Self::Strands(_)
             | Self::StrainLimits(_)
             | Self::Tie(_) => (&[][..], false),
+            Self::TiedRope(tied) => (&tied.rope.particles[..], tied.rope.closed),
         };
         let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
@@ -77,17 +83,21 @@ impl ConstraintKind {
 
     /// The particles of the scene's start that it binds.
     pub fn ends(&self) -> impl Iterator<Item = &u32> {
-        let (list, tied): (&[u32], Option<&u32>) = match self {
-            Self::Distance(distance) => (&distance.ends, None),
-            Self::Rope(rope) => (&rope.particles, None),
-            Self::Cluster(cluster) => (&cluster.particles, None),
-            Self::Attach(attach) => (&attach.particles, None),
-            Self::Shell(shell) => (&shell.particles, None),
-            Self::Strands(strands) => (&strands.particles, None),
-            Self::StrainLimits(limits) => (limits.triangles.as_flattened(), None),
-            Self::Tie(tie) => (&tie.to, Some(&tie.particle)),
+        let nobody: [&[u32]; 2] = [&[]; 2];
+        let (list, tied) = match self {
+            Self::Distance(distance) => (&distance.ends[..], nobody),
+            Self::Rope(rope) => (&rope.particles[..], nobody),
+            Self::Cluster(cluster) => (&cluster.particles[..], nobody),
+            Self::Attach(attach) => (&attach.particles[..], nobody),
+            Self::Shell(shell) => (&shell.particles[..], nobody),
+            Self::Strands(strands) => (&strands.particles[..], nobody),
+            Self::StrainLimits(limits) => (limits.triangles.as_flattened(), nobody),
+            Self::Tie(tie) => (&tie.to[..], [core::slice::from_ref(&tie.particle), &[]]),
+            Self::TiedRope(tied) => {
+                (&tied.rope.particles[..], [0, 1].map(|i| tied.ends[i].as_ref().map_or(&[][..], |tie| &tie.to[..])))
+            }
         };
-        list.iter().chain(tied)
+        list.iter().chain(tied.into_iter().flatten())
     }
 }
 

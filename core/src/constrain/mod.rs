@@ -41,7 +41,7 @@ pub use sheet_contacts::SheetContacts;
 pub use shell::{Shell, ShellParams};
 pub use strain_limits::{StrainLimitParams, StrainLimits};
 pub use strand::{StrandParams, Strands};
-pub use tie::Tie;
+pub use tie::{Tie, TiedRope};
 
 pub use crate::cloth::Hinge;
 #[cfg(feature = "alloc")]

@@ -2,7 +2,7 @@
 
 use super::numbers::{Checked, finite, zero_or_more};
 use super::{PeriodicRoom, SceneError, SceneFile};
-use crate::constrain::{ConstraintKind, Distance, Rope};
+use crate::constrain::{ConstraintKind, Distance, Rope, TiedRope};
 use crate::force::{Force, ForceKind, Spring};
 use crate::math::max;
 use alloc::format;
@@ -43,7 +43,10 @@ impl SceneFile {
         }
         let bound = |constraint: &ConstraintKind| match constraint {
             ConstraintKind::Distance(Distance { length, .. }) => *length,
-            ConstraintKind::Rope(Rope { lengths, .. }) => lengths.iter().copied().fold(0.0, max),
+            ConstraintKind::Rope(Rope { lengths, .. })
+            | ConstraintKind::TiedRope(TiedRope { rope: Rope { lengths, .. }, .. }) => {
+                lengths.iter().copied().fold(0.0, max)
+            }
             _ => 0.0,
         };
         let constraints = self.constraints.iter().map(bound).enumerate().map(|(i, length)| ("constraints", i, length));
@@ -78,7 +81,8 @@ impl SceneFile {
             ConstraintKind::Distance(_)
             | ConstraintKind::Rope(_)
             | ConstraintKind::Attach(_)
-            | ConstraintKind::Tie(_) => None,
+            | ConstraintKind::Tie(_)
+            | ConstraintKind::TiedRope(_) => None,
             ConstraintKind::Cluster(_) => Some("clusters"),
             ConstraintKind::Shell(_) | ConstraintKind::StrainLimits(_) => Some("surfaces of particles"),
             ConstraintKind::Strands(_) => Some("strands"),

@@ -3,7 +3,7 @@
 use super::placing::Placing;
 use super::references::color;
 use super::{BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
-use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts};
+use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts, TiedRope};
 use crate::draw::Lock;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Spring};
@@ -162,6 +162,7 @@ impl Start {
     }
 
     fn add_ropes(&mut self, file: &SceneFile, path: &str) -> Result<(), SceneError> {
+        let mut last = Vec::new();
         for (i, cord) in file.ropes.iter().enumerate() {
             let first = self.particles.len() as u32;
             let laid = cord.make(first);
@@ -174,14 +175,19 @@ impl Start {
             self.forces.extend(cord.air_drag(&laid.lock, &file.forces));
             self.constraints.extend(laid.constraints);
             self.locks.push(laid.lock);
+            last.push(self.constraints.len() - 1);
         }
         // One may be tied to another that comes later.
         for (i, cord) in file.ropes.iter().enumerate() {
-            let ends = [0, cord.segments].into_iter().zip(cord.ends).enumerate();
-            for (k, (point, to)) in ends.filter_map(|(k, (point, to))| Some((k, (point, to?)))) {
-                let end = self.ropes[i] as u32 + point;
-                let tied = self.tie(end, to, [0.0; 2]);
-                tied.map_err(|why| SceneError::value(format!("ropes[{i}].ends[{k}]"), why).in_file(path))?;
+            let mut ends = [None, None];
+            for (k, point) in [0, cord.segments].into_iter().enumerate() {
+                let Some(to) = cord.ends[k] else { continue };
+                let tied = self.tied(self.ropes[i] as u32 + point, to, [0.0; 2]);
+                let wrong = |why| SceneError::value(format!("ropes[{i}].ends[{k}]"), why).in_file(path);
+                ends[k] = Some(tied.map_err(wrong)?);
+            }
+            if let (ConstraintKind::Rope(rope), true) = (&self.constraints[last[i]], ends.iter().any(Option::is_some)) {
+                self.constraints[last[i]] = ConstraintKind::TiedRope(TiedRope { rope: rope.clone(), ends });
             }
         }
         Ok(())

@@ -139,11 +139,23 @@ impl Start {
         }
     }
 
-    /// Ties a particle to a body at the place where it begins.
-    pub(super) fn tie(&mut self, particle: u32, to: Body, [compliance, damping]: [f32; 2]) -> Result<(), String> {
+    /// The tie of a particle to a body at the place where it begins.
+    pub(super) fn tied(
+        &self,
+        particle: u32,
+        to: Body,
+        [compliance, damping]: [f32; 2],
+    ) -> Result<Tie<Vec<u32>, Vec<f32>>, String> {
         let nearest = self.nearest(to, self.particles[particle as usize].position)?;
-        let tie = Tie { particle, to: nearest, weights: None, offset: 0.0, compliance, damping };
-        self.constraints.push(ConstraintKind::Tie(tie));
+        if nearest.contains(&particle) {
+            return Err("it is a part of that body; name another".to_string());
+        }
+        Ok(Tie { particle, to: nearest, weights: None, offset: 0.0, compliance, damping })
+    }
+
+    /// Ties a particle to a body at the place where it begins.
+    pub(super) fn tie(&mut self, particle: u32, to: Body, give: [f32; 2]) -> Result<(), String> {
+        self.constraints.push(ConstraintKind::Tie(self.tied(particle, to, give)?));
         Ok(())
     }
 

@@ -84,6 +84,7 @@ impl Plan {
         match constraint {
             ConstraintKind::Distance(distance) => self.links.push(distance.ends),
             ConstraintKind::Rope(rope) => self.links.extend(chain(&rope.particles, rope.closed)),
+            ConstraintKind::TiedRope(tied) => self.links.extend(chain(&tied.rope.particles, tied.rope.closed)),
             ConstraintKind::Strands(strands) => {
                 let all = strands.strands().map(|[first, end]| &strands.particles[first..end]);
                 self.links.extend(all.flat_map(|particles| chain(particles, false)));

@@ -103,10 +103,14 @@ impl Grip {
         given + turn.cross(arm)
     }
 
+    /// How far an impulse \[kg m\] moves the body's place.
+    pub(super) fn given_way(&self, pull: Vec3) -> Vec3 {
+        self.shared * pull + self.turn(pull).cross(self.arm)
+    }
+
     /// The impulse that moves the particle against its place by this \[m\], with so much softness \[1/kg\]; none if nothing does.
     pub(super) fn answer(&self, soft: f32, by: Vec3) -> Option<Vec3> {
-        let columns = [Vec3::X, Vec3::Y, Vec3::Z]
-            .map(|axis| axis * (self.own + soft) + self.shared * axis + self.turn(axis).cross(self.arm));
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| axis * (self.own + soft) + self.given_way(axis));
         let scale = columns[0].x + columns[1].y + columns[2].z;
         across(columns.map(|column| column / scale), by / scale)
     }

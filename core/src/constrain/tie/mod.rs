@@ -2,12 +2,14 @@
 
 mod grip;
 mod place;
+mod rope;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::index::between;
 use crate::math::{largest, length, max};
 use glam::Vec3;
 use grip::Grip;
+pub use rope::TiedRope;
 
 /// Ties a particle to a place on a body of other particles, such as a triangle of cloth or a box: C = x − Σ wᵢ xᵢ − offset n, all three numbers of it.
 ///
@@ -54,7 +56,7 @@ pub struct Tie<T, W = [f32; 0]> {
     /// The particles of the body that it is tied to, likewise.
     pub to: T,
     /// The share of each of these in the place, which have to add up to one and may be below zero; without them they are learnt.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub weights: Option<W>,
     /// With weights and three particles: how far the place is from their plane, along the normal from which they are seen anticlockwise \[m\].
     #[cfg_attr(feature = "serde", serde(default))]
@@ -103,6 +105,11 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
             (!not_negative(self.damping), "damping", "must not be below zero, in N s/m"),
         ];
         faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))
+    }
+
+    /// The words that it keeps.
+    fn words(&self) -> usize {
+        self.to.as_ref().len().saturating_add(HEAD)
     }
 
     /// The weights that are given.
@@ -170,22 +177,35 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
         pull: Vec3,
         mut by: impl FnMut(&mut Bodies<'_>, usize, Vec3),
     ) {
-        let turn = grip.turn(pull);
         let Some(tied) = bodies.row_of_start(self.particle) else { return };
-        // Arms are those from before anything has moved: the body's particles are gone over with what they had then.
-        let back = grip.back;
-        let Some(first) = self.to.as_ref().first().and_then(|&number| bodies.row_of_start(number)) else { return };
+        let own = pull * grip.own;
+        // Before the particle moves: arms are those of where all were.
+        self.push(bodies, place, grip, [-pull, Vec3::ZERO], |bodies, row, [moved, _]| by(bodies, row, moved));
+        by(bodies, tied, own);
+    }
+
+    /// Moves the body's particles by what two impulses at its place do.
+    fn push(
+        &self,
+        bodies: &mut Bodies<'_>,
+        place: &[u32],
+        grip: &Grip,
+        pulls: [Vec3; 2],
+        mut by: impl FnMut(&mut Bodies<'_>, usize, [Vec3; 2]),
+    ) {
+        let (back, turns) = (grip.back, pulls.map(|pull| grip.turn(pull)));
+        let first = self.to.as_ref().first().and_then(|&number| bodies.row_of_start(number));
+        let Some(first) = first else { return };
         let origin = bodies.position[first] - bodies.velocity[first] * back;
-        by(bodies, tied, pull * grip.own);
         for (number, weight) in place::weights(place).enumerate() {
-            let Some(row) = self.to.as_ref().get(number).and_then(|&number| bodies.row_of_start(number)) else {
-                return;
-            };
+            let row = self.to.as_ref().get(number).and_then(|&number| bodies.row_of_start(number));
+            let Some(row) = row else { return };
             let from = bodies.position[row] - bodies.velocity[row] * back;
             let arm = between(bodies.near.room(), origin, from) - grip.center;
-            let moved = grip.moved((number, f32::from_bits(weight), bodies.inverse_mass[row]), pull, [turn, arm]);
-            if moved != Vec3::ZERO {
-                by(bodies, row, -moved);
+            let of = (number, f32::from_bits(weight), bodies.inverse_mass[row]);
+            let moved = [0, 1].map(|i| grip.moved(of, pulls[i], [turns[i], arm]));
+            if moved != [Vec3::ZERO; 2] {
+                by(bodies, row, moved);
             }
         }
     }
@@ -193,8 +213,7 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
 
 impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Constraint for Tie<T, W> {
     fn demand(&self) -> Demand {
-        let words = self.to.as_ref().len().saturating_add(HEAD);
-        Demand { kept: Words { per_row: 0, fixed: words }, ..Demand::NONE }
+        Demand { kept: Words { per_row: 0, fixed: self.words() }, ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
