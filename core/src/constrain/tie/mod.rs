@@ -143,7 +143,9 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
             }
             let pull = grip.answer(soft, -(open + total * soft))?;
             total += pull;
-            self.act(bodies, place, &grip, pull, |bodies, row, by| bodies.shift(row, by));
+            self.act(bodies, place, &grip, pull, |bodies, row, by| {
+                bodies.shift(row, by);
+            });
             if offset == 0.0 {
                 return Some(());
             }

@@ -163,7 +163,7 @@ where
             // Ends have to be at their places to go with them.
             let _ = tie.close(bodies, place);
         }
-        self.with_loads(bodies, share, h, |rope, bodies, share| rope.project(bodies, share));
+        self.with_loads(bodies, share, h, Rope::project);
         for (_, tie, place) in self.ties(share.kept.fixed) {
             let _ = tie.close(bodies, place);
         }
@@ -173,7 +173,7 @@ where
         for (_, tie, place) in self.ties(share.kept.fixed) {
             let _ = tie.brake(bodies, place);
         }
-        self.with_loads(bodies, share, 0.0, |rope, bodies, share| rope.settle(bodies, share));
+        self.with_loads(bodies, share, 0.0, Rope::settle);
         for (_, tie, place) in self.ties(share.kept.fixed) {
             let _ = tie.brake(bodies, place);
         }
