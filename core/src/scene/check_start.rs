@@ -12,7 +12,7 @@ use glam::Vec3;
 
 /// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
 const MOST_OF_SHEETS: u64 = 1 << 22;
-/// As many boxes as a scene may have: they take about 6 kB each.
+/// As many boxes as a scene may have: they take about 9 kB each.
 const MOST_BOXES: u64 = 1 << 16;
 /// As many particles as the strands of a scene may have.
 const MOST_OF_STRANDS: u64 = 1 << 22;
