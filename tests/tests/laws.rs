@@ -55,6 +55,8 @@ mod storage;
 mod strain_limits;
 mod strands;
 mod through_sides;
+mod tied_bodies;
+mod ties;
 mod tunnelling;
 #[path = "walls/main.rs"]
 mod walls;

@@ -1,6 +1,6 @@
 //! What hangs still has no speed, whatever holds it, whatever the method and the sub-steps.
 
-use pointmass::constrain::{ShapeMatching, Shell, ShellParams, StrandParams, Strands};
+use pointmass::constrain::{ShapeMatching, Shell, ShellParams, StrandParams, Strands, Tie};
 use pointmass::{Constraint, Distance, Drag, Gravity, Method, Particle, Rope, Scene, Sheet, Vec3};
 use pointmass_tests::{run, started};
 
@@ -59,6 +59,9 @@ fn things(scale: f32) -> Vec<Hung> {
         (0..8).map(|i| Particle { position: at(i), fixed: i < fixed, ..Particle::REST }).collect()
     };
     let cluster = |compliance| ShapeMatching { compliance, ..ShapeMatching::rigid((0..8).collect::<Vec<u32>>()) };
+    let tie = |compliance| Tie { compliance, ..Tie::rigid(3, [0u32, 1, 2]) };
+    let mut held = box_of(3);
+    held.truncate(4);
     let rope = |compliance| Rope { compliance, ..Rope::rigid((0..6).collect::<Vec<u32>>(), vec![0.1 * scale]) };
     vec![
         hung("rod", line(2, 1, scale), Box::new(Distance::rod([0, 1], 0.1 * scale)), false),
@@ -72,6 +75,8 @@ fn things(scale: f32) -> Vec<Hung> {
         hung("strand", line(6, 2, scale), Box::new(strand), false),
         hung("stiff strand", line(6, 2, scale), Box::new(stiff), false),
         hung("cluster", box_of(4), Box::new(cluster(0.0)), false),
+        hung("tie", held.clone(), Box::new(tie(0.0)), false),
+        hung("soft tie", held, Box::new(tie(soft)), false),
         hung("jelly", box_of(4), Box::new(cluster(soft)), false),
     ]
 }

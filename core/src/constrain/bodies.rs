@@ -120,6 +120,34 @@ impl Bodies<'_> {
         (number < self.start && self.serial.get(row) == Some(&number) && lives()).then_some(row)
     }
 
+    /// They, with other masses.
+    pub(super) fn weighing<'s>(&'s mut self, mass: &'s [f32], inverse_mass: &'s [f32]) -> Bodies<'s> {
+        Bodies {
+            position: self.position,
+            velocity: self.velocity,
+            before: self.before,
+            radius: self.radius,
+            mass,
+            inverse_mass,
+            elasticity: self.elasticity,
+            material: self.material,
+            custom: self.custom.again(),
+            substep: self.substep,
+            colliders: self.colliders,
+            materials: self.materials,
+            near: Near { index: self.near.index, memory: self.near.memory },
+            report: self.report,
+            slot: self.slot,
+            serial: self.serial,
+            row_of: self.row_of,
+            pending_death: self.pending_death,
+            start: self.start,
+            marks: self.marks,
+            lag: self.lag,
+            observer: self.observer,
+        }
+    }
+
     /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic).
     #[must_use]
     pub fn between(&self, from: usize, to: usize) -> Vec3 {
