@@ -88,8 +88,6 @@ pub struct Bodies<'a> {
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
     pub(crate) marks: &'a mut [u32],
-    /// How far the method's places lag behind where its velocities lead, see [`Integrator::lag`](crate::Integrator::lag).
-    pub(crate) lag: f32,
     pub(crate) observer: &'a mut dyn Observer,
 }
 
