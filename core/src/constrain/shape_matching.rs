@@ -67,7 +67,7 @@ const HEAD: usize = 8;
 /// The rotation's words of those, and what follows them.
 const OWED: usize = 5;
 /// The share of an angular momentum beyond which what is lost of it is no rounding.
-const DEBT: f32 = 1e-3;
+const DEBT: f32 = 1e-5;
 
 impl<P> ShapeMatching<P> {
     /// A rigid body.

@@ -161,7 +161,7 @@ pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
     let part = |b: Vec3| Vec3::new(dot(b, y.cross(z)), dot(b, z.cross(x)), dot(b, x.cross(y))) / whole;
     let answer = part(change);
     // Of what is thin the rule loses figures, which its own remainder gives back.
-    let has = plain[0] * answer.x + plain[1] * answer.y + plain[2] * answer.z;
+    let has = x * answer.x + y * answer.y + z * answer.z;
     let answer = answer + part(change - has);
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
