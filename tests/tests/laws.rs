@@ -23,6 +23,7 @@ mod faces;
 #[path = "forces/main.rs"]
 mod forces;
 mod foreign_words;
+mod free_flight;
 mod goals;
 mod hulls;
 mod identity;

@@ -37,7 +37,7 @@ fn thrown(random: &mut Random, count: usize, scale: f32) -> Vec<Particle> {
 fn ties_keep_momentum_and_place() {
     let mut random = Random::new(5);
     let mut failures = vec![];
-    for (round, method) in Method::ALL.into_iter().enumerate() {
+    for (round, method) in Method::ALL.iter().enumerate() {
         for count in [1usize, 2, 3, 4, 8] {
             for (substeps, compliance) in [(1u32, 0.0f32), (7, 0.0), (2, 2e-3), (9, 2e-2)] {
                 let scale = [1.0f32, 0.05, 30.0][(round + count) % 3];
@@ -78,7 +78,7 @@ fn ties_keep_momentum_and_place() {
 /// Bodies that hang from what is fixed, or from which something hangs: how far from its place the tied particle comes to rest.
 #[test]
 fn what_hangs_by_a_tie_is_as_far_away_as_its_compliance_says() {
-    for (round, method) in Method::ALL.into_iter().enumerate() {
+    for (round, method) in Method::ALL.iter().enumerate() {
         for (substeps, compliance, mass) in [(1u32, 0.01f32, 0.1f32), (4, 1e-3, 2.0), (10, 0.5, 1e-3), (5, 0.0, 1.0)] {
             for count in [1usize, 2, 3, 4, 8] {
                 for is_held in [false, true] {
@@ -88,7 +88,7 @@ fn what_hangs_by_a_tie_is_as_far_away_as_its_compliance_says() {
                     let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 2) as f32, (i >> 1 & 1) as f32) * scale;
                     let part = Particle { mass, drag: 4.0 * mass / scale.sqrt(), ..Particle::REST };
                     let body = (0..count).map(|i| Particle { position: corner(i), fixed: !is_held, ..part });
-                    let spot = [0.0, 0.5, 0.3, 0.4, 0.5][(count + 1) / 2] * scale;
+                    let spot = [0.0, 0.5, 0.3, 0.4, 0.5][count.div_ceil(2)] * scale;
                     let position = match count {
                         1 => Vec3::ZERO,
                         2 => Vec3::X * spot,
@@ -145,7 +145,7 @@ fn what_hangs_by_a_tie_is_as_far_away_as_its_compliance_says() {
 #[test]
 fn places_that_are_given_are_those_that_are_learnt() {
     let mut random = Random::new(9);
-    for (round, method) in Method::ALL.into_iter().enumerate() {
+    for (round, method) in Method::ALL.iter().enumerate() {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
         let weights = [0.5, 0.125, 0.375];
         let spot = Vec3::new(0.125, 0.375, 0.25);

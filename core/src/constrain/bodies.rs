@@ -88,8 +88,6 @@ pub struct Bodies<'a> {
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
     pub(crate) marks: &'a mut [u32],
-    /// How far the method's places lag behind where its velocities lead, see [`Integrator::lag`](crate::Integrator::lag).
-    pub(crate) lag: f32,
     pub(crate) observer: &'a mut dyn Observer,
 }
 
@@ -143,7 +141,6 @@ impl Bodies<'_> {
             pending_death: self.pending_death,
             start: self.start,
             marks: self.marks,
-            lag: self.lag,
             observer: self.observer,
         }
     }

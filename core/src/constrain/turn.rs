@@ -178,9 +178,12 @@ pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
     let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
     let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
     let columns = if determinant(plain) > THIN { plain } else { ridged };
-    let [x, y, z] = columns;
-    let answer =
-        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
+    let ([x, y, z], whole) = (columns, determinant(columns));
+    let part = |b: Vec3| Vec3::new(dot(b, y.cross(z)), dot(b, z.cross(x)), dot(b, x.cross(y))) / whole;
+    let answer = part(change);
+    // Of what is thin the rule loses figures, which its own remainder gives back.
+    let has = x * answer.x + y * answer.y + z * answer.z;
+    let answer = answer + part(change - has);
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
 
