@@ -69,7 +69,8 @@ fn a_rope_carries_what_it_is_tied_to() {
                 assert!((end - Vec3::Y).length() < 2e-3, "{name}: {end}");
                 let arm = (0.1f32 * 0.1 + aside * aside).sqrt();
                 assert!((end - middle - Vec3::Y * arm).length() < 2e-3, "{name}: {middle}");
-                assert!(v[..8].iter().all(|v| v.length() < 5e-3), "{name}: {v:?}");
+                // What hangs from light links shows as much as half of what gravity gives it in a sub-step.
+                assert!(v[..8].iter().all(|v| v.length() < 0.55 * 9.80665 / 960.0), "{name}: {v:?}");
             }
         }
     }

@@ -130,7 +130,8 @@ impl SceneFile {
         let mut count = 0u64;
         for (i, cord) in self.ropes.iter().enumerate() {
             let at = format!("ropes[{i}]");
-            cord.check(&at, self)?;
+            cord.check(&at)?;
+            self.check_material(&at, cord.material)?;
             count = count.saturating_add(cord.particles());
             if count > MOST_OF_STRANDS {
                 let message =

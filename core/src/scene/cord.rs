@@ -3,8 +3,8 @@
 use super::SceneError;
 use super::cloth::winds;
 use super::numbers::{Checked, above_zero, finite, zero_or_more};
+use super::ties::Body;
 use super::tuft::{StrandAir, along};
-use super::{Body, SceneFile};
 use crate::constrain::{Attach, ConstraintKind, Rope};
 use crate::draw::Lock;
 use crate::force::{CylinderDrag, ForceKind};
@@ -169,8 +169,8 @@ impl Cord {
         Some(ForceKind::CylinderDrag(CylinderDrag { segments, field, diameter, density, viscosity, friction }))
     }
 
-    /// Checks all of it but what its ends are tied to.
-    pub(super) fn check(&self, at: &str, file: &SceneFile) -> Checked {
+    /// Checks all of it but its material and what its ends are tied to.
+    pub(super) fn check(&self, at: &str) -> Checked {
         let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
         if !(1..=10_000).contains(&self.segments) {
             return refuse("segments", &format!("has to be from 1 to 10000, not {}", self.segments));
@@ -214,6 +214,6 @@ impl Cord {
                 return refuse("ends", &format!("point {end} is fixed, so nothing else can hold it; say either"));
             }
         }
-        file.check_material(at, self.material)
+        Ok(())
     }
 }
