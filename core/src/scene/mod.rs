@@ -59,6 +59,7 @@ mod start;
 mod ties;
 #[cfg(feature = "alloc")]
 mod tuft;
+#[cfg(feature = "alloc")]
 mod tying;
 #[cfg(feature = "alloc")]
 mod write;
