@@ -354,7 +354,10 @@ impl<'m> Cast<'m> {
             .filter(|(held, _)| is_shown || !held.spring.ends.iter().all(is_covered))
             .map(|(_, line)| line)
             .collect();
+        // Ropes that have a width are drawn as curves.
+        let ropes = model.ropes.first().copied().filter(|_| self.style.is_none() && !is_shown).unwrap_or(usize::MAX);
         let pairs = || model.constraints.0.iter().flat_map(ConstraintKind::links);
+        let pairs = || pairs().filter(|ends| (ends[0] as usize) < ropes);
         all = vec![Line::NONE; pairs().count()];
         let (count, _) = links(state, pairs(), LINK, &mut all);
         drawn.extend_from_slice(&all[..count]);

@@ -61,7 +61,7 @@ pub use collide::{Impulse, Meetings};
 pub use constrain::ConstraintKind;
 pub use constrain::{
     Attach, Constraint, Contacts, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, SheetContacts, Shell,
-    ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands,
+    ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands, Tie,
 };
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;

@@ -2,7 +2,7 @@
 
 use pointmass::constrain::{
     Attach, Bodies, Contacts, Demand, Distance, RigidBodies, RigidBox, Rope, ShapeMatching, Share, SheetContacts,
-    Shell, ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands,
+    Shell, ShellParams, StrainLimitParams, StrainLimits, StrandParams, Strands, Tie,
 };
 use pointmass::motion::Motion;
 use pointmass::shape::Plane;
@@ -80,8 +80,9 @@ fn each_kind(mut visit: impl FnMut(&[Particle], &str, &dyn Constraint)) {
     let within =
         StrainLimitParams { warp: Some([0.9, 1.1]), weft: None, shear: Some(0.2), compliance: 0.0, damping: 0.0 };
     let limits = StrainLimits { triangles: &triangles[..], warp: Vec3::X, params: within };
-    let all = &(&hand, tether, (&rope, &jelly), (&shell, &chest), &cloth, Contacts::HARD);
-    let kinds: [(&str, &dyn Constraint); 10] = [
+    let tie = Tie { compliance: 1e-3, ..Tie::rigid(16, [0, 1, 4]) };
+    let all = &(&hand, tether, (&rope, &jelly, &tie), (&shell, &chest), &cloth, Contacts::HARD);
+    let kinds: [(&str, &dyn Constraint); 11] = [
         ("shell", &shell),
         ("chest", &chest),
         ("rope", &rope),
@@ -91,6 +92,7 @@ fn each_kind(mut visit: impl FnMut(&[Particle], &str, &dyn Constraint)) {
         ("tether", &tether),
         ("cloth", &cloth),
         ("limits", &limits),
+        ("tie", &tie),
         ("all", all),
     ];
     kinds.into_iter().for_each(|(name, constraints)| visit(&start, name, constraints));

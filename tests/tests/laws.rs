@@ -23,6 +23,7 @@ mod faces;
 #[path = "forces/main.rs"]
 mod forces;
 mod foreign_words;
+mod free_flight;
 mod goals;
 mod hulls;
 mod identity;
@@ -55,6 +56,8 @@ mod storage;
 mod strain_limits;
 mod strands;
 mod through_sides;
+mod tied_bodies;
+mod ties;
 mod tunnelling;
 #[path = "walls/main.rs"]
 mod walls;

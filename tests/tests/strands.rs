@@ -376,20 +376,10 @@ fn keeps_its_momenta(frames: u32, cases: &[(u32, f32, f32)]) {
             let mut system = started(&scene, start.len(), 0);
             let (before, turned) = (Measures::of(&system, &scene), spin(&system, &start));
             let moving = before.energy.kinetic;
-            // At a sub-step's end velocities are those of chords: what turns by ω h in it gains up to (ω h)²/4 of its energy so.
-            let rates = start.windows(2).map(|edge| {
-                (edge[1].velocity - edge[0].velocity).length() / (edge[1].position - edge[0].position).length()
-            });
-            let turns = f64::from(rates.fold(0.0, f32::max)) / 60.0 / f64::from(substeps);
-            let chord = 0.25 * turns * turns;
             for frame in 1..=u64::from(frames) {
                 system.step_to(&scene, Time::frame(frame, 60));
                 let now = Measures::of(&system, &scene).energy.kinetic;
-                assert!(
-                    now < moving * (1.0 + chord + 1e-5),
-                    "{method}, {substeps}, {scale} m, {frame}: {}",
-                    now / moving
-                );
+                assert!(now < moving * (1.0 + 1e-5), "{method}, {substeps}, {scale} m, {frame}: {}", now / moving);
             }
             let after = Measures::of(&system, &scene);
             let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
@@ -407,6 +397,52 @@ fn keeps_its_momenta(frames: u32, cases: &[(u32, f32, f32)]) {
 #[test]
 fn a_free_strand_keeps_its_momenta_and_gains_no_energy() {
     keeps_its_momenta(often(600) as u32 * 2, &[(12, 1.0, 0.0), (7, 1.0, 1.0), (20, 1e-2, 0.0), (9, 30.0, 0.0)]);
+}
+
+/// However stiff it is, however wildly it moves and however long its sub-steps: neither energy nor angular momentum comes of solving it, and it stays
+/// about as long as it is.
+fn gains_nothing(frames: u32, edges: u32, stretches: &[Option<f32>]) {
+    let mut methods = [Method::Symplectic, Method::Verlet, Method::Rk4, Method::Euler].into_iter().cycle();
+    for (&stretch, wild) in stretches.iter().flat_map(|stretch| [0.1f32, 0.5, 1.0].map(|wild| (stretch, wild))) {
+        for (bending, substeps) in [1e-5, 1e-3].into_iter().flat_map(|b| [1, 2, 3, 5, 10, 20, 50].map(|n| (b, n))) {
+            let mut random = Random::new(77);
+            let rod =
+                Rod { root: Vec3::NEG_X * (0.05 * edges as f32), along: Vec3::X, long: 0.1 * edges as f32, edges };
+            let mut start = rod.free(0.5);
+            start.iter_mut().for_each(|p| p.velocity = Vec3::Z.cross(p.position) * 3.0 + random.vector(wild));
+            let mass: f32 = start.iter().map(|p| p.mass).sum();
+            let drift = start.iter().map(|p| p.velocity * p.mass).sum::<Vec3>() / mass;
+            start.iter_mut().for_each(|p| p.velocity -= drift);
+            let strand = strand(&start, StrandParams { stretch, ..even(1.0, bending, bending, 0.0) });
+            let method = methods.next().expect("there is always a next one");
+            let integrator = method.integrator();
+            let scene = Scene { start: &start, constraints: &strand, substeps, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            let (moving, turned) = (Measures::of(&system, &scene).energy.kinetic, spin(&system, &start));
+            let name = format!("{method}, {substeps} sub-steps, {stretch:?} N, {bending} N m², {wild} m/s");
+            for frame in 1..=u64::from(frames) {
+                system.step_to(&scene, Time::frame(frame, 60));
+                let kinetic = Measures::of(&system, &scene).energy.kinetic;
+                assert!(kinetic < moving * (1.0 + 1e-5), "{name}, {frame}: {}", kinetic / moving);
+                let x = system.particles().position;
+                let long = x.windows(2).map(|ends| ends[0].distance(ends[1]) / 0.1).fold(0.0, f32::max);
+                assert!(long < 1.5, "{name}, {frame}: {long}");
+            }
+            let lost = gap(turned, spin(&system, &start)) / gap(turned, [0.0; 3]);
+            assert!(lost < 1e-4, "{name}: {lost}");
+        }
+    }
+}
+
+#[test]
+fn no_energy_comes_of_solving_a_free_strand() {
+    gains_nothing(often(120) as u32, 23, &[None, Some(1e2), Some(1e4)]);
+}
+
+#[test]
+#[ignore = "long: minutes"]
+fn no_energy_comes_of_solving_a_free_strand_for_a_minute() {
+    gains_nothing(3600, 23, &[None, Some(1e2), Some(1e3), Some(1e4), Some(1e6)]);
 }
 
 #[test]

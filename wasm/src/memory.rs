@@ -51,5 +51,7 @@ pub(crate) fn room_to_build(file: &SceneFile, files: &Files) -> Result<(), JsErr
     let boxes = file.boxes.iter().map(|boxes| product(&boxes.count, 0)).fold(0_usize, usize::saturating_add);
     room(boxes.saturating_mul(BOX), "the boxes of the scene")?;
     let strands = file.strands.iter().map(|tuft| tuft.particles() as usize).fold(0_usize, usize::saturating_add);
-    room(strands.saturating_mul(WOVEN), "the strands of the scene")
+    room(strands.saturating_mul(WOVEN), "the strands of the scene")?;
+    let ropes = file.ropes.iter().map(|cord| cord.particles() as usize).fold(0_usize, usize::saturating_add);
+    room(ropes.saturating_mul(WOVEN), "the ropes of the scene")
 }

@@ -5,11 +5,11 @@ use super::statics::Hanging;
 use super::words::{plain, time};
 use crate::report::words::short;
 use crate::stall::gravity;
-use pointmass::constrain::{Hinge, RigidBox, Shell};
+use pointmass::constrain::{Hinge, RigidBox, Shell, TiedRope};
 use pointmass::scene::Model;
 use pointmass::shape::Aabb;
 use pointmass::stability::Limit;
-use pointmass::{ConstraintKind, Strands, Vec3};
+use pointmass::{ConstraintKind, Rope, Strands, Vec3};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -53,6 +53,7 @@ pub(crate) enum Kind {
     Rope,
     Cluster,
     Attach,
+    Tie,
     Shell,
     Strands,
     StrainLimits,
@@ -66,6 +67,7 @@ impl Kind {
             Self::Rope => "rope",
             Self::Cluster => "cluster",
             Self::Attach => "attach",
+            Self::Tie => "tie",
             Self::Shell => "shell",
             Self::Strands => "strands",
             Self::StrainLimits => "strain limits",
@@ -138,6 +140,16 @@ impl Hold {
                 let place = at.filter(|at| at.starts_with("strands")).unwrap_or(this.place);
                 Self { place, count: each(strands).count(), gives: weighed(model, strands), ..this }
             }
+            // Ropes, and what is tied of bodies, stand there in the file.
+            ConstraintKind::Rope(Rope { particles, .. })
+            | ConstraintKind::TiedRope(TiedRope { rope: Rope { particles, .. }, .. }) => {
+                let at = particles.first().map(|&first| place(model, 0, first as usize));
+                Self { place: at.filter(|at| at.starts_with("ropes")).unwrap_or(this.place), ..this }
+            }
+            ConstraintKind::Tie(tie) => {
+                let at = place(model, 0, tie.particle as usize);
+                Self { place: if at.starts_with("particles") { this.place } else { at }, ..this }
+            }
             _ => this,
         }
     }
@@ -191,6 +203,7 @@ impl Hold {
             Kind::Rope => format!("link by link, directly: exact{}", fades()),
             Kind::Cluster => format!("as one: exact at rest{}", fades()),
             Kind::Attach => "go where the script says".into(),
+            Kind::Tie => format!("one after the other, to places on other bodies{}", fades()),
             Kind::Strands => format!("each as one, directly{}", fades()),
             Kind::StrainLimits => format!("triangle by triangle, there and back, 16 times at most{}", fades()),
             Kind::Shell => format!("as one, {} iterations at most{}", self.iterations(h), fades()),
@@ -230,12 +243,13 @@ impl Hold {
 fn kind(constraint: &ConstraintKind) -> Kind {
     match constraint {
         ConstraintKind::Distance(_) => Kind::Distance,
-        ConstraintKind::Rope(_) => Kind::Rope,
+        ConstraintKind::Rope(_) | ConstraintKind::TiedRope(_) => Kind::Rope,
         ConstraintKind::Cluster(_) => Kind::Cluster,
         ConstraintKind::Attach(_) => Kind::Attach,
         ConstraintKind::Shell(_) => Kind::Shell,
         ConstraintKind::Strands(_) => Kind::Strands,
         ConstraintKind::StrainLimits(_) => Kind::StrainLimits,
+        ConstraintKind::Tie(_) => Kind::Tie,
     }
 }
 
@@ -245,16 +259,20 @@ fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
         particle if particle.fixed => 0.0,
         particle => 1.0 / f64::from(particle.mass),
     };
-    let lightest = || constraint.ends().iter().map(inverse).fold(0.0, f64::max);
+    let lightest = || constraint.ends().map(inverse).fold(0.0, f64::max);
     let (compliance, weight) = match constraint {
         ConstraintKind::Distance(distance) => (distance.compliance, distance.ends.iter().map(inverse).sum()),
         // Beside a link that is stretched those beside it are pressed.
-        ConstraintKind::Rope(rope) => (rope.compliance, 4.0 * lightest()),
+        ConstraintKind::Rope(rope) | ConstraintKind::TiedRope(TiedRope { rope, .. }) => {
+            (rope.compliance, 4.0 * lightest())
+        }
         ConstraintKind::Cluster(cluster) => {
             let masses = cluster.particles.iter().map(|&i| f64::from(model.particles[i as usize].mass));
             (cluster.compliance, 1.0 / masses.sum::<f64>())
         }
         ConstraintKind::Attach(_) => (0.0, 0.0),
+        // The place gives way less than the lightest of what it is on.
+        ConstraintKind::Tie(tie) => (tie.compliance, constraint.ends().map(inverse).sum()),
         ConstraintKind::StrainLimits(limits) => (limits.params.compliance, 4.0 * lightest()),
         ConstraintKind::Strands(strands) => {
             let at = |i: u32| model.particles[i as usize].position;

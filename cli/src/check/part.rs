@@ -18,15 +18,18 @@ pub(crate) struct Part {
     pub(crate) mode: Mode,
 }
 
-/// Where particle (0) or spring (1) number `number` stands in the file: in a list, in a cloth, in boxes, or in strands.
+/// Where particle (0) or spring (1) number `number` stands in the file: in a list, in a cloth, in boxes, in strands, or in ropes.
 pub(crate) fn place(model: &Model, kind: usize, number: usize) -> String {
     let boxes = model.boxes.partition_point(|&begin| kind == 0 && begin <= number);
     let cloths = model.cloths.partition_point(|begin| begin[kind] <= number);
-    let strands = model.locks.partition_point(|lock| kind == 0 && lock.first as usize <= number);
-    match [strands, boxes, cloths] {
-        [0, 0, 0] => format!("{}[{number}]", ["particles", "springs"][kind]),
-        [0, 0, after] => format!("cloths[{}]", after - 1),
-        [0, after, _] => format!("boxes[{}]", after - 1),
-        [after, ..] => format!("strands[{}]", after - 1),
+    let tufts = &model.locks[..model.locks.len() - model.ropes.len()];
+    let strands = tufts.partition_point(|lock| kind == 0 && lock.first as usize <= number);
+    let ropes = model.ropes.partition_point(|&begin| kind == 0 && begin <= number);
+    match [ropes, strands, boxes, cloths] {
+        [0, 0, 0, 0] => format!("{}[{number}]", ["particles", "springs"][kind]),
+        [0, 0, 0, after] => format!("cloths[{}]", after - 1),
+        [0, 0, after, _] => format!("boxes[{}]", after - 1),
+        [0, after, ..] => format!("strands[{}]", after - 1),
+        [after, ..] => format!("ropes[{}]", after - 1),
     }
 }

@@ -8,6 +8,7 @@ use super::net::wide;
 use crate::stall::gravity;
 use nalgebra::Vector3;
 use pointmass::ConstraintKind;
+use pointmass::constrain::TiedRope;
 use pointmass::scene::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -120,7 +121,9 @@ fn links(model: &Model) -> Vec<Link> {
     for (of, kind) in model.constraints.0.iter().enumerate() {
         let (lengths, compliance, tether) = match kind {
             ConstraintKind::Distance(distance) => (&[distance.length][..], distance.compliance, distance.tether),
-            ConstraintKind::Rope(rope) => (&rope.lengths[..], rope.compliance, rope.tether),
+            ConstraintKind::Rope(rope) | ConstraintKind::TiedRope(TiedRope { rope, .. }) => {
+                (&rope.lengths[..], rope.compliance, rope.tether)
+            }
             _ => continue,
         };
         let lengths = lengths.iter().chain(std::iter::repeat(lengths.last().unwrap_or(&0.0)));
@@ -159,7 +162,7 @@ fn nodes(model: &Model, links: &[Link]) -> Vec<Node> {
             ConstraintKind::Cluster(_) | ConstraintKind::Shell(_) => kind.ends(),
             _ => continue,
         };
-        let (holding, rest): (Vec<usize>, Vec<_>) = ends.iter().map(|&i| i as usize).partition(|i| linked.contains(i));
+        let (holding, rest): (Vec<usize>, Vec<_>) = ends.map(|&i| i as usize).partition(|i| linked.contains(i));
         let share = rest.into_iter().map(mass).sum::<f64>() / holding.len().max(1) as f64;
         holding.iter().for_each(|&i| load[i] += share);
     }

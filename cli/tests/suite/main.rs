@@ -15,6 +15,7 @@ mod lab;
 mod outputs;
 mod random;
 mod recorded;
+mod recorded_bodies;
 mod recordings;
 mod remarks;
 mod robustness;

@@ -21,11 +21,11 @@ use std::io::{BufReader, Read};
 
 /// A record: columns by name, the triangles, and the edges.
 #[derive(Clone, Debug, Default)]
-struct Record {
+pub(crate) struct Record {
     step: u64,
     time: f64,
-    columns: BTreeMap<String, Vec<f64>>,
-    faces: Vec<Vec<u64>>,
+    pub(crate) columns: BTreeMap<String, Vec<f64>>,
+    pub(crate) faces: Vec<Vec<u64>>,
     edges: Vec<Vec<u64>>,
 }
 
@@ -308,7 +308,7 @@ fn npy(folder: &Folder, stem: &str) -> Record {
     record
 }
 
-fn ply(folder: &Folder, name: &str) -> Record {
+pub(crate) fn ply(folder: &Folder, name: &str) -> Record {
     let mut file = BufReader::new(File::open(folder.path(name)).expect("it is there"));
     let cloud = Parser::<DefaultElement>::new().read_ply(&mut file).unwrap_or_else(|e| panic!("{name}: {e:?}"));
     let wide = |property: &Property| match property {
@@ -415,7 +415,7 @@ fn wide(kind: &str, bytes: &[u8]) -> Vec<f64> {
     }
 }
 
-fn vtp(text: &str) -> Record {
+pub(crate) fn vtp(text: &str) -> Record {
     let mut record = Record::default();
     let parts = |names: &[&str], numbers: &[f64], record: &mut Record| {
         for (i, name) in names.iter().enumerate() {
@@ -441,7 +441,7 @@ fn vtp(text: &str) -> Record {
 }
 
 /// An OBJ; colours to the nearest of 255 parts.
-fn obj(text: &str) -> Record {
+pub(crate) fn obj(text: &str) -> Record {
     let mut record = Record::default();
     let names = ["x", "y", "z", "red", "green", "blue"];
     names.iter().for_each(|name| drop(record.columns.insert(name.to_string(), Vec::new())));
@@ -534,7 +534,7 @@ fn shown(document: &Value, buffer: &[u8], time: f64) -> Vec<u64> {
     channels.filter_map(|channel| channel["target"]["node"].as_u64()).collect()
 }
 
-fn glb(bytes: &[u8]) -> Vec<Record> {
+pub(crate) fn glb(bytes: &[u8]) -> Vec<Record> {
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
     assert_eq!((&bytes[..4], word(4), word(8)), (&b"glTF"[..], 2, bytes.len()));
     let end = 20 + word(12);

@@ -82,6 +82,8 @@ fn every_scene_runs_for_two_seconds_and_loses_nothing() {
         let caps = totals.caps;
         assert_eq!((totals.refused, totals.died.nonfinite), (0, 0), "{path:?}");
         assert_eq!((caps.insufficient_memory, caps.graphs), (0, 0), "{path:?}");
+        // A die that is thrown at others in a corner may touch more than there is room for, once in a while.
+        assert!(caps.contacts <= 10, "{path:?}: {}", caps.contacts);
     }
 }
 

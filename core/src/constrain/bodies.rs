@@ -88,8 +88,6 @@ pub struct Bodies<'a> {
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
     pub(crate) marks: &'a mut [u32],
-    /// How far the method's places lag behind where its velocities lead, see [`Integrator::lag`](crate::Integrator::lag).
-    pub(crate) lag: f32,
     pub(crate) observer: &'a mut dyn Observer,
 }
 
@@ -118,6 +116,33 @@ impl Bodies<'_> {
         let row = *self.row_of.get(number as usize)? as usize;
         let lives = || self.pending_death.get(row).is_none_or(|death| *death == PendingDeath::Lives);
         (number < self.start && self.serial.get(row) == Some(&number) && lives()).then_some(row)
+    }
+
+    /// They, with other masses.
+    pub(super) fn weighing<'s>(&'s mut self, mass: &'s [f32], inverse_mass: &'s [f32]) -> Bodies<'s> {
+        Bodies {
+            position: self.position,
+            velocity: self.velocity,
+            before: self.before,
+            radius: self.radius,
+            mass,
+            inverse_mass,
+            elasticity: self.elasticity,
+            material: self.material,
+            custom: self.custom.again(),
+            substep: self.substep,
+            colliders: self.colliders,
+            materials: self.materials,
+            near: Near { index: self.near.index, memory: self.near.memory },
+            report: self.report,
+            slot: self.slot,
+            serial: self.serial,
+            row_of: self.row_of,
+            pending_death: self.pending_death,
+            start: self.start,
+            marks: self.marks,
+            observer: self.observer,
+        }
     }
 
     /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic).

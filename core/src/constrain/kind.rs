@@ -1,7 +1,8 @@
 //! The constraints that a scene file names.
 
 use super::{
-    Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands,
+    Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands, Tie,
+    TiedRope,
 };
 use crate::motion::MotionBuf;
 use alloc::vec::Vec;
@@ -25,6 +26,10 @@ pub enum ConstraintKind {
     Strands(Strands<Vec<u32>, Vec<u32>>),
     /// Triangles that stretch and shear only so far.
     StrainLimits(StrainLimits<Vec<[u32; 3]>>),
+    /// A particle at a place on another body.
+    Tie(Tie<Vec<u32>, Vec<f32>>),
+    /// A chain of links whose ends are tied to other bodies.
+    TiedRope(TiedRope<Vec<u32>, Vec<f32>, Vec<u32>, Vec<f32>>),
 }
 
 impl ConstraintKind {
@@ -38,6 +43,8 @@ impl ConstraintKind {
             Self::Shell(shell) => shell,
             Self::Strands(strands) => strands,
             Self::StrainLimits(limits) => limits,
+            Self::Tie(tie) => tie,
+            Self::TiedRope(tied) => tied,
         }
     }
 
@@ -52,6 +59,8 @@ impl ConstraintKind {
             Self::Shell(shell) => shell.fault().or_else(|| twice(&shell.particles)),
             Self::Strands(strands) => strands.fault().or_else(|| twice(&strands.particles)),
             Self::StrainLimits(limits) => limits.fault(),
+            Self::Tie(tie) => tie.fault().or_else(|| twice(&tie.to).map(|(_, why)| ("to", why))),
+            Self::TiedRope(tied) => tied.fault().or_else(|| twice(&tied.rope.particles)),
         }
     }
 
@@ -60,26 +69,35 @@ impl ConstraintKind {
         let (list, closed) = match self {
             Self::Distance(distance) => (&distance.ends[..], false),
             Self::Rope(rope) => (&rope.particles[..], rope.closed),
-            Self::Cluster(_) | Self::Attach(_) | Self::Shell(_) | Self::Strands(_) | Self::StrainLimits(_) => {
-                (&[][..], false)
-            }
+            Self::Cluster(_)
+            | Self::Attach(_)
+            | Self::Shell(_)
+            | Self::Strands(_)
+            | Self::StrainLimits(_)
+            | Self::Tie(_) => (&[][..], false),
+            Self::TiedRope(tied) => (&tied.rope.particles[..], tied.rope.closed),
         };
         let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
     }
 
     /// The particles of the scene's start that it binds.
-    #[must_use]
-    pub fn ends(&self) -> &[u32] {
-        match self {
-            Self::Distance(distance) => &distance.ends,
-            Self::Rope(rope) => &rope.particles,
-            Self::Cluster(cluster) => &cluster.particles,
-            Self::Attach(attach) => &attach.particles,
-            Self::Shell(shell) => &shell.particles,
-            Self::Strands(strands) => &strands.particles,
-            Self::StrainLimits(limits) => limits.triangles.as_flattened(),
-        }
+    pub fn ends(&self) -> impl Iterator<Item = &u32> {
+        let nobody: [&[u32]; 2] = [&[]; 2];
+        let (list, tied) = match self {
+            Self::Distance(distance) => (&distance.ends[..], nobody),
+            Self::Rope(rope) => (&rope.particles[..], nobody),
+            Self::Cluster(cluster) => (&cluster.particles[..], nobody),
+            Self::Attach(attach) => (&attach.particles[..], nobody),
+            Self::Shell(shell) => (&shell.particles[..], nobody),
+            Self::Strands(strands) => (&strands.particles[..], nobody),
+            Self::StrainLimits(limits) => (limits.triangles.as_flattened(), nobody),
+            Self::Tie(tie) => (&tie.to[..], [core::slice::from_ref(&tie.particle), &[]]),
+            Self::TiedRope(tied) => {
+                (&tied.rope.particles[..], [0, 1].map(|i| tied.ends[i].as_ref().map_or(&[][..], |tie| &tie.to[..])))
+            }
+        };
+        list.iter().chain(tied.into_iter().flatten())
     }
 }
 

@@ -7,6 +7,7 @@
 
 mod attach;
 mod bodies;
+mod budget;
 mod contacts;
 mod distance;
 #[cfg(feature = "alloc")]
@@ -19,6 +20,7 @@ mod sheet_contacts;
 mod shell;
 mod strain_limits;
 mod strand;
+mod tie;
 mod turn;
 mod union;
 mod walls;
@@ -40,6 +42,7 @@ pub use sheet_contacts::SheetContacts;
 pub use shell::{Shell, ShellParams};
 pub use strain_limits::{StrainLimitParams, StrainLimits};
 pub use strand::{StrandParams, Strands};
+pub use tie::{Tie, TiedRope};
 
 pub use crate::cloth::Hinge;
 #[cfg(feature = "alloc")]

@@ -81,7 +81,6 @@ impl Moved<'_> {
             pending_death: self.pending_death,
             start: lives.springs.start,
             marks: self.marks,
-            lag: self.integrator.lag(),
             observer: self.observer,
         };
         (bodies, Share { kept, step: self.lasting, scratch, capacity })

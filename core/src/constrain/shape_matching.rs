@@ -16,7 +16,8 @@ use glam::{Mat3, Vec3};
 /// freely follows Euler's equations, with an error that falls with the square of the sub-step. Where it has no solution, since the cluster
 /// turns by more than a radian or is far out of shape, R is that which comes nearest (Müller, Bender, Chentanez and Macklin, "A
 /// Robust Method to Extract the Rotational Part of Deformations", MIG 2016). At the sub-step's end velocities become those of the
-/// rigid motion with the same momenta, v + ω × r with ω = I⁻¹ L. Linear and angular momentum are kept to rounding either way.
+/// rigid motion with the same momenta, v + ω × r with ω = I⁻¹ L. Linear and angular momentum are kept to rounding either way, and what rounding takes of
+/// the latter is given back as soon as velocities can show it.
 ///
 /// With a compliance α the whole of the cluster gives way by α times a force: particles share it as they share the mass, each held by a spring
 /// of m / (M α). A damping β takes from their speeds against the rigid motion what a force β times that speed does, shared likewise.
@@ -61,8 +62,12 @@ pub struct ShapeMatching<P> {
     pub damping: f32,
 }
 
-/// Words kept before the places in the shape: whether they are known, and the rotation.
-const HEAD: usize = 5;
+/// Words kept before the places in the shape: whether they are known, the rotation, and the angular momentum that it owes.
+const HEAD: usize = 8;
+/// The rotation's words of those, and what follows them.
+const OWED: usize = 5;
+/// The share of an angular momentum beyond which what is lost of it is no rounding.
+const DEBT: f32 = 1e-5;
 
 impl<P> ShapeMatching<P> {
     /// A rigid body.
@@ -88,7 +93,8 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
     /// Takes the places of all as they are at the first sub-step's beginning.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
         let Some((head, places)) = kept.split_at_mut_checked(HEAD) else { return };
-        head[1..].copy_from_slice(&Turn::NONE.0.map(f32::to_bits));
+        head[1..OWED].copy_from_slice(&Turn::NONE.0.map(f32::to_bits));
+        head[OWED..].fill(0);
         let mut first = None;
         for (&number, place) in self.particles.as_ref().iter().zip(places.chunks_exact_mut(3)) {
             if let Some(row) = bodies.row_of_start(number) {
@@ -192,6 +198,20 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         (spin, spread)
     }
 
+    /// The angular momentum over the mass that rounding has taken so far: what is too little for velocities to show waits until it is not.
+    fn owed(kept: &[u32]) -> Vec3 {
+        let [x, y, z] = [0, 1, 2].map(|axis| kept.get(OWED + axis).copied().map_or(0.0, f32::from_bits));
+        Vec3::new(x, y, z)
+    }
+
+    /// Remembers what of an angular momentum it has not got.
+    fn owe(&self, bodies: &mut Bodies<'_>, kept: &mut [u32], body: &Body, spin: Vec3) {
+        let lost = spin - self.spin(bodies, kept, body).0;
+        let is_rounding = dot(lost, lost) <= DEBT * DEBT * dot(spin, spin);
+        let owed = if is_rounding { lost } else { Vec3::ZERO };
+        kept[OWED..HEAD].copy_from_slice(&owed.to_array().map(f32::to_bits));
+    }
+
     /// The rotation that keeps the angular momentum, or else the nearest one.
     fn turn(&self, bodies: &mut Bodies<'_>, kept: &[u32], body: &Body, last: Turn) -> Turn {
         let h = bodies.substep.seconds();
@@ -246,7 +266,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
             body.hold = self.hold(bodies, kept, &body, &mut last);
         }
         let turn = self.turn(bodies, kept, &body, last);
-        kept[1..HEAD].copy_from_slice(&turn.0.map(f32::to_bits));
+        kept[1..OWED].copy_from_slice(&turn.0.map(f32::to_bits));
         let (rotation, give) = (turn.matrix(), 1.0 / (1.0 + self.compliance * body.mass / (h * h)));
         self.each(bodies, kept, &mut |bodies, member| {
             let goal = body.center + rotation * (member.place - body.rest);
@@ -256,8 +276,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
             }
         });
         // What rounding has changed of the momenta, or turning too far, is given back.
-        let Some(now) = self.body(bodies, kept) else { return };
+        let Some(mut now) = self.body(bodies, kept) else { return };
         let (left, spread) = self.spin(bodies, kept, &now);
+        let spin = spin + Self::owed(kept);
         let omega = match body.hold {
             Hold::Free => solve(spread, spin - left),
             Hold::About { axis, .. } => axis * about(axis, spread, spin - left),
@@ -270,10 +291,14 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
                 bodies.velocity[member.row] += by;
             }
         });
+        now.drift = body.drift;
+        if let Hold::Free = body.hold {
+            self.owe(bodies, kept, &now, spin);
+        }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let kept = &*share.kept.fixed;
+        let kept = &mut *share.kept.fixed;
         let Some(body) = self.body(bodies, kept) else { return };
         let brake = self.damping * bodies.substep.seconds() / body.mass;
         let taken = if self.compliance > 0.0 { brake / (1.0 + brake) } else { 1.0 };
@@ -281,6 +306,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
             return;
         }
         let (spin, spread) = self.spin(bodies, kept, &body);
+        let spin = spin + Self::owed(kept);
         let hold = match body.fixed {
             0 | 1 => Hold::Free,
             _ => self.hold(bodies, kept, &body, &mut Turn::kept(kept)),
@@ -297,6 +323,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
                 bodies.velocity[member.row] += by;
             }
         });
+        if let Hold::Free = hold {
+            self.owe(bodies, kept, &body, spin);
+        }
     }
 }
 

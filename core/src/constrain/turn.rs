@@ -46,6 +46,17 @@ impl Turn {
         }
     }
 
+    /// This rotation after another.
+    pub(super) fn after(self, Self([a, b, c, d]): Self) -> Self {
+        let [x, y, z, w] = self.0;
+        Self([
+            w * a + x * d + (y * c - z * b),
+            w * b + y * d + (z * a - x * c),
+            w * c + z * d + (x * b - y * a),
+            w * d - (x * a + y * b + z * c),
+        ])
+    }
+
     pub(super) fn matrix(self) -> Mat3 {
         let [x, y, z, w] = self.0;
         Mat3::from_cols(
@@ -69,6 +80,16 @@ pub(super) fn turn_of(spread: Mat3, moment: Vec3) -> Vec3 {
 
 /// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
 pub(super) fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
+    keeping_by(solve, last, (from, torque), axis)
+}
+
+/// The same where the system of each round is solved so.
+pub(super) fn keeping_by(
+    solve: fn(Mat3, Vec3) -> Vec3,
+    last: Turn,
+    (from, torque): (Mat3, Vec3),
+    axis: Option<Vec3>,
+) -> Option<Turn> {
     let (mut turn, mut before) = (last, f32::INFINITY);
     for _ in 0..ROUNDS[0] {
         // Σ m y (R q)ᵀ, and of it what is antisymmetric: Σ m y × R q.
@@ -157,9 +178,41 @@ pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
     let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
     let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
     let columns = if determinant(plain) > THIN { plain } else { ridged };
-    let [x, y, z] = columns;
-    let answer =
-        Vec3::new(dot(change, y.cross(z)), dot(change, z.cross(x)), dot(change, x.cross(y))) / determinant(columns);
+    let ([x, y, z], whole) = (columns, determinant(columns));
+    let part = |b: Vec3| Vec3::new(dot(b, y.cross(z)), dot(b, z.cross(x)), dot(b, x.cross(y))) / whole;
+    let answer = part(change);
+    // Of what is thin the rule loses figures, which its own remainder gives back.
+    let has = x * answer.x + y * answer.y + z * answer.z;
+    let answer = answer + part(change - has);
+    if answer.is_finite() { answer } else { Vec3::ZERO }
+}
+
+/// The same by elimination, which leaves no more of the change than rounding however thin what turns is.
+pub(super) fn solve_thin(b: Mat3, change: Vec3) -> Vec3 {
+    let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
+    if !(trace > 0.0 && trace < f32::INFINITY) {
+        return Vec3::ZERO;
+    }
+    // In units of the trace nothing underflows, however small the cluster.
+    let change = change / trace;
+    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
+    let [x, y, z] = [x / trace, y / trace, z / trace];
+    let over = |pivot: f32| if pivot > THIN { 1.0 / pivot } else { 0.0 };
+    let first = over(x.x);
+    let [p, q] = [x.y * first, x.z * first];
+    let second = over(y.y - p * y.x);
+    let [r, s] = [(y.z - q * y.x) * second, z.y - p * z.x];
+    let third = over(z.z - q * z.x - r * s);
+    let middle = change.y - p * change.x;
+    let back = |[one, two, last]: [f32; 3]| {
+        let middle = (two - s * last) * second;
+        Vec3::new((one - y.x * middle - z.x * last) * first, middle, last)
+    };
+    let mut answer = back([change.x, middle, (change.z - q * change.x - r * middle) * third]);
+    if third == 0.0 {
+        let axis = back([0.0, 0.0, 1.0]);
+        answer -= axis * (dot(axis, answer) / dot(axis, axis));
+    }
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
 

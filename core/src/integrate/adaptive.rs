@@ -45,11 +45,6 @@ impl<I: Integrator> Integrator for Adaptive<I> {
         self.inner.columns().saturating_add(6)
     }
 
-    /// That of two half steps, which are enough for what hangs still.
-    fn lag(&self) -> f32 {
-        0.5 * (0.5 + self.inner.lag())
-    }
-
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, hint, effort, .. } = motion;
         let ([x0, v0, xa, va, xh, vh], mut work) = work.split();

@@ -38,10 +38,6 @@ impl Integrator for Embedded {
         6
     }
 
-    fn lag(&self) -> f32 {
-        0.5
-    }
-
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, hint, effort, .. } = motion;
         let [x0, v0, a1, a2, a3, a4] = work.take();

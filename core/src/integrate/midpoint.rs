@@ -28,10 +28,6 @@ impl Integrator for Midpoint {
         true
     }
 
-    fn lag(&self) -> f32 {
-        0.5
-    }
-
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         advance(motion, [time, time + step.half()], step, world);
     }
@@ -48,10 +44,6 @@ impl Integrator for LectureMidpoint {
 
     fn is_local(&self) -> bool {
         true
-    }
-
-    fn lag(&self) -> f32 {
-        0.5
     }
 
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {

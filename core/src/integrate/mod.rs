@@ -146,13 +146,6 @@ pub trait Integrator: Sync {
         None
     }
 
-    /// How far a step of h under a steady acceleration a takes what was at rest less than its velocity at the end would have: so many times a h².
-    /// That is one half where the step follows the motion itself, and zero, the default, where places go by the velocities of the step's end.
-    /// Chains of [`Distance`](crate::Distance) ask for it, so that what hangs still shows no speed.
-    fn lag(&self) -> f32 {
-        0.0
-    }
-
     /// Moves everything from `time` to `time` + `step`.
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics);
 }
@@ -221,9 +214,6 @@ impl<T: Integrator + ?Sized> Integrator for &T {
     }
     fn drift(&self) -> Option<Drift> {
         (**self).drift()
-    }
-    fn lag(&self) -> f32 {
-        (**self).lag()
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         (**self).advance(motion, time, step, world);

@@ -138,9 +138,6 @@ impl Integrator for Method {
     fn drift(&self) -> Option<Drift> {
         self.integrator().drift()
     }
-    fn lag(&self) -> f32 {
-        self.integrator().lag()
-    }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.integrator().advance(motion, time, step, world);
     }
@@ -172,9 +169,6 @@ impl Integrator for Tuned {
     }
     fn drift(&self) -> Option<Drift> {
         self.with(|integrator| integrator.drift())
-    }
-    fn lag(&self) -> f32 {
-        self.with(|integrator| integrator.lag())
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.with(|integrator| integrator.advance(motion, time, step, world));

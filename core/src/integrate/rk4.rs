@@ -25,10 +25,6 @@ impl Integrator for Rk4 {
         true
     }
 
-    fn lag(&self) -> f32 {
-        0.5
-    }
-
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, start: [x0, v0], work, .. } = motion;
         let [a, sum_x, sum_v] = work.take();

@@ -20,10 +20,6 @@ impl Integrator for Verlet {
         true
     }
 
-    fn lag(&self) -> f32 {
-        0.5
-    }
-
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, .. } = motion;
         let [a, b] = work.take();

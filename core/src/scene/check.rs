@@ -4,7 +4,7 @@ use super::check_force::check_force;
 use super::check_shape::check_shape;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
 use super::references::{MAX_GROUPS, MAX_MATERIALS};
-use super::{Boxes, Fog, Light, Material, SceneError, SceneFile, Sky};
+use super::{Boxes, Cord, Fog, Light, Material, SceneError, SceneFile, Sky};
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::force::Spring;
 use crate::material::TrailMaterial;
@@ -48,6 +48,7 @@ impl SceneFile {
         self.check_fabrics()?;
         self.check_boxes()?;
         self.check_strands()?;
+        self.check_ropes()?;
         for (i, emitter) in self.emitters.iter().enumerate() {
             self.check_emitter(&format!("emitters[{i}]"), emitter)?;
             self.check_group(&format!("emitters[{i}]"), emitter.group)?;
@@ -72,7 +73,8 @@ impl SceneFile {
         // The number of particles that cloths and strands bring is known when their meshes have been read.
         if self.cloths.is_empty() && self.strands.is_empty() {
             let boxes: u64 = self.boxes.iter().map(Boxes::particles).sum();
-            self.check_corners(self.particles.len().saturating_add(boxes as usize))?;
+            let ropes: u64 = self.ropes.iter().map(Cord::particles).sum();
+            self.check_corners(self.particles.len().saturating_add((boxes + ropes) as usize))?;
         }
         self.check_room()?;
         self.check_scenery()?;

@@ -15,7 +15,7 @@ impl SceneFile {
     /// Checks that the corners of closed meshes are among `count` particles of the start.
     pub(super) fn check_corners(&self, count: usize) -> Checked {
         for (i, constraint) in self.constraints.iter().enumerate() {
-            if let Some(end) = constraint.ends().iter().find(|&&end| end as usize >= count) {
+            if let Some(end) = constraint.ends().find(|&&end| end as usize >= count) {
                 let message = format!("particle {end} is out of range; there are {count}, from 0");
                 return Err(SceneError::value(format!("constraints[{i}]"), message));
             }

@@ -2,7 +2,7 @@
 
 use super::numbers::{Checked, finite, zero_or_more};
 use super::{PeriodicRoom, SceneError, SceneFile};
-use crate::constrain::{ConstraintKind, Distance, Rope};
+use crate::constrain::{ConstraintKind, Distance, Rope, TiedRope};
 use crate::force::{Force, ForceKind, Spring};
 use crate::math::max;
 use alloc::format;
@@ -43,7 +43,10 @@ impl SceneFile {
         }
         let bound = |constraint: &ConstraintKind| match constraint {
             ConstraintKind::Distance(Distance { length, .. }) => *length,
-            ConstraintKind::Rope(Rope { lengths, .. }) => lengths.iter().copied().fold(0.0, max),
+            ConstraintKind::Rope(Rope { lengths, .. })
+            | ConstraintKind::TiedRope(TiedRope { rope: Rope { lengths, .. }, .. }) => {
+                lengths.iter().copied().fold(0.0, max)
+            }
             _ => 0.0,
         };
         let constraints = self.constraints.iter().map(bound).enumerate().map(|(i, length)| ("constraints", i, length));
@@ -75,7 +78,11 @@ impl SceneFile {
         let force = self.forces.iter().enumerate().find_map(|(i, force)| Some((format!("forces[{i}]"), far(force)?)));
         let part = |name: &str, is_empty: bool, what| (!is_empty).then(|| (format!("{name}[0]"), what));
         let bound = |constraint: &ConstraintKind| match constraint {
-            ConstraintKind::Distance(_) | ConstraintKind::Rope(_) | ConstraintKind::Attach(_) => None,
+            ConstraintKind::Distance(_)
+            | ConstraintKind::Rope(_)
+            | ConstraintKind::Attach(_)
+            | ConstraintKind::Tie(_)
+            | ConstraintKind::TiedRope(_) => None,
             ConstraintKind::Cluster(_) => Some("clusters"),
             ConstraintKind::Shell(_) | ConstraintKind::StrainLimits(_) => Some("surfaces of particles"),
             ConstraintKind::Strands(_) => Some("strands"),
@@ -87,5 +94,6 @@ impl SceneFile {
             .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))
             .or(part("boxes", self.boxes.is_empty(), "rigid bodies"))
             .or(part("strands", self.strands.is_empty(), "strands"))
+            .or(part("ropes", self.ropes.is_empty(), "ropes of their own (a rope among the constraints can)"))
     }
 }

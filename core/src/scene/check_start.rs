@@ -12,7 +12,7 @@ use glam::Vec3;
 
 /// As many particles as the sheets of a scene may have: with springs of all kinds, a run takes about 3 GB.
 const MOST_OF_SHEETS: u64 = 1 << 22;
-/// As many boxes as a scene may have: they take about 6 kB each.
+/// As many boxes as a scene may have: they take about 9 kB each.
 const MOST_BOXES: u64 = 1 << 16;
 /// As many particles as the strands of a scene may have.
 const MOST_OF_STRANDS: u64 = 1 << 22;
@@ -124,6 +124,38 @@ impl SceneFile {
     }
 }
 
+impl SceneFile {
+    /// Checks ropes, and ties but for what they tie.
+    pub(super) fn check_ropes(&self) -> Checked {
+        let mut count = 0u64;
+        for (i, cord) in self.ropes.iter().enumerate() {
+            let at = format!("ropes[{i}]");
+            cord.check(&at)?;
+            self.check_material(&at, cord.material)?;
+            count = count.saturating_add(cord.particles());
+            if count > MOST_OF_STRANDS {
+                let message =
+                    format!("makes {} particles; the ropes of a scene may have {MOST_OF_STRANDS}", cord.particles());
+                return Err(SceneError::value(at, message));
+            }
+        }
+        self.ties.iter().enumerate().try_for_each(|(i, tie)| tie.check(&format!("ties[{i}]")))
+    }
+}
+
+impl StrandAir {
+    /// Checks it; beside it there is so much linear drag.
+    pub(super) fn check(&self, at: &str, drag: f32) -> Checked {
+        let Self { diameter, density, viscosity, friction } = *self;
+        if drag != 0.0 {
+            return Err(SceneError::value(format!("{at}.drag"), "say either drag or air"));
+        }
+        above_zero(&format!("{at}.air.diameter"), diameter.unwrap_or(1.0))?;
+        let numbers = [("density", density), ("viscosity", viscosity), ("friction", friction)];
+        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+}
+
 impl Cloth {
     /// Checks what it weighs, what it is made of and the air around it.
     fn check_material(&self, at: &str) -> Result<(), SceneError> {
@@ -171,17 +203,6 @@ impl Cloth {
 }
 
 impl Tuft {
-    /// Checks the air around it.
-    fn check_air(&self, at: &str) -> Checked {
-        let Some(StrandAir { diameter, density, viscosity, friction }) = self.air else { return Ok(()) };
-        if self.drag != 0.0 {
-            return Err(SceneError::value(format!("{at}.drag"), "say either drag or air"));
-        }
-        above_zero(&format!("{at}.air.diameter"), diameter.unwrap_or(1.0))?;
-        let numbers = [("density", density), ("viscosity", viscosity), ("friction", friction)];
-        numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
-    }
-
     fn check(&self, at: &str, file: &SceneFile) -> Checked {
         let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
         if !(1..=10_000).contains(&self.segments) {
@@ -196,7 +217,10 @@ impl Tuft {
         if !(0.0..=0.5).contains(&self.poisson) {
             return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
         }
-        self.check_air(at)?;
+        self.air.map_or(Ok(()), |air| air.check(at, self.drag))?;
+        if self.attach.is_some() && self.motion.is_some() {
+            return refuse("attach", "say either attach or motion: what is attached goes where its body goes");
+        }
         finite(&format!("{at}.elasticity"), &[self.elasticity])?;
         if let Some(message) = self.motion.as_ref().and_then(Motion::fault) {
             return refuse("motion", message);

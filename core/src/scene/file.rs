@@ -1,6 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::{Boxes, Cloth, Fog, Material, PeriodicRoom, Response, Sky, Tuft};
+use super::{BodyTie, Boxes, Cloth, Cord, Fog, Material, PeriodicRoom, Response, Sky, Tuft};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::draw::StrandLight;
@@ -48,6 +48,12 @@ pub struct SceneFile {
     /// Hair, grass, wires: elastic strands, whose particles follow those above.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub strands: Vec<Tuft>,
+    /// Ropes, strings, cables, which bend freely and whose particles follow those above.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub ropes: Vec<Cord>,
+    /// Points of some of these bodies that are tied to the surfaces of others.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub ties: Vec<BodyTie>,
     /// Emitters, which bring further particles into the world.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub emitters: Vec<Emitter<Shape<String>, Option<MotionBuf>>>,
@@ -250,6 +256,8 @@ impl SceneFile {
             cloths: Vec::new(),
             boxes: Vec::new(),
             strands: Vec::new(),
+            ropes: Vec::new(),
+            ties: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),
             contacts: None,

@@ -22,6 +22,8 @@ mod check_start;
 mod cloth;
 mod color;
 #[cfg(feature = "alloc")]
+mod cord;
+#[cfg(feature = "alloc")]
 mod error;
 #[cfg(feature = "alloc")]
 mod file;
@@ -54,7 +56,11 @@ pub mod scn;
 #[cfg(feature = "alloc")]
 mod start;
 #[cfg(feature = "alloc")]
+mod ties;
+#[cfg(feature = "alloc")]
 mod tuft;
+#[cfg(feature = "alloc")]
+mod tying;
 #[cfg(feature = "alloc")]
 mod write;
 
@@ -64,6 +70,8 @@ pub use air::{Fog, Sky};
 pub use boxes::{BoxForm, Boxes, Scatter};
 #[cfg(feature = "alloc")]
 pub use cloth::{Air, Cloth, Form, Gas, PatchBuf, SheetContactsBuf};
+#[cfg(feature = "alloc")]
+pub use cord::Cord;
 #[cfg(feature = "alloc")]
 pub use error::SceneError;
 #[cfg(feature = "alloc")]
@@ -85,6 +93,8 @@ pub use room::PeriodicRoom;
 pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
+#[cfg(feature = "alloc")]
+pub use ties::{Body, BodyTie};
 #[cfg(feature = "alloc")]
 pub use tuft::{Curl, Field, Growth, StrandAir, Tuft};
 #[cfg(feature = "alloc")]

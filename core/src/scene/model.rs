@@ -25,7 +25,7 @@ use alloc::vec::Vec;
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
 
-/// The constraints of files, of cloths that are shells and of strands, the rigid bodies, then contacts by position, and those of cloths.
+/// The constraints of files, of cloths that are shells, of strands, ropes and ties, the rigid bodies, then contacts by position, and those of cloths.
 pub type Constraints =
     (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>, Vec<HullBuf>>, Option<Contacts>, SheetContactsBuf);
 
@@ -66,9 +66,11 @@ pub struct Model {
     pub cloths: Vec<[usize; 2]>,
     /// Where the particles of each of the file's boxes begin among all.
     pub boxes: Vec<usize>,
+    /// Where the particles of each of the file's ropes begin among all.
+    pub ropes: Vec<usize>,
     /// The surfaces of cloths that have one.
     pub patches: Vec<PatchBuf>,
-    /// The strands, to be drawn as curves.
+    /// The strands, then the ropes, to be drawn as curves.
     pub locks: Vec<Lock>,
     /// The shapes that particles are drawn as, by the numbers of their materials.
     pub shapes: Vec<Option<Shape<Arc<MeshBuf>>>>,
@@ -123,6 +125,7 @@ impl Model {
             max_bounces: file.run.max_bounces,
             cloths: start.cloths,
             boxes: start.blocks,
+            ropes: start.ropes,
             patches: start.patches,
             locks: start.locks,
             shapes,

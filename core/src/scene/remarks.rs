@@ -70,6 +70,10 @@ impl SceneFile {
             let nothing = || "none of its points is fixed, so nothing follows it".into();
             add(format_args!("strands[{i}].motion"), loose.then(nothing));
         }
+        for (i, cord) in self.ropes.iter().enumerate() {
+            let nothing = || "none of its points is fixed, so nothing follows it".into();
+            add(format_args!("ropes[{i}].motion"), (cord.motion.is_some() && cord.fixed.is_empty()).then(nothing));
+        }
         for (i, sink) in self.sinks.iter().enumerate() {
             let idle = sink.intensity != 0.0 && [sink.ca, sink.la, sink.qa] == [0.0; 3];
             let nothing = || "it divides by ca, la and qa, which are all zero, so it pulls nobody".into();

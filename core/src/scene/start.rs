@@ -1,9 +1,9 @@
-//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes and strands.
+//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes, strands and ropes.
 
 use super::placing::Placing;
 use super::references::color;
 use super::{BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
-use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts};
+use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts, TiedRope};
 use crate::draw::Lock;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Spring};
@@ -31,6 +31,9 @@ pub(super) struct Start {
     pub(super) contacts: SheetContactsBuf,
     pub(super) locks: Vec<Lock>,
     pub(super) hulls: Vec<HullBuf>,
+    /// The number of the scene's own particles, and where those of each rope begin.
+    pub(super) own: u32,
+    pub(super) ropes: Vec<usize>,
 }
 
 impl Start {
@@ -47,10 +50,14 @@ impl Start {
             contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
             locks: Vec::new(),
             hulls: Vec::new(),
+            own: file.particles.len() as u32,
+            ropes: Vec::new(),
         };
         start.add_cloths(file, meshes)?;
         start.add_boxes(file, meshes)?;
         start.add_strands(file, meshes)?;
+        start.add_ropes(file, meshes.path)?;
+        start.add_ties(&file.ties).map_err(|(at, message)| SceneError::value(at, message).in_file(meshes.path))?;
         for particle in &mut start.particles {
             particle.color = color(file, particle.color, particle.material);
         }
@@ -145,8 +152,52 @@ impl Start {
             self.forces.extend(tuft.air_drag(&grown.lock, &file.forces));
             self.constraints.extend(grown.constraints);
             self.locks.push(grown.lock);
+            let to = tuft.attach.into_iter().flat_map(|body| grown.roots.iter().map(move |&root| (root, body)));
+            for (root, body) in to {
+                let tied = self.tie(root, body, [0.0; 2]);
+                tied.map_err(|why| SceneError::value(format!("strands[{i}].attach"), why).in_file(meshes.path))?;
+            }
         }
         Ok(())
+    }
+
+    fn add_ropes(&mut self, file: &SceneFile, path: &str) -> Result<(), SceneError> {
+        let mut last = Vec::new();
+        for (i, cord) in file.ropes.iter().enumerate() {
+            let first = self.particles.len() as u32;
+            let laid = cord.make(first);
+            if !laid.particles.iter().all(Particle::is_sound) {
+                let message = "leaves some points too little mass, or puts them beyond the range of a 32-bit float";
+                return Err(SceneError::value(format!("ropes[{i}]"), message).in_file(path));
+            }
+            self.ropes.push(self.particles.len());
+            self.particles.extend(laid.particles);
+            self.forces.extend(cord.air_drag(&laid.lock, &file.forces));
+            self.constraints.extend(laid.constraints);
+            self.locks.push(laid.lock);
+            last.push(self.constraints.len() - 1);
+        }
+        // One may be tied to another that comes later.
+        for (i, cord) in file.ropes.iter().enumerate() {
+            let mut ends = [None, None];
+            for (k, point) in [0, cord.segments].into_iter().enumerate() {
+                let Some(to) = cord.ends[k] else { continue };
+                let tied = self.tied(self.ropes[i] as u32 + point, to, [0.0; 2]);
+                let wrong = |why| SceneError::value(format!("ropes[{i}].ends[{k}]"), why).in_file(path);
+                ends[k] = Some(tied.map_err(wrong)?);
+            }
+            if let (ConstraintKind::Rope(rope), true) = (&self.constraints[last[i]], ends.iter().any(Option::is_some)) {
+                self.constraints[last[i]] = ConstraintKind::TiedRope(TiedRope { rope: rope.clone(), ends });
+            }
+        }
+        Ok(())
+    }
+
+    /// The first particle of a cloth, and their number.
+    pub(super) fn cloth_span(&self, number: usize) -> Option<[u32; 2]> {
+        let [first, _] = *self.cloths.get(number)?;
+        let patch = self.patches.iter().find(|patch| patch.first as usize == first);
+        Some([first as u32, patch.map_or(0, |patch| patch.count)])
     }
 
     /// Loose balls that may be near bodies at a time: all that there may be, but no more than 64 for each body, or 1,024 if that is more.

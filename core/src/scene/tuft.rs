@@ -1,5 +1,6 @@
 //! Strands in scene files: hair and grass that grow on a surface, wires and cables along curves.
 
+use super::Body;
 use super::cloth::winds;
 use crate::constrain::{Attach, ConstraintKind, StrandParams, Strands};
 use crate::draw::Lock;
@@ -44,6 +45,9 @@ pub struct Tuft {
     /// How the roots, and all that is fixed, move; without it they stay.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub motion: Option<MotionBuf>,
+    /// The body to whose surface the roots, and all that is fixed, are tied in place of being fixed, each where it begins: hair on a cloth.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub attach: Option<Body>,
     /// How the air pushes it, by its thickness and the angle of attack: that of all `wind` among the scene's forces, or still air. It takes
     /// the place of `drag`.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -153,6 +157,8 @@ pub(super) struct Grown {
     pub(super) particles: Vec<Particle>,
     pub(super) constraints: Vec<ConstraintKind>,
     pub(super) lock: Lock,
+    /// What is fixed, or would be if it was not attached.
+    pub(super) roots: Vec<u32>,
 }
 
 impl Tuft {
@@ -197,7 +203,7 @@ impl Tuft {
                     drag: self.drag * share,
                     elasticity: self.elasticity,
                     material: self.material,
-                    fixed: is_root,
+                    fixed: is_root && self.attach.is_none(),
                     color,
                     ..Particle::REST
                 });
@@ -206,11 +212,12 @@ impl Tuft {
         let params =
             StrandParams { damping: self.damping, ..StrandParams::round(self.radius, self.young, self.poisson) };
         let all = (first..first + particles.len() as u32).collect();
-        let attached = self.motion.clone().map(|motion| ConstraintKind::Attach(Attach { particles: fixed, motion }));
+        let led = |motion| ConstraintKind::Attach(Attach { particles: fixed.clone(), motion });
+        let attached = self.motion.clone().map(led);
         let strands_of = ConstraintKind::Strands(Strands::of(all, alloc::vec![points], params));
         let width = if self.width > 0.0 { self.width } else { 2.0 * self.radius };
         let lock = Lock { first, points, count: strands.len() as u32, width };
-        Grown { particles, constraints: attached.into_iter().chain([strands_of]).collect(), lock }
+        Grown { particles, constraints: attached.into_iter().chain([strands_of]).collect(), lock, roots: fixed }
     }
 
     /// The push of the air on what it is made into: on all segments but those beneath the surface on which it grows.
@@ -265,7 +272,7 @@ impl Field {
 }
 
 /// Places at equal ways along a line through others.
-fn along(places: &[Vec3], segments: u32) -> Vec<Vec3> {
+pub(super) fn along(places: &[Vec3], segments: u32) -> Vec<Vec3> {
     let way: f32 = places.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
     let place = |i: u32| {
         let mut rest = way * (i as f32 / segments as f32);

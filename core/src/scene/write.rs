@@ -132,6 +132,12 @@ impl Writer {
         if !scene.strands.is_empty() {
             self.warn("strands: .scn has none; they are left out");
         }
+        if !scene.ropes.is_empty() {
+            self.warn("ropes: .scn has none; they are left out");
+        }
+        if !scene.ties.is_empty() {
+            self.warn("ties: .scn has none; they are left out");
+        }
         (particles, springs)
     }
 

@@ -1,6 +1,7 @@
 //! The state of all particles at an instant, column by column.
 
 use super::plan::Plan;
+use super::solids::Surfaces;
 use crate::instant::nanoseconds;
 use pointmass::draw::appearance;
 use pointmass::force::Springs;
@@ -9,7 +10,7 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The state after a step, by id.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Frame {
     /// How many steps have been made.
     pub(super) step: u64,
@@ -25,10 +26,12 @@ pub struct Frame {
     pub(super) faces: Vec<[u32; 3]>,
     /// Springs that hold and are in no triangle, by rows.
     pub(super) edges: Vec<[u32; 2]>,
+    /// The surfaces of rigid bodies.
+    pub(super) surfaces: Surfaces,
 }
 
 /// An attribute of all particles.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Column {
     /// Its name.
     pub(super) name: String,
@@ -132,7 +135,10 @@ impl Frame {
         (0..).zip(&order).for_each(|(at, &row)| place[row] = at);
         let time = nanoseconds(system.time().seconds_f64());
         let (faces, edges) = (faces(plan, &state.springs, &place), edges(plan, &state.springs, &place));
-        Self { step, time, len: order.len(), columns, colors, faces, edges }
+        let mut surfaces = Surfaces::default();
+        let now = [state.position, state.velocity];
+        plan.solids.iter().for_each(|solid| solid.add(&state.springs, now, &place, &mut surfaces));
+        Self { step, time, len: order.len(), columns, colors, faces, edges, surfaces }
     }
 
     /// The columns of these names one after the other, all of them there and in single precision.
@@ -148,11 +154,11 @@ impl Frame {
         self.columns.iter().filter(|column| !names.contains(&column.name.as_str()))
     }
 
-    /// The rows that are in no face and no edge.
+    /// The rows that are in no face and no edge, and in no body.
     pub(super) fn singletons(&self) -> impl Iterator<Item = u32> {
         let mut joined = vec![false; self.len];
         let ends = self.faces.as_flattened().iter().chain(self.edges.as_flattened());
-        ends.for_each(|&row| joined[row as usize] = true);
+        ends.chain(&self.surfaces.members).for_each(|&row| joined[row as usize] = true);
         (0..).zip(joined).filter(|(_, joined)| !joined).map(|(row, _)| row)
     }
 

@@ -1,4 +1,4 @@
-//! glTF 2.0: particles as points, cloths as triangles, other springs, ropes, rods and strands as lines; each record a node of its own, which an
+//! glTF 2.0: particles as points, cloths and rigid bodies as triangles, other springs, ropes, rods and strands as lines; each record a node of its own, which an
 //! animation shows from its instant to the next record's. Binary (`.glb`), or text with its numbers inside (`.gltf`).
 
 use super::{Frame, Out, Writer};
@@ -160,8 +160,13 @@ fn light(color: [u8; 3], alpha: u8) -> [f32; 4] {
 
 impl Writer for Gltf {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
+        let frame = &*frame.with_surfaces();
         let mut node =
             json!({"name": format!("step {}", frame.step), "extras": {"time": frame.time, "step": frame.step}});
+        if let Some(count) = frame.particles() {
+            // Vertices behind these are corners of bodies.
+            node["extras"]["particles"] = count.into();
+        }
         if frame.len > 0 {
             let mesh = self.mesh(frame);
             node["mesh"] = self.meshes.len().into();

@@ -8,6 +8,7 @@ mod numpy;
 mod obj;
 mod plan;
 mod ply;
+mod solids;
 mod table;
 mod vtk;
 mod xyz;

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: particles as vertices with colours, cloths as faces, other springs, ropes, rods and strands as lines, the rest as points.
+//! Wavefront OBJ: particles as vertices with colours, cloths and rigid bodies as faces, other springs, ropes, rods and strands as lines, the rest as points.
 
 use super::{Frame, Out, Writer};
 use std::io::{self, Write};
@@ -8,8 +8,12 @@ pub(super) struct Obj(pub(super) Out);
 
 impl Writer for Obj {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
+        let frame = &*frame.with_surfaces();
         let out = &mut self.0;
         writeln!(out, "# time {} step {}", frame.time, frame.step)?;
+        if let Some(count) = frame.particles() {
+            writeln!(out, "# {count} particles, then corners of bodies")?;
+        }
         for ([x, y, z], color) in frame.places().zip(&frame.colors) {
             let [red, green, blue, _] = color.map(|channel| f32::from(channel) / 255.0);
             writeln!(out, "v {x} {y} {z} {red} {green} {blue}")?;

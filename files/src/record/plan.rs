@@ -1,5 +1,6 @@
 //! The columns that a recording holds of each particle, decided by the scene, so that they are the same in every record.
 
+use super::solids::Solid;
 use crate::outcome::{Failure, Outcome};
 use pointmass::constrain::ConstraintKind;
 use pointmass::scene::{Files, Form, Model, SceneFile, beside};
@@ -31,6 +32,8 @@ pub struct Plan {
     pub(super) edges: Vec<bool>,
     /// The links of ropes, rods, strings and strands, by their ends' numbers in the scene's start.
     pub(super) links: Vec<[u32; 2]>,
+    /// The rigid bodies.
+    pub(super) solids: Vec<Solid>,
 }
 
 impl Plan {
@@ -59,6 +62,7 @@ impl Plan {
             triangles: Vec::new(),
             edges: vec![true; model.springs.len()],
             links: Vec::new(),
+            solids: Solid::all(model),
         };
         plan.add_faces(file, model, scene, files)?;
         model.constraints.0.iter().for_each(|constraint| plan.add_bonds(constraint));
@@ -84,6 +88,7 @@ impl Plan {
         match constraint {
             ConstraintKind::Distance(distance) => self.links.push(distance.ends),
             ConstraintKind::Rope(rope) => self.links.extend(chain(&rope.particles, rope.closed)),
+            ConstraintKind::TiedRope(tied) => self.links.extend(chain(&tied.rope.particles, tied.rope.closed)),
             ConstraintKind::Strands(strands) => {
                 let all = strands.strands().map(|[first, end]| &strands.particles[first..end]);
                 self.links.extend(all.flat_map(|particles| chain(particles, false)));
@@ -96,7 +101,10 @@ impl Plan {
                     shell.triangles.iter().filter_map(|&[a, b, c]| Some([particle(a)?, particle(b)?, particle(c)?]));
                 self.triangles.extend(triangles.filter(|triangle| !there.contains(triangle)));
             }
-            ConstraintKind::Cluster(_) | ConstraintKind::Attach(_) | ConstraintKind::StrainLimits(_) => {}
+            ConstraintKind::Cluster(_)
+            | ConstraintKind::Attach(_)
+            | ConstraintKind::StrainLimits(_)
+            | ConstraintKind::Tie(_) => {}
         }
     }
 }

@@ -1,4 +1,4 @@
-//! PLY, binary: particles as vertices, cloths as faces, other springs, ropes, rods and strands as edges.
+//! PLY, binary: particles as vertices, cloths and rigid bodies as faces, other springs, ropes, rods and strands as edges.
 
 use super::frame::{Column, Value, Values};
 use super::{Frame, Out, Writer};
@@ -15,6 +15,7 @@ const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 impl Writer for Ply {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
+        let frame = &*frame.with_surfaces();
         let first: Vec<&Column> =
             FIRST.iter().filter_map(|name| frame.columns.iter().find(|column| column.name == *name)).collect();
         let rest: Vec<&Column> = frame.others(&[FIRST.as_slice(), &CHANNELS].concat()).collect();
@@ -43,6 +44,7 @@ fn header(frame: &Frame, first: &[&Column], rest: &[&Column]) -> Header {
     let vertex = first.iter().map(column).chain(color).chain(rest.iter().map(column));
     let mut header = Header { encoding: Encoding::BinaryLittleEndian, ..Header::new() };
     header.comments.push(format!("time {} step {}", frame.time, frame.step));
+    header.comments.extend(frame.particles().map(|count| format!("{count} particles, then corners of bodies")));
     header.elements.add(element("vertex", frame.len, vertex));
     if !frame.faces.is_empty() {
         let corners = PropertyType::List(ScalarType::UChar, ScalarType::Int);

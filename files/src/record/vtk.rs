@@ -1,4 +1,4 @@
-//! VTK's XML for ParaView: particles as points, cloths as polygons, other springs, ropes, rods and strands as lines, and an index of records.
+//! VTK's XML for ParaView: particles as points, cloths and rigid bodies as polygons, other springs, ropes, rods and strands as lines, and an index of records.
 //!
 //! Numbers are in base 64, each array behind its length in bytes, as the format has it.
 
@@ -26,12 +26,17 @@ struct Array<'a> {
 
 impl Writer for Vtp {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
+        let frame = &*frame.with_surfaces();
         let mut xml = Xml::new_with_indent(&mut self.0, b' ', 1);
         file(&mut xml, "PolyData", |xml| {
             xml.create_element("PolyData").write_inner_content(|xml| {
                 xml.create_element("FieldData").write_inner_content(|xml| {
                     let time = frame.time.to_le_bytes().to_vec();
-                    tuples(xml, &Array { name: "TimeValue", kind: "Float64", components: 1, bytes: time }, Some(1))
+                    tuples(xml, &Array { name: "TimeValue", kind: "Float64", components: 1, bytes: time }, Some(1))?;
+                    // Points behind these are corners of bodies.
+                    let Some(count) = frame.particles() else { return Ok(()) };
+                    let bytes = (count as i64).to_le_bytes().to_vec();
+                    tuples(xml, &Array { name: "particles", kind: "Int64", components: 1, bytes }, Some(1))
                 })?;
                 piece(xml, frame)
             })?;

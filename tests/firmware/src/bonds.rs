@@ -7,7 +7,7 @@ use crate::cloth;
 use crate::drawing::{hash_bodies, hash_strands, hash_surface};
 use pointmass::constrain::{
     Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams, StrandParams,
-    Strands,
+    Strands, Tie,
 };
 use pointmass::draw::{Lock, Patch};
 use pointmass::index::Structure;
@@ -75,7 +75,9 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let all = &(hand, (tether, rope, ring), (die, jelly), sheet, Contacts::HARD);
     let wire = StrandParams { damping: 1e-3, ..StrandParams::round(2e-3, 3e9, 0.3) };
     let wire = Strands { twist: 1.0, ..Strands::of(RING, [8], wire) };
-    let bonds: [(&str, &dyn Constraint); 9] = [
+    let button = Tie { compliance: 1e-3, damping: 0.3, ..Tie::rigid(JELLY[7], [DIE[0], DIE[1], DIE[2]]) };
+    let tied = &(rope, die, Tie::rigid(ROPE[11], DIE), button);
+    let bonds: [(&str, &dyn Constraint); 10] = [
         ("rope", &rope),
         ("ring", &ring),
         ("die", &die),
@@ -84,6 +86,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         ("sheet", &sheet),
         ("chests", &chests),
         ("wire", &wire),
+        ("tied", tied),
         ("bonds", all),
     ];
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };

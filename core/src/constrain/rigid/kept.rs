@@ -11,7 +11,7 @@ use crate::memory::take;
 use glam::Vec3;
 
 /// Pairs of near bodies that there is room for, for each body.
-const PAIRS: usize = 8;
+const PAIRS: usize = 12;
 /// Pairs of bodies whose balls are near that there is room for, for each body.
 const CANDIDATES: usize = 24;
 /// Pairs of a ball and a body that there is room for, for each ball.

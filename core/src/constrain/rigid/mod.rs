@@ -75,7 +75,7 @@ use span::Span;
 /// touches or has near it moves, comes or goes, and when what one has lain on goes; all bodies wake when any loses a particle. What creeps more
 /// slowly than that stops. Without forces nothing sleeps.
 ///
-/// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for eight
+/// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for twelve
 /// touching pairs a body, two for each ball and three directions of the scenery, of more the deepest; what finds none is counted (`caps.contacts`).
 ///
 /// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands,

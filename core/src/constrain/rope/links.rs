@@ -1,13 +1,17 @@
 //! The links of a rope in a sub-step, and the direct solution for what they pull.
 
 use super::super::Bodies;
-use crate::math::{length, max, sqrt};
+use super::super::turn::{outer, solve};
+use crate::math::{length, max, min, sqrt};
 use crate::memory::take;
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// What a pivot is at the least for each link, a share of the first end's weight: chains that are stretched straight between two fixed ends
 /// leave the system singular.
 const RIDGE: f32 = 1e-6;
+
+/// The share of a kinetic energy below which what is beside the rigid motion is rounding.
+const ROUNDING: f32 = 1e-4;
 
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
@@ -278,6 +282,50 @@ impl<'m> Links<'m> {
                 bodies.velocity[row] = drift + (bodies.velocity[row] - drift) * share;
             }
         }
+    }
+
+    /// Takes an energy \[J\] out of how all move against a rigid motion with the same momenta, as far as there is any of that, which leaves momenta and
+    /// lengths alone. Tells how much it was.
+    pub(super) fn spend(&self, bodies: &mut Bodies<'_>, energy: f32) -> f32 {
+        let len = bodies.len();
+        let rows = || self.rows.iter().map(|&row| row as usize).filter(move |&row| row < len);
+        let drift = self.drift(bodies);
+        let (mut middle, mut mass) = (Vec3::ZERO, 0.0);
+        // From the first, through the sides of a room.
+        let Some(first) = rows().next() else { return 0.0 };
+        for row in rows() {
+            middle += bodies.between(first, row) * bodies.mass[row];
+            mass += bodies.mass[row];
+        }
+        middle /= mass;
+        let (mut spin, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+        for row in rows() {
+            let arm = bodies.between(first, row) - middle;
+            spin += arm.cross(bodies.velocity[row] - drift) * bodies.mass[row];
+            spread += outer(arm * bodies.mass[row], arm);
+        }
+        let omega = solve(spread, spin);
+        let beside = |bodies: &Bodies<'_>, row: usize| {
+            bodies.velocity[row] - drift - omega.cross(bodies.between(first, row) - middle)
+        };
+        let twice: f32 = rows().map(|row| beside(bodies, row).length_squared() * bodies.mass[row]).sum();
+        let spent = min(2.0 * energy, 0.5 * twice);
+        if !(spent > 0.0 && twice > ROUNDING * self.vigour(bodies)) {
+            return 0.0;
+        }
+        let share = 1.0 - sqrt(1.0 - spent / twice);
+        for row in rows() {
+            let by = beside(bodies, row) * share;
+            if by.is_finite() {
+                bodies.velocity[row] -= by;
+            }
+        }
+        0.5 * spent
+    }
+
+    /// Tells whether nobody is fixed, and none has died.
+    pub(super) fn is_free(&self, bodies: &Bodies<'_>) -> bool {
+        self.rows.iter().all(|&row| bodies.inverse_mass.get(row as usize).is_some_and(|&weight| weight > 0.0))
     }
 
     /// Takes back what links push.

@@ -19,6 +19,8 @@ use links::{Links, NOBODY, put};
 ///
 /// A damping β takes from the speed at which a link stretches what a force β times that speed does, by an implicit step at the
 /// sub-step's end. Rigid links keep nothing of that speed: with `Verlet` that is RATTLE (Andersen, J. Comput. Phys. 52, 1983).
+/// What that gives of energy in one sub-step it takes in another; of a rigid rope that nobody holds it takes what goes beyond at once, from how it
+/// moves against a rigid motion with the same momenta, so that it never gains any.
 ///
 /// Linear momentum is kept to rounding; so is angular momentum, since links act along the directions that they had when the sub-step began,
 /// as long as none of them turns by more than 60° in a sub-step. Where one does (the end of a whip), or where links are so light for what pulls at
@@ -85,6 +87,8 @@ const STIFF: f32 = 2.0;
 const NEARLY: f32 = 1e-4;
 /// Words that each particle takes.
 const WORDS: usize = 14;
+/// Words kept: whose they are, and the energy that it has given so far \[J\].
+const KEPT: usize = 2;
 
 impl<P, L> Rope<P, L> {
     /// A chain of rigid links.
@@ -307,11 +311,16 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
     fn demand(&self) -> Demand {
         let words = WORDS.saturating_mul(self.particles.as_ref().len());
-        Demand { scratch: Words { per_row: 0, fixed: words }, ..Demand::NONE }
+        let fixed = |fixed| Words { per_row: 0, fixed };
+        Demand { kept: fixed(KEPT), scratch: fixed(words), ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
         self.links() == 0
+    }
+
+    fn prepare(&self, _: &mut Bodies<'_>, share: &mut Share<'_>) {
+        share.claim(*b"rope", &[]);
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -319,7 +328,10 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(h > 0.0) {
             return;
         }
+        let given = share.kept.fixed.get(1).copied().map_or(0.0, f32::from_bits);
         let mut links = self.links_of(bodies, share);
+        let counts = !(self.compliance > 0.0) && links.is_free(bodies);
+        let begun = if counts { links.vigour(bodies) } else { 0.0 };
         let soft = self.compliance / (h * h);
         if soft > 0.0 {
             self.catch_up(bodies, &mut links);
@@ -333,6 +345,10 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if self.tether {
             links.let_go(bodies, &mut |bodies, row, by| bodies.shift(row, by));
         }
+        let given = if counts { given + 0.5 * (links.vigour(bodies) - begun) } else { 0.0 };
+        if let [_, word] = share.kept.fixed {
+            *word = if given.is_finite() { given.to_bits() } else { 0 };
+        }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -341,7 +357,10 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(soft < f32::INFINITY) {
             return;
         }
+        let given = share.kept.fixed.get(1).copied().map_or(0.0, f32::from_bits);
         let mut links = self.links_of(bodies, share);
+        let counts = !(self.compliance > 0.0) && links.is_free(bodies);
+        let begun = if counts { links.vigour(bodies) } else { 0.0 };
         let rounds = if self.tether { ROUNDS } else { 1 };
         let turn = |bodies: &mut Bodies<'_>, row: usize, by: Vec3| bodies.velocity[row] += by;
         for _ in 0..rounds {
@@ -367,6 +386,16 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         }
         if self.tether {
             links.let_go(bodies, &mut { turn });
+        }
+        if counts {
+            // Links that turn give energy in one sub-step and take it in another: none beyond what they took.
+            let mut given = given + 0.5 * (links.vigour(bodies) - begun);
+            if given > 0.0 {
+                given -= links.spend(bodies, given);
+            }
+            if let [_, word] = share.kept.fixed {
+                *word = if given.is_finite() { given.to_bits() } else { 0 };
+            }
         }
     }
 }

@@ -78,6 +78,13 @@ impl Cell {
         [e * a + f * b, e * c + f * d]
     }
 
+    /// The energy of its strains where its edges are these \[J\].
+    pub(super) fn energy(&self, params: &ShellParams, edges: [Vec3; 2]) -> f32 {
+        let strain = green(self.deform(edges));
+        let [warp, weft, shear] = self.stress(params, 1.0, strain);
+        0.5 * (warp * strain[0] + weft * strain[1] + shear * strain[2])
+    }
+
     /// The forces on the second and the third corner of the stresses along warp and weft; that on the first is against both.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn forces(&self, [p, q]: [Vec3; 2]) -> [Vec3; 2] {

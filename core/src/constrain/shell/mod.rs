@@ -1,6 +1,7 @@
 //! Thin sheets that stretch, shear and bend by the numbers of their material: cloth, paper, sails, leaves, foil.
 
 mod assemble;
+mod bounded;
 mod corners;
 mod cycle;
 mod eights;
@@ -23,6 +24,7 @@ mod words;
 
 pub use params::ShellParams;
 
+use super::budget::{self, Budget};
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
 use crate::memory::take;
@@ -153,7 +155,8 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let graphs = take(&mut rest, room.words());
         let links = take(&mut rest, finest::pattern(&room, triangles));
         let plate = take(&mut rest, plate::words(&room));
-        Rest { cells, bends, graphs, links, plate, last: structs(take(&mut rest, 3 * room.rows[0])) }
+        let budget = take(&mut rest, budget::WORDS);
+        Rest { cells, bends, graphs, links, plate, budget, last: structs(take(&mut rest, 3 * room.rows[0])) }
     }
 
     fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [RestFold]) -> Shape<'s> {
@@ -202,13 +205,15 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 }
 
-/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, and where it went last.
+/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, the energy that it may have, and where it
+/// went last.
 struct Rest<'m> {
     cells: &'m mut [Cell],
     bends: &'m mut [RestFold],
     graphs: &'m mut [u32],
     links: &'m mut [u32],
     plate: &'m mut [u32],
+    budget: &'m mut [u32],
     last: &'m mut [Vec3],
 }
 
@@ -223,7 +228,7 @@ where
         let sum = |parts: &[usize]| parts.iter().copied().fold(0, usize::saturating_add);
         let room = Room::of(self.counts());
         let kept = sum(&[
-            1 + room.words(),
+            1 + budget::WORDS + room.words(),
             finest::pattern(&room, triangles),
             plate::words(&room),
             3 * room.rows[0],
@@ -259,7 +264,7 @@ where
         }
         let [particles, triangles, hinges] = self.counts();
         let room = Room::of(self.counts());
-        let Rest { cells, bends, graphs, links, plate, last } = self.rest(share.kept.fixed);
+        let Rest { cells, bends, graphs, links, plate, budget, last } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = structs(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = structs(take(&mut rest, hinges.saturating_mul(WORK[1])));
@@ -292,7 +297,7 @@ where
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);
         solver.keep_spin(bodies);
-        solver.act(bodies);
+        solver.act_within(bodies, Budget(budget));
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -1,6 +1,7 @@
 //! Strands that stretch, bend and twist by the numbers of their material: hair, wires, cables, stalks.
 
 mod band;
+mod bounded;
 mod frame;
 mod joint;
 mod params;
@@ -8,12 +9,14 @@ mod piece;
 
 pub use params::StrandParams;
 
+use super::budget::{self, Budget};
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{length, sin_cos};
 use crate::memory::take;
 use crate::rows::BLOCKS;
 use band::Band;
+use bounded::{Bounded, Course};
 use bytemuck::Pod;
 use frame::{bring, frame, strain};
 use glam::Vec3;
@@ -128,16 +131,18 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         [longest, if self.strands().nth(1).is_some() { WIDE } else { 1 }]
     }
 
-    /// What is kept of all joints, behind the word that tells whose it is.
-    fn joints<'m>(&self, kept: &'m mut [u32]) -> &'m mut [Joint] {
-        let joints = kept.get_mut(1..).unwrap_or_default();
+    /// What is kept of all joints, behind the word that tells whose it is, and the budgets of all strands.
+    fn kept<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [Joint], &'m mut [u32]) {
+        let mut rest = kept;
+        let _name = take(&mut rest, 1);
+        let joints = take(&mut rest, KEPT.saturating_mul(self.particles.as_ref().len()));
         let whole = joints.len() - joints.len() % KEPT;
-        bytemuck::cast_slice_mut(&mut joints[..whole])
+        (bytemuck::cast_slice_mut(&mut joints[..whole]), rest)
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
-        let joints = self.joints(kept);
+        let (joints, _) = self.kept(kept);
         for [first, last] in self.strands() {
             let Some(joints) = joints.get_mut(first..last) else { return };
             let place = |number: usize| {
@@ -172,7 +177,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
 
     /// The next part of a strand that lives, from a joint of it on.
     fn piece(&self, bodies: &Bodies<'_>, [first, last]: [usize; 2], from: usize, rows: &mut [u32]) -> Piece {
-        let mut piece = Piece { first: from, count: 0, held: [false; 2] };
+        let mut piece = Piece { first: from, ..Piece::default() };
         for joint in from..last {
             match (self.row(bodies, first + last - 1 - joint), rows.get_mut(piece.count)) {
                 (Some(row), Some(to)) => {
@@ -192,34 +197,42 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     where
         [f32; LANES]: Pod,
     {
-        let joints = self.joints(share.kept.fixed);
+        let (joints, budgets) = self.kept(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let rows = take(&mut rest, longest * LANES);
         let (mut pieces, mut count) = ([Piece::default(); LANES], 0);
-        for strand in self.strands() {
+        for (number, strand) in self.strands().enumerate() {
             let mut from = strand[0];
             while from < strand[1] {
                 let Some(rows_of) = rows.get_mut(count * longest..(count + 1) * longest) else { return };
-                let piece = self.piece(bodies, strand, from, rows_of);
+                let mut piece = self.piece(bodies, strand, from, rows_of);
                 from = piece.first + piece.count;
+                let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
+                let whole = piece.count == strand[1] - strand[0] && rows_of[..piece.count].iter().all(is_free);
+                piece.free = whole.then_some(number);
+                if let Some(words) = budgets.get_mut(number * budget::WORDS..(number + 1) * budget::WORDS)
+                    && !whole
+                {
+                    Budget(words).forget();
+                }
                 if piece.count > 1 {
                     pieces[count] = piece;
                     count += 1;
                 }
                 if count == LANES {
-                    self.solve_some::<LANES>(bodies, joints, &pieces, [rows, rest], longest);
+                    self.solve_some::<LANES>(bodies, (joints, budgets), &pieces, [rows, rest], longest);
                     count = 0;
                 }
             }
         }
-        self.solve_some::<LANES>(bodies, joints, &pieces[..count], [rows, rest], longest);
+        self.solve_some::<LANES>(bodies, (joints, budgets), &pieces[..count], [rows, rest], longest);
     }
 
     /// Solves some of them at once.
     fn solve_some<const LANES: usize>(
         &self,
         bodies: &mut Bodies<'_>,
-        joints: &mut [Joint],
+        (joints, budgets): (&mut [Joint], &mut [u32]),
         pieces: &[Piece],
         [rows, memory]: [&mut [u32]; 2],
         longest: usize,
@@ -228,6 +241,11 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     {
         let Some(most) = pieces.iter().map(|piece| piece.count).max() else { return };
         let step = Step { params: &self.params, h: bodies.substep.seconds() };
+        let mut memory = memory;
+        let work = take(&mut memory, bounded::WORDS * longest);
+        let frames: &mut [[f32; 4]] = bytemuck::cast_slice_mut(take(&mut memory, bounded::FRAMES * longest * LANES));
+        let bounded = |rows, mass| Bounded { params: &self.params, rows, h: step.h, mass };
+        let mut limits = [None; LANES];
         let mut band = Band::<LANES>::new(memory, most * EQUATIONS);
         let mut masses = [0.0; LANES];
         for (lane, piece) in pieces.iter().enumerate() {
@@ -237,6 +255,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 rows.iter().for_each(|&row| bodies.catch_up(row as usize));
             }
             masses[lane] = mean_mass(bodies, rows);
+            limits[lane] = piece.budget(budgets).map(|budget| {
+                let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
+                bounded(rows, masses[lane]).most(bodies, course, &budget)
+            });
             Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.write(piece, joints);
         }
         band.solve();
@@ -245,6 +267,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let joints = &mut joints[piece.first..][..piece.count];
             let is_solved = act(&band, lane, bodies, rows, joints, masses[lane]);
             bodies.report.effort.solved(1, 0.0, !is_solved);
+            if let (Some(most), Some(mut budget)) = (limits[lane], piece.budget(budgets)) {
+                let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
+                bounded(rows, masses[lane]).keep_within(most, bodies, course, &mut budget);
+            }
         }
     }
 }
@@ -260,10 +286,13 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
     fn demand(&self) -> Demand {
         let [longest, lanes] = self.widest();
         let band = band::words(longest.saturating_mul(EQUATIONS), lanes);
+        let joints = self.particles.as_ref().len().saturating_mul(KEPT);
         let words = |fixed| Words { per_row: 0, fixed };
         Demand {
-            kept: words(self.particles.as_ref().len().saturating_mul(KEPT).saturating_add(1)),
-            scratch: words(longest.saturating_mul(lanes).saturating_add(band)),
+            kept: words(joints.saturating_add(1).saturating_add(budget::WORDS * self.strands().count())),
+            scratch: words(
+                longest.saturating_mul(lanes + bounded::WORDS + bounded::FRAMES * lanes).saturating_add(band),
+            ),
             ..Demand::NONE
         }
     }

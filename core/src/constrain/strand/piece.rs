@@ -5,6 +5,7 @@ use super::frame::{Edge, bring, gradients, strain};
 use super::joint::Joint;
 use super::params::StrandParams;
 use crate::constrain::Bodies;
+use crate::constrain::budget::{self, Budget};
 use crate::constrain::turn::{Turn, outer, solve};
 use crate::math::{clamp, dot, length, max};
 use bytemuck::Pod;
@@ -38,6 +39,16 @@ pub(super) struct Piece {
     pub(super) count: usize,
     /// True if its first and its last edge do not turn about themselves.
     pub(super) held: [bool; 2],
+    /// The number of its strand, if it is the whole of that and nothing holds it.
+    pub(super) free: Option<usize>,
+}
+
+impl Piece {
+    /// The budget of its strand, if nothing holds that.
+    pub(super) fn budget<'m>(&self, budgets: &'m mut [u32]) -> Option<Budget<'m>> {
+        let first = self.free?.checked_mul(budget::WORDS)?;
+        Some(Budget(budgets.get_mut(first..first + budget::WORDS)?))
+    }
 }
 
 /// What all pieces have in common.

@@ -1,0 +1,116 @@
+//! The energy of strands that nothing holds.
+
+use super::frame::{bring, strain};
+use super::joint::Joint;
+use super::params::StrandParams;
+use crate::constrain::Bodies;
+use crate::constrain::budget::{Budget, Free};
+use crate::constrain::turn::Turn;
+use crate::math::{dot, length, min};
+use crate::memory::take;
+use glam::Vec3;
+
+/// Words to work with, for each point.
+pub(super) const WORDS: usize = 10;
+/// Words for the frames of before, for each point.
+pub(super) const FRAMES: usize = 4;
+
+/// A strand that nothing holds in a sub-step: its points are in these rows.
+pub(super) struct Bounded<'a> {
+    pub(super) params: &'a StrandParams,
+    pub(super) rows: &'a [u32],
+    /// How long the sub-step is \[s\], and the mean mass of its points \[kg\].
+    pub(super) h: f32,
+    pub(super) mass: f32,
+}
+
+/// What it does and works with in a sub-step.
+pub(super) struct Course<'m> {
+    pub(super) joints: &'m mut [Joint],
+    /// The frames of its edges as the sub-step began.
+    pub(super) before: &'m mut [[f32; 4]],
+    pub(super) work: &'m mut [u32],
+}
+
+impl Bounded<'_> {
+    /// The most energy that it may have at the sub-step's end.
+    pub(super) fn most(&self, bodies: &Bodies<'_>, course: Course<'_>, budget: &Budget<'_>) -> f32 {
+        let Course { joints, before, work } = course;
+        before.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
+        let free = self.free([bodies.before[0], bodies.velocity], bodies, work);
+        budget.most(free.moving() + self.stored(joints, None, free.place))
+    }
+
+    /// Takes out of it what is more than that, and keeps what there is.
+    pub(super) fn keep_within(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>, budget: &mut Budget<'_>) {
+        let Course { joints, before, work } = course;
+        let mut free = self.free([bodies.position, bodies.velocity], bodies, work);
+        let mut now = free.moving() + self.stored(joints, None, free.place);
+        if now > most {
+            let (rows, places) = (self.rows, bodies.before[0]);
+            let begin = |number: usize| places[rows[number] as usize];
+            let frames = |turned: Option<Turn>| turned.map(|turned| (turned, &*before));
+            let turned =
+                free.hold_back(self.h, most, begin, |places, turned| self.stored(joints, frames(turned), places));
+            for ((&row, &x), &v) in self.rows.iter().zip(&*free.place).zip(&*free.velocity) {
+                if x.is_finite() && v.is_finite() {
+                    let row = row as usize;
+                    bodies.shift(row, x - bodies.position[row]);
+                    (bodies.position[row], bodies.velocity[row]) = (x, v);
+                }
+            }
+            for (number, ends) in free.place.windows(2).enumerate() {
+                joints[number].turn = frame(joints, frames(turned), number, ends[1] - ends[0]).0;
+            }
+            now = free.moving() + self.stored(joints, None, free.place);
+        }
+        budget.keep(now, most);
+    }
+
+    fn free<'w>(&self, columns: [&[Vec3]; 2], bodies: &Bodies<'_>, work: &'w mut [u32]) -> Free<'w> {
+        let (mut rest, count) = (work, self.rows.len());
+        let weight: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, count));
+        let [place, velocity, goal] = [(); 3].map(|()| bytemuck::cast_slice_mut(take(&mut rest, 3 * count)));
+        for (number, &row) in self.rows.iter().enumerate() {
+            let row = row as usize;
+            weight[number] = bodies.inverse_mass[row];
+            (place[number], velocity[number]) = (columns[0][row], columns[1][row]);
+        }
+        Free { weight, place, velocity, goal }
+    }
+
+    /// The energy of strain where its points are in these places \[J\]. What is stiffer than it takes to be brought to its shape in a
+    /// sub-step is taken for so stiff: of the rest of its strain no motion comes.
+    fn stored(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3]) -> f32 {
+        let StrandParams { stretch, bending: [first, second], twisting, .. } = *self.params;
+        let (mut sum, mut last) = (0.0, None);
+        let shown = 0.5 * self.mass / (self.h * self.h);
+        for (number, (ends, joint)) in places.windows(2).zip(joints).enumerate() {
+            let way = ends[1] - ends[0];
+            let stiff = stretch.map_or(f32::INFINITY, |stretch| stretch / joint.length);
+            let stiff = min(stiff, shown);
+            let long = length(way) - joint.length;
+            let pulled = 0.5 * stiff * (long * long);
+            sum += if pulled.is_finite() { pulled } else { 0.0 };
+            let own = (frame(joints, turned, number, way), joint.length);
+            if let Some((turn, before)) = last.replace(own) {
+                let bent = strain(turn, own.0) - joint.rest;
+                let stiff = |stiffness: f32| min(stiffness / (before + own.1), 0.5 * shown * (before * own.1));
+                let moment = bent * Vec3::new(stiff(first), stiff(second), stiff(twisting));
+                let bent = dot(bent, moment);
+                sum += if bent.is_finite() { bent } else { 0.0 };
+            }
+        }
+        sum
+    }
+}
+
+/// The frame of an edge that has got into this direction: from where it is, or from where it was, turned as a rigid body.
+fn frame(joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, number: usize, way: Vec3) -> Turn {
+    let from = match turned {
+        Some((turn, before)) => turn.after(Turn(before[number])),
+        None => Turn(joints[number].turn),
+    };
+    let direction = way / length(way);
+    if direction.is_finite() { bring(from, direction) } else { from }
+}

@@ -1,0 +1,135 @@
+//! How a tie holds what it ties.
+
+use super::super::{Bodies, Constraint, Demand, Share, Words};
+use super::Tie;
+use super::grip::Grip;
+use super::place::{offset, weights};
+use crate::index::between;
+use crate::math::{largest, length, max};
+use glam::Vec3;
+
+/// Rounds at the most where there is an offset, whose direction is not linear in the places.
+const ROUNDS: u32 = 6;
+/// How far a rigid tie may be off after all rounds, a share of the size of what it ties: what is left is rounding.
+const NEARLY: f32 = 1e-4;
+
+impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
+    /// Brings the particle to its place, or so near that the compliance is met.
+    pub(super) fn close(&self, bodies: &mut Bodies<'_>, place: &[u32]) -> Option<()> {
+        let h = bodies.substep.seconds();
+        if !(h > 0.0) {
+            return None;
+        }
+        let (rows, mut grip) = self.grip(bodies, place, h)?;
+        let soft = self.compliance / (h * h);
+        if soft > 0.0 {
+            // The method's own way beyond where velocities lead is no stretch: what hangs still would show speed.
+            let lead = |row: usize| bodies.lead(row, h);
+            let whole = grip.as_one();
+            let pull = whole.answer(0.0, -(lead(rows[0]) - self.mean(bodies, place, rows[1], lead)))?;
+            self.act(bodies, place, &whole, pull, |bodies, row, by| bodies.position[row] += by);
+            grip = self.grip(bodies, place, h)?.1;
+        }
+        let aside = offset(place);
+        let mut total = Vec3::ZERO;
+        for round in 0..ROUNDS {
+            let open = self.open(bodies, place, rows)?;
+            let size = max(largest(bodies.position[rows[0]]), grip.size());
+            if round > 0 && length(open + total * soft) <= 4.0 * f32::EPSILON * size {
+                return Some(());
+            }
+            let pull = grip.answer(soft, -(open + total * soft))?;
+            total += pull;
+            self.act(bodies, place, &grip, pull, |bodies, row, by| {
+                bodies.shift(row, by);
+            });
+            if aside == 0.0 {
+                return Some(());
+            }
+        }
+        let open = self.open(bodies, place, rows)?;
+        if soft == 0.0 && !(length(open) <= NEARLY * (grip.size() + aside.abs())) {
+            bodies.report.effort.capped += 1;
+        }
+        Some(())
+    }
+
+    /// Takes from velocities what draws the particle away from its place.
+    pub(super) fn brake(&self, bodies: &mut Bodies<'_>, place: &[u32]) -> Option<()> {
+        let brake = self.damping * bodies.substep.seconds();
+        let soft = if self.compliance > 0.0 { 1.0 / brake } else { 0.0 };
+        if !(soft < f32::INFINITY) {
+            return None;
+        }
+        let (rows, grip) = self.grip(bodies, place, 0.0)?;
+        let pull = grip.answer(soft, -self.parting(bodies, place, rows)?)?;
+        self.act(bodies, place, &grip, pull, |bodies, row, by| bodies.velocity[row] += by);
+        Some(())
+    }
+
+    /// Moves all by what an impulse on the particle, and its opposite on the body, does.
+    pub(super) fn act(
+        &self,
+        bodies: &mut Bodies<'_>,
+        place: &[u32],
+        grip: &Grip,
+        pull: Vec3,
+        mut by: impl FnMut(&mut Bodies<'_>, usize, Vec3),
+    ) {
+        let Some(tied) = bodies.row_of_start(self.particle) else { return };
+        let own = pull * grip.own;
+        // Before the particle moves: arms are those of where all were.
+        self.push(bodies, place, grip, [-pull, Vec3::ZERO], |bodies, row, [moved, _]| by(bodies, row, moved));
+        by(bodies, tied, own);
+    }
+
+    /// Moves the body's particles by what two impulses at its place do.
+    pub(super) fn push(
+        &self,
+        bodies: &mut Bodies<'_>,
+        place: &[u32],
+        grip: &Grip,
+        pulls: [Vec3; 2],
+        mut by: impl FnMut(&mut Bodies<'_>, usize, [Vec3; 2]),
+    ) {
+        let (back, turns) = (grip.back, pulls.map(|pull| grip.turn(pull)));
+        let first = self.to.as_ref().first().and_then(|&number| bodies.row_of_start(number));
+        let Some(first) = first else { return };
+        let origin = bodies.position[first] - bodies.velocity[first] * back;
+        for (number, weight) in weights(place).enumerate() {
+            let row = self.to.as_ref().get(number).and_then(|&number| bodies.row_of_start(number));
+            let Some(row) = row else { return };
+            let from = bodies.position[row] - bodies.velocity[row] * back;
+            let arm = between(bodies.near.room(), origin, from) - grip.center;
+            let of = (number, f32::from_bits(weight), bodies.inverse_mass[row]);
+            let moved = [0, 1].map(|i| grip.moved(of, pulls[i], [turns[i], arm]));
+            if moved != [Vec3::ZERO; 2] {
+                by(bodies, row, moved);
+            }
+        }
+    }
+}
+
+impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Constraint for Tie<T, W> {
+    fn demand(&self) -> Demand {
+        Demand { kept: Words { per_row: 0, fixed: self.words() }, ..Demand::NONE }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.to.as_ref().is_empty()
+    }
+
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if share.claim(*b"tie ", &[self.to.as_ref().len(), self.given().len()]) {
+            self.learn(bodies, share.kept.fixed);
+        }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let _ = self.close(bodies, share.kept.fixed);
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let _ = self.brake(bodies, share.kept.fixed);
+    }
+}

@@ -1,0 +1,181 @@
+//! Ropes whose ends are tied to other bodies: their direct solution feels how heavy these are.
+
+use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share, Words};
+use super::Tie;
+use super::grip::Grip;
+use crate::math::{dot, unit};
+use crate::memory::take;
+use glam::Vec3;
+
+/// A rope of which one end or both are tied to a body, however heavy that is.
+///
+/// A [`Rope`] and a [`Tie`] behind it are met one after the other, and give way under what is heavier than the rope's end. Here an end that is tied rigidly has, while the rope is
+/// solved, the mass of itself and of the body at its place, along its link: m + 1 / (d · W d). The body gets its share of what the rope does to that,
+/// with equal impulses at the place, and then the ties are met. Linear and angular momentum are kept as they are by both alone. Soft ties are met behind the rope.
+///
+/// In each sub-step it copies the masses of all particles once or twice, beside what the rope and the ties take.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TiedRope<P, L, T, W = [f32; 0]> {
+    /// The rope, an open one.
+    pub rope: Rope<P, L>,
+    /// The ties of its first and of its last particle.
+    pub ends: [Option<Tie<T, W>>; 2],
+}
+
+impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRope<P, L, T, W> {
+    /// The first of its numbers that cannot be used, and what it has to be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let particles = self.rope.particles.as_ref();
+        let ends = [particles.first(), particles.last()];
+        let is_end = |(tie, end): (&Option<Tie<T, W>>, Option<&u32>)| {
+            tie.as_ref().is_none_or(|tie| {
+                Some(&tie.particle) == end && !tie.to.as_ref().iter().any(|to| particles.contains(to))
+            })
+        };
+        let own = !self.ends.iter().zip(ends).all(is_end);
+        let wrong = self.rope.closed && self.ends.iter().any(Option::is_some);
+        self.rope
+            .fault()
+            .or_else(|| self.ends.iter().flatten().find_map(Tie::fault))
+            .or_else(|| {
+                own.then_some(("ends", "have to tie the rope's first and last particle to particles of others"))
+            })
+            .or_else(|| wrong.then_some(("ends", "must not be tied where the rope is closed: it has none")))
+    }
+
+    /// The words that its ties keep.
+    fn places<'k>(&self, kept: &'k [u32]) -> [&'k [u32]; 2] {
+        let words = |end: usize| self.ends[end].as_ref().map_or(0, Tie::words).min(kept.len());
+        let (first, rest) = kept.split_at(words(0));
+        [first, rest.get(..words(1)).unwrap_or_default()]
+    }
+
+    /// The ties and the words that each keeps.
+    fn ties<'t>(&'t self, kept: &'t [u32]) -> impl Iterator<Item = (usize, &'t Tie<T, W>, &'t [u32])> {
+        let ends = self.ends.iter().zip(self.places(kept)).enumerate();
+        ends.filter_map(|(end, (tie, place))| Some((end, tie.as_ref()?, place)))
+    }
+
+    /// The row of a tied end, how much heavier the body at its place makes it, and how it takes its share; none if it is not rigid.
+    fn load(&self, bodies: &Bodies<'_>, end: usize, kept: &[u32], back: f32) -> Option<Load> {
+        let (_, tie, place) = self.ties(kept).find(|(number, ..)| *number == end)?;
+        let particles = self.rope.particles.as_ref();
+        let next = particles.get(if end == 0 { 1 } else { particles.len().checked_sub(2)? })?;
+        let ([row, _], grip) = tie.grip(bodies, place, back)?;
+        if tie.compliance > 0.0 || !(grip.own > 0.0) {
+            return None;
+        }
+        // What is a body of its own keeps its form; one of three corners or less is drawn out of it.
+        let grip = if tie.to.as_ref().len() > 3 { grip.as_one() } else { grip };
+        let along = unit(bodies.between(row, bodies.row_of_start(*next)?));
+        let heavier = 1.0 / dot(along, grip.given_way(along));
+        let was = [bodies.position[row], bodies.velocity[row]];
+        (along != Vec3::ZERO && heavier > 0.0).then_some(Load { end, row, heavier, grip, was })
+    }
+
+    /// Lets the rope do something while its ends are as heavy as what they are tied to, of which that gets its share.
+    fn with_loads(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, then: Phase<P, L>) {
+        let loads = [0, 1].map(|end| self.load(bodies, end, share.kept.fixed, back));
+        let mut rest = &mut *share.scratch;
+        if loads.iter().all(Option::is_none) {
+            then(&self.rope, bodies, &mut share_of(rest, share.capacity));
+            return;
+        }
+        let masses: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, bodies.len()));
+        let inverse: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, bodies.len()));
+        if inverse.len() < bodies.len() {
+            return;
+        }
+        masses.copy_from_slice(bodies.mass);
+        inverse.copy_from_slice(bodies.inverse_mass);
+        for Load { row, heavier, .. } in loads.iter().flatten() {
+            masses[*row] += heavier;
+            inverse[*row] = 1.0 / masses[*row];
+        }
+        then(&self.rope, &mut bodies.weighing(masses, inverse), &mut share_of(rest, share.capacity));
+        for Load { end, row, heavier, grip, was } in loads.into_iter().flatten() {
+            let gained = [bodies.position[row] - was[0], bodies.velocity[row] - was[1]].map(|by| by * heavier);
+            let tie = self.ties(share.kept.fixed).find(|(number, ..)| *number == end);
+            if let Some((_, tie, place)) = tie.filter(|_| gained.iter().all(|by| by.is_finite())) {
+                tie.push(bodies, place, &grip, gained, |bodies, row, [by, faster]| {
+                    bodies.shift(row, by);
+                    bodies.velocity[row] += faster - if back > 0.0 { by * (1.0 / back) } else { Vec3::ZERO };
+                });
+            }
+        }
+    }
+}
+
+/// What a rope does in a phase.
+type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>);
+
+/// A share of which nothing is kept.
+fn share_of(scratch: &mut [u32], capacity: usize) -> Share<'_> {
+    Share { kept: Kept::default(), step: &mut [], scratch, capacity }
+}
+
+/// A tied end of a rope while that is solved.
+struct Load {
+    end: usize,
+    row: usize,
+    /// The mass of the body at its place, along the link \[kg\].
+    heavier: f32,
+    grip: Grip,
+    /// Where the end was before, and how fast.
+    was: [Vec3; 2],
+}
+
+impl<P, L, T, W> Constraint for TiedRope<P, L, T, W>
+where
+    P: AsRef<[u32]> + Sync,
+    L: AsRef<[f32]> + Sync,
+    T: AsRef<[u32]> + Sync,
+    W: AsRef<[f32]> + Sync,
+{
+    fn demand(&self) -> Demand {
+        let rope = self.rope.demand();
+        let masses = Words { per_row: 2, fixed: 0 };
+        let own = Demand { scratch: rope.scratch.and(masses), ..rope };
+        self.ends.iter().flatten().fold(own, |sum, tie| sum.and(tie.demand()))
+    }
+
+    fn is_empty(&self) -> bool {
+        self.rope.is_empty()
+    }
+
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let mut parts = share.parts();
+        for tie in self.ends.iter().flatten() {
+            tie.prepare(bodies, &mut parts.next(tie.demand()));
+        }
+    }
+
+    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let h = bodies.substep.seconds();
+        if !(h > 0.0) {
+            return;
+        }
+        let rigid = |tie: &Tie<T, W>| tie.compliance == 0.0;
+        for (_, tie, place) in self.ties(share.kept.fixed).filter(|(_, tie, _)| rigid(tie)) {
+            // Ends have to be at their places to go with them.
+            let _ = tie.close(bodies, place);
+        }
+        self.with_loads(bodies, share, h, Rope::project);
+        for (_, tie, place) in self.ties(share.kept.fixed) {
+            let _ = tie.close(bodies, place);
+        }
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        for (_, tie, place) in self.ties(share.kept.fixed) {
+            let _ = tie.brake(bodies, place);
+        }
+        self.with_loads(bodies, share, 0.0, Rope::settle);
+        for (_, tie, place) in self.ties(share.kept.fixed) {
+            let _ = tie.brake(bodies, place);
+        }
+    }
+}

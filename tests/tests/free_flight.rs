@@ -1,0 +1,177 @@
+//! What flies freely for a minute: it keeps its angular momentum, gains no energy, and flips when Euler's equations say so. What is not finite
+//! is counted, and harms nobody else.
+
+use pointmass::constrain::{RigidBodies, RigidBox};
+use pointmass::{Constraint, Distance, Gravity, Measures, Method, Particle, Rope, Scene, ShapeMatching, Time, Vec3};
+use pointmass_tests::{Random, f64s, gap, often, run, started};
+
+const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
+const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+fn length(a: [f64; 3]) -> f64 {
+    gap(a, [0.0; 3])
+}
+
+/// How far the angular momentum has gone from the first \[share\], and by how much kinetic energy has at most grown and changed \[shares\].
+fn flown(scene: &Scene<'_>, frames: u64, each: &mut dyn FnMut(&[Vec3], &Measures)) -> [f64; 3] {
+    let mut system = started(scene, scene.start.len(), 0);
+    let begun = Measures::of(&system, scene);
+    let mut worst = [0.0f64; 3];
+    for frame in 1..=frames {
+        system.step_to(scene, Time::frame(frame, 60));
+        let now = Measures::of(&system, scene);
+        let turned = gap(now.angular_momentum, begun.angular_momentum) / length(begun.angular_momentum);
+        let grown = now.energy.kinetic / begun.energy.kinetic - 1.0;
+        worst = [worst[0].max(turned), worst[1].max(grown), worst[2].max(grown.abs())];
+        each(system.particles().position, &now);
+    }
+    worst
+}
+
+/// The corners of a box about the origin, turned by a random rotation, spinning in its own frame.
+fn tumbling(random: &mut Random, half: Vec3, spin: Vec3) -> Vec<Particle> {
+    let x = random.direction();
+    let y = x.cross(random.direction()).normalize();
+    let axes = [x, y, x.cross(y)];
+    let world = |v: Vec3| axes[0] * v.x + axes[1] * v.y + axes[2] * v.z;
+    let sign = |i: u32, axis: u32| if i >> axis & 1 == 1 { 1.0 } else { -1.0 };
+    let corner = |i: u32| {
+        let r = Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2)) * half;
+        Particle { position: world(r), velocity: world(spin.cross(r)), mass: 0.1, ..Particle::REST }
+    };
+    (0..8).map(corner).collect()
+}
+
+#[test]
+fn clusters_keep_their_angular_momentum_for_a_minute() {
+    let mut random = Random::new(3);
+    let sides = [Vec3::new(0.3, 0.2, 0.1), Vec3::splat(0.5), Vec3::new(0.02, 1.0, 0.02), Vec3::new(300.0, 200.0, 1.0)];
+    let spins = [Vec3::new(0.05, 4.0, 0.0), Vec3::new(3.0, 1.0, 2.0), Vec3::new(0.0, 0.3, 9.0)];
+    let mut failures = vec![];
+    for half in sides {
+        for spin in spins {
+            let start = tumbling(&mut random, half, spin);
+            let body = ShapeMatching::rigid(CUBE);
+            for (i, substeps) in [1, 2, 5, 10, 20, 50].into_iter().enumerate() {
+                let integrator = [Method::Symplectic, Method::Verlet, Method::Rk4][i % 3].integrator();
+                let scene = Scene { start: &start, constraints: &body, substeps, integrator, ..Scene::EMPTY };
+                let [turned, ..] = flown(&scene, often(3600) as u64, &mut |_, _| ());
+                if !(turned < 1e-4) {
+                    failures.push(format!("{half} {spin} in {substeps}: {turned:.1e}"));
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
+}
+
+/// A box of 1 x 2 x 3 turns about its middle axis and flips for a minute as often as Euler's equations say, whether it is a cluster or a rigid body.
+#[test]
+fn what_turns_about_its_middle_axis_flips_in_its_time() {
+    let (half, spin) = (Vec3::new(0.5, 1.0, 1.5), Vec3::new(0.05, 4.0, 0.05));
+    // Moments of inertia in proportion, by a Runge-Kutta method in double precision.
+    let [a, b, c] = [1.0 + 2.25, 0.25 + 2.25, 0.25 + 1.0f64];
+    let rate = |w: [f64; 3]| [(b - c) / a * w[1] * w[2], (c - a) / b * w[2] * w[0], (a - b) / c * w[0] * w[1]];
+    let add = |a: [f64; 3], b: [f64; 3], h: f64| [0, 1, 2].map(|k| a[k] + h * b[k]);
+    let (mut w, h, mut expected) = (f64s(spin), 1e-4, vec![]);
+    for i in 0..600_000 {
+        let k1 = rate(w);
+        let k2 = rate(add(w, k1, h / 2.0));
+        let k3 = rate(add(w, k2, h / 2.0));
+        let k4 = rate(add(w, k3, h));
+        let next = [0, 1, 2].map(|k| w[k] + h / 6.0 * (k1[k] + 2.0 * k2[k] + 2.0 * k3[k] + k4[k]));
+        if next[1] * w[1] < 0.0 {
+            expected.push(f64::from(i) * h);
+        }
+        w = next;
+    }
+    assert!(expected.len() > 5);
+    let of = RigidBox::new(half, Vec3::ZERO, 0);
+    let turning = |p: Particle| Particle { velocity: spin.cross(p.position), ..p };
+    let solid: Vec<Particle> = of.solid(Particle::REST).map(turning).into();
+    let (cluster, rigid) = (ShapeMatching::rigid(CUBE), RigidBodies::boxes([of]));
+    for (name, constraint) in [("cluster", &cluster as &dyn Constraint), ("rigid body", &rigid)] {
+        for substeps in [5, 10] {
+            let scene = Scene { start: &solid, constraints: constraint, substeps, ..Scene::EMPTY };
+            let (mut flips, mut before, mut frame) = (vec![], 1.0, 0);
+            let [turned, _, changed] = flown(&scene, 3600, &mut |x, now| {
+                let axis = f64s(x[2] - x[0]);
+                let along = (0..3).map(|k| axis[k] * now.angular_momentum[k]).sum::<f64>();
+                frame += 1;
+                if along * before < 0.0 {
+                    flips.push(f64::from(frame) / 60.0);
+                }
+                before = along;
+            });
+            assert!(turned < 1e-4 && changed < 1e-2, "{name} in {substeps}: {turned} {changed}");
+            // Each flip hangs by the rounding and the error of those before; their mean time does not.
+            let mean = |times: &[f64]| (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+            let off = mean(&flips) / mean(&expected) - 1.0;
+            assert!(off.abs() < 0.02 && flips.len().abs_diff(expected.len()) < 2, "{name} in {substeps}: {off}");
+        }
+    }
+}
+
+/// Rigid ropes gain no energy, whether they spin or whirl.
+#[test]
+fn free_ropes_keep_their_momenta_and_their_energy() {
+    let mut random = Random::new(8);
+    for (links, whirl) in [(3usize, 0.0f32), (12, 0.0), (12, 0.3)] {
+        let part = |i: usize| {
+            let position = Vec3::X * (0.1 * i as f32);
+            let velocity = Vec3::Z.cross(position) * 3.0 + random.vector(whirl) * Vec3::new(0.0, 1.0, 1.0);
+            Particle { position, velocity, mass: 0.1 * random.between(0.5, 1.5), ..Particle::REST }
+        };
+        let mut start: Vec<Particle> = (0..=links).map(part).collect();
+        let mass: f32 = start.iter().map(|p| p.mass).sum();
+        let mean = |of: fn(&Particle) -> Vec3| start.iter().map(|p| of(p) * p.mass).sum::<Vec3>() / mass;
+        let (x, v) = (mean(|p| p.position), mean(|p| p.velocity));
+        start.iter_mut().for_each(|p| (p.position, p.velocity) = (p.position - x, p.velocity - v));
+        let rope = Rope::rigid((0..=links as u32).collect::<Vec<_>>(), [0.1]);
+        for (i, substeps) in [1u32, 2, 5, 20].into_iter().enumerate() {
+            let integrator = [Method::Symplectic, Method::Verlet, Method::Rk4][i % 3].integrator();
+            let scene = Scene { start: &start, constraints: &rope, substeps, integrator, ..Scene::EMPTY };
+            let frames = often(3600) as u64;
+            let [turned, grown, _] = flown(&scene, frames, &mut |_, _| ());
+            let rounding = 2.0 * f64::from(f32::EPSILON) * (frames as f64 * f64::from(substeps)).sqrt();
+            assert!(turned < 1e-4 && grown < 1e-5 + rounding, "{links} {whirl} in {substeps}: {turned} {grown}");
+        }
+    }
+}
+
+/// One particle of four is not finite, in its place or its velocity, or all are in one place, or links have no length: whoever is not finite dies and is
+/// counted, and the others stay finite.
+#[test]
+fn what_is_not_finite_is_counted_and_harms_nobody() {
+    let rope = |length: f32| Rope { closed: true, ..Rope::rigid([0u32, 1, 2, 3], [length]) };
+    let rods = |length: f32| [0u32, 1, 2].map(|i| Distance::rod([i, i + 1], length));
+    let (ropes, rods) = ([rope(0.1), rope(0.0)], [rods(0.1), rods(0.0)]);
+    let cluster = ShapeMatching::rigid([0u32, 1, 2, 3]);
+    let soft = ShapeMatching { compliance: 1e-3, ..cluster };
+    let bonds: [&dyn Constraint; 6] = [&ropes[0], &ropes[1], &rods[0], &rods[1], &cluster, &soft];
+    for (i, bond) in bonds.into_iter().enumerate() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0] {
+            for (who, speed) in [(0, false), (1, true), (3, false)] {
+                let mut start =
+                    [0, 1, 2, 3].map(|i| Particle { position: Vec3::X * (0.1 * i as f32), ..Particle::REST });
+                if bad == 0.0 {
+                    start.iter_mut().for_each(|p| p.position = Vec3::ONE);
+                } else if speed {
+                    start[who].velocity = Vec3::new(0.0, bad, 0.0);
+                } else {
+                    start[who].position = Vec3::new(bad, 0.0, 0.0);
+                }
+                for (method, substeps) in [(Method::Symplectic, 1), (Method::Verlet, 5)] {
+                    let parts = Scene { start: &start, forces: &DOWN, constraints: bond, ..Scene::EMPTY };
+                    let scene = Scene { substeps, integrator: method.integrator(), ..parts };
+                    let mut system = started(&scene, 4, 0);
+                    run(&mut system, &scene, 1.0 / 60.0, 30);
+                    let (there, died) = (system.particles(), system.totals().died);
+                    let lost = u64::from(bad != 0.0);
+                    assert_eq!((there.position.len() as u64, died.nonfinite), (4 - lost, lost), "{i} {bad} {who}");
+                    assert!(there.position.iter().chain(there.velocity).all(|v| v.is_finite()), "{i} {bad} {who}");
+                }
+            }
+        }
+    }
+}

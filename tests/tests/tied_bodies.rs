@@ -1,0 +1,235 @@
+//! Ropes and ties as scene files say them: closed forms that do not depend on how fine a rope is divided, what they keep, and what is refused.
+
+use pointmass::constrain::{ConstraintKind, ShapeMatching, Tie, TiedRope};
+use pointmass::scene::{Model, SceneFile};
+use pointmass::{Measures, Method, Particle, Rope, Scene, Vec3};
+use pointmass_tests::{Random, gap, run, started};
+
+fn model(text: &str) -> Result<Model, String> {
+    let file = SceneFile::from_json("it.json", text).map_err(|error| error.to_string())?;
+    Model::load(&file, "it.json", &mut ()).map_err(|error| error.to_string())
+}
+
+/// Where all are after so many seconds.
+fn after(model: &Model, seconds: f64, substeps: u32, method: Method) -> (Vec<Vec3>, Vec<Vec3>) {
+    let scene = Scene { substeps, integrator: method.integrator(), ..model.scene() };
+    let mut system = started(&scene, model.particles.len(), 1);
+    run(&mut system, &scene, 1.0 / 60.0, (seconds * 60.0) as u32);
+    (system.particles().position.to_vec(), system.particles().velocity.to_vec())
+}
+
+/// A rope that hangs is longer by ρ g L² / (2 E), or by so many percent, and by its load, however many segments it has.
+#[test]
+fn ropes_stretch_by_their_closed_form_however_fine_they_are() {
+    for (number, segments) in [1u32, 2, 7, 40].into_iter().enumerate() {
+        for (k, (what, more)) in [
+            (r#""density": 1000, "young": 1e6, "diameter": 0.02"#, 1000.0 * 9.80665 * 4.0 / 2e6),
+            (r#""weight": 0.5, "stretch": 1"#, 0.02),
+            (r#""weight": 0.5, "stretch": 0"#, 0.0),
+            (r#""density": 900"#, 0.0),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let text = format!(
+                r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.80665, 0]}}}}, {{"drag": {{}}}}],
+                "ropes": [{{"curve": [[0, 3, 0], [0, 2.5, 0], [0, 1, 0]], "segments": {segments}, {what}, "fixed": [0], "drag": 0.8}}]}}"#
+            );
+            let model = model(&text).unwrap();
+            let mass: f32 = model.particles.iter().map(|p| p.mass).sum();
+            let metre = [1000.0 * 1e-4 * core::f32::consts::PI, 0.5, 0.5, 900.0 * 2.5e-5 * core::f32::consts::PI][k];
+            assert!((mass / (2.0 * metre) - 1.0).abs() < 1e-5, "{mass} kg");
+            let method = Method::ALL[(number + 3 * k) % Method::ALL.len()];
+            let (x, v) = after(&model, 12.0, 4, method);
+            let longer = 2.0 - f64::from(x[segments as usize].y) - 1.0;
+            assert!((longer - more).abs() < 0.01 * more + 1e-5, "{segments} segments, {what}, {method}: {longer} m");
+            assert!(v.iter().all(|v| v.length() < 1e-2), "{segments} {method}: {v:?}");
+        }
+    }
+}
+
+/// What hangs from a rope however heavy does not stretch it, nor leave it, whichever way it is fixed on.
+#[test]
+fn a_rope_carries_what_it_is_tied_to() {
+    for (number, segments) in [1u32, 5, 40].into_iter().enumerate() {
+        for (k, mass) in [1.0, 10.0, 100.0].into_iter().enumerate() {
+            for aside in [0.0, 0.06] {
+                // Links that are some 10,000 times as light as what hangs from them swing faster than sub-steps show.
+                if segments == 40 && mass > 10.0 {
+                    continue;
+                }
+                let text = format!(
+                    r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.80665, 0]}}}}, {{"drag": {{}}}}],
+                    "boxes": [{{"sides": [0.2, 0.2, 0.2], "mass": {mass}, "position": [{aside}, 0.9, 0], "drag": {}}}],
+                    "ropes": [{{"curve": [[0, 2, 0], [0, 1, 0]], "segments": {segments}, "weight": 0.06, "fixed": [0],
+                    "ends": [null, {{"box": 0}}], "drag": 0.06}}]}}"#,
+                    3.0 * mass
+                );
+                let method = [Method::Symplectic, Method::Verlet, Method::Rk4][(number + k) % 3];
+                let (x, v) = after(&model(&text).unwrap(), 10.0, 16, method);
+                let middle = x[..8].iter().sum::<Vec3>() / 8.0;
+                let end = x[8 + segments as usize];
+                let name = format!("{segments} segments, {mass} kg, {aside} m aside, {method}");
+                assert!((end - Vec3::Y).length() < 2e-3, "{name}: {end}");
+                let arm = (0.1f32 * 0.1 + aside * aside).sqrt();
+                assert!((end - middle - Vec3::Y * arm).length() < 2e-3, "{name}: {middle}");
+                // What hangs from light links shows as much as half of what gravity gives it in a sub-step.
+                assert!(v[..8].iter().all(|v| v.length() < 0.55 * 9.80665 / 960.0), "{name}: {v:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn ropes_between_bodies_keep_momentum() {
+    let mut random = Random::new(3);
+    for method in Method::ALL {
+        for (substeps, compliance) in [(3u32, 0.0f32), (10, 0.0), (6, 1e-3)] {
+            let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 0.2;
+            let spin = random.vector(1.0);
+            let mut start: Vec<_> = (0..16)
+                .map(|i| {
+                    let position = corner(i % 8) + Vec3::X * if i < 8 { 0.0 } else { 1.0 };
+                    let mass = if i < 8 { 3.0 } else { random.between(0.5, 0.6) };
+                    Particle { position, velocity: spin.cross(position), mass, ..Particle::REST }
+                })
+                .collect();
+            let link = |i: usize| Particle {
+                position: Vec3::new(0.2 + 0.08 * i as f32, 0.1, 0.1),
+                velocity: random.vector(0.5),
+                mass: 0.02,
+                ..Particle::REST
+            };
+            start.extend((0..=10).map(link));
+            let [one, other] = [0, 8].map(|first| (first..first + 8).collect::<Vec<u32>>());
+            let tie = |particle, to: &Vec<u32>| Some(Tie { compliance, ..Tie::rigid(particle, to.clone()) });
+            let rope = Rope::rigid((16..27).collect::<Vec<u32>>(), vec![0.08]);
+            let tied = TiedRope { rope, ends: [tie(16, &one), tie(26, &other)] };
+            assert_eq!(tied.fault(), None);
+            let bonds = (tied, ShapeMatching::rigid(one), ShapeMatching::rigid(other));
+            let parts = Scene { start: &start, constraints: &bonds, ..Scene::EMPTY };
+            let scene = Scene { substeps, integrator: method.integrator(), ..parts };
+            let mut system = started(&scene, start.len(), 0);
+            let before = Measures::of(&system, &scene);
+            run(&mut system, &scene, 1.0 / 60.0, 60);
+            let now = Measures::of(&system, &scene);
+            let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
+            let lost = [gap(before.momentum, now.momentum), gap(before.angular_momentum, now.angular_momentum)];
+            let name = format!("{method}, {substeps}, {compliance}");
+            assert!(lost[0] < 1e-5 * mass && lost[1] < 1e-3 * mass, "{name}: {lost:?}");
+            assert!(now.energy.total() < 1.01 * before.energy.total(), "{name}: {:?} {:?}", before.energy, now.energy);
+        }
+    }
+}
+
+/// Points of bodies go with the place on others at which they began.
+#[test]
+fn what_is_tied_goes_with_its_place() {
+    let text = r#"{"forces": [{"gravity": {"acceleration": [0, -9.80665, 0]}}],
+        "particles": [{"position": [0.13, 0.02, 0.21], "mass": 0.01}],
+        "cloths": [{"form": {"sheet": {"corner": [0, 0, 0], "sides": [[0.4, 0, 0], [0, 0, 0.4]], "cells": [6, 6]}},
+            "density": 0.3, "shell": {"stretch": [3000, 3000], "shear": 1000, "bending": 1e-4, "damping": 0.01}, "fixed": [0, 6]}],
+        "boxes": [{"sides": [0.1, 0.1, 0.1], "mass": 0.5, "position": [0.2, 0.05, 0.45]}],
+        "strands": [{"form": {"on": {"shape": {"triangle": {"corners": [[0.1, 0, 0.1], [0.1, 0, 0.3], [0.3, 0, 0.3]]}}, "count": 5, "length": 0.05}},
+            "segments": 4, "radius": 2e-4, "young": 1e8, "density": 1000, "damping": 0.01, "drag": 1e-4, "attach": {"cloth": 0}}],
+        "ropes": [{"curve": [[0.2, 0.1, 0.45], [0.2, 0.5, 0.45]], "segments": 8, "weight": 0.01, "ends": [{"box": 0}, null]}],
+        "ties": [{"of": {"cloth": 0}, "points": [42, 45, 48], "to": {"box": 0}}, {"points": [0], "to": {"cloth": 0}}]}"#;
+    let model = model(text).unwrap();
+    let count = |of: fn(&ConstraintKind) -> bool| model.constraints.0.iter().filter(|kind| of(kind)).count();
+    // Two points of each strand, three of the cloth, and a button; the rope has its own.
+    assert_eq!(count(|kind| matches!(kind, ConstraintKind::Tie(_))), 14);
+    assert_eq!(count(|kind| matches!(kind, ConstraintKind::TiedRope(_))), 1);
+    for (method, substeps) in [(Method::Symplectic, 10), (Method::Rk4, 15), (Method::Verlet, 12)] {
+        let scene = Scene { substeps, integrator: method.integrator(), ..model.scene() };
+        let mut system = started(&scene, model.particles.len(), 1);
+        run(&mut system, &scene, 1.0 / 60.0, 90);
+        let x = system.particles().position;
+        assert!(x.iter().all(|x| x.is_finite()), "{method}");
+        // A button keeps its distances to the corners of the triangle that it is on, which hardly stretches.
+        let start = |i: usize| model.particles[i].position;
+        for kind in &model.constraints.0 {
+            let ConstraintKind::Tie(tie) = kind else { continue };
+            for &corner in &tie.to {
+                let [now, then] = [
+                    x[tie.particle as usize].distance(x[corner as usize]),
+                    start(tie.particle as usize).distance(start(corner as usize)),
+                ];
+                assert!(
+                    (now - then).abs() < 5e-3 + 0.1 * then,
+                    "{method}, {} to {corner}: {now} m, {then} m",
+                    tie.particle
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_so_is_refused_by_name() {
+    let with = |rope: &str, more: &str| {
+        model(&format!(
+            r#"{{"particles": [{{}}], "boxes": [{{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0]}}],
+            "ropes": [{{"curve": [[0, 2, 0], [0, 1, 0]], "segments": 4{rope}}}]{more}}}"#
+        ))
+        .map(|_| String::new())
+        .unwrap_or_else(|error| error)
+    };
+    assert_eq!(
+        with(r#", "weight": 1, "ends": [{"box": 0}, null]"#, r#", "ties": [{"points": [0], "to": {"rope": 0}}]"#)
+            .as_str()
+            .lines()
+            .count(),
+        1
+    );
+    let cases = [
+        ("", "", "ropes[0].density: is missing"),
+        (r#", "weight": 1, "density": 1"#, "", "ropes[0].weight: say either"),
+        (r#", "weight": 0"#, "", "ropes[0].weight: has to be above zero"),
+        (r#", "weight": 1, "young": 1, "stretch": 1"#, "", "ropes[0].stretch: say either"),
+        (r#", "weight": 1, "stretch": -1"#, "", "ropes[0].stretch: has to be zero or more"),
+        (r#", "weight": 1, "fixed": [5]"#, "", "ropes[0].fixed: point 5 is out of range; the last is 4"),
+        (r#", "weight": 1, "fixed": [0], "ends": [{"box": 0}, null]"#, "", "ropes[0].ends: point 0 is fixed"),
+        (r#", "weight": 1, "ends": [{"box": 1}, null]"#, "", "ropes[0].ends[0]: box 1 is out of range; there are 1"),
+        (r#", "weight": 1, "ends": [{"rope": 0}, null]"#, "", "ropes[0].ends[0]: it is a part of that body"),
+        (
+            r#", "weight": 1"#,
+            r#", "ties": [{"points": [1], "to": {"box": 0}}]"#,
+            "ties[0].points[0]: point 1 is out of range; there are 1",
+        ),
+        (r#", "weight": 1"#, r#", "ties": [{"points": [], "to": {"box": 0}}]"#, "ties[0].points: has to name"),
+        (
+            r#", "weight": 1"#,
+            r#", "ties": [{"points": [0], "to": {"cloth": 0}}]"#,
+            "ties[0].to: cloth 0 is out of range; there are 0",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "ties": [{"of": {"strand": 2}, "points": [0], "to": {"box": 0}}]"#,
+            "ties[0].of: strand 2 is out of range",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "ties": [{"of": {"box": 0}, "points": [0], "to": {"box": 0}}]"#,
+            "ties[0].to: is the body that is to be tied",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "ties": [{"points": [0], "to": {"rope": 0}}]"#,
+            "ties[0].points[0]: the point begins 1.0 m beside its line",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "ties": [{"points": [0], "to": {"box": 0}, "compliance": -1}]"#,
+            "ties[0].compliance: has to be zero or more",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "constraints": [{"tie": {"particle": 0, "to": [99]}}]"#,
+            "constraints[0]: particle 99 is out of range",
+        ),
+    ];
+    for (rope, more, message) in cases {
+        let said = with(rope, more);
+        assert!(said.contains(message), "{rope} {more}: {said}");
+    }
+}
