@@ -64,8 +64,9 @@ use words::structs;
 /// long are shortened. The sweep at the step's end is left to those whose way may have passed through something.
 ///
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
-/// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. Whoever is fixed
-/// stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.
+/// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. A shell that nothing holds or
+/// presses gains no energy, of motion and strain together, however long its sub-steps: what would be too much is taken from how it deforms.
+/// Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.
 ///
 /// ```
 /// use pointmass::constrain::{Shell, ShellParams};

@@ -36,7 +36,7 @@ use piece::{EQUATIONS, Piece, Step, Writer, act};
 /// share of 1e-6 E I h²/(m l³) in a sub-step h, less than 0.01 % for hair of 1 cm; longer edges and shorter sub-steps lessen it. The
 /// system has a narrow band and is solved directly, so that the time that it takes grows with the number of points alone; several
 /// strands are solved eight at once. Forces act along the directions of the sub-step's beginning, and both momenta of a strand that
-/// nothing holds are kept to rounding. What swings so fast that a sub-step does not resolve it fades: a motion of angular frequency ω
+/// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps: what would be too much is taken from how it deforms. What swings so fast that a sub-step does not resolve it fades: a motion of angular frequency ω
 /// by (ω h)²/2 in a sub-step h.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
