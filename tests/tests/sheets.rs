@@ -304,6 +304,21 @@ fn no_energy_comes_of_solving_a_free_sheet() {
     gains_nothing(often(40) as u32, 4, true, &[1e2, 1e5]);
 }
 
+/// Far away places are coarse, which is no strain that would have to be paid for by motion.
+#[test]
+fn far_from_the_origin_a_free_sheet_goes_on_waving() {
+    for (away, stretch) in [(0.0f32, 1e4), (100.0, 1e4), (1000.0, 1e3)] {
+        let (start, sheet) = flying(5, false, 1.0, Vec3::new(away, -away, 0.5 * away));
+        let shell = shell(&sheet, even(stretch, 1e-4, 0.0));
+        let scene = Scene { start: &start, constraints: &shell, substeps: 10, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        let before = Measures::of(&system, &scene).energy.kinetic;
+        run(&mut system, &scene, 1.0 / 60.0, 30);
+        let share = Measures::of(&system, &scene).energy.kinetic / before;
+        assert!((0.9..1.1).contains(&share), "{away} m: {share}");
+    }
+}
+
 #[test]
 #[ignore = "long: minutes"]
 fn no_energy_comes_of_solving_a_free_sheet_for_a_minute() {

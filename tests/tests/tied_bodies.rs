@@ -233,3 +233,17 @@ fn what_cannot_be_so_is_refused_by_name() {
         assert!(said.contains(message), "{rope} {more}: {said}");
     }
 }
+
+/// Strands are attached to bodies that come later in the file as well.
+#[test]
+fn strands_grow_on_ropes() {
+    let text = r#"{"forces": [{"gravity": {"acceleration": [0, -9.80665, 0]}}, {"drag": {}}],
+        "strands": [{"form": {"curve": [[0.5, 1, 0], [0.5, 0.8, 0]]}, "segments": 4, "fixed": [0], "attach": {"rope": 0},
+            "radius": 1e-3, "young": 1e6, "density": 1000}],
+        "ropes": [{"curve": [[0, 1, 0], [1, 1, 0]], "segments": 10, "weight": 0.1, "fixed": [0, 10], "drag": 0.2}]}"#;
+    let model = model(text).unwrap();
+    assert!(model.constraints.0.iter().any(|constraint| matches!(constraint, ConstraintKind::Tie(_))));
+    let (x, _) = after(&model, 2.0, 10, Method::Symplectic);
+    let root = (0..5).map(|i| x[i]).max_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
+    assert!(root.distance(x[5 + 5]) < 1e-2, "{root}, {}", x[10]);
+}

@@ -11,7 +11,7 @@ const OBJECT: usize = 1536;
 const WOVEN: usize = 2048;
 
 /// Bytes that a rigid box takes at most, with its particles.
-const BOX: usize = 6144;
+const BOX: usize = 9728;
 
 /// Makes sure that so many bytes are to be had, for `what`.
 ///
@@ -34,7 +34,7 @@ pub(crate) fn room_to_read(text: &str) -> Result<(), JsError> {
     room(objects.saturating_mul(OBJECT).saturating_add(text.len().saturating_mul(12)), "the scene")
 }
 
-/// Makes sure of the memory that the cloths, boxes and strands of a scene take.
+/// Makes sure of the memory that the cloths, boxes, strands and ropes of a scene take.
 ///
 /// # Errors
 /// If there is not so much.

@@ -11,6 +11,9 @@ const LEAST: f32 = 0.5;
 /// Sums that go on side by side, so that rounding does not grow with the number of particles.
 const SUMS: usize = 8;
 
+/// How many times what there is a budget is at the most.
+const SLACK: f32 = 2.0;
+
 /// Words that a budget is kept in.
 pub(super) const WORDS: usize = 2;
 
@@ -18,23 +21,26 @@ pub(super) const WORDS: usize = 2;
 /// have been \[J\]. Nothing is known of it where both are zero.
 ///
 /// Forces, contacts and other constraints give and take between two solutions, and the budget goes with that; a solution neither adds to it nor takes
-/// from it. So what a method takes in one sub-step it may give back in another, and never more.
+/// from it. So what a method takes in one sub-step it may give back in another, and never more; of what it has taken long ago, as from a load that
+/// solutions bear, as much as there is now.
 pub(super) struct Budget<'m>(pub(super) &'m mut [u32]);
 
 impl Budget<'_> {
     /// The most that there may be at the sub-step's end, where there was so much before it was solved.
     pub(super) fn most(&self, begin: f32) -> f32 {
-        match *self.0 {
-            [last, most] if last | most != 0 => f32::from_bits(most) + (begin - f32::from_bits(last)),
+        let kept = match *self.0 {
+            [last, most, ..] if last | most != 0 => f32::from_bits(most) + (begin - f32::from_bits(last)),
             _ => begin,
-        }
+        };
+        min(kept, SLACK * begin)
     }
 
     /// Keeps what there is now, and may be.
     pub(super) fn keep(&mut self, now: f32, most: f32) {
         // Which bits a NaN has depends on the machine, and these words are in the hash.
         let sound = now.is_finite() && most.is_finite();
-        self.0.copy_from_slice(&if sound { [now.to_bits(), most.to_bits()] } else { [0; WORDS] });
+        let words = if sound { [now.to_bits(), most.to_bits()] } else { [0; WORDS] };
+        self.0.iter_mut().zip(words).for_each(|(kept, word)| *kept = word);
     }
 
     /// Forgets it: something holds what it is of.

@@ -80,7 +80,8 @@ pub(super) fn turn_of(spread: Mat3, moment: Vec3) -> Vec3 {
 
 /// The rotation R near the last one for which Σ m y × R q is the torque; none where Newton's method does not get there.
 pub(super) fn keeping(last: Turn, from: Mat3, torque: Vec3, axis: Option<Vec3>) -> Option<Turn> {
-    keeping_by(solve, last, (from, torque), axis)
+    // Newton's rounds themselves give back what the rule loses.
+    keeping_by(solve_roughly, last, (from, torque), axis)
 }
 
 /// The same where the system of each round is solved so.
@@ -164,32 +165,51 @@ pub(super) fn about(axis: Vec3, b: Mat3, change: Vec3) -> f32 {
     if by.is_finite() { by } else { 0.0 }
 }
 
-/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change, by Cramer's rule. About an axis on which all
-/// lies there is no moment, and it does not turn.
+/// How far to turn, or how fast, for a change of the moment: x of (tr(B) − B) x = the change. About an axis on which all lies there is no
+/// moment, and it does not turn.
 pub(super) fn solve(b: Mat3, change: Vec3) -> Vec3 {
-    let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
-    if !(trace > 0.0 && trace < f32::INFINITY) {
-        return Vec3::ZERO;
-    }
-    // In units of the trace nothing underflows, however small the cluster.
-    let change = change / trace;
-    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
-    let plain = [x / trace, y / trace, z / trace];
-    let determinant = |[x, y, z]: [Vec3; 3]| dot(x, y.cross(z));
-    let ridged = [plain[0] + Vec3::X * THIN, plain[1] + Vec3::Y * THIN, plain[2] + Vec3::Z * THIN];
-    let columns = if determinant(plain) > THIN { plain } else { ridged };
-    let ([x, y, z], whole) = (columns, determinant(columns));
-    let part = |b: Vec3| Vec3::new(dot(b, y.cross(z)), dot(b, z.cross(x)), dot(b, x.cross(y))) / whole;
-    let answer = part(change);
+    let Some(columns) = ridged(b) else { return Vec3::ZERO };
+    let (change, [x, y, z]) = (change / trace(b), columns);
+    let answer = by_cramer(columns, change);
     // Of what is thin the rule loses figures, which its own remainder gives back.
     let has = x * answer.x + y * answer.y + z * answer.z;
-    let answer = answer + part(change - has);
+    let answer = answer + by_cramer(columns, change - has);
     if answer.is_finite() { answer } else { Vec3::ZERO }
+}
+
+/// The same without giving back what rounding takes, as eight at once do.
+fn solve_roughly(b: Mat3, change: Vec3) -> Vec3 {
+    let Some(columns) = ridged(b) else { return Vec3::ZERO };
+    let answer = by_cramer(columns, change / trace(b));
+    if answer.is_finite() { answer } else { Vec3::ZERO }
+}
+
+fn trace(b: Mat3) -> f32 {
+    b.x_axis.x + b.y_axis.y + b.z_axis.z
+}
+
+/// The columns of tr(B) − B in units of the trace, in which nothing underflows however small the cluster, and with a little moment about an
+/// axis on which all lies; none if there is nothing.
+fn ridged(b: Mat3) -> Option<[Vec3; 3]> {
+    let trace = trace(b);
+    if !(trace > 0.0 && trace < f32::INFINITY) {
+        return None;
+    }
+    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
+    let [x, y, z] = [x / trace, y / trace, z / trace];
+    let is_plain = dot(x, y.cross(z)) > THIN;
+    Some(if is_plain { [x, y, z] } else { [x + Vec3::X * THIN, y + Vec3::Y * THIN, z + Vec3::Z * THIN] })
+}
+
+/// x of A x = b by Cramer's rule, by the columns of A.
+fn by_cramer([x, y, z]: [Vec3; 3], b: Vec3) -> Vec3 {
+    let determinant = dot(x, y.cross(z));
+    Vec3::new(dot(b, y.cross(z)), dot(b, z.cross(x)), dot(b, x.cross(y))) / determinant
 }
 
 /// The same by elimination, which leaves no more of the change than rounding however thin what turns is.
 pub(super) fn solve_thin(b: Mat3, change: Vec3) -> Vec3 {
-    let trace = b.x_axis.x + b.y_axis.y + b.z_axis.z;
+    let trace = trace(b);
     if !(trace > 0.0 && trace < f32::INFINITY) {
         return Vec3::ZERO;
     }

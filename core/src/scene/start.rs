@@ -2,7 +2,7 @@
 
 use super::placing::Placing;
 use super::references::color;
-use super::{BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
+use super::{Body, BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
 use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts, TiedRope};
 use crate::draw::Lock;
 use crate::emit::Emitter;
@@ -12,6 +12,9 @@ use crate::particles::Particle;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
+
+/// A root of strands that is to be tied: the number of these, the particle, and the body.
+type Root = (usize, u32, Body);
 
 /// A scene's own particles, springs and forces, with those of its cloths and boxes.
 pub(super) struct Start {
@@ -55,8 +58,9 @@ impl Start {
         };
         start.add_cloths(file, meshes)?;
         start.add_boxes(file, meshes)?;
-        start.add_strands(file, meshes)?;
+        let roots = start.add_strands(file, meshes)?;
         start.add_ropes(file, meshes.path)?;
+        start.tie_roots(&roots, meshes.path)?;
         start.add_ties(&file.ties).map_err(|(at, message)| SceneError::value(at, message).in_file(meshes.path))?;
         for particle in &mut start.particles {
             particle.color = color(file, particle.color, particle.material);
@@ -137,7 +141,9 @@ impl Start {
         Ok(())
     }
 
-    fn add_strands(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+    /// Adds all strands; tells whose roots are to be tied to what: the strands' number, the root's, and the body.
+    fn add_strands(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<Vec<Root>, SceneError> {
+        let mut roots = Vec::new();
         for (i, tuft) in file.strands.iter().enumerate() {
             let shape = match &tuft.form {
                 Growth::On(field) => Some(meshes.shape(&format!("strands[{i}].form.on.shape"), &field.shape)?),
@@ -152,11 +158,17 @@ impl Start {
             self.forces.extend(tuft.air_drag(&grown.lock, &file.forces));
             self.constraints.extend(grown.constraints);
             self.locks.push(grown.lock);
-            let to = tuft.attach.into_iter().flat_map(|body| grown.roots.iter().map(move |&root| (root, body)));
-            for (root, body) in to {
-                let tied = self.tie(root, body, [0.0; 2]);
-                tied.map_err(|why| SceneError::value(format!("strands[{i}].attach"), why).in_file(meshes.path))?;
-            }
+            let tied = tuft.attach.into_iter().flat_map(|body| grown.roots.iter().map(move |&root| (i, root, body)));
+            roots.extend(tied);
+        }
+        Ok(roots)
+    }
+
+    /// Ties the roots of strands, when all bodies are there.
+    fn tie_roots(&mut self, roots: &[Root], path: &str) -> Result<(), SceneError> {
+        for &(i, root, body) in roots {
+            let tied = self.tie(root, body, [0.0; 2]);
+            tied.map_err(|why| SceneError::value(format!("strands[{i}].attach"), why).in_file(path))?;
         }
         Ok(())
     }

@@ -9,6 +9,9 @@ use std::borrow::Cow;
 /// The faces of a box, by its corners: whose bits say on what side of x, y and z each is.
 const QUADS: [[u32; 4]; 6] = [[1, 3, 7, 5], [0, 4, 6, 2], [2, 6, 7, 3], [0, 1, 5, 4], [4, 5, 7, 6], [0, 2, 3, 1]];
 
+/// The determinant of a body's moments, in units of their trace, below which its particles lie in a plane.
+const FLAT: f32 = 1e-6;
+
 /// A rigid body at the scene's start.
 #[derive(Debug)]
 pub(super) struct Solid {
@@ -77,6 +80,11 @@ impl Solid {
             columns.map(|axis| rows.iter().map(|&(row, q)| of(row, q - rest) * (q - rest).dot(axis)).sum::<Vec3>())
         };
         let [a, b, c] = sum(&|_, q| q);
+        let trace = a.x + b.y + c.z;
+        // Particles that lie in a plane do not tell where the rest of their body is.
+        if !((a / trace).dot((b / trace).cross(c / trace)) > FLAT) {
+            return;
+        }
         let inverse = [b.cross(c), c.cross(a), a.cross(b)].map(|column| column / a.dot(b.cross(c)));
         let maps = [0, 1].map(|i| sum(&|row, _| now[i][row] - middle[i]));
         let corner = |&corner: &Vec3| {

@@ -12,7 +12,7 @@ const ABSENT: u32 = 0;
 /// It is there and stays where it is.
 const FIXED: u32 = 1;
 /// It moves.
-const MOVING: u32 = 2;
+pub(super) const MOVING: u32 = 2;
 
 /// What is reckoned of a body over a blow, and summed up for those that touch each other.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -32,7 +32,7 @@ pub(super) struct Blow {
 pub(super) struct Body {
     /// 1 if it sleeps. What is asked for of all again and again stands here, in one line of a cache.
     pub(super) asleep: u32,
-    state: u32,
+    pub(super) state: u32,
     /// Marks that others call out to it.
     pub(super) calls: u32,
     /// The least number among those that sleep with it.
@@ -72,14 +72,14 @@ pub(super) struct Body {
     pub(super) before: [Vec3; 2],
     pub(super) turn: [f32; 4],
     /// Σ m q qᵀ over its mass, in the box's frame \[m²\], and the inverse of its inertia over its mass there \[1/m²\].
-    spread: Mat3,
-    inverse_inertia: Mat3,
+    pub(super) spread: Mat3,
+    pub(super) inverse_inertia: Mat3,
     /// How much farther the method has moved it than its velocity says \[m\].
     pub(super) drift: Vec3,
     /// The rates at which forces changed its velocity and spin when it was awake last \[m/s², m²/s²\].
     pub(super) drive: [Vec3; 2],
     /// The number of its particles that live, plus one; zero before it is seen for the first time.
-    known: u32,
+    pub(super) known: u32,
     /// The number of places of the scenery that were near when it fell asleep.
     pub(super) faces: u32,
     /// For how long it has been near a place, and how it was turned there \[s, m\].

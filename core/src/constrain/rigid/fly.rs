@@ -187,7 +187,7 @@ fn keeping<F: Eight>(last: Turns<F>, from: Matrices<F>, torque: Vectors<F>, ther
     (turn, found | goes_on & before.simd_lt(there.all(EVEN)))
 }
 
-/// As [`solve`](super::super::turn::solve).
+/// As one round of that solves for its angle, by Cramer's rule.
 #[inline(always)]
 fn solve<F: Eight>(b: Matrices<F>, change: Vectors<F>) -> Vectors<F> {
     let [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])] = b.0;
@@ -206,4 +206,56 @@ fn solve<F: Eight>(b: Matrices<F>, change: Vectors<F>) -> Vectors<F> {
     let [p, q, r] = answer.0;
     let is_finite = p.abs().simd_lt(infinite) & q.abs().simd_lt(infinite) & r.abs().simd_lt(infinite);
     answer.masked(has_one & is_finite)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::body::MOVING;
+    use super::*;
+    use crate::rng::Stream;
+    use glam::Mat3;
+
+    /// A body of some sides that flies and turns somehow.
+    fn thrown(serial: u32) -> Body {
+        let stream = Stream::new(7, 0, serial);
+        let vector = |place: u32| {
+            let ([x, y], [z, _]) = (stream.units(place), stream.units(place + 1));
+            Vec3::new(x, y, z) - 0.5
+        };
+        // From cubes to needles and sheets; some at rest, and some that turn too fast for any rotation to keep what they have.
+        let thin = [1.0, 0.1, 1e-3, 1e-6][serial as usize % 4];
+        let sides = Vec3::new(1.0, thin, [1.0, thin][serial as usize / 4 % 2]) * (vector(0).abs() + 0.1);
+        let by = [0.0, 1e-20, 1.0, 50.0, 1e4][serial as usize % 5];
+        let squares = sides * sides;
+        let inverse = Vec3::ONE / (Vec3::splat(squares.x + squares.y + squares.z) - squares);
+        Body {
+            state: MOVING,
+            velocity: vector(2),
+            omega: vector(4) * by,
+            spin: vector(6) * by * sum(squares),
+            spread: Mat3::from_diagonal(squares),
+            inverse_inertia: Mat3::from_diagonal(inverse),
+            turn: crate::constrain::turn::Turn::NONE.on(vector(8) * 4.0).0,
+            ..Body::zeroed()
+        }
+    }
+
+    fn sum(squares: Vec3) -> f32 {
+        squares.x + squares.y + squares.z
+    }
+
+    /// Chips take them one by one: the words are the same.
+    #[test]
+    fn eight_at_once_go_as_each_by_itself() {
+        let mut bodies: [Body; 203] = core::array::from_fn(|serial| thrown(serial as u32));
+        let mut singly = bodies;
+        for step in 0..20 {
+            let h = [1.0 / 60.0, 1e-3][step % 2];
+            go(&mut bodies, h);
+            singly.iter_mut().for_each(|body| body.go(h));
+            for (number, pair) in bodies.iter().zip(&singly).enumerate() {
+                assert_eq!(bytemuck::bytes_of(pair.0), bytemuck::bytes_of(pair.1), "body {number} after step {step}");
+            }
+        }
+    }
 }

@@ -346,7 +346,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
             links.let_go(bodies, &mut |bodies, row, by| bodies.shift(row, by));
         }
         let given = if counts { given + 0.5 * (links.vigour(bodies) - begun) } else { 0.0 };
-        if let [_, word] = share.kept.fixed {
+        if let [_, word, ..] = share.kept.fixed {
             *word = if given.is_finite() { given.to_bits() } else { 0 };
         }
     }
@@ -393,7 +393,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
             if given > 0.0 {
                 given -= links.spend(bodies, given);
             }
-            if let [_, word] = share.kept.fixed {
+            if let [_, word, ..] = share.kept.fixed {
                 *word = if given.is_finite() { given.to_bits() } else { 0 };
             }
         }

@@ -8,6 +8,7 @@ use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
 use crate::constrain::budget::{Budget, Free};
 use crate::constrain::walls::Wall;
+use crate::math::{largest, max};
 use glam::Vec3;
 
 /// Sums that go on side by side.
@@ -37,9 +38,15 @@ impl Solver<'_> {
             *v += by * (1.0 / h);
         }
         let mut now = self.energy();
-        if now > most {
+        let allowed = if now > most { most + self.rounding() } else { most };
+        if now > allowed {
             let (mut free, mut sheet, rows) = self.parts();
-            free.hold_back(h, most, |number| bodies.before[0][rows[number] as usize], |places, _| sheet.stored(places));
+            free.hold_back(
+                h,
+                allowed,
+                |number| bodies.before[0][rows[number] as usize],
+                |places, _| sheet.stored(places),
+            );
             self.place(bodies);
             now = self.energy();
         } else {
@@ -73,6 +80,17 @@ impl Solver<'_> {
     fn energy(&mut self) -> f32 {
         let (free, mut sheet, _) = self.parts();
         free.moving() + sheet.stored(free.place)
+    }
+
+    /// The energy of strain that rounding of places may show where those columns say \[J\].
+    fn rounding(&self) -> f32 {
+        let there = self.vectors.p.iter().zip(&*self.vectors.weight).filter(|&(_, &weight)| weight > 0.0);
+        let off = f32::EPSILON * there.map(|(&place, _)| largest(place)).fold(0.0, max);
+        let ([warp, weft], shear) = (self.params.stretch, self.params.shear);
+        let strained = |cell: &Cell| cell.area * cell.inverse.iter().map(|by| by * by).sum::<f32>();
+        let sum: f32 = self.cells.iter().map(strained).sum();
+        let sum = 0.5 * (warp + weft + shear) * sum * (off * off);
+        if sum.is_finite() { sum } else { 0.0 }
     }
 
     fn parts(&mut self) -> (Free<'_>, Stored<'_>, &[u32]) {

@@ -170,7 +170,8 @@ where
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        for (_, tie, place) in self.ties(share.kept.fixed) {
+        // What a soft tie brakes it brakes once, behind the rope.
+        for (_, tie, place) in self.ties(share.kept.fixed).filter(|(_, tie, _)| tie.compliance == 0.0) {
             let _ = tie.brake(bodies, place);
         }
         self.with_loads(bodies, share, 0.0, Rope::settle);
