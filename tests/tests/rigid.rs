@@ -264,14 +264,17 @@ fn any_turn(random: &mut Random) -> [f32; 4] {
     }
 }
 
-/// Dice in rows, turned anyhow and thrown with a spin each: loaded by a share of a side's weight.
-fn dice(seed: u64, count: u32, apart: f32, load: f32) -> (Vec<Particle>, Vec<RigidBox>) {
+/// Half the sides of a die \[m\].
+const EVEN: Vec3 = Vec3::splat(0.05);
+
+/// Dice in rows, turned anyhow and thrown with a spin each: of such half sides, and loaded by a share of a side's weight.
+fn dice(seed: u64, count: u32, apart: f32, half: Vec3, load: f32) -> (Vec<Particle>, Vec<RigidBox>) {
     let mut random = Random::new(seed);
     let (mut start, mut boxes) = (Vec::new(), Vec::new());
     let row = f64::from(count).sqrt().ceil() as u32;
     for i in 0..count {
         let at = Vec3::new((i % row) as f32 * apart, random.between(0.3, 0.8), (i / row) as f32 * apart);
-        let of = RigidBox { turn: any_turn(&mut random), ..RigidBox::new(Vec3::splat(0.05), at, 8 * i) };
+        let of = RigidBox { turn: any_turn(&mut random), ..RigidBox::new(half, at, 8 * i) };
         let velocity = random.vector(0.6);
         let whole = Particle { velocity, mass: 0.1, elasticity: 0.4, material: Some(0), ..Particle::REST };
         let corners = thrown(&of, whole, random.direction() * random.between(15.0, 30.0));
@@ -296,8 +299,8 @@ fn fallen(boxes: &[RigidBox], x: &[Vec3]) -> [u32; 6] {
 }
 
 /// Throws dice that do not meet each other.
-fn throw(seed: u64, count: u32, load: f32, substeps: u32) -> [u32; 6] {
-    let (start, boxes) = dice(seed, count, 3.0, load);
+fn throw(seed: u64, count: u32, (half, load): (Vec3, f32), substeps: u32) -> [u32; 6] {
+    let (start, boxes) = dice(seed, count, 3.0, half, load);
     let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.5));
     let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
     let scene = Scene { constraints: &bodies, substeps, ..parts };
@@ -309,12 +312,14 @@ fn throw(seed: u64, count: u32, load: f32, substeps: u32) -> [u32; 6] {
 }
 
 #[test]
-fn dice_are_fair_and_loaded_dice_are_not() {
+fn dice_are_fair_and_loaded_or_uneven_ones_are_not() {
     for substeps in [3, 4, 6, 10] {
-        let counts = throw(5, 180, 0.0, substeps);
+        let counts = throw(5, 180, (EVEN, 0.0), substeps);
         assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) < FAIR, "{substeps} sub-steps: {counts:?}");
-        let counts = throw(6, 120, 0.75, substeps);
-        assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) > 2.0 * FAIR, "{substeps} sub-steps: {counts:?}");
+        for unfair in [(EVEN, 0.75), (Vec3::new(0.05, 0.075, 0.05), 0.0)] {
+            let counts = throw(6, 120, unfair, substeps);
+            assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) > 2.0 * FAIR, "{unfair:?}, {substeps} sub-steps: {counts:?}");
+        }
     }
 }
 
@@ -322,8 +327,10 @@ fn dice_are_fair_and_loaded_dice_are_not() {
 #[ignore = "long: six thousand throws, in release"]
 fn dice_are_fair_in_the_long_run() {
     for substeps in [3, 10] {
-        let counts = throw(7, 6000, 0.0, substeps);
+        let counts = throw(7, 6000, (EVEN, 0.0), substeps);
         assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) < FAIR, "{substeps} sub-steps: {counts:?}");
+        let counts = throw(8, 6000, (Vec3::new(0.05, 0.0525, 0.05), 0.0), substeps);
+        assert!(chi_squared(&counts, &[1.0 / 6.0; 6]) > 2.0 * FAIR, "a side 5 % longer: {counts:?}");
     }
 }
 
@@ -341,7 +348,7 @@ fn thrown_dice_come_to_rest() {
     ];
     for (seed, method, substeps) in cases {
         let case = format!("{method}, {substeps} sub-steps");
-        let (mut start, boxes) = dice(seed, 27, 0.16, 0.0);
+        let (mut start, boxes) = dice(seed, 27, 0.16, EVEN, 0.0);
         let middle = Vec3::new(0.4, 0.5, 0.4);
         for particle in &mut start {
             let inward = middle - particle.position;
@@ -393,7 +400,7 @@ fn what_is_smaller_than_a_box_holds_it_up() {
 
 #[test]
 fn any_number_of_threads_and_any_index_gives_the_same_bits() {
-    let (start, boxes) = dice(9, 20, 0.14, 0.0);
+    let (start, boxes) = dice(9, 20, 0.14, EVEN, 0.0);
     let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
     let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
     let mut hashes = Vec::new();

@@ -24,6 +24,7 @@ mod tie;
 mod turn;
 mod union;
 mod walls;
+mod whole;
 
 pub use attach::Attach;
 pub use bodies::{Around, Bodies, Near, Share, Substep};

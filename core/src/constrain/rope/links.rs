@@ -1,10 +1,10 @@
 //! The links of a rope in a sub-step, and the direct solution for what they pull.
 
 use super::super::Bodies;
-use super::super::turn::{outer, solve};
+use super::super::whole::Whole;
 use crate::math::{length, max, min, sqrt};
 use crate::memory::take;
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 
 /// What a pivot is at the least for each link, a share of the first end's weight: chains that are stretched straight between two fixed ends
 /// leave the system singular.
@@ -46,6 +46,12 @@ pub(super) struct Links<'m> {
     pub(super) way: &'m mut [Vec3],
     /// Where the method has moved each particle.
     pub(super) aim: &'m mut [Vec3],
+}
+
+/// How a rope moves as a whole, and twice the kinetic energy beside that of its middle \[J\].
+pub(super) struct Motion {
+    pub(super) whole: Whole,
+    pub(super) vigour: f32,
 }
 
 /// A link as it lies.
@@ -287,27 +293,10 @@ impl<'m> Links<'m> {
     /// Takes an energy \[J\] out of how all move against a rigid motion with the same momenta, as far as there is any of that, which leaves momenta and
     /// lengths alone. Tells how much it was.
     pub(super) fn spend(&self, bodies: &mut Bodies<'_>, energy: f32) -> f32 {
-        let len = bodies.len();
-        let rows = || self.rows.iter().map(|&row| row as usize).filter(move |&row| row < len);
-        let drift = self.drift(bodies);
-        let (mut middle, mut mass) = (Vec3::ZERO, 0.0);
-        // From the first, through the sides of a room.
-        let Some(first) = rows().next() else { return 0.0 };
-        for row in rows() {
-            middle += bodies.between(first, row) * bodies.mass[row];
-            mass += bodies.mass[row];
-        }
-        middle /= mass;
-        let (mut spin, mut spread) = (Vec3::ZERO, Mat3::ZERO);
-        for row in rows() {
-            let arm = bodies.between(first, row) - middle;
-            spin += arm.cross(bodies.velocity[row] - drift) * bodies.mass[row];
-            spread += outer(arm * bodies.mass[row], arm);
-        }
-        let omega = solve(spread, spin);
-        let beside = |bodies: &Bodies<'_>, row: usize| {
-            bodies.velocity[row] - drift - omega.cross(bodies.between(first, row) - middle)
-        };
+        let Some(whole) = Whole::of(bodies, self.living(bodies.len())) else { return 0.0 };
+        let (omega, rows) = (whole.omega(), || self.living(bodies.len()));
+        let beside =
+            |bodies: &Bodies<'_>, row: usize| bodies.velocity[row] - whole.drift - omega.cross(whole.arm(bodies, row));
         let twice: f32 = rows().map(|row| beside(bodies, row).length_squared() * bodies.mass[row]).sum();
         let spent = min(2.0 * energy, 0.5 * twice);
         if !(spent > 0.0 && twice > ROUNDING * self.vigour(bodies)) {
@@ -323,8 +312,19 @@ impl<'m> Links<'m> {
         0.5 * spent
     }
 
+    /// The rows of those who are there.
+    pub(super) fn living(&self, len: usize) -> impl Iterator<Item = usize> + Clone {
+        self.rows.iter().map(|&row| row as usize).filter(move |&row| row < len)
+    }
+
+    /// How it moves; none, if something holds it.
+    pub(super) fn motion(&self, bodies: &Bodies<'_>) -> Option<Motion> {
+        let whole = Whole::of(bodies, self.living(bodies.len())).filter(|_| self.is_free(bodies))?;
+        Some(Motion { whole, vigour: self.vigour(bodies) })
+    }
+
     /// Tells whether nobody is fixed, and none has died.
-    pub(super) fn is_free(&self, bodies: &Bodies<'_>) -> bool {
+    fn is_free(&self, bodies: &Bodies<'_>) -> bool {
         self.rows.iter().all(|&row| bodies.inverse_mass.get(row as usize).is_some_and(|&weight| weight > 0.0))
     }
 

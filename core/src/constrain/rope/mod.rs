@@ -2,11 +2,12 @@
 
 mod links;
 
+use super::whole::{self, Owed};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::index::between;
 use crate::math::{clamp, floor, largest, length, max, sqrt};
 use glam::Vec3;
-use links::{Links, NOBODY, put};
+use links::{Links, Motion, NOBODY, put};
 
 /// Links between particles, each to the next, all solved at once: C = |x₁ − x₂| − length of every link.
 ///
@@ -87,8 +88,8 @@ const STIFF: f32 = 2.0;
 const NEARLY: f32 = 1e-4;
 /// Words that each particle takes.
 const WORDS: usize = 14;
-/// Words kept: whose they are, and the energy that it has given so far \[J\].
-const KEPT: usize = 2;
+/// Words kept: whose they are, the energy that it has given so far \[J\], and what rounding owes it.
+const KEPT: usize = 2 + whole::WORDS;
 
 impl<P, L> Rope<P, L> {
     /// A chain of rigid links.
@@ -135,8 +136,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     }
 
     /// Its particles and the memory for its links, with nothing known of these.
-    fn links_of<'m>(&self, bodies: &Bodies<'_>, share: &'m mut Share<'_>) -> Links<'m> {
-        let links = Links::new(share.scratch, self.particles.as_ref().len(), self.links());
+    fn links_of<'m>(&self, bodies: &Bodies<'_>, scratch: &'m mut [u32]) -> Links<'m> {
+        let links = Links::new(scratch, self.particles.as_ref().len(), self.links());
         for (row, &number) in links.rows.iter_mut().zip(self.particles.as_ref()) {
             *row = bodies.row_of_start(number).map_or(NOBODY, |row| row as u32);
         }
@@ -302,6 +303,33 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         links.normal.fill(Vec3::ZERO);
     }
 
+    /// Gives a rope that nothing holds back what rounding has taken of its angular momentum since it moved so, and counts the energy that rigid links have
+    /// given. Links that turn give it in one sub-step and take it in another: if it is to be settled, none beyond what they took.
+    fn account(
+        &self,
+        bodies: &mut Bodies<'_>,
+        links: &Links<'_>,
+        begun: Option<Motion>,
+        kept: &mut [u32],
+        is_settled: bool,
+    ) {
+        let [_, given, owed @ ..] = kept else { return };
+        let mut owed = Owed(owed);
+        let Some(Motion { whole, vigour }) = begun else {
+            *given = 0;
+            return owed.forget();
+        };
+        owed.give_back(bodies, links.living(bodies.len()), Some(whole));
+        if self.compliance > 0.0 {
+            return;
+        }
+        let mut sum = f32::from_bits(*given) + 0.5 * (links.vigour(bodies) - vigour);
+        if is_settled && sum > 0.0 {
+            sum -= links.spend(bodies, sum);
+        }
+        *given = if sum.is_finite() { sum.to_bits() } else { 0 };
+    }
+
     /// The rounding of a link's length, from where its ends are.
     fn rounding(x: [Vec3; 2], distance: f32, length: f32) -> f32 {
         f32::EPSILON * (max(largest(x[0]), largest(x[1])) + distance + length)
@@ -328,14 +356,12 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(h > 0.0) {
             return;
         }
-        let given = share.kept.fixed.get(1).copied().map_or(0.0, f32::from_bits);
-        let mut links = self.links_of(bodies, share);
-        let counts = !(self.compliance > 0.0) && links.is_free(bodies);
-        let begun = if counts { links.vigour(bodies) } else { 0.0 };
+        let mut links = self.links_of(bodies, share.scratch);
         let soft = self.compliance / (h * h);
         if soft > 0.0 {
             self.catch_up(bodies, &mut links);
         }
+        let begun = links.motion(bodies);
         links.aim_at(bodies);
         if !self.meet(bodies, &mut links, soft, Way::First) || self.is_stiff(bodies, &links) {
             let before = links.vigour(bodies);
@@ -345,10 +371,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if self.tether {
             links.let_go(bodies, &mut |bodies, row, by| bodies.shift(row, by));
         }
-        let given = if counts { given + 0.5 * (links.vigour(bodies) - begun) } else { 0.0 };
-        if let [_, word, ..] = share.kept.fixed {
-            *word = if given.is_finite() { given.to_bits() } else { 0 };
-        }
+        self.account(bodies, &links, begun, share.kept.fixed, false);
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -357,10 +380,8 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(soft < f32::INFINITY) {
             return;
         }
-        let given = share.kept.fixed.get(1).copied().map_or(0.0, f32::from_bits);
-        let mut links = self.links_of(bodies, share);
-        let counts = !(self.compliance > 0.0) && links.is_free(bodies);
-        let begun = if counts { links.vigour(bodies) } else { 0.0 };
+        let mut links = self.links_of(bodies, share.scratch);
+        let begun = links.motion(bodies);
         let rounds = if self.tether { ROUNDS } else { 1 };
         let turn = |bodies: &mut Bodies<'_>, row: usize, by: Vec3| bodies.velocity[row] += by;
         for _ in 0..rounds {
@@ -387,16 +408,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if self.tether {
             links.let_go(bodies, &mut { turn });
         }
-        if counts {
-            // Links that turn give energy in one sub-step and take it in another: none beyond what they took.
-            let mut given = given + 0.5 * (links.vigour(bodies) - begun);
-            if given > 0.0 {
-                given -= links.spend(bodies, given);
-            }
-            if let [_, word, ..] = share.kept.fixed {
-                *word = if given.is_finite() { given.to_bits() } else { 0 };
-            }
-        }
+        self.account(bodies, &links, begun, share.kept.fixed, true);
     }
 }
 

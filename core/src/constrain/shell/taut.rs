@@ -9,7 +9,7 @@ use crate::math::{length, max, sqrt};
 use glam::Vec3;
 
 /// Passes over all edges, at the most.
-const PASSES: u32 = 8;
+const PASSES: u32 = 64;
 /// The share of an edge's length by which they leave it too long.
 const SLACK: f32 = 1e-3;
 

@@ -4,8 +4,9 @@ use super::frame::{bring, strain};
 use super::joint::Joint;
 use super::params::StrandParams;
 use crate::constrain::Bodies;
-use crate::constrain::budget::{Budget, Free};
+use crate::constrain::budget::{self, Budget, Free};
 use crate::constrain::turn::Turn;
+use crate::constrain::whole::{self, Owed, Whole};
 use crate::math::{dot, length, min};
 use crate::memory::take;
 use glam::Vec3;
@@ -14,6 +15,37 @@ use glam::Vec3;
 pub(super) const WORDS: usize = 10;
 /// Words for the frames of before, for each point.
 pub(super) const FRAMES: usize = 4;
+
+/// Words kept for each strand.
+pub(super) const PURSE: usize = budget::WORDS + whole::WORDS;
+
+/// What is kept of a strand that nothing holds: the energy that it may have, and what rounding owes it.
+pub(super) struct Purse<'m> {
+    budget: Budget<'m>,
+    owed: Owed<'m>,
+}
+
+impl<'m> Purse<'m> {
+    /// That of a strand by its number.
+    pub(super) fn of(all: &'m mut [u32], number: usize) -> Option<Self> {
+        let own = all.get_mut(number.checked_mul(PURSE)?..)?.get_mut(..PURSE)?;
+        let (budget, owed) = own.split_at_mut_checked(budget::WORDS)?;
+        Some(Self { budget: Budget(budget), owed: Owed(owed) })
+    }
+
+    /// Forgets it: something holds the strand.
+    pub(super) fn forget(&mut self) {
+        self.budget.forget();
+        self.owed.forget();
+    }
+}
+
+/// The most energy that a strand may have at the sub-step's end \[J\], and how it moves as a whole before it is solved.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    most: f32,
+    whole: Option<Whole>,
+}
 
 /// A strand that nothing holds in a sub-step: its points are in these rows.
 pub(super) struct Bounded<'a> {
@@ -33,16 +65,29 @@ pub(super) struct Course<'m> {
 }
 
 impl Bounded<'_> {
-    /// The most energy that it may have at the sub-step's end.
-    pub(super) fn most(&self, bodies: &Bodies<'_>, course: Course<'_>, budget: &Budget<'_>) -> f32 {
+    /// What solving it must not change.
+    pub(super) fn limits(&self, bodies: &Bodies<'_>, course: Course<'_>, purse: &Purse<'_>) -> Limits {
         let Course { joints, before, work } = course;
         before.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
         let free = self.free([bodies.before[0], bodies.velocity], bodies, work);
-        budget.most(free.moving() + self.stored(joints, None, free.place))
+        let most = purse.budget.most(free.moving() + self.stored(joints, None, free.place));
+        Limits { most, whole: Whole::of(bodies, self.living()) }
     }
 
-    /// Takes out of it what is more than that, and keeps what there is.
-    pub(super) fn keep_within(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>, budget: &mut Budget<'_>) {
+    fn living(&self) -> impl Iterator<Item = usize> + Clone {
+        self.rows.iter().map(|&row| row as usize)
+    }
+
+    /// Gives it back what rounding has taken, takes out of it what is too much, and keeps what there is.
+    pub(super) fn keep_within(
+        &self,
+        limits: Limits,
+        bodies: &mut Bodies<'_>,
+        course: Course<'_>,
+        purse: &mut Purse<'_>,
+    ) {
+        purse.owed.give_back(bodies, self.living(), limits.whole);
+        let most = limits.most;
         let Course { joints, before, work } = course;
         let mut free = self.free([bodies.position, bodies.velocity], bodies, work);
         let mut now = free.moving() + self.stored(joints, None, free.place);
@@ -64,7 +109,7 @@ impl Bounded<'_> {
             }
             now = free.moving() + self.stored(joints, None, free.place);
         }
-        budget.keep(now, most);
+        purse.budget.keep(now, most);
     }
 
     fn free<'w>(&self, columns: [&[Vec3]; 2], bodies: &Bodies<'_>, work: &'w mut [u32]) -> Free<'w> {

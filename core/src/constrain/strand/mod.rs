@@ -9,14 +9,13 @@ mod piece;
 
 pub use params::StrandParams;
 
-use super::budget::{self, Budget};
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{length, sin_cos};
 use crate::memory::take;
 use crate::rows::BLOCKS;
 use band::Band;
-use bounded::{Bounded, Course};
+use bounded::{Bounded, Course, PURSE, Purse};
 use bytemuck::Pod;
 use frame::{bring, frame, strain};
 use glam::Vec3;
@@ -131,7 +130,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         [longest, if self.strands().nth(1).is_some() { WIDE } else { 1 }]
     }
 
-    /// What is kept of all joints, behind the word that tells whose it is, and the budgets of all strands.
+    /// What is kept of all joints, behind the word that tells whose it is, and the purses of all strands.
     fn kept<'m>(&self, kept: &'m mut [u32]) -> (&'m mut [Joint], &'m mut [u32]) {
         let mut rest = kept;
         let _name = take(&mut rest, 1);
@@ -197,7 +196,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     where
         [f32; LANES]: Pod,
     {
-        let (joints, budgets) = self.kept(share.kept.fixed);
+        let (joints, purses) = self.kept(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let rows = take(&mut rest, longest * LANES);
         let (mut pieces, mut count) = ([Piece::default(); LANES], 0);
@@ -210,29 +209,27 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
                 let whole = piece.count == strand[1] - strand[0] && rows_of[..piece.count].iter().all(is_free);
                 piece.free = whole.then_some(number);
-                if let Some(words) = budgets.get_mut(number * budget::WORDS..(number + 1) * budget::WORDS)
-                    && !whole
-                {
-                    Budget(words).forget();
+                if let Some(mut purse) = Purse::of(purses, number).filter(|_| !whole) {
+                    purse.forget();
                 }
                 if piece.count > 1 {
                     pieces[count] = piece;
                     count += 1;
                 }
                 if count == LANES {
-                    self.solve_some::<LANES>(bodies, (joints, budgets), &pieces, [rows, rest], longest);
+                    self.solve_some::<LANES>(bodies, (joints, purses), &pieces, [rows, rest], longest);
                     count = 0;
                 }
             }
         }
-        self.solve_some::<LANES>(bodies, (joints, budgets), &pieces[..count], [rows, rest], longest);
+        self.solve_some::<LANES>(bodies, (joints, purses), &pieces[..count], [rows, rest], longest);
     }
 
     /// Solves some of them at once.
     fn solve_some<const LANES: usize>(
         &self,
         bodies: &mut Bodies<'_>,
-        (joints, budgets): (&mut [Joint], &mut [u32]),
+        (joints, purses): (&mut [Joint], &mut [u32]),
         pieces: &[Piece],
         [rows, memory]: [&mut [u32]; 2],
         longest: usize,
@@ -255,9 +252,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 rows.iter().for_each(|&row| bodies.catch_up(row as usize));
             }
             masses[lane] = mean_mass(bodies, rows);
-            limits[lane] = piece.budget(budgets).map(|budget| {
+            limits[lane] = piece.purse(purses).map(|purse| {
                 let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
-                bounded(rows, masses[lane]).most(bodies, course, &budget)
+                bounded(rows, masses[lane]).limits(bodies, course, &purse)
             });
             Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.write(piece, joints);
         }
@@ -267,9 +264,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let joints = &mut joints[piece.first..][..piece.count];
             let is_solved = act(&band, lane, bodies, rows, joints, masses[lane]);
             bodies.report.effort.solved(1, 0.0, !is_solved);
-            if let (Some(most), Some(mut budget)) = (limits[lane], piece.budget(budgets)) {
+            if let (Some(limits), Some(mut purse)) = (limits[lane], piece.purse(purses)) {
                 let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
-                bounded(rows, masses[lane]).keep_within(most, bodies, course, &mut budget);
+                bounded(rows, masses[lane]).keep_within(limits, bodies, course, &mut purse);
             }
         }
     }
@@ -289,7 +286,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
         let joints = self.particles.as_ref().len().saturating_mul(KEPT);
         let words = |fixed| Words { per_row: 0, fixed };
         Demand {
-            kept: words(joints.saturating_add(1).saturating_add(budget::WORDS * self.strands().count())),
+            kept: words(joints.saturating_add(1).saturating_add(PURSE * self.strands().count())),
             scratch: words(
                 longest.saturating_mul(lanes + bounded::WORDS + bounded::FRAMES * lanes).saturating_add(band),
             ),

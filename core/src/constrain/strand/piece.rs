@@ -1,11 +1,11 @@
 //! A strand in a sub-step: the equations of its places, its material's turns and what pulls, bends and twists it.
 
 use super::band::Band;
+use super::bounded::Purse;
 use super::frame::{Edge, bring, gradients, strain};
 use super::joint::Joint;
 use super::params::StrandParams;
 use crate::constrain::Bodies;
-use crate::constrain::budget::{self, Budget};
 use crate::constrain::turn::{Turn, outer, solve};
 use crate::math::{clamp, dot, length, max};
 use bytemuck::Pod;
@@ -44,10 +44,9 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// The budget of its strand, if nothing holds that.
-    pub(super) fn budget<'m>(&self, budgets: &'m mut [u32]) -> Option<Budget<'m>> {
-        let first = self.free?.checked_mul(budget::WORDS)?;
-        Some(Budget(budgets.get_mut(first..first + budget::WORDS)?))
+    /// What is kept of its strand, if nothing holds it.
+    pub(super) fn purse<'m>(&self, purses: &'m mut [u32]) -> Option<Purse<'m>> {
+        Purse::of(purses, self.free?)
     }
 }
 
