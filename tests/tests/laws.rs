@@ -50,6 +50,7 @@ mod sheets;
 mod shell_crushes;
 mod shell_meshes;
 mod sleep;
+mod soft_bodies;
 mod springs;
 mod still;
 mod storage;

@@ -1,6 +1,7 @@
-//! Checks of what a scene begins with beside its own particles: cloths, boxes and strands.
+//! Checks of what a scene begins with beside its own particles: cloths, boxes, strands, ropes and soft bodies.
 
 use super::check_shape::check_shape;
+use super::filling::MOST_OF_SOFT;
 use super::numbers::{Checked, above_zero, check_breaking, finite, zero_or_more};
 use super::{Air, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
 use crate::cloth::{ClothSprings, Sheet};
@@ -140,6 +141,27 @@ impl SceneFile {
             }
         }
         self.ties.iter().enumerate().try_for_each(|(i, tie)| tie.check(&format!("ties[{i}]")))
+    }
+}
+
+impl SceneFile {
+    /// Checks soft bodies, but for what their meshes say.
+    pub(super) fn check_soft_bodies(&self) -> Checked {
+        let mut count = 0u64;
+        for (i, body) in self.soft_bodies.iter().enumerate() {
+            let at = format!("soft_bodies[{i}]");
+            body.check(&at)?;
+            self.check_material(&at, body.material)?;
+            let more = body.particles().unwrap_or(0);
+            count = count.saturating_add(more);
+            if count > MOST_OF_SOFT {
+                let message = format!(
+                    "makes {more} particles; the soft bodies of a scene may have {MOST_OF_SOFT}: take a wider one"
+                );
+                return Err(SceneError::value(format!("{at}.spacing"), message));
+            }
+        }
+        Ok(())
     }
 }
 

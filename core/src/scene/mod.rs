@@ -29,6 +29,8 @@ mod error;
 mod file;
 #[cfg(feature = "alloc")]
 mod files;
+#[cfg(feature = "alloc")]
+mod filling;
 mod inline;
 #[cfg(feature = "json")]
 mod json;
@@ -53,6 +55,8 @@ mod rules;
 #[cfg(feature = "schema")]
 mod schema;
 pub mod scn;
+#[cfg(feature = "alloc")]
+mod soft;
 #[cfg(feature = "alloc")]
 mod start;
 #[cfg(feature = "alloc")]
@@ -93,6 +97,8 @@ pub use room::PeriodicRoom;
 pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
+#[cfg(feature = "alloc")]
+pub use soft::{SoftBody, SoftForm};
 #[cfg(feature = "alloc")]
 pub use ties::{Body, BodyTie};
 #[cfg(feature = "alloc")]

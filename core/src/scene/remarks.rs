@@ -36,6 +36,9 @@ impl SceneFile {
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].elasticity"), odd_elasticity(Varied::exactly(cloth.elasticity)));
         }
+        for (i, body) in self.soft_bodies.iter().enumerate() {
+            add(format_args!("soft_bodies[{i}].elasticity"), odd_elasticity(Varied::exactly(body.elasticity)));
+        }
         for (i, emitter) in self.emitters.iter().enumerate() {
             add(
                 format_args!("emitters[{i}].elasticity"),

@@ -1,8 +1,9 @@
-//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes, strands and ropes.
+//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes, strands, ropes and soft bodies.
 
+use super::filling::MOST_OF_SOFT;
 use super::placing::Placing;
 use super::references::color;
-use super::{Body, BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
+use super::{Body, BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf, SoftForm};
 use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts, TiedRope};
 use crate::draw::Lock;
 use crate::emit::Emitter;
@@ -37,6 +38,8 @@ pub(super) struct Start {
     /// The number of the scene's own particles, and where those of each rope begin.
     pub(super) own: u32,
     pub(super) ropes: Vec<usize>,
+    /// Where those of each soft body begin.
+    pub(super) soft_bodies: Vec<usize>,
 }
 
 impl Start {
@@ -55,11 +58,13 @@ impl Start {
             hulls: Vec::new(),
             own: file.particles.len() as u32,
             ropes: Vec::new(),
+            soft_bodies: Vec::new(),
         };
         start.add_cloths(file, meshes)?;
         start.add_boxes(file, meshes)?;
         let roots = start.add_strands(file, meshes)?;
         start.add_ropes(file, meshes.path)?;
+        start.add_soft_bodies(file, meshes)?;
         start.tie_roots(&roots, meshes.path)?;
         start.add_ties(&file.ties).map_err(|(at, message)| SceneError::value(at, message).in_file(meshes.path))?;
         for particle in &mut start.particles {
@@ -200,6 +205,33 @@ impl Start {
             }
             if let (ConstraintKind::Rope(rope), true) = (&self.constraints[last[i]], ends.iter().any(Option::is_some)) {
                 self.constraints[last[i]] = ConstraintKind::TiedRope(TiedRope { rope: rope.clone(), ends });
+            }
+        }
+        Ok(())
+    }
+
+    fn add_soft_bodies(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+        let begin = self.particles.len();
+        for (i, body) in file.soft_bodies.iter().enumerate() {
+            let at = |field: &str| format!("soft_bodies[{i}].{field}");
+            let mesh = match &body.form {
+                SoftForm::Mesh(name) => Some(meshes.load(&at("form"), name)?),
+                SoftForm::Box(_) => None,
+            };
+            let refuse = |field: &str, message: &str| SceneError::value(at(field), message).in_file(meshes.path);
+            let made = body.make(mesh.as_deref(), self.particles.len() as u32);
+            let made = made.map_err(|(field, message)| refuse(field, &message))?;
+            if !made.particles.iter().all(Particle::is_sound) {
+                let message = "leaves each particle too little mass, or puts some beyond the range of a 32-bit float";
+                return Err(refuse("density", message));
+            }
+            self.soft_bodies.push(self.particles.len());
+            self.particles.extend(made.particles);
+            self.constraints.extend(made.constraints);
+            if (self.particles.len() - begin) as u64 > MOST_OF_SOFT {
+                let message =
+                    format!("makes too many particles; soft bodies may have {MOST_OF_SOFT}: take a wider one");
+                return Err(refuse("spacing", &message));
             }
         }
         Ok(())

@@ -135,6 +135,9 @@ impl Writer {
         if !scene.ropes.is_empty() {
             self.warn("ropes: .scn has none; they are left out");
         }
+        if !scene.soft_bodies.is_empty() {
+            self.warn("soft_bodies: .scn has none; they are left out");
+        }
         if !scene.ties.is_empty() {
             self.warn("ties: .scn has none; they are left out");
         }
