@@ -26,6 +26,7 @@ mod foreign_words;
 mod free_flight;
 mod goals;
 mod hulls;
+mod hung_sheets;
 mod identity;
 mod implicit;
 #[path = "indices/main.rs"]

@@ -30,7 +30,8 @@ impl SceneFile {
                 zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
                 zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
             }
-            if cloth.shell.is_none() && [structural, shear, bend].iter().all(Option::is_none) {
+            let is_shell = cloth.shell.is_some() || cloth.hung.is_some();
+            if !is_shell && [structural, shear, bend].iter().all(Option::is_none) {
                 return refuse(
                     "springs",
                     "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
@@ -188,6 +189,7 @@ impl Cloth {
             Some(density) => above_zero(&format!("{at}.density"), density)?,
             None => above_zero(&format!("{at}.mass"), self.mass)?,
         }
+        self.check_hung(at)?;
         if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
             return Err(SceneError::value(format!("{at}.shell.{field}"), message));
         }
@@ -200,9 +202,32 @@ impl Cloth {
         numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
     }
 
+    fn check_hung(&self, at: &str) -> Checked {
+        let Some(hung) = self.hung else { return Ok(()) };
+        let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.hung{field}"), message));
+        if self.shell.is_some() {
+            return refuse("", "say either hung, by what it does, or shell, by its stiffness");
+        }
+        if self.density.is_none() {
+            return refuse("", "needs the cloth's density, in kg/m², in place of its mass");
+        }
+        if !matches!(self.form, Form::Sheet(_)) {
+            return refuse("", "is for sheets, which have sides to hang along; say shell");
+        }
+        hung.stretch.into_iter().try_for_each(|percent| above_zero(&format!("{at}.hung.stretch"), percent))?;
+        for (name, number) in [("shear", hung.shear), ("bending", hung.bending), ("damping", hung.damping)] {
+            zero_or_more(&format!("{at}.hung.{name}"), number)?;
+        }
+        // What a sheet without area is refused for is said below.
+        match self.shell_params().and_then(|params| params.fault()) {
+            Some(_) => refuse(".stretch", "makes it stiffer than 32-bit floats can tell; take more"),
+            None => Ok(()),
+        }
+    }
+
     fn check_limits(&self, at: &str) -> Result<(), SceneError> {
         let Some(params) = self.limits else { return Ok(()) };
-        if self.shell.is_some() {
+        if self.shell.is_some() || self.hung.is_some() {
             let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
             return Err(SceneError::value(format!("{at}.limits"), message));
         }

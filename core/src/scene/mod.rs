@@ -73,7 +73,7 @@ pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
 pub use boxes::{BoxForm, Boxes, Scatter};
 #[cfg(feature = "alloc")]
-pub use cloth::{Air, Cloth, Form, Gas, PatchBuf, SheetContactsBuf};
+pub use cloth::{Air, Cloth, Form, Gas, Hung, PatchBuf, SheetContactsBuf};
 #[cfg(feature = "alloc")]
 pub use cord::Cord;
 #[cfg(feature = "alloc")]
