@@ -10,6 +10,8 @@ use crate::emit::Emitter;
 use crate::force::{ForceKind, Spring};
 use crate::math::max;
 use crate::particles::Particle;
+use crate::shape::MeshBuf;
+use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -28,6 +30,10 @@ pub(super) struct Start {
     /// Where they begin.
     pub(super) cloths: Vec<[usize; 2]>,
     pub(super) patches: Vec<PatchBuf>,
+    /// Where the particles of cloths end.
+    pub(super) woven: usize,
+    /// The surfaces of cloths that something is tied to, by their first particles.
+    pub(super) skins: BTreeMap<u32, MeshBuf>,
     pub(super) boxes: Vec<RigidBox>,
     /// Where those of each of the file's boxes begin.
     pub(super) blocks: Vec<usize>,
@@ -51,6 +57,8 @@ impl Start {
             constraints: Vec::new(),
             cloths: Vec::new(),
             patches: Vec::new(),
+            woven: 0,
+            skins: BTreeMap::new(),
             boxes: Vec::new(),
             blocks: Vec::new(),
             contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
@@ -61,6 +69,7 @@ impl Start {
             soft_bodies: Vec::new(),
         };
         start.add_cloths(file, meshes)?;
+        start.woven = start.particles.len();
         start.add_boxes(file, meshes)?;
         let roots = start.add_strands(file, meshes)?;
         start.add_ropes(file, meshes.path)?;
@@ -240,8 +249,8 @@ impl Start {
     /// The first particle of a cloth, and their number.
     pub(super) fn cloth_span(&self, number: usize) -> Option<[u32; 2]> {
         let [first, _] = *self.cloths.get(number)?;
-        let patch = self.patches.iter().find(|patch| patch.first as usize == first);
-        Some([first as u32, patch.map_or(0, |patch| patch.count)])
+        let end = self.cloths.get(number + 1).map_or(self.woven, |&[next, _]| next);
+        Some([first as u32, (end - first) as u32])
     }
 
     /// Loose balls that may be near bodies at a time: all that there may be, but no more than 64 for each body, or 1,024 if that is more.
