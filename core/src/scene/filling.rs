@@ -1,12 +1,26 @@
 //! How solids of scene files are filled with particles: at the crossings of a grid, as many as there is room for.
 
-use super::soft::{Fault, SoftForm};
 use crate::math::{floor, max};
 use crate::shape::{MeshBuf, Surface};
 use alloc::collections::BTreeMap;
 use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
+
+/// What soft bodies are.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum SoftForm {
+    /// A box of these sides \[m\].
+    Box(#[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))] Vec3),
+    /// A closed triangle mesh by its file, relative to the scene's.
+    Mesh(String),
+}
+
+/// A field of a soft body that cannot be used, and why.
+pub(super) type Fault = (&'static str, String);
 
 /// As many particles as the soft bodies of a scene may have.
 pub(super) const MOST_OF_SOFT: u64 = 1 << 18;

@@ -82,6 +82,8 @@ pub use error::SceneError;
 pub use file::{Camera, Group, Item, Light, Run, SceneFile};
 #[cfg(feature = "alloc")]
 pub use files::{Files, beside};
+#[cfg(feature = "alloc")]
+pub use filling::SoftForm;
 pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use material::{CurveBuf, LifeBuf, Material, ParticleShape, Sides, Sprite, VaryingBuf};
@@ -98,7 +100,7 @@ pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 #[cfg(feature = "alloc")]
-pub use soft::{SoftBody, SoftForm};
+pub use soft::SoftBody;
 #[cfg(feature = "alloc")]
 pub use ties::{Body, BodyTie};
 #[cfg(feature = "alloc")]

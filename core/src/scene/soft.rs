@@ -1,7 +1,7 @@
 //! Soft bodies in scene files: a box or a closed mesh filled with particles, by numbers that do not depend on how many these are.
 
 use super::SceneError;
-use super::filling::{boxed, filled};
+use super::filling::{Fault, SoftForm, boxed, filled};
 use super::numbers::{Checked, above_zero, finite, zero_or_more};
 use crate::constrain::{Attach, ConstraintKind, ShapeMatching};
 use crate::math::{cbrt, length, sin_cos, unit};
@@ -9,7 +9,6 @@ use crate::motion::{Motion, MotionBuf};
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
 use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 use core::f32::consts::TAU;
 use glam::Vec3;
@@ -82,17 +81,6 @@ pub struct SoftBody {
     pub color: Option<Color>,
 }
 
-/// What soft bodies are.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum SoftForm {
-    /// A box of these sides \[m\].
-    Box(#[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))] Vec3),
-    /// A closed triangle mesh by its file, relative to the scene's.
-    Mesh(String),
-}
-
 #[cfg(feature = "serde")]
 const fn one() -> f32 {
     1.0
@@ -102,9 +90,6 @@ const fn one() -> f32 {
 const EARTH: f32 = 9.80665;
 /// The radius of particles that say none, a share of their spacing.
 const RADIUS: f32 = 0.4;
-
-/// A field of a soft body that cannot be used, and why.
-pub(super) type Fault = (&'static str, String);
 
 /// What a soft body is made into.
 pub(super) struct Jelly {
