@@ -26,6 +26,7 @@ mod foreign_words;
 mod free_flight;
 mod goals;
 mod hulls;
+mod hung_sheets;
 mod identity;
 mod implicit;
 #[path = "indices/main.rs"]
@@ -50,6 +51,7 @@ mod sheets;
 mod shell_crushes;
 mod shell_meshes;
 mod sleep;
+mod soft_bodies;
 mod springs;
 mod still;
 mod storage;

@@ -187,6 +187,28 @@ fn what_cannot_be_so_is_refused_by_name() {
         (r#", "weight": 0"#, "", "ropes[0].weight: has to be above zero"),
         (r#", "weight": 1, "young": 1, "stretch": 1"#, "", "ropes[0].stretch: say either"),
         (r#", "weight": 1, "stretch": -1"#, "", "ropes[0].stretch: has to be zero or more"),
+        (
+            r#", "weight": 1e-6, "stretch": 1e38"#,
+            "",
+            "ropes[0].stretch: makes it softer than 32-bit floats can tell; take less",
+        ),
+        (
+            r#", "weight": 1, "young": 1e-44"#,
+            "",
+            "ropes[0].young: makes it softer than 32-bit floats can tell; take more",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "cloths": [{"form": {"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 1, 0]], "cells": [4, 0]}},
+            "mass": 1, "springs": {"structural": {"ks": 1}}}], "ties": [{"points": [0], "to": {"cloth": 0}}]"#,
+            "ties[0].to: it has no triangle to be tied to; a sheet needs cells along both of its sides",
+        ),
+        (
+            r#", "weight": 1"#,
+            r#", "cloths": [{"form": {"sheet": {"corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 1, 0]], "cells": [4, 0]}},
+            "mass": 1, "springs": {"structural": {"ks": 1}}}], "ties": [{"of": {"cloth": 0}, "points": [5], "to": {"box": 0}}]"#,
+            "ties[0].points[0]: point 5 is out of range; there are 5",
+        ),
         (r#", "weight": 1, "fixed": [5]"#, "", "ropes[0].fixed: point 5 is out of range; the last is 4"),
         (r#", "weight": 1, "fixed": [0], "ends": [{"box": 0}, null]"#, "", "ropes[0].ends: point 0 is fixed"),
         (r#", "weight": 1, "ends": [{"box": 1}, null]"#, "", "ropes[0].ends[0]: box 1 is out of range; there are 1"),
@@ -246,4 +268,94 @@ fn strands_grow_on_ropes() {
     let (x, _) = after(&model, 2.0, 10, Method::Symplectic);
     let root = (0..5).map(|i| x[i]).max_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
     assert!(root.distance(x[5 + 5]) < 1e-2, "{root}, {}", x[10]);
+}
+
+/// Where a rope bends it is as long as its segments: all that it weighs and how it gives way goes by that length.
+#[test]
+fn bent_ropes_weigh_and_give_way_by_the_length_of_their_links() {
+    for segments in [1, 2, 3, 7, 100] {
+        let text = format!(
+            r#"{{"ropes": [{{"curve": [[0, 0, 0], [1, 0, 0], [1, 0.7, 0], [1, 0.7, 2]], "segments": {segments}, "weight": 0.3, "young": 1e6, "diameter": 0.02}}]}}"#
+        );
+        let model = model(&text).unwrap();
+        let links = model.particles.windows(2).map(|ends| ends[0].position.distance(ends[1].position));
+        let whole: f32 = links.sum();
+        let ConstraintKind::Rope(rope) = &model.constraints.0[0] else { panic!("{:?}", model.constraints.0) };
+        let mass: f32 = model.particles.iter().map(|p| p.mass).sum();
+        let stiffness = 1e6 * core::f32::consts::PI * 1e-4;
+        assert!((rope.lengths.iter().sum::<f32>() / whole - 1.0).abs() < 1e-5);
+        assert!((mass / (0.3 * whole) - 1.0).abs() < 1e-5, "{segments}: {mass} kg");
+        let gives = rope.compliance * segments as f32;
+        assert!((gives * stiffness / whole - 1.0).abs() < 1e-5, "{segments}: {gives} m/N, {whole} m");
+    }
+}
+
+/// What is tied to a cloth is tied to the nearest of its triangles.
+#[test]
+fn ties_find_the_nearest_triangle() {
+    let mut random = Random::new(11);
+    for (cells, far) in [([1, 1], 0.0), ([13, 9], 0.0), ([40, 31], 300.0)] {
+        let places: Vec<Vec3> = (0..60)
+            .map(|i| random.vector(0.7) * Vec3::new(1.0, if i % 3 == 0 { 0.0 } else { 1.0 }, 1.0) + Vec3::X * far)
+            .collect();
+        let particles: Vec<_> =
+            places.iter().map(|p| format!(r#"{{"position": [{}, {}, {}]}}"#, p.x, p.y, p.z)).collect();
+        let text = format!(
+            r#"{{"particles": [{}], "cloths": [
+            {{"form": {{"sheet": {{"corner": [5, 0, 0], "sides": [[1, 0, 0], [0, 1, 0]], "cells": [2, 3]}}}}, "mass": 1, "springs": {{"structural": {{"ks": 1}}}}}},
+            {{"form": {{"sheet": {{"corner": [{}, 0, -0.5], "sides": [[1, 0.1, 0], [0, -0.2, 1]], "cells": {cells:?}}}}},
+            "mass": 1, "springs": {{"structural": {{"ks": 1}}}}}}], "ties": [{{"points": {:?}, "to": {{"cloth": 1}}}}]}}"#,
+            particles.join(","),
+            far - 0.5,
+            (0..60).collect::<Vec<u32>>()
+        );
+        let model = model(&text).unwrap();
+        let patch = &model.patches[1];
+        let distance = |corners: [u32; 3], place: Vec3| {
+            let corners = corners.map(|corner| model.particles[corner as usize].position);
+            f64::from(
+                pointmass::shape::Surface::nearest(&pointmass::shape::Triangle { corners }, place).distance(place),
+            )
+        };
+        let ties = model.constraints.0.iter().filter_map(|one| match one {
+            ConstraintKind::Tie(tie) => Some(tie),
+            _ => None,
+        });
+        let mut count = 0;
+        for (tie, &place) in ties.zip(&places) {
+            let found = distance(tie.to[..].try_into().unwrap(), place);
+            let all = patch.triangles.iter().map(|corners| distance(corners.map(|corner| patch.first + corner), place));
+            let least = all.fold(f64::INFINITY, f64::min);
+            assert!(found <= least + 1e-7 * f64::from(1.0 + far), "{cells:?} {place}: {found} m, not {least}");
+            count += 1;
+        }
+        assert_eq!(count, 60);
+    }
+}
+
+#[test]
+fn tied_ropes_that_name_a_particle_twice_are_refused() {
+    let rope = |particles: [u32; 3]| Rope::rigid(particles.to_vec(), vec![1.0]);
+    let to = |to: &[u32]| [None, Some(Tie::rigid(2, to.to_vec()))];
+    let tied = |rope, ends| TiedRope { rope, ends }.fault();
+    assert_eq!(tied(rope([0, 1, 2]), to(&[3, 4, 5])), None);
+    assert_eq!(tied(rope([1, 1, 2]), to(&[3, 4, 5])), Some(("particles", "must not name a particle twice")));
+    assert_eq!(tied(rope([0, 1, 2]), to(&[3, 4, 3])), Some(("ends", "must not name a particle of a body twice")));
+}
+
+#[test]
+fn strands_that_are_attached_by_nothing_are_remarked_on() {
+    let remarks = |fixed: &str| {
+        let text = format!(
+            r#"{{"strands": [{{"form": {{"curve": [[0.5, 1, 0], [0.5, 0.8, 0]]}}, "segments": 4, "attach": {{"rope": 0}}, {fixed}
+            "radius": 1e-3, "young": 1e6, "density": 1000}}],
+            "ropes": [{{"curve": [[0, 1, 0], [1, 1, 0]], "segments": 10, "weight": 0.1}}]}}"#
+        );
+        SceneFile::from_json("it.json", &text).unwrap().remarks()
+    };
+    assert_eq!(remarks(r#""fixed": [0],"#), [""; 0]);
+    assert_eq!(
+        remarks(""),
+        ["strands[0].attach: none of its points is fixed, so nothing of it is tied; name them in fixed"]
+    );
 }

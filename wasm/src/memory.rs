@@ -34,7 +34,7 @@ pub(crate) fn room_to_read(text: &str) -> Result<(), JsError> {
     room(objects.saturating_mul(OBJECT).saturating_add(text.len().saturating_mul(12)), "the scene")
 }
 
-/// Makes sure of the memory that the cloths, boxes, strands and ropes of a scene take.
+/// Makes sure of the memory that the cloths, boxes, strands, ropes and soft boxes of a scene take.
 ///
 /// # Errors
 /// If there is not so much.
@@ -53,5 +53,7 @@ pub(crate) fn room_to_build(file: &SceneFile, files: &Files) -> Result<(), JsErr
     let strands = file.strands.iter().map(|tuft| tuft.particles() as usize).fold(0_usize, usize::saturating_add);
     room(strands.saturating_mul(WOVEN), "the strands of the scene")?;
     let ropes = file.ropes.iter().map(|cord| cord.particles() as usize).fold(0_usize, usize::saturating_add);
-    room(ropes.saturating_mul(WOVEN), "the ropes of the scene")
+    room(ropes.saturating_mul(WOVEN), "the ropes of the scene")?;
+    let soft = file.soft_bodies.iter().map(|body| body.particles().unwrap_or(0) as usize);
+    room(soft.fold(0_usize, usize::saturating_add).saturating_mul(WOVEN), "the soft bodies of the scene")
 }

@@ -146,6 +146,10 @@ impl Hold {
                 let at = particles.first().map(|&first| place(model, 0, first as usize));
                 Self { place: at.filter(|at| at.starts_with("ropes")).unwrap_or(this.place), ..this }
             }
+            ConstraintKind::Cluster(cluster) => {
+                let at = cluster.particles.first().map(|&first| place(model, 0, first as usize));
+                Self { place: at.filter(|at| at.starts_with("soft")).unwrap_or(this.place), ..this }
+            }
             ConstraintKind::Tie(tie) => {
                 let at = place(model, 0, tie.particle as usize);
                 Self { place: if at.starts_with("particles") { this.place } else { at }, ..this }

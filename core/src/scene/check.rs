@@ -49,6 +49,7 @@ impl SceneFile {
         self.check_boxes()?;
         self.check_strands()?;
         self.check_ropes()?;
+        self.check_soft_bodies()?;
         for (i, emitter) in self.emitters.iter().enumerate() {
             self.check_emitter(&format!("emitters[{i}]"), emitter)?;
             self.check_group(&format!("emitters[{i}]"), emitter.group)?;
@@ -70,8 +71,8 @@ impl SceneFile {
                 ReaperKind::Dense(dense) => zero_or_more(&format!("reapers[{i}].radius"), dense.radius)?,
             }
         }
-        // The number of particles that cloths and strands bring is known when their meshes have been read.
-        if self.cloths.is_empty() && self.strands.is_empty() {
+        // The number of particles that cloths, strands and soft bodies bring is known when their meshes have been read.
+        if self.cloths.is_empty() && self.strands.is_empty() && self.soft_bodies.is_empty() {
             let boxes: u64 = self.boxes.iter().map(Boxes::particles).sum();
             let ropes: u64 = self.ropes.iter().map(Cord::particles).sum();
             self.check_corners(self.particles.len().saturating_add((boxes + ropes) as usize))?;

@@ -94,6 +94,7 @@ impl SceneFile {
             .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))
             .or(part("boxes", self.boxes.is_empty(), "rigid bodies"))
             .or(part("strands", self.strands.is_empty(), "strands"))
+            .or(part("soft_bodies", self.soft_bodies.is_empty(), "clusters"))
             .or(part("ropes", self.ropes.is_empty(), "ropes of their own (a rope among the constraints can)"))
     }
 }

@@ -1,6 +1,7 @@
-//! Checks of what a scene begins with beside its own particles: cloths, boxes and strands.
+//! Checks of what a scene begins with beside its own particles: cloths, boxes, strands, ropes and soft bodies.
 
 use super::check_shape::check_shape;
+use super::filling::MOST_OF_SOFT;
 use super::numbers::{Checked, above_zero, check_breaking, finite, zero_or_more};
 use super::{Air, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
 use crate::cloth::{ClothSprings, Sheet};
@@ -29,7 +30,8 @@ impl SceneFile {
                 zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
                 zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
             }
-            if cloth.shell.is_none() && [structural, shear, bend].iter().all(Option::is_none) {
+            let is_shell = cloth.shell.is_some() || cloth.hung.is_some();
+            if !is_shell && [structural, shear, bend].iter().all(Option::is_none) {
                 return refuse(
                     "springs",
                     "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
@@ -143,6 +145,27 @@ impl SceneFile {
     }
 }
 
+impl SceneFile {
+    /// Checks soft bodies, but for what their meshes say.
+    pub(super) fn check_soft_bodies(&self) -> Checked {
+        let mut count = 0u64;
+        for (i, body) in self.soft_bodies.iter().enumerate() {
+            let at = format!("soft_bodies[{i}]");
+            body.check(&at)?;
+            self.check_material(&at, body.material)?;
+            let more = body.particles().unwrap_or(0);
+            count = count.saturating_add(more);
+            if count > MOST_OF_SOFT {
+                let message = format!(
+                    "makes {more} particles; the soft bodies of a scene may have {MOST_OF_SOFT}: take a wider one"
+                );
+                return Err(SceneError::value(format!("{at}.spacing"), message));
+            }
+        }
+        Ok(())
+    }
+}
+
 impl StrandAir {
     /// Checks it; beside it there is so much linear drag.
     pub(super) fn check(&self, at: &str, drag: f32) -> Checked {
@@ -166,6 +189,7 @@ impl Cloth {
             Some(density) => above_zero(&format!("{at}.density"), density)?,
             None => above_zero(&format!("{at}.mass"), self.mass)?,
         }
+        self.check_hung(at)?;
         if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
             return Err(SceneError::value(format!("{at}.shell.{field}"), message));
         }
@@ -178,9 +202,32 @@ impl Cloth {
         numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
     }
 
+    fn check_hung(&self, at: &str) -> Checked {
+        let Some(hung) = self.hung else { return Ok(()) };
+        let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.hung{field}"), message));
+        if self.shell.is_some() {
+            return refuse("", "say either hung, by what it does, or shell, by its stiffness");
+        }
+        if self.density.is_none() {
+            return refuse("", "needs the cloth's density, in kg/m², in place of its mass");
+        }
+        if !matches!(self.form, Form::Sheet(_)) {
+            return refuse("", "is for sheets, which have sides to hang along; say shell");
+        }
+        hung.stretch.into_iter().try_for_each(|percent| above_zero(&format!("{at}.hung.stretch"), percent))?;
+        for (name, number) in [("shear", hung.shear), ("bending", hung.bending), ("damping", hung.damping)] {
+            zero_or_more(&format!("{at}.hung.{name}"), number)?;
+        }
+        // What a sheet without area is refused for is said below.
+        match self.shell_params().and_then(|params| params.fault()) {
+            Some(_) => refuse(".stretch", "makes it stiffer than 32-bit floats can tell; take more"),
+            None => Ok(()),
+        }
+    }
+
     fn check_limits(&self, at: &str) -> Result<(), SceneError> {
         let Some(params) = self.limits else { return Ok(()) };
-        if self.shell.is_some() {
+        if self.shell.is_some() || self.hung.is_some() {
             let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
             return Err(SceneError::value(format!("{at}.limits"), message));
         }

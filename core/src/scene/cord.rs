@@ -22,7 +22,8 @@ use glam::Vec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Cord {
-    /// The places \[m\] along which it lies to begin with, two or more, which it leads through in equal segments. So long it is at rest.
+    /// The places \[m\] along which it lies to begin with, two or more. Its points lie on that line at equal ways, and it is at rest as long as the straight
+    /// segments between them are: a little shorter than the line where that bends.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<[f32; 3]>"))]
     pub curve: Vec<Vec3>,
     /// The number of equal segments, from 1 to 10000; how fine it is divided does not change what it weighs, nor how far it stretches.
@@ -95,6 +96,11 @@ fn no_ends(ends: &[Option<Body>; 2]) -> bool {
 /// Standard gravity \[m/s²\].
 const EARTH: f32 = 9.80665;
 
+/// How long the links between places are \[m\].
+fn links(places: &[Vec3]) -> Vec<f32> {
+    places.windows(2).map(|ends| length(ends[1] - ends[0])).collect()
+}
+
 /// What a rope is made into.
 pub(super) struct Laid {
     pub(super) particles: Vec<Particle>,
@@ -109,9 +115,9 @@ impl Cord {
         u64::from(self.segments) + 1
     }
 
-    /// How long it is at rest \[m\].
-    fn length(&self) -> f32 {
-        self.curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum()
+    /// Where its points are.
+    fn places(&self) -> Vec<Vec3> {
+        along(&self.curve, self.segments)
     }
 
     /// The mass of a metre \[kg/m\].
@@ -120,17 +126,25 @@ impl Cord {
         self.weight.unwrap_or(self.density.unwrap_or(0.0) * area)
     }
 
-    /// The force that would stretch it to twice its length \[N\]; without one it does not stretch.
-    fn stiffness(&self) -> Option<f32> {
-        let hung = |percent: f32| 0.5 * self.by_metre() * EARTH * self.length() / (0.01 * percent);
+    /// The force that would stretch it to twice its length at rest \[N\], which is so many metres; without one it does not stretch.
+    fn stiffness(&self, whole: f32) -> Option<f32> {
+        let hung = |percent: f32| 0.5 * self.by_metre() * EARTH * whole / (0.01 * percent);
         let young = self.young.map(|young| young * 0.25 * PI * self.diameter * self.diameter);
         young.or_else(|| self.stretch.filter(|&percent| percent > 0.0).map(hung))
     }
 
+    /// How far each link of a rope so long at rest \[m\] gives way \[m/N\], and what brakes that \[N s/m\].
+    fn give(&self, whole: f32) -> [f32; 2] {
+        // What is drawn around a corner is shorter; all links have one compliance, and together that of the whole.
+        let segment = whole / self.segments as f32;
+        let compliance = self.stiffness(whole).map_or(0.0, |stiffness| segment / stiffness);
+        [compliance, if compliance > 0.0 { self.damping / compliance } else { 0.0 }]
+    }
+
     /// Its particles and what binds them, the first having number `first` in the scene's start.
     pub(super) fn make(&self, first: u32) -> Laid {
-        let places = along(&self.curve, self.segments);
-        let lengths: Vec<f32> = places.windows(2).map(|ends| length(ends[1] - ends[0])).collect();
+        let places = self.places();
+        let lengths = links(&places);
         let share = |i: usize| {
             let link = |i: Option<usize>| i.and_then(|i| lengths.get(i)).copied().unwrap_or(0.0);
             0.5 * (link(i.checked_sub(1)) + link(Some(i)))
@@ -148,10 +162,7 @@ impl Cord {
         };
         let particles: Vec<Particle> = places.iter().enumerate().map(particle).collect();
         let points = particles.len() as u32;
-        // What is drawn around a corner is shorter; segments are alike, so that all links are as stiff.
-        let segment = self.length() / self.segments as f32;
-        let compliance = self.stiffness().map_or(0.0, |stiffness| segment / stiffness);
-        let damping = if compliance > 0.0 { self.damping / compliance } else { 0.0 };
+        let [compliance, damping] = self.give(lengths.iter().sum());
         let all = (first..first + points).collect();
         let rope = Rope { compliance, damping, tether: self.tether, ..Rope::rigid(all, lengths) };
         let held = self.fixed.iter().map(|&point| first + point).collect();
@@ -176,8 +187,13 @@ impl Cord {
             return refuse("segments", &format!("has to be from 1 to 10000, not {}", self.segments));
         }
         finite(&format!("{at}.curve"), &self.curve.iter().flat_map(Vec3::to_array).collect::<Vec<_>>())?;
-        if !(self.length() > 0.0 && self.length().is_finite()) {
+        let way: f32 = links(&self.curve).iter().sum();
+        if !(way > 0.0 && way.is_finite()) {
             return refuse("curve", "has to lead through two places at least that are not the same");
+        }
+        let whole: f32 = links(&self.places()).iter().sum();
+        if !(whole > 0.0) {
+            return refuse("segments", "has to be more: all points would lie in one place of a curve that leads back");
         }
         match (self.density, self.weight) {
             (Some(_), Some(_)) => return refuse("weight", "say either weight, in kg/m, or density, in kg/m³"),
@@ -200,6 +216,13 @@ impl Cord {
         }
         if let Some(air) = &self.air {
             air.check(at, self.drag)?;
+        }
+        let [compliance, brake] = self.give(whole);
+        if !(compliance.is_finite() && brake.is_finite()) {
+            let field = if self.young.is_some() { "young" } else { "stretch" };
+            let than = if field == "young" { "more" } else { "less" };
+            let message = format!("makes it softer than 32-bit floats can tell; take {than}, or a heavier rope");
+            return refuse(field, &message);
         }
         finite(&format!("{at}.elasticity"), &[self.elasticity])?;
         finite(&format!("{at}.velocity"), &self.velocity.to_array())?;

@@ -1,6 +1,6 @@
 //! The declared scene: everything that a scene file says, in the engine's own types.
 
-use super::{BodyTie, Boxes, Cloth, Cord, Fog, Material, PeriodicRoom, Response, Sky, Tuft};
+use super::{BodyTie, Boxes, Cloth, Cord, Fog, Material, PeriodicRoom, Response, Sky, SoftBody, Tuft};
 use crate::constrain::ConstraintKind;
 use crate::custom::CustomBuf;
 use crate::draw::StrandLight;
@@ -51,6 +51,9 @@ pub struct SceneFile {
     /// Ropes, strings, cables, which bend freely and whose particles follow those above.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub ropes: Vec<Cord>,
+    /// Jellies: boxes and closed meshes filled with particles that give way, which follow those above.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub soft_bodies: Vec<SoftBody>,
     /// Points of some of these bodies that are tied to the surfaces of others.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub ties: Vec<BodyTie>,
@@ -257,6 +260,7 @@ impl SceneFile {
             boxes: Vec::new(),
             strands: Vec::new(),
             ropes: Vec::new(),
+            soft_bodies: Vec::new(),
             ties: Vec::new(),
             emitters: Vec::new(),
             forces: Vec::new(),

@@ -29,6 +29,8 @@ mod error;
 mod file;
 #[cfg(feature = "alloc")]
 mod files;
+#[cfg(feature = "alloc")]
+mod filling;
 mod inline;
 #[cfg(feature = "json")]
 mod json;
@@ -54,6 +56,8 @@ mod rules;
 mod schema;
 pub mod scn;
 #[cfg(feature = "alloc")]
+mod soft;
+#[cfg(feature = "alloc")]
 mod start;
 #[cfg(feature = "alloc")]
 mod ties;
@@ -69,7 +73,7 @@ pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
 pub use boxes::{BoxForm, Boxes, Scatter};
 #[cfg(feature = "alloc")]
-pub use cloth::{Air, Cloth, Form, Gas, PatchBuf, SheetContactsBuf};
+pub use cloth::{Air, Cloth, Form, Gas, Hung, PatchBuf, SheetContactsBuf};
 #[cfg(feature = "alloc")]
 pub use cord::Cord;
 #[cfg(feature = "alloc")]
@@ -78,6 +82,8 @@ pub use error::SceneError;
 pub use file::{Camera, Group, Item, Light, Run, SceneFile};
 #[cfg(feature = "alloc")]
 pub use files::{Files, beside};
+#[cfg(feature = "alloc")]
+pub use filling::SoftForm;
 pub use inline::{InlineError, InlineScene};
 #[cfg(feature = "alloc")]
 pub use material::{CurveBuf, LifeBuf, Material, ParticleShape, Sides, Sprite, VaryingBuf};
@@ -93,6 +99,8 @@ pub use room::PeriodicRoom;
 pub use rules::{InsufficientMemory, Scene};
 #[cfg(feature = "schema")]
 pub use schema::schema;
+#[cfg(feature = "alloc")]
+pub use soft::SoftBody;
 #[cfg(feature = "alloc")]
 pub use ties::{Body, BodyTie};
 #[cfg(feature = "alloc")]

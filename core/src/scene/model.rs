@@ -25,7 +25,7 @@ use alloc::vec::Vec;
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
 
-/// The constraints of files, of cloths that are shells, of strands, ropes and ties, the rigid bodies, then contacts by position, and those of cloths.
+/// The constraints of files, of cloths that are shells, of strands, ropes, soft bodies and ties, the rigid bodies, then contacts by position, and those of cloths.
 pub type Constraints =
     (Vec<ConstraintKind>, RigidBodies<Vec<RigidBox>, Vec<HullBuf>>, Option<Contacts>, SheetContactsBuf);
 
@@ -68,6 +68,8 @@ pub struct Model {
     pub boxes: Vec<usize>,
     /// Where the particles of each of the file's ropes begin among all.
     pub ropes: Vec<usize>,
+    /// Where the particles of each of the file's soft bodies begin among all.
+    pub soft_bodies: Vec<usize>,
     /// The surfaces of cloths that have one.
     pub patches: Vec<PatchBuf>,
     /// The strands, then the ropes, to be drawn as curves.
@@ -126,6 +128,7 @@ impl Model {
             cloths: start.cloths,
             boxes: start.blocks,
             ropes: start.ropes,
+            soft_bodies: start.soft_bodies,
             patches: start.patches,
             locks: start.locks,
             shapes,

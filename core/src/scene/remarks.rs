@@ -36,6 +36,9 @@ impl SceneFile {
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].elasticity"), odd_elasticity(Varied::exactly(cloth.elasticity)));
         }
+        for (i, body) in self.soft_bodies.iter().enumerate() {
+            add(format_args!("soft_bodies[{i}].elasticity"), odd_elasticity(Varied::exactly(body.elasticity)));
+        }
         for (i, emitter) in self.emitters.iter().enumerate() {
             add(
                 format_args!("emitters[{i}].elasticity"),
@@ -69,6 +72,9 @@ impl SceneFile {
             let loose = tuft.motion.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
             let nothing = || "none of its points is fixed, so nothing follows it".into();
             add(format_args!("strands[{i}].motion"), loose.then(nothing));
+            let loose = tuft.attach.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
+            let nothing = || "none of its points is fixed, so nothing of it is tied; name them in fixed".into();
+            add(format_args!("strands[{i}].attach"), loose.then(nothing));
         }
         for (i, cord) in self.ropes.iter().enumerate() {
             let nothing = || "none of its points is fixed, so nothing follows it".into();

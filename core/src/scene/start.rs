@@ -1,14 +1,17 @@
-//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes, strands and ropes.
+//! The particles and springs that a scene begins with: its own, and those of its cloths, boxes, strands, ropes and soft bodies.
 
+use super::filling::MOST_OF_SOFT;
 use super::placing::Placing;
 use super::references::color;
-use super::{Body, BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf};
+use super::{Body, BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf, SoftForm};
 use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts, TiedRope};
 use crate::draw::Lock;
 use crate::emit::Emitter;
 use crate::force::{ForceKind, Spring};
 use crate::math::max;
 use crate::particles::Particle;
+use crate::shape::MeshBuf;
+use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -27,6 +30,10 @@ pub(super) struct Start {
     /// Where they begin.
     pub(super) cloths: Vec<[usize; 2]>,
     pub(super) patches: Vec<PatchBuf>,
+    /// Where the particles of cloths end.
+    pub(super) woven: usize,
+    /// The surfaces of cloths that something is tied to, by their first particles.
+    pub(super) skins: BTreeMap<u32, MeshBuf>,
     pub(super) boxes: Vec<RigidBox>,
     /// Where those of each of the file's boxes begin.
     pub(super) blocks: Vec<usize>,
@@ -37,6 +44,8 @@ pub(super) struct Start {
     /// The number of the scene's own particles, and where those of each rope begin.
     pub(super) own: u32,
     pub(super) ropes: Vec<usize>,
+    /// Where those of each soft body begin.
+    pub(super) soft_bodies: Vec<usize>,
 }
 
 impl Start {
@@ -48,6 +57,8 @@ impl Start {
             constraints: Vec::new(),
             cloths: Vec::new(),
             patches: Vec::new(),
+            woven: 0,
+            skins: BTreeMap::new(),
             boxes: Vec::new(),
             blocks: Vec::new(),
             contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
@@ -55,11 +66,14 @@ impl Start {
             hulls: Vec::new(),
             own: file.particles.len() as u32,
             ropes: Vec::new(),
+            soft_bodies: Vec::new(),
         };
         start.add_cloths(file, meshes)?;
+        start.woven = start.particles.len();
         start.add_boxes(file, meshes)?;
         let roots = start.add_strands(file, meshes)?;
         start.add_ropes(file, meshes.path)?;
+        start.add_soft_bodies(file, meshes)?;
         start.tie_roots(&roots, meshes.path)?;
         start.add_ties(&file.ties).map_err(|(at, message)| SceneError::value(at, message).in_file(meshes.path))?;
         for particle in &mut start.particles {
@@ -205,11 +219,38 @@ impl Start {
         Ok(())
     }
 
+    fn add_soft_bodies(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+        let begin = self.particles.len();
+        for (i, body) in file.soft_bodies.iter().enumerate() {
+            let at = |field: &str| format!("soft_bodies[{i}].{field}");
+            let mesh = match &body.form {
+                SoftForm::Mesh(name) => Some(meshes.load(&at("form"), name)?),
+                SoftForm::Box(_) => None,
+            };
+            let refuse = |field: &str, message: &str| SceneError::value(at(field), message).in_file(meshes.path);
+            let made = body.make(mesh.as_deref(), self.particles.len() as u32);
+            let made = made.map_err(|(field, message)| refuse(field, &message))?;
+            if !made.particles.iter().all(Particle::is_sound) {
+                let message = "leaves each particle too little mass, or puts some beyond the range of a 32-bit float";
+                return Err(refuse("density", message));
+            }
+            self.soft_bodies.push(self.particles.len());
+            self.particles.extend(made.particles);
+            self.constraints.extend(made.constraints);
+            if (self.particles.len() - begin) as u64 > MOST_OF_SOFT {
+                let message =
+                    format!("makes too many particles; soft bodies may have {MOST_OF_SOFT}: take a wider one");
+                return Err(refuse("spacing", &message));
+            }
+        }
+        Ok(())
+    }
+
     /// The first particle of a cloth, and their number.
     pub(super) fn cloth_span(&self, number: usize) -> Option<[u32; 2]> {
         let [first, _] = *self.cloths.get(number)?;
-        let patch = self.patches.iter().find(|patch| patch.first as usize == first);
-        Some([first as u32, patch.map_or(0, |patch| patch.count)])
+        let end = self.cloths.get(number + 1).map_or(self.woven, |&[next, _]| next);
+        Some([first as u32, (end - first) as u32])
     }
 
     /// Loose balls that may be near bodies at a time: all that there may be, but no more than 64 for each body, or 1,024 if that is more.

@@ -5,7 +5,9 @@ use super::ties::{Body, BodyTie};
 use crate::constrain::{ConstraintKind, Tie};
 use crate::draw::Lock;
 use crate::math::{clamp, dot, length};
-use crate::shape::{Surface, Triangle};
+use crate::rays;
+use crate::shape::{Aabb, MeshBuf, Surface, Triangle};
+use alloc::collections::btree_map::Entry;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -13,6 +15,9 @@ use glam::Vec3;
 
 /// How far a point may be off the line that it is tied to, a share of a segment of that.
 const OFF: f32 = 1e-3;
+
+/// What is wrong with a cloth that is a line, or has no triangles near enough.
+const BARE: &str = "it has no triangle to be tied to; a sheet needs cells along both of its sides";
 
 /// What is wrong with a number beyond the bodies of a kind.
 fn beyond(kind: &str, number: u32, count: usize) -> String {
@@ -46,30 +51,55 @@ impl Start {
         }
     }
 
+    /// Tells whether a body is a cloth without triangles.
+    fn is_bare(&self, body: Body) -> bool {
+        let Body::Cloth(number) = body else { return false };
+        let first = self.cloths.get(number as usize).map(|&[first, _]| first as u32);
+        first.is_some_and(|first| self.patches.iter().all(|patch| patch.first != first))
+    }
+
     /// The particle that a point is.
     fn point(&self, of: Option<Body>, point: u32) -> Result<u32, String> {
         let [first, count] = of.map_or(Ok([0, self.own]), |body| self.span(body))?;
         if point < count { Ok(first + point) } else { Err(beyond("point", point, count as usize)) }
     }
 
+    /// The corners of that of a cloth's triangles which is nearest to a place, of several as near of the first; they are counted from its first
+    /// particle. What finds it is made when it is first asked for.
+    fn nearest_triangle(&mut self, [first, count]: [u32; 2], place: Vec3) -> Option<[u32; 3]> {
+        let skin = match self.skins.entry(first) {
+            Entry::Occupied(made) => made.into_mut(),
+            Entry::Vacant(none) => {
+                let triangles = self.patches.iter().find(|patch| patch.first == first)?.triangles.clone();
+                let own = self.particles.get(first as usize..)?.iter().take(count as usize);
+                let corners = own.map(|particle| particle.position).collect();
+                none.insert(MeshBuf::new(corners, triangles).ok()?.organised(rays::Structure::Bvh))
+            }
+        };
+        let far = |near: Vec3| dot(near - place, near - place);
+        let reach = length(skin.nearest(place) - place);
+        let around = Aabb { min: place - reach, max: place + reach }.with_slack();
+        let mut nearest: Option<(f32, [u32; 3])> = None;
+        skin.index().near(&skin.view(), &around, &mut |number| {
+            let corners = skin.triangles()[number];
+            let spot = Triangle { corners: corners.map(|corner| skin.vertices()[corner as usize]) }.nearest(place);
+            if nearest.is_none_or(|(least, _)| far(spot) < least) {
+                nearest = Some((far(spot), corners));
+            }
+        });
+        nearest.map(|(_, corners)| corners)
+    }
+
     /// The particles of the part of a body that is nearest to a place, which say where it is.
-    fn nearest(&self, to: Body, place: Vec3) -> Result<Vec<u32>, String> {
+    fn nearest(&mut self, to: Body, place: Vec3) -> Result<Vec<u32>, String> {
         let [first, count] = self.span(to)?;
+        if let Body::Cloth(_) = to {
+            let corners = self.nearest_triangle([first, count], place).ok_or(BARE)?;
+            return Ok(corners.map(|corner| first + corner).to_vec());
+        }
         let at = |number: u32| self.particles[number as usize].position;
         match to {
-            Body::Box(_) => Ok((first..first + count).collect()),
-            Body::Cloth(_) => {
-                let of = self.patches.iter().find(|patch| patch.first == first);
-                let triangles = of.iter().flat_map(|patch| &patch.triangles);
-                let far = |corners: &[u32; 3]| {
-                    let [a, b, c] = corners.map(|corner| at(first + corner));
-                    let near = Triangle { corners: [a, b, c] }.nearest(place);
-                    dot(near - place, near - place)
-                };
-                let nearest = triangles.map(|corners| (far(corners), corners)).min_by(|a, b| a.0.total_cmp(&b.0));
-                let (_, corners) = nearest.ok_or("it has no triangle to be tied to")?;
-                Ok(corners.map(|corner| first + corner).to_vec())
-            }
+            Body::Box(_) | Body::Cloth(_) => Ok((first..first + count).collect()),
             Body::Strand(_) | Body::Rope(_) => {
                 let beside = |point: &u32| {
                     let (from, way) = (at(*point), at(point + 1) - at(*point));
@@ -90,7 +120,7 @@ impl Start {
 
     /// The tie of a particle to a body at the place where it begins.
     pub(super) fn tied(
-        &self,
+        &mut self,
         particle: u32,
         to: Body,
         [compliance, damping]: [f32; 2],
@@ -104,7 +134,8 @@ impl Start {
 
     /// Ties a particle to a body at the place where it begins.
     pub(super) fn tie(&mut self, particle: u32, to: Body, give: [f32; 2]) -> Result<(), String> {
-        self.constraints.push(ConstraintKind::Tie(self.tied(particle, to, give)?));
+        let tie = self.tied(particle, to, give)?;
+        self.constraints.push(ConstraintKind::Tie(tie));
         Ok(())
     }
 
@@ -117,6 +148,9 @@ impl Start {
                     self.span(body).map_err(|message| (at("of"), message))?;
                 }
                 self.span(tie.to).map_err(|message| (at("to"), message))?;
+                if self.is_bare(tie.to) {
+                    return Err((at("to"), BARE.to_string()));
+                }
                 let particle = self.point(tie.of, point).map_err(|message| (at(&format!("points[{k}]")), message))?;
                 self.tie(particle, tie.to, [tie.compliance, tie.damping])
                     .map_err(|message| (at(&format!("points[{k}]")), message))?;

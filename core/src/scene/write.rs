@@ -118,7 +118,7 @@ impl Writer {
                 ));
                 continue;
             }
-            let lost = if cloth.shell.is_some() { ", without its shell" } else { "" };
+            let lost = if cloth.shell.is_some() || cloth.hung.is_some() { ", without its shell" } else { "" };
             let lost = if cloth.thickness.is_some() { format!("{lost}, without its thickness") } else { lost.into() };
             let lost = if cloth.air.is_some() { format!("{lost}, without the air around it") } else { lost };
             self.warn(format!("cloths[{i}]: .scn has no cloths; it is written as particles and springs{lost}"));
@@ -134,6 +134,9 @@ impl Writer {
         }
         if !scene.ropes.is_empty() {
             self.warn("ropes: .scn has none; they are left out");
+        }
+        if !scene.soft_bodies.is_empty() {
+            self.warn("soft_bodies: .scn has none; they are left out");
         }
         if !scene.ties.is_empty() {
             self.warn("ties: .scn has none; they are left out");

@@ -37,6 +37,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
         };
         let own = !self.ends.iter().zip(ends).all(is_end);
         let wrong = self.rope.closed && self.ends.iter().any(Option::is_some);
+        // Without a heap there is no sorting a copy.
+        let twice = |list: &[u32]| list.iter().enumerate().any(|(i, one)| list[..i].contains(one));
+        let bodies = self.ends.iter().flatten().any(|tie| twice(tie.to.as_ref()));
         self.rope
             .fault()
             .or_else(|| self.ends.iter().flatten().find_map(Tie::fault))
@@ -44,6 +47,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
                 own.then_some(("ends", "have to tie the rope's first and last particle to particles of others"))
             })
             .or_else(|| wrong.then_some(("ends", "must not be tied where the rope is closed: it has none")))
+            .or_else(|| twice(particles).then_some(("particles", "must not name a particle twice")))
+            .or_else(|| bodies.then_some(("ends", "must not name a particle of a body twice")))
     }
 
     /// The words that its ties keep.
