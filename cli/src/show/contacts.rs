@@ -1,6 +1,6 @@
-//! What touches: blows since the picture before, and what lies on scenery, on bodies and on balls now.
+//! What touches: blows since the picture before, and what lies on scenery, on bodies, on balls and on cloth now.
 
-use super::AHEAD;
+use super::{AHEAD, sheets};
 use glam::{Mat3, Vec3};
 use pointmass::constrain::{Hull, HullList};
 use pointmass::draw::{Instance, Line, arrow, body};
@@ -12,7 +12,7 @@ use pointmass::{Attention, Color, Heap, Impact, Observer, RigidBodies, RigidBox,
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The colours of what is struck, of what lies on scenery, and of balls and bodies that lie on each other.
+/// The colours of what is struck, of what lies on scenery, and of balls, bodies and cloth that lie on each other.
 const BLOW: Color = [240, 60, 60, 255];
 const SCENERY: Color = [250, 170, 40, 255];
 const EACH_OTHER: Color = [60, 200, 230, 255];
@@ -54,6 +54,8 @@ impl Blows {
         if model.contacts.is_some() {
             lines.crowd(&state);
         }
+        let sheets = &model.constraints.3;
+        lines.all.extend(sheets::lines(&state, sheets, &model.particles, lines.long, EACH_OTHER));
         for blow in self.0.drain(..).filter(|blow| blow.closing * between > slack) {
             // Of a body that is the place itself, else the middle of a ball.
             let others = [Some(blow.id), blow.other];
