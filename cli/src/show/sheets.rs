@@ -180,6 +180,12 @@ fn root(sheet: &[u32], mut of: u32) -> u32 {
     of
 }
 
+/// The place of a triangle that is nearest to a point.
+pub(super) fn nearest(point: Vec3, corners: [Vec3; 3]) -> Vec3 {
+    let shares = over(point, corners);
+    corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2]
+}
+
 /// The shares of a triangle's corners in its place that is nearest to a point (Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
 fn over(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
     let (ab, ac, [p, q, r]) = (b - a, c - a, [a, b, c].map(|corner| point - corner));
@@ -206,7 +212,7 @@ fn over(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
 }
 
 /// The places where two edges are nearest to each other, if these are at the end of neither.
-fn across([[a, b], [c, d]]: [[Vec3; 2]; 2]) -> Option<[Vec3; 2]> {
+pub(super) fn across([[a, b], [c, d]]: [[Vec3; 2]; 2]) -> Option<[Vec3; 2]> {
     let (e, f, way) = (b - a, d - c, a - c);
     let (ee, ff, ef, ew, fw) = (e.dot(e), f.dot(f), e.dot(f), e.dot(way), f.dot(way));
     let determinant = ee * ff - ef * ef;
