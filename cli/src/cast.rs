@@ -1,5 +1,7 @@
 //! The moving things, as the renderer sees them: particles in the looks of their materials, or in a style of the lecture's.
 
+mod links;
+
 use crate::show::{Show, lines};
 use crate::shutter::Shutter;
 use crate::stage::{look, moves, tessellate};
@@ -8,12 +10,12 @@ use crate::viewpoint::Viewpoint;
 use glam::Vec3;
 use pointmass::constrain::{Hull, HullList};
 use pointmass::draw::{
-    Appearance, Instance, Knot, Line, Lock, Ring, Sprite, StrandLight, Trails, Vertex, View, appearance, body, links,
-    solid, springs, sprite, strained, strains, strands, surface,
+    Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, body, solid, sprite, strained,
+    strains, surface,
 };
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
-use pointmass::{Color, ConstraintKind, Heap, RigidBodies, RigidBox, System, Time};
+use pointmass::{Color, Heap, RigidBodies, RigidBox, System, Time};
 use pointmass_draw::{self as draw, Billboard, Dot, Piece, Surface, shapes};
 use std::collections::HashMap;
 
@@ -26,10 +28,7 @@ const ARROW: f32 = 0.06;
 /// The places that are remembered of each trail.
 const KNOTS: usize = 48;
 
-/// The colour of the links of constraints.
-const LINK: Color = [170, 170, 180, 255];
-
-/// The strain at which springs are all red, or blue, where they are drawn by it.
+/// The strain at which all is red, or blue, where it is drawn by that.
 const FULL_STRAIN: f32 = 0.1;
 
 /// Pixels between places where a thing is seen while the shutter is open, how often that is at most, and at least where scenery moves.
@@ -231,11 +230,12 @@ impl<'m> Cast<'m> {
         let mut seen = Seen { instant: state.time, ..Seen::default() };
         styled(state, self.style, self.size, |state| {
             self.particles(state, begun, file, &mut seen);
-            seen.segments = self.springs(state, model);
+            seen.segments = self.springs(state);
+            seen.segments.extend(self.links(state, model));
             seen.segments.extend(lines(&self.show, state, model, file.run.index, self.arrow));
             if self.style.is_none() {
                 let light = file.light_on_strands(self.view.eye);
-                seen.ribbons.extend(model.locks.iter().flat_map(|lock| hair(state, lock, &light)));
+                seen.ribbons.extend(model.locks.iter().flat_map(|lock| self.curves(state, lock, &light, model)));
                 seen.pieces.extend(model.patches.iter().filter_map(|patch| self.cloth(state, patch, file, model)));
                 let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
                 let standing = boxes.iter().filter_map(|of| Some((of, body(state, of, &model.particles)?)));
@@ -338,31 +338,6 @@ impl<'m> Cast<'m> {
         let lift = LIFT * (surface.area() / count as f32).sqrt();
         Some(Piece { surface, material: painted(material, color), endless: false, lift })
     }
-
-    /// The springs as they are now, but for those of surfaces, and the links of constraints.
-    fn springs(&self, state: &State<'_>, model: &Model) -> Vec<Line> {
-        let is_shown = self.show.contains(&Show::Springs);
-        if self.style.is_some_and(|style| style != Style::Lines) && !is_shown {
-            return Vec::new();
-        }
-        let full = if self.style.is_some() || is_shown { FULL_STRAIN } else { f32::INFINITY };
-        let mut all = vec![Line::NONE; state.springs.springs.len()];
-        let (count, _) = springs(state, full, &mut all);
-        let is_covered = |number: &u32| self.covered.get(*number as usize).is_some_and(|&covered| covered);
-        let held = state.springs.held().zip(all.iter().copied().take(count));
-        let mut drawn: Vec<_> = held
-            .filter(|(held, _)| is_shown || !held.spring.ends.iter().all(is_covered))
-            .map(|(_, line)| line)
-            .collect();
-        // Ropes that have a width are drawn as curves.
-        let ropes = model.ropes.first().copied().filter(|_| self.style.is_none() && !is_shown).unwrap_or(usize::MAX);
-        let pairs = || model.constraints.0.iter().flat_map(ConstraintKind::links);
-        let pairs = || pairs().filter(|ends| (ends[0] as usize) < ropes);
-        all = vec![Line::NONE; pairs().count()];
-        let (count, _) = links(state, pairs(), LINK, &mut all);
-        drawn.extend_from_slice(&all[..count]);
-        drawn
-    }
 }
 
 /// A state whose materials are drawn in a style; the pictures of points, which have no size, have this radius \[m\].
@@ -373,14 +348,6 @@ fn styled<T>(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnc
     let least = if style == Style::Sprites { size } else { 0.0 };
     let radius: Vec<_> = state.radius.iter().map(|radius| radius.max(least)).collect();
     see(&State { material: &material, materials: &materials, radius: &radius, ..*state })
-}
-
-/// Strands as lit lines.
-fn hair(state: &State<'_>, lock: &Lock, light: &StrandLight) -> Vec<Line> {
-    let mut all = vec![Line::NONE; (lock.count * lock.points) as usize];
-    let (count, _) = strands(state, lock, light, &mut all);
-    all.truncate(count);
-    all
 }
 
 /// A rigid body: the box that it is, or its hull in a box of so much about its centroid.

@@ -1,6 +1,7 @@
 //! Lines that pictures show on top of what is seen: how things work.
 
 mod contacts;
+mod sheets;
 
 pub(crate) use contacts::Blows;
 
@@ -17,15 +18,15 @@ pub(crate) enum Show {
     Index,
     /// Where particles would be a tenth of a second later
     Velocities,
-    /// Springs by their strain, red where longer than at rest, blue where shorter
+    /// Springs and the links of constraints by their strain, red where longer than at rest, blue where shorter
     Springs,
-    /// Surfaces between particles by their strain, in the same colours
+    /// Whatever is drawn of cloth, strands, ropes, links and springs by its strain, in the same colours
     Strain,
     /// Surfaces that particles come from, with arrows their way
     Sources,
     /// Surfaces that particles vanish at, with arrows toward them
     Sinks,
-    /// Blows since the picture before, as red arrows; and lines where something lies on scenery, orange, or on balls and bodies, blue
+    /// Blows since the picture before, as red arrows; and lines where something lies on scenery, orange, or on balls, bodies and cloth, blue
     Contacts,
 }
 

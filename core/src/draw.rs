@@ -16,7 +16,7 @@ mod trail;
 
 pub use bodies::{bodies, body};
 pub use debug::{arrow, arrows, cells};
-pub use line::{Line, edges, links, springs, strained, velocities};
+pub use line::{Line, edges, links, links_by_strain, springs, strained, velocities};
 pub use solid::{Instance, solid, solids};
 pub use sprite::{Sprite, View, back_to_front, sprite, sprites};
 pub use strand::{Lock, StrandLight, strands};

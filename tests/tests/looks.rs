@@ -1,8 +1,9 @@
 //! What there is to draw: trails, lines, shapes and surfaces as plain lists.
 
-use pointmass::constrain::{Distance, Rope};
+use pointmass::constrain::{Distance, Rope, ShapeMatching, TiedRope};
 use pointmass::draw::{
-    Instance, Knot, Line, Patch, Ring, Trails, Vertex, arrows, cells, links, solids, springs, surface, velocities,
+    Instance, Knot, Line, Patch, Ring, Trails, Vertex, arrows, cells, links, links_by_strain, solids, springs,
+    strained, surface, velocities,
 };
 use pointmass::index::{SpatialIndex, Structure};
 use pointmass::material::{Heading, TrailMaterial};
@@ -184,6 +185,43 @@ fn constraints_are_drawn_by_the_links_between_those_who_live() {
         let living = pairs.iter().filter(|pair| !pair.contains(&2)).count();
         assert_eq!(links(&system.state(&scene), all(), [9; 4], &mut lines), (living, 0));
     }
+}
+
+/// Each link of a rope, a closed one too, a rod or a tied rope has the colour that its own length at rest says, whatever that of the others and
+/// however many are named.
+#[test]
+fn links_have_the_colors_of_their_strain() {
+    let strains = [-0.2, -0.05, 0.0, 0.03, 0.2];
+    // Five in a row, links of 1, 2, 3 and 4 m between them, and one of 10 m from the last back to the first.
+    let places = [0.0, 1.0, 3.0, 6.0, 10.0];
+    let particles = vec![0, 1, 2, 3, 4];
+    let shared = [1.0, 2.0, 3.0, 4.0, 10.0].into_iter().zip(strains).map(|(far, strain)| far / (1.0 + strain));
+    let lengths: Vec<f32> = shared.collect();
+    let rope = |closed, count: usize| Rope { closed, ..Rope::rigid(particles.clone(), lengths[..count].to_vec()) };
+    let rod = Distance::rod([0, 4], lengths[4]);
+    let start: Vec<_> = places.map(|x| Particle { position: Vec3::X * x, ..Particle::REST }).into_iter().collect();
+    let scene = Scene { start: &start, ..Scene::EMPTY };
+    let system = started(&scene, 5, 1);
+    let full = 0.1;
+    for (kind, all) in [
+        (ConstraintKind::Rope(rope(false, 4)), &strains[..4]),
+        (ConstraintKind::Rope(rope(true, 5)), &strains[..]),
+        (ConstraintKind::TiedRope(TiedRope { rope: rope(false, 4), ends: [None, None] }), &strains[..4]),
+        (ConstraintKind::Distance(rod), &strains[4..]),
+        // The last length holds for all further links: the others are 3 and 4 m long.
+        (ConstraintKind::Rope(rope(false, 2)), &[-0.2, -0.05, 3.0 / lengths[1] - 1.0, 4.0 / lengths[1] - 1.0]),
+    ] {
+        let mut lines = [Line::NONE; 6];
+        let pairs = kind.links().zip(kind.lengths());
+        assert_eq!(links_by_strain(&system.state(&scene), pairs, full, &mut lines), (all.len(), 0));
+        for (line, strain) in lines.iter().zip(all) {
+            for (one, other) in line.colors[0].into_iter().zip(strained(strain / full)) {
+                assert!(one.abs_diff(other) < 2, "{strain}: {:?}", line.colors[0]);
+            }
+        }
+    }
+    let none = ConstraintKind::Cluster(ShapeMatching::rigid(particles.clone()));
+    assert_eq!((none.links().count(), none.lengths().count()), (0, 0));
 }
 
 #[test]

@@ -1,8 +1,9 @@
-//! What touches: blows since the picture before, and what lies on scenery, on bodies and on balls now.
+//! What touches: blows since the picture before, and what lies on scenery, on bodies, on balls and on cloth now.
 
 use super::AHEAD;
+use super::sheets::{self, across, nearest};
 use glam::{Mat3, Vec3};
-use pointmass::constrain::{Hull, HullList};
+use pointmass::constrain::{Hull, HullFace, HullList};
 use pointmass::draw::{Instance, Line, arrow, body};
 use pointmass::force::State;
 use pointmass::index::{SpatialIndex, Structure};
@@ -12,7 +13,7 @@ use pointmass::{Attention, Color, Heap, Impact, Observer, RigidBodies, RigidBox,
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The colours of what is struck, of what lies on scenery, and of balls and bodies that lie on each other.
+/// The colours of what is struck, of what lies on scenery, and of balls, bodies and cloth that lie on each other.
 const BLOW: Color = [240, 60, 60, 255];
 const SCENERY: Color = [250, 170, 40, 255];
 const EACH_OTHER: Color = [60, 200, 230, 255];
@@ -51,9 +52,12 @@ impl Blows {
         let particles = system.particles();
         lines.lean(&state, (particles.serial, particles.inverse_mass), model, &bodies);
         lines.pile(&state, particles.serial, &bodies);
+        lines.cross(&bodies);
         if model.contacts.is_some() {
             lines.crowd(&state);
         }
+        let sheets = &model.constraints.3;
+        lines.all.extend(sheets::lines(&state, sheets, &model.particles, lines.long, EACH_OTHER));
         for blow in self.0.drain(..).filter(|blow| blow.closing * between > slack) {
             // Of a body that is the place itself, else the middle of a ball.
             let others = [Some(blow.id), blow.other];
@@ -113,6 +117,18 @@ impl Standing<'_> {
         }
     }
 
+    fn edges(&self) -> Vec<[Vec3; 2]> {
+        let corners = self.corners();
+        let ends: Vec<[usize; 2]> = match &self.hull {
+            Some(hull) => hull.edges.iter().map(|edge| edge.ends.map(usize::from)).collect(),
+            None => {
+                let along = |k: usize| (0..8).filter(move |i| i >> k & 1 == 0).map(move |i| [i, i | 1 << k]);
+                (0..3).flat_map(along).collect()
+            }
+        };
+        ends.into_iter().map(|ends| ends.map(|end| corners[end])).collect()
+    }
+
     /// The face nearest to a place, if that is within `reach` \[m\] of it, or behind: the place on the face, and its normal.
     fn face(&self, place: Vec3, reach: f32) -> Option<[Vec3; 2]> {
         let way = place - self.center;
@@ -122,6 +138,13 @@ impl Standing<'_> {
         let own = self.rotation.transpose() * way;
         let (normal, far) = match &self.hull {
             Some(hull) => {
+                // Beyond an edge no face is near, though its plane is.
+                let outside = |face: &&HullFace| face.normal.dot(own) > face.offset;
+                let triangles = hull.faces.iter().filter(outside).flat_map(|face| hull.triangles(face));
+                let nearest = triangles.map(|corners| own.distance(nearest(own, corners))).reduce(f32::min);
+                if nearest.is_some_and(|far| far > reach) {
+                    return None;
+                }
                 let faces = hull.faces.iter().map(|face| (face.normal, face.normal.dot(own) - face.offset));
                 faces.max_by(|a, b| a.1.total_cmp(&b.1))?
             }
@@ -192,6 +215,26 @@ impl Lines {
         }
     }
 
+    /// Edges of rigid bodies that cross those of others.
+    fn cross(&mut self, bodies: &Bodies<'_>) {
+        let edges: Vec<_> = bodies.standing.iter().map(Standing::edges).collect();
+        for (number, one) in bodies.standing.iter().enumerate() {
+            for (other, edges_of_other) in bodies.standing.iter().zip(&edges).take(number) {
+                let way = one.center - other.center;
+                if way.length() > one.half.length() + other.half.length() + self.slack {
+                    continue;
+                }
+                for (a, b) in edges[number].iter().flat_map(|a| edges_of_other.iter().map(move |b| (a, b))) {
+                    let touching = across([*a, *b]).filter(|[on, off]| on.distance(*off) <= self.slack);
+                    if let Some([on, off]) = touching {
+                        let normal = (a[1] - a[0]).cross(b[1] - b[0]).normalize_or_zero();
+                        self.push((on + off) * 0.5, normal * normal.dot(way).signum(), EACH_OTHER);
+                    }
+                }
+            }
+        }
+    }
+
     /// Balls that touch each other.
     fn crowd(&mut self, state: &State<'_>) {
         let widest = state.radius.iter().copied().fold(0.0, f32::max);
@@ -223,5 +266,70 @@ impl Lines {
             let half = normal * (0.5 * self.long);
             self.all.push(Line::plain([on - half, on + half], EACH_OTHER));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pointmass::constrain::HullBuf;
+
+    /// Two beams that stand on edge, one across the other, touch in one place, whether they are boxes or hulls, and nowhere once they are apart.
+    #[test]
+    fn edges_of_bodies_touch_where_they_cross() {
+        let half = Vec3::new(1.0, 0.1, 0.1);
+        let corners = [0, 1, 2, 3, 4, 5, 6, 7];
+        let corners = corners.map(|i| Vec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 })) * half);
+        let made = HullBuf::of(&corners).expect("a hull");
+        let on_edge = Mat3::from_rotation_x(std::f32::consts::FRAC_PI_4);
+        let beam = |height: f32, turn: f32, is_hull: bool| Standing {
+            center: Vec3::new(0.2, height, -0.1),
+            rotation: Mat3::from_rotation_y(turn) * on_edge,
+            half,
+            hull: is_hull.then(|| made.lend()),
+        };
+        for i in 0..4 {
+            for (height, count) in [(0.2 * 2.0_f32.sqrt() + 1e-3, 1), (0.3, 0), (-0.3, 0)] {
+                let standing = vec![beam(0.0, 0.3, i & 1 == 0), beam(height, 1.4, i & 2 == 0)];
+                let mut lines = Lines { all: Vec::new(), long: 0.5, slack: 5e-3 };
+                lines.cross(&Bodies { standing, members: Vec::new() });
+                assert_eq!(lines.all.len(), count, "{height}");
+                for Line { ends: [on, to], .. } in lines.all {
+                    let place = Vec3::new(0.2, 0.5 * height, -0.1);
+                    assert!(on.distance(place) < 1e-4 && to.distance(place + Vec3::Y * 0.5) < 1e-4, "{on} {to}");
+                }
+            }
+        }
+    }
+
+    /// A box is touched where it is touched as a hull, and nothing is that lies beyond a sharp tip.
+    #[test]
+    fn hulls_are_touched_where_they_are() {
+        let half = Vec3::new(0.3, 0.2, 0.1);
+        let corners = [0, 1, 2, 3, 4, 5, 6, 7];
+        let corners = corners.map(|i| Vec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 })) * half);
+        let made = HullBuf::of(&corners).expect("a hull");
+        let rotation = Mat3::from_rotation_z(0.4);
+        let plain = Standing { center: Vec3::X, rotation, half, hull: None };
+        let hull = Standing { center: Vec3::X, rotation, half, hull: Some(made.lend()) };
+        let mut touched = 0;
+        for i in 0..1000 {
+            let own = Vec3::from([i % 10, i / 10 % 10, i / 100].map(|k| 0.1 * k as f32 - 0.4613));
+            let place = plain.center + rotation * own;
+            let [plain, hull] = [&plain, &hull].map(|body| body.face(place, 0.12));
+            assert_eq!(plain.is_some(), hull.is_some(), "{own}");
+            touched += i32::from(plain.is_some());
+        }
+        assert!((100..900).contains(&touched), "{touched}");
+        let tip = [Vec3::X * 0.5, Vec3::new(-0.5, 0.1, 0.0), Vec3::new(-0.5, -0.1, 0.1), Vec3::new(-0.5, -0.1, -0.1)];
+        let made = HullBuf::of(&tip).expect("a hull");
+        let sharp = Standing {
+            center: Vec3::ZERO,
+            rotation: Mat3::IDENTITY,
+            half: made.lend().half(),
+            hull: Some(made.lend()),
+        };
+        let end = made.lend().corners.iter().map(|corner| corner.x).fold(0.0, f32::max);
+        assert!(sharp.face(Vec3::X * (end + 0.19), 0.2).is_some() && sharp.face(Vec3::X * (end + 0.21), 0.2).is_none());
     }
 }

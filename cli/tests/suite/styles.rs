@@ -157,3 +157,107 @@ fn a_cloth_is_shown_by_its_strain() {
     assert!(count(&shown, 0) > 300, "{}", count(&shown, 0));
     assert_eq!(count(&drawn(&folder, "--show strain --duration 0"), 0), 0);
 }
+
+/// What is drawn of ropes, strands and links has the colour of its strain: grey as it begins, red where it hangs stretched by a tenth or more.
+#[test]
+fn ropes_strands_and_links_are_shown_by_their_strain() {
+    let scene = |what: &str| {
+        format!(
+            r#"{{
+            "run": {{"duration": 2, "dt": 0.01, "substeps": 4}}, "background": [0, 0, 0], "ambient": [1, 1, 1],
+            "camera": {{"eye": [0, 0, 5], "towards": [0, 0, -1], "up": [0, 1, 0], "xfov": 0.4}},
+            "forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], {what}
+        }}"#
+        )
+    };
+    let [grey, red] = [[170, 170, 180], [235, 70, 50]];
+    // Each is a metre long and hangs by its upper end; where it is soft it is stretched by more than a tenth there.
+    let rope = |stretch: &str| {
+        format!(
+            r#""ropes": [{{"curve": [[0, 1, 0], [0, 0, 0]], "segments": 10, "weight": 1, {stretch} "damping": 0.5, "drag": 1, "fixed": [0],
+            "width": 0.05}}]"#
+        )
+    };
+    let strand = |young: f32| {
+        format!(
+            r#""strands": [{{"form": {{"curve": [[0, 1, 0], [0, 0, 0]]}}, "segments": 10, "radius": 0.01, "density": 3000, "young": {young},
+            "damping": 0.5, "drag": 1, "fixed": [0, 1], "width": 0.05}}]"#
+        )
+    };
+    let rod = |compliance: f32| {
+        format!(
+            r#""particles": [{{"position": [0, 1, 0], "fixed": true}}, {{"position": [0, 0, 0], "mass": 1}}],
+            "constraints": [{{"distance": {{"ends": [0, 1], "length": 1, "compliance": {compliance}, "damping": 3}}}}]"#
+        )
+    };
+    // The rod is about a pixel wide.
+    for (soft, stiff, least) in
+        [(rope(r#""stretch": 15,"#), rope(""), 40), (strand(1.5e5), strand(3e9), 40), (rod(1.0 / 80.0), rod(0.0), 8)]
+    {
+        let seen = |what: &str, args: &str| {
+            let image = drawn(&Folder::with("a.json", scene(what)), args);
+            [grey, red].map(|color| like(&image, color))
+        };
+        let [_, plain] = seen(&soft, "");
+        let [_, stretched] = seen(&soft, "--show strain");
+        assert!(plain == 0 && stretched > least, "{soft}: {plain} {stretched}");
+        for (what, args) in [(&stiff, "--show strain"), (&soft, "--show strain --duration 0")] {
+            let [slack, stretched] = seen(what, args);
+            assert!(slack > least && stretched == 0, "{what}: {slack} {stretched}");
+        }
+    }
+}
+
+/// Rods between particles of ropes are drawn, and so are those from there to others; a rope's own links are not drawn twice.
+#[test]
+fn rods_are_drawn_whatever_they_begin_at() {
+    let rope = r#""ropes": [{"curve": [[-1, 1, 0], [-1, -1, 0]], "segments": 4, "weight": 1, "fixed": [0, 1, 2, 3, 4], "width": 0.001,
+        "color": [0, 0, 0, 255]}]"#;
+    let scene = |ends: [u32; 2]| {
+        let rod = format!(r#""constraints": [{{"distance": {{"ends": [{}, {}], "length": 2}}}}],"#, ends[0], ends[1]);
+        let rod = if ends[0] == ends[1] { "" } else { &rod };
+        format!(
+            r#"{{
+            "run": {{"duration": 0}}, "background": [0, 0, 0], "ambient": [1, 1, 1],
+            "camera": {{"eye": [0, 0, 5], "towards": [0, 0, -1], "up": [0, 1, 0], "xfov": 0.4}},
+            "particles": [{{"position": [1, 0, 0], "fixed": true, "color": [0, 0, 0, 255]}}], {rod} {rope}
+        }}"#
+        )
+    };
+    let seen = |ends| like(&drawn(&Folder::with("a.json", scene(ends)), ""), [170, 170, 180]);
+    assert_eq!(seen([0, 0]), 0);
+    let [to, from, within] = [[0, 3], [3, 0], [1, 5]].map(seen);
+    assert!(to > 20 && from > 20 && within > 20, "{to} {from} {within}");
+}
+
+/// Cloth on cloth is shown where one is as far from the other as both are thick, and not where they are apart, nor unless it is asked for.
+#[test]
+fn contacts_of_cloth_with_cloth_are_shown() {
+    let scene = |height: f32, thickness: f32| {
+        let sheet = |y: f32, more: &str| {
+            format!(
+                r#"{{"form": {{"sheet": {{"corner": [-0.5, {y}, -0.3], "sides": [[1, 0, 0], [0, 0, 0.6]], "cells": [4, 3]}}}}, "density": 0.2,
+                "shell": {{"stretch": [1000, 1000], "shear": 100}}, "thickness": {thickness}{more}}}"#
+            )
+        };
+        let fixed = format!(r#", "fixed": {:?}"#, (0..20).collect::<Vec<_>>());
+        format!(
+            r#"{{
+            "run": {{"duration": 0.1, "dt": 0.01}}, "background": [0, 0, 0], "ambient": [0.2, 0.2, 0.2],
+            "camera": {{"eye": [0, 0.5, 5], "towards": [0, 0, -1], "up": [0, 1, 0], "xfov": 0.4}},
+            "forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}],
+            "cloths": [{}, {}]
+        }}"#,
+            sheet(0.0, &fixed),
+            sheet(height, "")
+        )
+    };
+    let seen = |height: f32, thickness: f32, args: &str| {
+        let image = drawn(&Folder::with("a.json", scene(height, thickness)), args);
+        like(&image, [60, 200, 230])
+    };
+    assert_eq!(seen(0.0101, 0.01, ""), 0);
+    let touching = seen(0.0101, 0.01, "--show contacts");
+    assert!(touching > 20, "{touching}");
+    assert_eq!(seen(0.3, 0.01, "--show contacts"), 0);
+}

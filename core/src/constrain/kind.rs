@@ -81,6 +81,21 @@ impl ConstraintKind {
         list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
     }
 
+    /// How long each of its [`links`](Self::links) is at rest \[m\], in their order, and for ever the last of these; nothing where it has none.
+    pub fn lengths(&self) -> impl Iterator<Item = f32> {
+        let list = match self {
+            Self::Distance(distance) => core::slice::from_ref(&distance.length),
+            Self::Rope(rope) | Self::TiedRope(TiedRope { rope, .. }) => &rope.lengths[..],
+            Self::Cluster(_)
+            | Self::Attach(_)
+            | Self::Shell(_)
+            | Self::Strands(_)
+            | Self::StrainLimits(_)
+            | Self::Tie(_) => &[],
+        };
+        list.iter().copied().chain(list.last().into_iter().flat_map(|&last| core::iter::repeat(last)))
+    }
+
     /// The particles of the scene's start that it binds.
     pub fn ends(&self) -> impl Iterator<Item = &u32> {
         let nobody: [&[u32]; 2] = [&[]; 2];

@@ -56,11 +56,15 @@ const LONG: Color = [235, 70, 50, 255];
 pub fn springs(state: &State<'_>, full: f32, into: &mut [Line]) -> (usize, usize) {
     let line = |Held { spring, rows: [a, b], .. }: Held<'_>| {
         let ends = ends(state, [a, b]);
-        let rest = spring.rest(state.time);
-        let strain = if rest > 0.0 { length(ends[1] - ends[0]) / rest - 1.0 } else { 0.0 };
-        Line::plain(ends, strained(strain / full))
+        by_strain(ends, spring.rest(state.time), full)
     };
     fill(state.springs.held().map(line), into)
+}
+
+/// The line between two places that are so far apart at rest \[m\].
+fn by_strain(ends: [Vec3; 2], rest: f32, full: f32) -> Line {
+    let strain = if rest > 0.0 { length(ends[1] - ends[0]) / rest - 1.0 } else { 0.0 };
+    Line::plain(ends, strained(strain / full))
 }
 
 /// Where two particles are, the second in the image that is nearest to the first.
@@ -80,6 +84,34 @@ pub fn links(
     let row = |number: u32| state.springs.row(number);
     let line = |rows| Line::plain(ends(state, rows), color);
     fill(pairs.filter_map(|[a, b]| Some(line([row(a)?, row(b)?]))), into)
+}
+
+/// Writes the lines that [`links`] does, in the colours that [`springs`] have by their strain, for pairs that come with how far apart they are at
+/// rest \[m\]. Returns their number and how many were left out.
+///
+/// ```
+/// use pointmass::draw::{Line, links_by_strain, strained};
+/// use pointmass::{Heap, Particle, Scene, System, Vec3};
+///
+/// let start = [0.0, 1.1, 2.05].map(|x| Particle { position: Vec3::X * x, ..Particle::REST });
+/// let scene = Scene { start: &start, ..Scene::EMPTY };
+/// let mut system = System::with(Heap::new(scene.size()));
+/// system.start(&scene, 1)?;
+/// let (rope, mut lines) = ([([0, 1], 1.0), ([1, 2], 1.0)], [Line::NONE; 2]);
+/// assert_eq!(links_by_strain(&system.state(&scene), rope.into_iter(), 0.1, &mut lines), (2, 0));
+/// assert_eq!(lines[0].colors, [strained(1.0); 2]); // It is longer by a tenth: all red.
+/// assert!(lines[1].colors[0].into_iter().zip(strained(-0.5)).all(|(a, b)| a.abs_diff(b) < 2));
+/// # Ok::<(), pointmass::InsufficientMemory>(())
+/// ```
+pub fn links_by_strain(
+    state: &State<'_>,
+    pairs: impl Iterator<Item = ([u32; 2], f32)>,
+    full: f32,
+    into: &mut [Line],
+) -> (usize, usize) {
+    let row = |number: u32| state.springs.row(number);
+    let line = |rows, rest| by_strain(ends(state, rows), rest, full);
+    fill(pairs.filter_map(|([a, b], rest)| Some(line([row(a)?, row(b)?], rest))), into)
 }
 
 /// The colour of a share of the full strain, −1 to 1: red where longer than at rest, blue where shorter, grey between.

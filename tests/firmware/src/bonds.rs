@@ -1,10 +1,11 @@
 //! What holds together, computed alike by every target: the firmware here, the host in `tests/tests/hashes.rs`.
 //!
 //! A rope that hangs from a nail, a ring of soft links, a die, a jelly, a sheet, two boxes and a bent wire are thrown onto the floor, one
-//! after the other, and all but the wire at once; then two cloths of an uneven mesh.
+//! after the other, and all but the wire at once; then two cloths of an uneven mesh, sheets in the wind and on each other, and hulls.
 
 use crate::cloth;
 use crate::drawing::{hash_bodies, hash_strands, hash_surface};
+use crate::{hulls, sheets};
 use pointmass::constrain::{
     Attach, Contacts, Distance, Hinge, RigidBodies, RigidBox, Rope, ShapeMatching, Shell, ShellParams, StrandParams,
     Strands, Tie,
@@ -43,6 +44,8 @@ pub(crate) struct Memory {
     start: [Particle; PARTICLES],
     system: System<Inline<PARTICLES, 0, 0, COLUMNS, KEPT>>,
     cloth: cloth::Memory,
+    sheets: sheets::Memory,
+    hulls: hulls::Memory,
 }
 
 impl Memory {
@@ -51,6 +54,8 @@ impl Memory {
             start: [Particle { mass: 0.0, elasticity: 0.0, ..Particle::REST }; PARTICLES],
             system: System::with(Inline::new()),
             cloth: cloth::Memory::new(),
+            sheets: sheets::Memory::new(),
+            hulls: hulls::Memory::new(),
         }
     }
 }
@@ -58,7 +63,7 @@ impl Memory {
 /// Calls `out` with the name of each and the hash after a second and a half; and with those of boxes, a surface and a strand as they are drawn
 /// then.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
-    let Memory { start, system, cloth } = memory;
+    let Memory { start, system, cloth, sheets, hulls } = memory;
     throw(start);
     let rope = Rope { damping: 0.02, ..Rope::rigid(ROPE, [0.1]) };
     let ring = Rope { compliance: 1e-4, closed: true, ..Rope::rigid(RING, [0.12]) };
@@ -117,6 +122,8 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         out(drawn, hash.finish());
     }
     cloth::run(cloth, out);
+    sheets::run(sheets, out);
+    hulls::run(hulls, out);
 }
 
 /// Particles in air that fall on a floor.

@@ -22,12 +22,16 @@ mod contacts;
 mod drawing;
 mod expected;
 #[cfg(roomy)]
+mod hulls;
+#[cfg(roomy)]
 mod indices;
 #[cfg(roomy)]
 mod motion;
 #[cfg(target_arch = "wasm32")]
 mod page;
 mod scenes;
+#[cfg(roomy)]
+mod sheets;
 
 #[cfg(target_arch = "wasm32")]
 use page::{println, process};
