@@ -73,7 +73,8 @@ fn fly(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let start = &mut start[..points(FLAG)];
     for (i, (place, position)) in start.iter_mut().zip(FLAG.positions()).enumerate() {
         let mass = 0.002 + 0.0003 * (i % 4) as f32;
-        *place = Particle { position, mass, fixed: i as u32 % (FLAG.cells[0] + 1) == 0, ..Particle::REST };
+        let column = i as u32 % (FLAG.cells[0] + 1);
+        *place = Particle { position, mass, fixed: column == 0, ..Particle::REST };
     }
     let (faces, folds) = net(&[FLAG], triangles, hinges);
     let threads = ClothSprings { structural: Some(SpringParams { ks: 80.0, kd: 0.01 }), ..ClothSprings::default() };
