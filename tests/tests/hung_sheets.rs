@@ -50,7 +50,10 @@ fn hung_sheets_that_cannot_be_are_refused_by_name() {
     for (rest, words) in [
         (r#""mass": 1, "hung": {"stretch": [1, 1]}"#, "hung: needs the cloth's density"),
         (r#""density": 1, "hung": {"stretch": [1, 0]}"#, "hung.stretch: has to be above zero, not 0"),
-        (r#""density": 1, "hung": {"stretch": [1, 1e-45]}"#, "hung.stretch: makes it stiffer than 32-bit floats"),
+        (
+            r#""density": 1, "hung": {"stretch": [1, 1e-45]}"#,
+            "hung.stretch: makes it stiffer or softer than 32-bit floats",
+        ),
         (r#""density": 1, "hung": {"stretch": [1, 1], "shear": -1}"#, "hung.shear: has to be zero or more"),
         (
             r#""density": 1, "hung": {"stretch": [1, 1]}, "shell": {"stretch": [1, 1], "shear": 1}"#,

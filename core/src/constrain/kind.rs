@@ -1,5 +1,6 @@
 //! The constraints that a scene file names.
 
+use super::tie::BODY_TWICE;
 use super::{
     Attach, Bodies, Constraint, Demand, Distance, Hinge, Rope, ShapeMatching, Share, Shell, StrainLimits, Strands, Tie,
     TiedRope,
@@ -60,7 +61,10 @@ impl ConstraintKind {
             Self::Strands(strands) => strands.fault().or_else(|| twice(&strands.particles)),
             Self::StrainLimits(limits) => limits.fault(),
             Self::Tie(tie) => tie.fault().or_else(|| twice(&tie.to).map(|(_, why)| ("to", why))),
-            Self::TiedRope(tied) => tied.fault().or_else(|| twice(&tied.rope.particles)),
+            Self::TiedRope(tied) => {
+                let bodies = || tied.ends.iter().flatten().find_map(|tie| twice(&tie.to)).map(|_| BODY_TWICE);
+                tied.fault_but_twice().or_else(|| twice(&tied.rope.particles)).or_else(bodies)
+            }
         }
     }
 

@@ -214,39 +214,45 @@ pub(super) fn solve_thin(b: Mat3, change: Vec3) -> Vec3 {
         return Vec3::ZERO;
     }
     // In units of the trace nothing underflows, however small the cluster.
-    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = system(b);
-    let own = [x.x / trace, y.y / trace, z.z / trace];
-    let rest = [y.z / trace, z.x / trace, x.y / trace];
+    let rows = (system(b).transpose() * (1.0 / trace)).to_cols_array_2d();
     let change = (change / trace).to_array();
-    let next = |[x, y, z]: [f32; 3]| [y, z, x];
-    let after = |[x, y, z]: [f32; 3]| [z, x, y];
-    let answer = if own[0] >= own[1] && own[0] >= own[2] {
-        from_the_first(own, rest, change)
-    } else if own[1] >= own[2] {
-        after(from_the_first(next(own), next(rest), next(change)))
+    let [own, beside, across] = [rows[0][0], rows[1][1], rows[2][2]];
+    let answer = if own >= beside && own >= across {
+        from_the_first(rows, change)
+    } else if beside >= across {
+        last_first(from_the_first(first_last(rows.map(first_last)), first_last(change)))
     } else {
-        next(from_the_first(after(own), after(rest), after(change)))
+        first_last(from_the_first(last_first(rows.map(last_first)), last_first(change)))
     };
     let answer = Vec3::from_array(answer);
     if answer.is_finite() { answer } else { Vec3::ZERO }
 }
 
-/// x of A x = b for a symmetric matrix whose first number on the diagonal is its largest, by that and what is opposite to it off the diagonal. Along a
-/// direction that it makes nothing of x is nothing.
-fn from_the_first([xx, yy, zz]: [f32; 3], [yz, zx, xy]: [f32; 3], [a, b, c]: [f32; 3]) -> [f32; 3] {
+fn first_last<T>([x, y, z]: [T; 3]) -> [T; 3] {
+    [y, z, x]
+}
+
+fn last_first<T>([x, y, z]: [T; 3]) -> [T; 3] {
+    [z, x, y]
+}
+
+/// x of A x = b by the rows of A, whose first number on the diagonal is its largest. Along a direction of which it makes nothing x is nothing.
+fn from_the_first(rows: [[f32; 3]; 3], [a, b, c]: [f32; 3]) -> [f32; 3] {
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rows;
     let first = 1.0 / xx;
-    let ([p, q], [b, c]) = ([xy * first, zx * first], [b - xy * first * a, c - zx * first * a]);
-    let ([yy, zz], yz) = ([yy - p * xy, zz - q * zx], yz - p * zx);
+    let [p, q] = [yx * first, zx * first];
+    let ([yy, yz], [zy, zz]) = ([yy - p * xy, yz - p * xz], [zy - q * xy, zz - q * xz]);
     let over = |pivot: f32| if pivot > THIN { 1.0 / pivot } else { 0.0 };
     // Of both the larger is next; of the last there is nothing left where all lies on a line.
     let largest_first = |[y, z]: [f32; 2]| if zz > yy { [z, y] } else { [y, z] };
-    let ([b, c], [own, other]) = (largest_first([b, c]), largest_first([yy, zz]));
+    let ([b, c], [own, other]) = (largest_first([b - p * a, c - q * a]), largest_first([yy, zz]));
+    let [yz, zy] = largest_first([yz, zy]);
     let second = over(own);
-    let third = over(other - yz * second * yz);
-    let z = (c - yz * second * b) * third;
+    let third = over(other - zy * second * yz);
+    let z = (c - zy * second * b) * third;
     let with = |alone: f32, pair| {
         let [y, z] = largest_first(pair);
-        Vec3::new((alone - xy * y - zx * z) * first, y, z)
+        Vec3::new((alone - xy * y - xz * z) * first, y, z)
     };
     let mut answer = with(a, [(b - yz * z) * second, z]);
     if third == 0.0 {
@@ -262,6 +268,7 @@ pub(super) const THIN: f32 = 1e-6;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::length;
     use crate::rng::Stream;
 
     /// However thin what turns is, and wherever it points: turning so has the moment that was asked for, and about the axis of what lies on a line
@@ -289,5 +296,38 @@ mod tests {
                 assert!(dot(found, along).abs() < 1e-3, "{serial}: {found} about {along}");
             }
         }
+    }
+
+    /// What turns in a sub-step is found by its angular momentum, thin or not: the system of a round is not symmetric.
+    #[test]
+    fn what_keeps_its_angular_momentum_is_found() {
+        let mut lost = 0;
+        for serial in 0..1000 {
+            let stream = Stream::new(5, 1, serial);
+            let vector = |place| {
+                let ([x, y], [z, _]) = (stream.units(place), stream.units(place + 1));
+                Vec3::new(x, y, z) - 0.5
+            };
+            let thick = [0.1, 0.3, 1.0][serial as usize % 3];
+            let far = [0.03, 0.1, 0.3][serial as usize / 3 % 3];
+            let (along, about) = (vector(0), vector(2));
+            let true_turn = Turn::NONE.on(about * (far / sqrt(dot(about, about))));
+            let (mut from, mut torque) = (Mat3::ZERO, Vec3::ZERO);
+            for number in 0..10 {
+                let place = along * (number as f32 - 4.5) + vector(4 + 2 * number) * thick;
+                from += outer(place, place);
+                torque += place.cross(true_turn.matrix() * place);
+            }
+            let found = keeping_by(solve_thin, Turn::NONE, (from, torque), None);
+            let has = found.map(|turn| {
+                let Mat3 { x_axis: x, y_axis: y, z_axis: z } = from * turn.matrix().transpose();
+                Vec3::new(z.y - y.z, x.z - z.x, y.x - x.y)
+            });
+            let left = has.map(|has| length(has - torque) / trace(from));
+            assert!(left.is_none_or(|left| left < 1e-5), "{serial}: {left:?}");
+            lost += u32::from(left.is_none());
+        }
+        // Rounding keeps few of the thin ones from an answer.
+        assert!(lost < 10, "{lost} of 1000");
     }
 }

@@ -220,7 +220,9 @@ impl Cloth {
         }
         // What a sheet without area is refused for is said below.
         match self.shell_params().and_then(|params| params.fault()) {
-            Some(_) => refuse(".stretch", "makes it stiffer than 32-bit floats can tell; take more"),
+            Some(_) => {
+                refuse(".stretch", "makes it stiffer or softer than 32-bit floats can tell; some 0.1 to 10 are usual")
+            }
             None => Ok(()),
         }
     }

@@ -218,7 +218,10 @@ impl Cord {
             air.check(at, self.drag)?;
         }
         let [compliance, brake] = self.give(whole);
-        if !(compliance.is_finite() && brake.is_finite()) {
+        if compliance.is_finite() && !brake.is_finite() {
+            return refuse("damping", "is more than 32-bit floats can tell for so stiff a rope; take less");
+        }
+        if !compliance.is_finite() {
             let field = if self.young.is_some() { "young" } else { "stretch" };
             let than = if field == "young" { "more" } else { "less" };
             let message = format!("makes it softer than 32-bit floats can tell; take {than}, or a heavier rope");

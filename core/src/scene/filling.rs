@@ -78,7 +78,11 @@ pub(super) fn filled(form: &SoftForm, mesh: Option<&MeshBuf>, scale: f32, spacin
     let [nx, ny, nz] = cells;
     let places = (0..ny).flat_map(|y| (0..nz).flat_map(move |z| (0..nx).map(move |x| [x, y, z])));
     let is_inside = |place: &Vec3| solid.is_none_or(|mesh| mesh.is_inside(middle + *place / scale));
-    let mut places: Vec<Vec3> = places.map(from_middle).filter(is_inside).collect();
+    let most = MOST_OF_SOFT as usize;
+    let mut places: Vec<Vec3> = places.map(from_middle).filter(is_inside).take(most + 1).collect();
+    if places.len() > most {
+        return Err(("spacing", format!("fills it with more than {most} particles; take a wider one")));
+    }
     if solid.is_some() {
         let sum = |axis: usize| places.iter().map(|place| f64::from(place[axis])).sum::<f64>();
         let centre = [0, 1, 2].map(|axis| (sum(axis) / places.len().max(1) as f64) as f32);

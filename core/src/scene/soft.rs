@@ -162,7 +162,8 @@ impl SoftBody {
             stiffness.map_or((0.0, 0.0), |stiffness| (1.0 / stiffness, self.damping * stiffness));
         if !(compliance.is_finite() && damping.is_finite()) {
             let field = if self.give.is_some() { "give" } else { "frequency" };
-            return Err((field, format!("makes it softer than 32-bit floats can tell, for {moves:e} kg")));
+            let than = if compliance.is_finite() { "stiffer" } else { "softer" };
+            return Err((field, format!("makes it {than} than 32-bit floats can tell, for {moves:e} kg")));
         }
         let all = numbers().map(|(number, _)| number).collect();
         let cluster = ConstraintKind::Cluster(ShapeMatching { particles: all, compliance, damping });

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 const QUADS: [[u32; 4]; 6] = [[1, 3, 7, 5], [0, 4, 6, 2], [2, 6, 7, 3], [0, 1, 5, 4], [4, 5, 7, 6], [0, 2, 3, 1]];
 
 /// The determinant of a body's moments, in units of their trace, below which its particles lie in a plane.
-const FLAT: f32 = 1e-6;
+const FLAT: f64 = 1e-12;
 
 /// A rigid body at the scene's start.
 #[derive(Debug)]
@@ -75,18 +75,26 @@ impl Solid {
         let middle = now.map(|column| mean(&|row| column[row]));
         let rest: Vec3 = rows.iter().map(|&(_, start)| start * share).sum();
         // The linear map that takes its particles from where they were to where they are, and to their velocities.
-        let sum = |of: &dyn Fn(usize, Vec3) -> Vec3| {
+        let sum = |of: &dyn Fn(usize) -> Vec3| {
             let columns = [Vec3::X, Vec3::Y, Vec3::Z];
-            columns.map(|axis| rows.iter().map(|&(row, q)| of(row, q - rest) * (q - rest).dot(axis)).sum::<Vec3>())
+            columns.map(|axis| rows.iter().map(|&(row, q)| of(row) * (q - rest).dot(axis)).sum::<Vec3>())
         };
-        let [a, b, c] = sum(&|_, q| q);
-        let trace = a.x + b.y + c.z;
+        // Of slender bodies more figures count than 32 bits hold.
+        let moments = |[i, j]: [usize; 2]| {
+            rows.iter().map(|&(_, q)| f64::from((q - rest)[i]) * f64::from((q - rest)[j])).sum::<f64>()
+        };
+        let [xx, yy, zz] = [[0, 0], [1, 1], [2, 2]].map(moments);
+        let [yz, zx, xy] = [[1, 2], [2, 0], [0, 1]].map(moments);
+        let first = [yy * zz - yz * yz, yz * zx - xy * zz, xy * yz - yy * zx];
+        let (trace, volume) = (xx + yy + zz, xx * first[0] + xy * first[1] + zx * first[2]);
         // Particles that lie in a plane do not tell where the rest of their body is.
-        if !((a / trace).dot((b / trace).cross(c / trace)) > FLAT) {
+        if !(volume > FLAT * (trace * trace * trace)) {
             return;
         }
-        let inverse = [b.cross(c), c.cross(a), a.cross(b)].map(|column| column / a.dot(b.cross(c)));
-        let maps = [0, 1].map(|i| sum(&|row, _| now[i][row] - middle[i]));
+        let second = [first[1], xx * zz - zx * zx, xy * zx - xx * yz];
+        let third = [first[2], second[2], xx * yy - xy * xy];
+        let inverse = [first, second, third].map(|row| Vec3::from_array(row.map(|part| (part / volume) as f32)));
+        let maps = [0, 1].map(|i| sum(&|row| now[i][row] - middle[i]));
         let corner = |&corner: &Vec3| {
             let shares = inverse.map(|row| row.dot(corner - rest));
             [0, 1].map(|i| middle[i] + maps[i][0] * shares[0] + maps[i][1] * shares[1] + maps[i][2] * shares[2])

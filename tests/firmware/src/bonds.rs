@@ -60,7 +60,7 @@ impl Memory {
     }
 }
 
-/// Calls `out` with the name of each and the hash after a second and a half; and with those of boxes, a surface and a strand as they are drawn
+/// Calls `out` with the name of each and the hash after a second and a half, or less where sheets and hulls have files of their own; and with those of boxes, a surface and a strand as they are drawn
 /// then.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, system, cloth, sheets, hulls } = memory;

@@ -187,7 +187,7 @@ fn keeping<F: Eight>(last: Turns<F>, from: Matrices<F>, torque: Vectors<F>, ther
     (turn, found | goes_on & before.simd_lt(there.all(EVEN)))
 }
 
-/// As one round of that solves for its angle, by Cramer's rule.
+/// How far each round of that turns, by Cramer's rule.
 #[inline(always)]
 fn solve<F: Eight>(b: Matrices<F>, change: Vectors<F>) -> Vectors<F> {
     let [Vectors([xx, xy, xz]), Vectors([yx, yy, yz]), Vectors([zx, zy, zz])] = b.0;

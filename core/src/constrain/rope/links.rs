@@ -319,7 +319,10 @@ impl<'m> Links<'m> {
 
     /// How it moves; none, if something holds it.
     pub(super) fn motion(&self, bodies: &Bodies<'_>) -> Option<Motion> {
-        let whole = Whole::of(bodies, self.living(bodies.len())).filter(|_| self.is_free(bodies))?;
+        if !self.is_free(bodies) {
+            return None;
+        }
+        let whole = Whole::of(bodies, self.living(bodies.len()))?;
         Some(Motion { whole, vigour: self.vigour(bodies) })
     }
 

@@ -24,10 +24,22 @@ pub struct TiedRope<P, L, T, W = [f32; 0]> {
     pub ends: [Option<Tie<T, W>>; 2],
 }
 
+const PARTICLE_TWICE: (&str, &str) = ("particles", "must not name a particle twice");
+pub(in crate::constrain) const BODY_TWICE: (&str, &str) = ("ends", "must not name a particle of a body twice");
+
 impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRope<P, L, T, W> {
-    /// The first of its numbers that cannot be used, and what it has to be.
+    /// The first of its numbers that cannot be used, and what it has to be. That nobody is named twice is asked of all by twos.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let twice = |list: &[u32]| list.iter().enumerate().any(|(i, one)| list[..i].contains(one));
+        let bodies = || self.ends.iter().flatten().any(|tie| twice(tie.to.as_ref()));
+        self.fault_but_twice()
+            .or_else(|| twice(self.rope.particles.as_ref()).then_some(PARTICLE_TWICE))
+            .or_else(|| bodies().then_some(BODY_TWICE))
+    }
+
+    /// The same without asking whether somebody is named twice.
+    pub(in crate::constrain) fn fault_but_twice(&self) -> Option<(&'static str, &'static str)> {
         let particles = self.rope.particles.as_ref();
         let ends = [particles.first(), particles.last()];
         let is_end = |(tie, end): (&Option<Tie<T, W>>, Option<&u32>)| {
@@ -37,9 +49,6 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
         };
         let own = !self.ends.iter().zip(ends).all(is_end);
         let wrong = self.rope.closed && self.ends.iter().any(Option::is_some);
-        // Without a heap there is no sorting a copy.
-        let twice = |list: &[u32]| list.iter().enumerate().any(|(i, one)| list[..i].contains(one));
-        let bodies = self.ends.iter().flatten().any(|tie| twice(tie.to.as_ref()));
         self.rope
             .fault()
             .or_else(|| self.ends.iter().flatten().find_map(Tie::fault))
@@ -47,8 +56,6 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
                 own.then_some(("ends", "have to tie the rope's first and last particle to particles of others"))
             })
             .or_else(|| wrong.then_some(("ends", "must not be tied where the rope is closed: it has none")))
-            .or_else(|| twice(particles).then_some(("particles", "must not name a particle twice")))
-            .or_else(|| bodies.then_some(("ends", "must not name a particle of a body twice")))
     }
 
     /// The words that its ties keep.
