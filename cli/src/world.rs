@@ -134,7 +134,8 @@ impl World {
             None if file.emitters.is_empty() && args.substeps == Substeps::Auto => particles,
             None => particles.max(file.run.capacity as usize),
         };
-        let memory = Heap::try_new(model.size(capacity)).map_err(|_| {
+        // Nobody is put in here but by the scene.
+        let memory = Heap::alike(model.size(capacity), &model.scene().likeness()).map_err(|_| {
             Failure::new(format!("there is no memory for {capacity} particles; lower --capacity (or the scene's)"))
         })?;
         let mut system = System::with(memory);

@@ -86,7 +86,7 @@ pub use material::{ContactMaterial, Material, MaterialList};
 pub use measure::{Energy, Measures};
 #[cfg(feature = "alloc")]
 pub use memory::Heap;
-pub use memory::{Alike, Column, Columns, Common, Inline, Size, Slices, Storage};
+pub use memory::{Alike, Column, Columns, Common, Inline, Likeness, Own, Size, Slices, Storage};
 pub use observe::{Attention, Impact, LifeEvent, Observer, Phase, Sliding};
 pub use particles::{Color, Full, Id, Particle, WHITE};
 pub use reap::{Cause, Chance, Dense, PendingDeath, Reaper, ReaperKind};

@@ -33,6 +33,7 @@ mod implicit;
 mod indices;
 mod integrators;
 mod ledger;
+mod likeness;
 mod lives;
 mod looks;
 mod mesh_floors;

@@ -97,7 +97,10 @@ impl World {
         memory::room_to_build(&file, &files)?;
         let model = Model::load(&file, "scene", &mut files)?;
         let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(model.particles.len() as u32));
-        let heap = Heap::try_new(model.size(capacity as usize)).map_err(|_| {
+        let mut likeness = model.scene().likeness();
+        // JavaScript may write where it looks: that must not be shared with other columns.
+        likeness.own.radius = true;
+        let heap = Heap::alike(model.size(capacity as usize), &likeness).map_err(|_| {
             JsError::new(&format!("there is not enough memory for {capacity} particles: take a smaller capacity"))
         })?;
         let has_trails = model.materials.iter().any(|material| material.trail.is_some());

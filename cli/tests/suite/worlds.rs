@@ -110,8 +110,11 @@ fn steps_ask_nothing_of_the_heap_and_give_the_same_bits_on_any_number_of_threads
         let mut alone = started(&file, &model);
         let asked = allocation_counter::measure(|| run(&mut alone));
         assert_eq!(asked.count_total, 0, "{path:?}");
+        let size = alone.memory().columns().size();
         for threads in [1, 2, 8] {
-            let mut system = started(&file, &model);
+            // In memory without the columns that the scene does not need.
+            let mut system = System::with(Heap::alike(size, &scene.likeness()).expect("there is as much already"));
+            system.start(&scene, file.run.seed).expect("it fits");
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             pool.install(|| run(&mut system));
             assert_eq!(system.hash(), alone.hash(), "{path:?} on {threads} threads");

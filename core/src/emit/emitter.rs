@@ -147,9 +147,10 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
         self.where_sparse.map_or(0.0, |sparse| sparse.radius)
     }
 
-    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
         visit(&self.extreme(0.0));
         visit(&self.extreme(1.0));
+        true
     }
 
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {

@@ -68,10 +68,12 @@ pub trait Emit: Sync {
     }
 
     /// Visits particles between whose attributes those of all lie that it bears, by which [`start`](crate::System::start) tells whether
-    /// memory that holds some of them for all ([`Column::Common`](crate::Column)) will do. By default none: births that are otherwise are refused
-    /// one by one, and counted.
-    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+    /// memory that holds some of them for all ([`Column::Common`](crate::Column)) will do; says whether these are all extremes. By default it
+    /// does not tell: births that are otherwise are refused one by one, and counted, and [`Scene::likeness`](crate::Scene::likeness) takes
+    /// nothing for granted.
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
         let _ = visit;
+        false
     }
 
     /// Brings about the births between `from` (excluded) and `to` (included).
@@ -239,6 +241,9 @@ impl Emit for () {
     fn count(&self) -> usize {
         0
     }
+    fn extremes(&self, _: &mut dyn FnMut(&Particle)) -> bool {
+        true
+    }
     fn emit(&self, _: Time, _: Time, _: &mut Births<'_>) {}
 }
 
@@ -249,8 +254,8 @@ impl<T: Emit + ?Sized> Emit for &T {
     fn reach(&self) -> f32 {
         (**self).reach()
     }
-    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
-        (**self).extremes(visit);
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
+        (**self).extremes(visit)
     }
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         (**self).emit(from, to, births);
@@ -264,8 +269,12 @@ impl<T: Emit> Emit for [T] {
     fn reach(&self) -> f32 {
         self.iter().map(Emit::reach).fold(0.0, max)
     }
-    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
-        self.iter().for_each(|emitter| emitter.extremes(visit));
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
+        let mut are_all = true;
+        for emitter in self {
+            are_all &= emitter.extremes(visit);
+        }
+        are_all
     }
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         for emitter in self {
@@ -285,8 +294,8 @@ macro_rules! lists {
             fn reach(&self) -> f32 {
                 self.as_slice().reach()
             }
-            fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
-                self.as_slice().extremes(visit);
+            fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
+                self.as_slice().extremes(visit)
             }
             fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
                 self.as_slice().emit(from, to, births);
@@ -314,10 +323,10 @@ macro_rules! tuples {
                 let ($($name,)+) = self;
                 [$($name.reach()),+].into_iter().fold(0.0, max)
             }
-            fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+            fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
-                $($name.extremes(visit);)+
+                [$($name.extremes(visit)),+].iter().all(|&are_all| are_all)
             }
             fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
                 #[allow(non_snake_case)]

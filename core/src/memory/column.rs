@@ -42,7 +42,8 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
                 rows[row] = value;
                 true
             }
-            Self::Common(rows) => rows.get(row) == Some(&value),
+            // The first is in the cache, as it was asked for last time.
+            Self::Common(rows) => rows.first() == Some(&value),
         }
     }
 

@@ -1,14 +1,19 @@
 //! The memory of a system: who owns it, and what lies where.
 
 mod column;
+#[cfg(feature = "alloc")]
+mod heap;
 mod layout;
+mod likeness;
 mod storage;
+mod table;
 mod workspace;
 
 pub use column::Column;
+#[cfg(feature = "alloc")]
+pub use heap::Heap;
 pub use layout::{Demand, Kept, Words};
 pub(crate) use layout::{Layout, Past, Plan, Scratch, Shares, take, take_vectors};
-#[cfg(feature = "alloc")]
-pub use storage::Heap;
+pub use likeness::{Likeness, Own};
 pub use storage::{Alike, Columns, Common, Inline, Size, Slices, Storage};
 pub(crate) use workspace::{Inertias, Status, TILED, Workspace};

@@ -1,12 +1,10 @@
-//! Where a system's memory comes from: inline arrays, borrowed slices, or the heap, once.
+//! Where a system's memory comes from: inline arrays, borrowed slices, or the heap, once (`heap.rs`).
 //!
 //! Capacity belongs to the owner of the memory and to nothing else: every algorithm works on `Slices`.
 
 use super::Column;
-use crate::emit::EmitterState;
-use crate::particles::{Color, Particle, WHITE};
-use crate::reap::PendingDeath;
-use crate::time::Time;
+use super::table::columns;
+use crate::particles::Particle;
 use glam::Vec3;
 
 /// Memory that a system can live in. Fresh memory is all zeros.
@@ -17,7 +15,7 @@ pub trait Storage {
     fn columns(&self) -> Columns<'_>;
 }
 
-/// Writes every list of columns once: the two views and the two owners are made from it.
+/// Writes the two views and the owners of inline memory.
 macro_rules! storage {
     (
         particle { $($(#[$p_doc:meta])* $p:ident: $p_ty:ty = $p_zero:expr,)+ }
@@ -264,73 +262,6 @@ macro_rules! storage {
                 }
             }
         }
-
-        /// Memory on the heap, asked for once.
-        #[cfg(feature = "alloc")]
-        #[derive(Clone, Debug)]
-        pub struct Heap {
-            $($p: alloc::vec::Vec<$p_ty>,)+
-            $($c: alloc::vec::Vec<$c_ty>,)+
-            $($e: alloc::vec::Vec<$e_ty>,)+
-            $($s: alloc::vec::Vec<$s_ty>,)+
-            $($k: alloc::vec::Vec<$k_ty>,)+
-            $($w: alloc::vec::Vec<$w_ty>,)+
-        }
-
-        #[cfg(feature = "alloc")]
-        impl Heap {
-            /// Fresh memory of the given size; ends the program if there is not so much.
-            #[must_use]
-            pub fn new(size: Size) -> Self {
-                Self {
-                    $($p: alloc::vec![$p_zero; size.particles],)+
-                    $($c: alloc::vec![$c_zero; size.particles],)+
-                    $($e: alloc::vec![$e_zero; size.emitters],)+
-                    $($s: alloc::vec![$s_zero; 2 * size.springs],)+
-                    $($k: alloc::vec![$k_zero; size.particles * size.kept],)+
-                    $($w: alloc::vec![$w_zero; size.particles * size.columns],)+
-                }
-            }
-
-            /// Fresh memory of the given size.
-            ///
-            /// # Errors
-            /// If there is not so much: nothing has been written then, and all is given back.
-            pub fn try_new(size: Size) -> Result<Self, alloc::collections::TryReserveError> {
-                let Size { particles, emitters, springs, columns, kept } = size;
-                let (ends, work) = (springs.saturating_mul(2), particles.saturating_mul(columns));
-                let kept = particles.saturating_mul(kept);
-                let mut new = Self {
-                    $($p: reserved(particles)?,)+
-                    $($c: reserved(particles)?,)+
-                    $($e: reserved(emitters)?,)+
-                    $($s: reserved(ends)?,)+
-                    $($k: reserved(kept)?,)+
-                    $($w: reserved(work)?,)+
-                };
-                $(new.$p.resize(particles, $p_zero);)+
-                $(new.$c.resize(particles, $c_zero);)+
-                $(new.$e.resize(emitters, $e_zero);)+
-                $(new.$s.resize(ends, $s_zero);)+
-                $(new.$k.resize(kept, $k_zero);)+
-                $(new.$w.resize(work, $w_zero);)+
-                Ok(new)
-            }
-        }
-
-        #[cfg(feature = "alloc")]
-        impl Storage for Heap {
-            fn slices(&mut self) -> Slices<'_> {
-                Slices {
-                    $($p: &mut self.$p,)+ $($c: Column::Own(&mut self.$c),)+ $($e: &mut self.$e,)+ $($s: &mut self.$s,)+ $($k: &mut self.$k,)+ $($w: &mut self.$w,)+
-                }
-            }
-            fn columns(&self) -> Columns<'_> {
-                Columns {
-                    $($p: &self.$p,)+ $($c: &self.$c,)+ $($e: &self.$e,)+ $($s: &self.$s,)+ $($k: &self.$k,)+ $($w: &self.$w,)+
-                }
-            }
-        }
     };
     (@unless_by_number last_spring $code:block) => {};
     (@unless_by_number $c:ident $code:block) => { $code };
@@ -350,65 +281,7 @@ macro_rules! storage {
     };
 }
 
-storage! {
-    particle {
-        /// Where it is \[m\], by row.
-        position: Vec3 = Vec3::ZERO,
-        /// How it moves \[m/s\], by row.
-        velocity: Vec3 = Vec3::ZERO,
-        /// When it was born, by row.
-        born: Time = Time::ZERO,
-        /// When it dies of age, by row.
-        dies: Time = Time::ZERO,
-        /// Why it will be removed at the end of this step, by row.
-        pending_death: PendingDeath = PendingDeath::Lives,
-        /// The number of particles that came into the system before it, by row.
-        serial: u32 = 0,
-        /// The key by which its random numbers are drawn as long as it lives, by row.
-        key: u32 = 0,
-        /// The slot it holds, by row.
-        slot: u32 = 0,
-        /// Its row, by slot; of a free slot the next free one plus one, zero ending the list.
-        row_of: u32 = 0,
-    }
-    common {
-        /// Radius \[m\], by row; zero: a point.
-        radius: f32 = 0.0, of |particle| particle.radius,
-        /// Mass \[kg\], by row.
-        mass: f32 = 0.0, of |particle| particle.mass,
-        /// Inverse mass \[1/kg\], by row; zero pins the particle.
-        inverse_mass: f32 = 0.0, of |particle| if particle.fixed { 0.0 } else { 1.0 / particle.mass },
-        /// Coefficient of linear drag \[kg/s\], by row.
-        drag: f32 = 0.0, of |particle| particle.drag,
-        /// Electric charge \[C\], by row.
-        charge: f32 = 0.0, of |particle| particle.charge,
-        /// Share of the normal speed kept in a hit, by row.
-        elasticity: f32 = 0.0, of |particle| particle.elasticity,
-        /// Its colour, by row.
-        color: Color = [0; 4], of |particle| match particle.color { Some(color) => color, None => WHITE },
-        /// Number of its material plus one, by row; zero: none.
-        material: u16 = 0, of |particle| match particle.material { Some(number) => number.saturating_add(1), None => 0 },
-        /// The end of its list of springs, by number of the particle in the scene's start.
-        last_spring: u32 = 0, of |_particle| 0,
-    }
-    emitter {
-        /// The state of each emitter: its births so far.
-        emitter_states: EmitterState = EmitterState::NEW,
-    }
-    spring {
-        /// The springs at each particle of the start, one list behind the other.
-        incident: u32 = 0,
-    }
-    kept {
-        /// The words kept of particles beside all that: columns of a user's own, then those that constraints keep of
-        /// each, then the other words that constraints keep, one behind the other.
-        kept: u32 = 0,
-    }
-    work {
-        /// Columns to work with, one behind the other.
-        work: Vec3 = Vec3::ZERO,
-    }
-}
+columns!(storage);
 
 /// What all particles of a system have in common, for memory ([`Alike`]) that does not keep it of each: radius, mass (or that it is
 /// fixed), drag, charge, elasticity, colour and material. Its place, velocity and lifetime say nothing.
@@ -424,13 +297,6 @@ fn copy(column: &mut [Vec3], from: usize, to: usize) {
     place.x = x;
     place.y = y;
     place.z = z;
-}
-
-#[cfg(feature = "alloc")]
-fn reserved<T>(len: usize) -> Result<alloc::vec::Vec<T>, alloc::collections::TryReserveError> {
-    let mut column = alloc::vec::Vec::new();
-    column.try_reserve_exact(len)?;
-    Ok(column)
 }
 
 /// How much memory a system has, or a scene needs.
@@ -493,21 +359,5 @@ mod tests {
         assert_eq!(one, 1000 * (91 + 4 * 12));
         let kept = size_of::<Inline<1000, 0, 0, 4, 3>>() - size_of::<Inline<1000, 0, 0, 4>>();
         assert_eq!(kept, 1000 * 3 * 4);
-    }
-
-    #[cfg(feature = "alloc")]
-    #[test]
-    fn memory_that_is_not_there_is_an_error() {
-        let size = Size { particles: 7, emitters: 3, springs: 5, columns: 2, kept: 4 };
-        for more in [usize::MAX, usize::MAX / 2, usize::MAX / 64, isize::MAX as usize / 12] {
-            assert!(Heap::try_new(Size { particles: more, ..size }).is_err(), "{more} particles");
-            assert!(Heap::try_new(Size { emitters: more, ..size }).is_err(), "{more} emitters");
-            assert!(Heap::try_new(Size { springs: more, ..size }).is_err(), "{more} springs");
-            assert!(Heap::try_new(Size { columns: more, ..size }).is_err(), "{more} columns");
-            assert!(Heap::try_new(Size { kept: more, ..size }).is_err(), "{more} kept words");
-        }
-        let heap = Heap::try_new(size).expect("a little memory");
-        assert_eq!(heap.columns().size(), size);
-        assert_eq!(heap.columns().size(), Heap::new(size).columns().size());
     }
 }

@@ -8,7 +8,7 @@ use crate::force::{Backdrop, Force, SpringList};
 use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
 use crate::material::MaterialList;
-use crate::memory::{Plan, Size};
+use crate::memory::{Likeness, Own, Plan, Size};
 use crate::particles::Particle;
 use crate::reap::Reaper;
 use crate::shape::Collider;
@@ -163,6 +163,23 @@ impl Scene<'_> {
             columns: plan.columns(particles),
             kept: plan.kept_columns(particles),
         }
+    }
+
+    /// What the particles that it begins with and bears have in common, for memory that holds that once ([`Heap::alike`](crate::Heap::alike));
+    /// nothing where an emitter does not tell what it bears ([`Emit::extremes`]). Springs and materials that change drags or
+    /// masses call for columns of their own. Who puts in other particles adds them ([`Likeness::add`]).
+    #[must_use]
+    pub fn likeness(&self) -> Likeness {
+        let mut all: Option<Likeness> = None;
+        let mut add = |particle: &Particle| all.get_or_insert_with(|| Likeness::of(*particle)).add(particle);
+        self.start.iter().for_each(&mut add);
+        let are_all = self.emitters.extremes(&mut add);
+        let Likeness { particle, mut own } = all.unwrap_or_default();
+        own.last_spring |= !self.springs.list().is_empty();
+        if self.materials.code().is_some_and(|code| (code.kept)(self.materials) > 0) {
+            own = Own { drag: true, mass: true, inverse_mass: true, ..own };
+        }
+        Likeness { particle, own: if are_all { own } else { Own::ALL } }
     }
 
     /// Tells whether paths are to be followed through space.
