@@ -227,30 +227,7 @@ impl<B: Storage> System<B> {
     }
 }
 
-impl<'a> Columns<'a> {
-    /// The columns by row, cut to the rows in use.
-    fn living(self, len: usize) -> Self {
-        Self {
-            position: &self.position[..len],
-            velocity: &self.velocity[..len],
-            radius: &self.radius[..len],
-            mass: &self.mass[..len],
-            inverse_mass: &self.inverse_mass[..len],
-            drag: &self.drag[..len],
-            charge: &self.charge[..len],
-            elasticity: &self.elasticity[..len],
-            born: &self.born[..len],
-            dies: &self.dies[..len],
-            color: &self.color[..len],
-            material: &self.material[..len],
-            pending_death: &self.pending_death[..len],
-            serial: &self.serial[..len],
-            slot: &self.slot[..len],
-            key: &self.key[..len],
-            ..self
-        }
-    }
-
+impl Columns<'_> {
     fn hash_row(&self, row: usize, hash: &mut Fnv) {
         hash.word(self.slot[row]);
         hash.word(self.serial[row]);

@@ -259,25 +259,30 @@ impl EventDriven<'_> {
         self.go(row, &onward);
     }
 
-    /// Two particles meet.
-    fn meet(&mut self, row: usize, other: usize, until: u32) {
-        let now = self.instant(until);
-        let rows = [row, other];
+    /// The rest of the paths of two from where they meet, and by how much that image of the second is off which the first touches; none where
+    /// a wall is in the way of one, which has met that first.
+    fn arrival(&mut self, rows: [usize; 2], now: Time) -> Option<([Path; 2], Vec3)> {
+        let [row, other] = rows;
         let from = self.instant(self.events.event(row).since.max(self.events.event(other).since));
         let whole = rows.map(|row| from_on(&self.path(row), from));
-        let at = self.touch(row, other, [&whole[0], &whole[1]]).0;
+        let touch = self.touch(row, other, [&whole[0], &whole[1]]).0;
         let mut paths = whole.map(|path| from_on(&path, now));
-        if let Some((at, _)) = at {
+        if let Some((at, _)) = touch {
             for (path, whole) in paths.iter_mut().zip(&whole) {
                 path.x0 = whole.at(at);
             }
         }
-        if self.is_stopped(row, paths[0].x0, now) || self.is_stopped(other, paths[1].x0, now) {
-            return;
-        }
+        let is_stopped = self.is_stopped(row, paths[0].x0, now) || self.is_stopped(other, paths[1].x0, now);
+        (!is_stopped).then(|| (paths, self.image(touch, &whole)))
+    }
+
+    /// Two particles meet.
+    fn meet(&mut self, row: usize, other: usize, until: u32) {
+        let (now, rows) = (self.instant(until), [row, other]);
+        let Some((mut paths, image)) = self.arrival(rows, now) else { return };
         let waits = rows.map(|row| self.events.event(row).waits != 0);
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
-        let offset = paths[0].x0 - paths[1].x0 - self.image(at, &whole);
+        let offset = paths[0].x0 - paths[1].x0 - image;
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
         let overlap = self.radius[row] + self.radius[other] - length(offset);

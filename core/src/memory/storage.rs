@@ -74,6 +74,13 @@ macro_rules! storage {
             }
         }
 
+        impl Columns<'_> {
+            /// The columns by row, cut to the rows in use.
+            pub(crate) fn living(self, len: usize) -> Self {
+                Self { $($p: storage!(@living self, len, $p),)+ $($c: storage!(@living self, len, $c),)+ ..self }
+            }
+        }
+
         impl Slices<'_> {
             /// The number of particles that fit.
             pub(crate) fn capacity(&self) -> usize {
@@ -263,6 +270,10 @@ macro_rules! storage {
             }
         }
     };
+    // By slot and by number, not by row.
+    (@living $self:ident, $len:ident, row_of) => { $self.row_of };
+    (@living $self:ident, $len:ident, last_spring) => { $self.last_spring };
+    (@living $self:ident, $len:ident, $column:ident) => { &$self.$column[..$len] };
     (@unless_by_number last_spring $code:block) => {};
     (@unless_by_number $c:ident $code:block) => { $code };
     // By slot, not by row: it stays where it is.
