@@ -60,17 +60,18 @@ pub(crate) fn render(args: &Render) -> Outcome {
     let frames = u32::try_from(timing.frames + 1).unwrap_or(u32::MAX);
     let mut sink = Sink::create(&args.out.0, f64::from(args.fps), frames)?;
     world.warn_of_steps(timing.step(), world.duration);
-    let pool = args.world.threads.map(pool).transpose()?;
+    // More threads than one are the world's.
+    let one = args.world.threads.filter(|&threads| threads == 1).map(pool).transpose()?;
 
     let fits = args.looking.needs_run(world.file.camera.is_some());
     let drawn = if sink.keeps_only_last() { 1 } else { timing.frames + 1 };
     let passes = if fits { 2 } else { 1 };
     let mut progress = Progress::of_work(passes * timing.frames * timing.substeps + drawn * timing.substeps);
-    let from = look(args, &mut world, &timing, &mut progress);
-    let mut draw = || film(args, &mut world, &timing, &from, &mut sink, &mut progress);
-    match &pool {
-        Some(pool) => pool.install(draw)?,
-        None => draw()?,
+    let from = world.on_threads(|world| look(args, world, &timing, &mut progress));
+    let mut draw = |world: &mut World| film(args, world, &timing, &from, &mut sink, &mut progress);
+    match &one {
+        Some(pool) => pool.install(|| draw(&mut world))?,
+        None => world.on_threads(draw)?,
     }
     let is_read = !sink.is_abandoned();
     sink.finish()?;

@@ -163,14 +163,18 @@ impl World {
         }
     }
 
+    /// Does something with it on its threads, if there are several. They are entered once for all steps: to hand a step over to a thread takes
+    /// as long as a small one.
+    pub(crate) fn on_threads<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
+        let Some(pool) = self.threads.take() else { return work(self) };
+        let done = pool.install(|| work(self));
+        self.threads = Some(pool);
+        done
+    }
+
     /// Steps to the instant `end`.
     pub(crate) fn step_to(&mut self, end: Time) -> Report {
-        let Self { model, system, pace, threads, .. } = self;
-        let scene = model.scene();
-        match threads {
-            Some(pool) => pool.install(|| pace.step(system, &scene, end, None)),
-            None => pace.step(system, &scene, end, None),
-        }
+        self.pace.step(&mut self.system, &self.model.scene(), end, None)
     }
 
     /// Steps to the instant `end` while somebody watches.

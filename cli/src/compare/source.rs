@@ -75,10 +75,12 @@ fn from_scene(scene: &std::path::Path, args: &Compare, seed: u64) -> Outcome<Sou
     let mut world = World::load(&settings)?;
     let schedule = Schedule::new(world.duration, world.dt);
     let mut progress = Progress::new(schedule.steps());
-    for step in 1..=schedule.steps() {
-        world.step_to(schedule.end(step));
-        progress.step(world.system.len());
-    }
+    world.on_threads(|world| {
+        for step in 1..=schedule.steps() {
+            world.step_to(schedule.end(step));
+            progress.step(world.system.len());
+        }
+    });
     let points = world.system.particles().position.to_vec();
     let (len, at, path) = (points.len(), nanoseconds(world.system.time().seconds_f64()), scene.display());
     if len < 2 {

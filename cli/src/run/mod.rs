@@ -31,27 +31,8 @@ pub(crate) fn run(args: &Run) -> Outcome {
     let model = world.model.clone();
     let mut ledger = args.ledger.then(|| Ledger::new(&world.system, &model.scene()));
     let mut effort = Effort::default();
-    let mut progress = Progress::new(schedule.steps());
     recordings.record(0, &world)?;
-    for step in 1..=schedule.steps() {
-        let begun = Instant::now();
-        let end = schedule.end(step);
-        match (&mut ledger, recordings.notes()) {
-            (Some(ledger), Some(notes)) => world.step_observed(end, &mut (ledger, notes)),
-            (Some(ledger), None) => world.step_observed(end, ledger),
-            (None, Some(notes)) => world.step_observed(end, notes),
-            (None, None) => world.step_to(end),
-        };
-        effort.seconds += begun.elapsed().as_secs_f64();
-        effort.steps = step;
-        effort.particle_steps += world.system.len() as u64;
-        if step % args.every == 0 || step == schedule.steps() {
-            recordings.record(step, &world)?;
-        }
-        recordings.happened(step)?;
-        progress.step(world.system.len());
-    }
-    drop(progress);
+    world.on_threads(|world| go(world, &schedule, args.every, &mut recordings, ledger.as_mut(), &mut effort))?;
     // How many sub-steps particles have made, those of each step being as many on average.
     let substeps = effort.particle_steps as f64 * world.pace.told().total as f64 / (effort.steps as f64).max(1.0);
     warn(stall::told(world.system.totals(), substeps).as_slice());
@@ -69,4 +50,35 @@ pub(crate) fn run(args: &Run) -> Outcome {
         return Ok(());
     }
     print(&said)
+}
+
+/// Steps and records, to the end.
+fn go(
+    world: &mut World,
+    schedule: &Schedule,
+    every: u64,
+    recordings: &mut Recordings,
+    mut ledger: Option<&mut Ledger>,
+    effort: &mut Effort,
+) -> Outcome {
+    let mut progress = Progress::new(schedule.steps());
+    for step in 1..=schedule.steps() {
+        let begun = Instant::now();
+        let end = schedule.end(step);
+        match (ledger.as_deref_mut(), recordings.notes()) {
+            (Some(ledger), Some(notes)) => world.step_observed(end, &mut (ledger, notes)),
+            (Some(ledger), None) => world.step_observed(end, ledger),
+            (None, Some(notes)) => world.step_observed(end, notes),
+            (None, None) => world.step_to(end),
+        };
+        effort.seconds += begun.elapsed().as_secs_f64();
+        effort.steps = step;
+        effort.particle_steps += world.system.len() as u64;
+        if step % every == 0 || step == schedule.steps() {
+            recordings.record(step, world)?;
+        }
+        recordings.happened(step)?;
+        progress.step(world.system.len());
+    }
+    Ok(())
 }

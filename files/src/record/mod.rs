@@ -33,7 +33,7 @@ pub struct Recorder {
 }
 
 /// Where records go: one file or many.
-trait Sink {
+trait Sink: Send {
     /// Takes a record.
     fn record(&mut self, frame: &Frame) -> io::Result<()>;
 
@@ -42,7 +42,7 @@ trait Sink {
 }
 
 /// A writer of one file in one format.
-trait Writer {
+trait Writer: Send {
     /// Writes a record.
     fn record(&mut self, frame: &Frame) -> io::Result<()>;
 
