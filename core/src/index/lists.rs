@@ -114,16 +114,31 @@ impl Lists<'_> {
         array::from_fn(place_of)
     }
 
-    /// The entries of some lists, and the number of the first: fetched from memory all at once, if there is room for them, which
-    /// takes less than to wait for each list in turn.
-    fn fetched<'r>(&'r self, spans: &[[u32; 2]], room: &'r mut [u32; ROOM]) -> (&'r [u32], usize) {
+    /// The entries of the lists of some points, and the number of the first: those of `rows` are fetched from memory all at once, if there is room
+    /// for them, which takes less than to wait for each list in turn.
+    fn fetched<'r>(
+        &'r self,
+        (spans, places): (&[[u32; 2]], &[Entry]),
+        rows: &Range<usize>,
+        room: &'r mut [u32; ROOM],
+    ) -> (&'r [u32], usize) {
         let [start, end] = match spans {
             [[start, end]] | [[start, _], .., [_, end]] => [*start as usize, *end as usize],
             [] => [0; 2],
         };
         match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
             Some((front, entries)) => {
-                front.copy_from_slice(entries);
+                if rows.contains(&0) && rows.len() >= self.places.len() {
+                    front.copy_from_slice(entries);
+                    return (room, start);
+                }
+                // Where threads share the rows, the others are no concern of this one.
+                for (span, _) in spans.iter().zip(places).filter(|(_, place)| rows.contains(&(place.row as usize))) {
+                    let [from, to] = span.map(|at| (at as usize).wrapping_sub(start));
+                    if let Some((front, list)) = front.get_mut(from..to).zip(entries.get(from..to)) {
+                        front.copy_from_slice(list);
+                    }
+                }
                 (room, start)
             }
             None => (self.entries, 0),
@@ -148,7 +163,7 @@ impl Kernel for Walk<'_> {
         let (mut nearby, mut fetched) = (Nearby::NOBODY, [0; ROOM]);
         let within = (reach, room.map(|room| room.side_by_side(like)));
         for (spans, places) in lists.spans.chunks(BATCH).zip(lists.places.chunks(BATCH)) {
-            let (entries, first) = lists.fetched(spans, &mut fetched);
+            let (entries, first) = lists.fetched((spans, places), &rows, &mut fetched);
             for (span, place) in spans.iter().zip(places) {
                 let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
                 if rows.contains(&row) {

@@ -42,6 +42,10 @@ pub struct BarnesHut<'m> {
 #[cfg(feature = "rayon")]
 const SHARE: usize = 512;
 
+/// The shares of a thread, that all may be done at about the same time.
+#[cfg(feature = "rayon")]
+const SHARES: usize = 8;
+
 /// So many points are summed one by one as quickly as all their moments.
 const FEW: usize = 2;
 
@@ -161,13 +165,15 @@ impl<'m> BarnesHut<'m> {
         visit: &mut dyn FnMut(usize, Vec3),
     ) -> Cost {
         use rayon::prelude::*;
-        let share = |i: usize| i * SHARE..((i + 1) * SHARE).min(slots.end);
+        // Each share goes into the tree anew, so a thread gets a few large ones rather than many.
+        let most = (slots.end / (SHARES * rayon::current_num_threads())).max(SHARE);
+        let share = |i: usize| i * most..((i + 1) * most).min(slots.end);
         let part = |i: usize| {
-            let mut sums = std::vec::Vec::with_capacity(SHARE);
+            let mut sums = std::vec::Vec::with_capacity(most);
             let cost = self.field_among(law, share(i), rows, &mut |row, sum| sums.push((row, sum)));
             (cost, sums)
         };
-        let parts: std::vec::Vec<_> = (0..slots.end.div_ceil(SHARE)).into_par_iter().map(part).collect();
+        let parts: std::vec::Vec<_> = (0..slots.end.div_ceil(most)).into_par_iter().map(part).collect();
         let mut cost = Cost::default();
         for (part, sums) in parts {
             cost += part;
