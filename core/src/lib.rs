@@ -66,7 +66,7 @@ pub use constrain::{
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
 pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};
-pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
+pub use emit::{Emit, Emitter, Jet, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
     Aerodynamics, AllPairs, Coulomb, CylinderDrag, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones,
