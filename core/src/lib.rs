@@ -56,7 +56,7 @@ mod time;
 #[cfg(feature = "alloc")]
 pub use cloth::mesh_springs;
 pub use cloth::{ClothSprings, Sheet, SpringParams};
-pub use collide::{Impulse, Meetings};
+pub use collide::{Impulse, Meetings, Paths};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
 pub use constrain::{
