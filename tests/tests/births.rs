@@ -369,7 +369,7 @@ fn a_jet_gives_the_births_of_an_emitter_of_which_no_more_is_asked() {
         let shape = Disc { center: random.vector(3.0), normal: random.direction(), radius: random.between(0.0, 2.0) };
         let varied = |mean, half_width| Varied { mean, half_width };
         let (speed, lifetime) = (varied(random.unit(), random.unit()), varied(random.between(0.0, 2.0), random.unit()));
-        let angle = if seed % 5 == 0 { 0.0 } else { random.between(0.0, 3.14) };
+        let angle = if seed % 5 == 0 { 0.0 } else { random.between(0.0, 3.0) };
         let newborn =
             Particle { drag: random.unit(), mass: 0.5 + random.unit(), radius: random.unit(), ..Particle::REST };
         let rate = random.magnitude(1.0, 1000.0);

@@ -105,6 +105,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 
     /// A newborn's path without the surface of its source.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn let_go(&self, path: &Path) -> Path {
         let mut path = *path;
         let_go(self.walls, self.sinks, &mut path, self.dt);
@@ -368,7 +369,6 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
 
 /// Takes the surface out of a newborn's path that it meets within rounding of its birth, in a step of `dt` \[s\]: it lies on that of its
 /// source, on whichever side rounding put it, and leaves it the way its velocity points.
-#[cfg_attr(target_os = "none", inline(never))]
 pub(super) fn let_go<C>(walls: &C, sinks: Option<&dyn Collider>, path: &mut Path, dt: f32)
 where
     C: Collider + ?Sized,

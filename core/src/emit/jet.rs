@@ -1,7 +1,6 @@
 //! An emitter for those who have little room for code.
 
-use super::vary::within;
-use super::{Births, Emit, Varied};
+use super::{Births, Emit, Spread, Varied};
 use crate::math::along;
 use crate::particles::Particle;
 use crate::rng::Stream;
@@ -71,7 +70,7 @@ impl<S: Surface> Jet<S> {
     fn newborn(&self, random: Stream) -> Particle {
         let [[u, v], [w, p], [q, speed], [_, life]] = random.units_of([0, 1, 2, 4]);
         let spot = self.shape.sample([u, v, w]);
-        let direction = within(self.angle, spot.normal, [p, q]);
+        let direction = Spread::Uniform(self.angle).direction(spot.normal, [p, q]);
         Particle {
             position: spot.point + Vec3::ZERO,
             velocity: along(Vec3::ZERO, direction, self.speed.pick(speed)),

@@ -54,33 +54,23 @@ impl Spread {
     /// The direction about the unit vector `axis` that two numbers uniform in [0, 1) pick.
     #[must_use]
     pub fn direction(self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
-        match self {
-            Self::Uniform(cutoff) => within(cutoff, axis, [u, v]),
-            Self::Lecture(0.0) => axis,
+        let (sin, cos) = match self {
+            Self::Uniform(0.0) | Self::Lecture(0.0) => return axis,
+            Self::Uniform(cutoff) => {
+                // 1 − cos c = 2 sin²(c/2) keeps the digits of small angles.
+                let (half, _) = sin_cos(0.5 * cutoff);
+                let drop = u * 2.0 * half * half;
+                (sqrt(max(drop * (2.0 - drop), 0.0)), 1.0 - drop)
+            }
             Self::Lecture(cutoff) => {
                 let sin = u * sin_cos(cutoff).0;
-                turned(axis, [sin, sqrt(max(1.0 - sin * sin, 0.0))], v)
+                (sin, sqrt(max(1.0 - sin * sin, 0.0)))
             }
-        }
+        };
+        let (a, b) = frame(axis);
+        let (along_b, along_a) = sin_cos_turns(v);
+        along(scaled(axis, cos), along(scaled(a, along_a), b, along_b), sin)
     }
-}
-
-/// The direction within an angle of the unit vector `axis` \[rad\] that two numbers uniform in [0, 1) pick, uniformly in solid angle.
-pub(super) fn within(cutoff: f32, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
-    if cutoff == 0.0 {
-        return axis;
-    }
-    // 1 − cos c = 2 sin²(c/2) keeps the digits of small angles.
-    let (half, _) = sin_cos(0.5 * cutoff);
-    let drop = u * 2.0 * half * half;
-    turned(axis, [sqrt(max(drop * (2.0 - drop), 0.0)), 1.0 - drop], v)
-}
-
-/// The direction at an angle from `axis`, by its sine and cosine, so many turns round that.
-fn turned(axis: Vec3, [sin, cos]: [f32; 2], turns: f32) -> Vec3 {
-    let (a, b) = frame(axis);
-    let (along_b, along_a) = sin_cos_turns(turns);
-    along(scaled(axis, cos), along(scaled(a, along_a), b, along_b), sin)
 }
 
 /// How a varied number is written.

@@ -49,6 +49,6 @@ pub(super) fn run(memory: &mut Memory) -> Result<(), u32> {
     right &= totals.born > 340 && totals.hits > 100 && totals.refused == 0;
     right &= totals.born == totals.died.total() + system.len() as u64;
     right &= drops.clone().all(|x| x.y >= 0.0);
-    let bits = drops.flat_map(|x| x.to_array()).fold(0, |bits: u32, x| bits.rotate_left(1) ^ x.to_bits());
+    let bits = drops.flat_map(pointmass::Vec3::to_array).fold(0, |bits: u32, x| bits.rotate_left(1) ^ x.to_bits());
     if right && bits == EXPECTED { Ok(()) } else { Err(bits) }
 }
