@@ -56,7 +56,7 @@ mod time;
 #[cfg(feature = "alloc")]
 pub use cloth::mesh_springs;
 pub use cloth::{ClothSprings, Sheet, SpringParams};
-pub use collide::{Impulse, Meetings};
+pub use collide::{Impulse, Meetings, Paths};
 #[cfg(feature = "alloc")]
 pub use constrain::ConstraintKind;
 pub use constrain::{
@@ -66,7 +66,7 @@ pub use constrain::{
 #[cfg(feature = "alloc")]
 pub use custom::CustomBuf;
 pub use custom::{Custom, CustomColumns, CustomColumnsMut, CustomList};
-pub use emit::{Emit, Emitter, Spread, Varied, WhereSparse};
+pub use emit::{Emit, Emitter, Jet, Spread, Varied, WhereSparse};
 pub use events::{Event, EventKind, Events};
 pub use force::{
     Aerodynamics, AllPairs, Coulomb, CylinderDrag, Drag, Drive, Force, ForceKind, Goal, Gravity, LennardJones,

@@ -81,16 +81,17 @@ fn rounds<T: Copy + Add<Output = T> + BitXor<Output = T>>(
     turned: impl Fn(T, u32) -> T,
 ) -> [T; 2] {
     const ROTATIONS: [[u32; 4]; 2] = [[13, 15, 26, 6], [17, 29, 16, 24]];
-    let keys = [key[0], key[1], key[0] ^ key[1] ^ 0x1BD1_1BDA];
+    let mut keys = [key[0], key[1], key[0] ^ key[1] ^ 0x1BD1_1BDA];
     let (mut x, mut y) = (x + all(keys[0]), y + all(keys[1]));
     for group in 0..5 {
         for turn in ROTATIONS[group % 2] {
             x = x + y;
             y = turned(y, turn) ^ x;
         }
-        let next = group + 1;
-        x = x + all(keys[next % 3]);
-        y = y + all(keys[(next + 1) % 3].wrapping_add(next as u32));
+        // In turn, without a remainder: the smallest chips divide in software.
+        keys = [keys[1], keys[2], keys[0]];
+        x = x + all(keys[0]);
+        y = y + all(keys[1].wrapping_add(group as u32 + 1));
     }
     [x, y]
 }

@@ -62,9 +62,9 @@ impl<B: Storage> System<B> {
     /// the scene needs of each; nothing is put in then. Particles
     /// beyond the capacity are refused and counted.
     pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), InsufficientMemory> {
-        self.status = Status { seed, ..Status::NEW };
-        let have = self.memory.columns().size();
+        self.status.begin(seed);
         let mut workspace = self.workspace();
+        let have = workspace.size();
         let differs = workspace.differs(scene);
         if differs.is_some() || !scene.fits(have) {
             return Err(InsufficientMemory { need: scene.size_for(have.particles), have, differs });
@@ -97,9 +97,8 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         self.status.is_reaped |= !scene.reapers.is_empty();
-        let have = self.memory.columns().size();
         let mut workspace = self.workspace();
-        if scene.fits(have) && workspace.lacks(scene).is_none() {
+        if scene.fits(workspace.size()) && workspace.lacks(scene).is_none() {
             workspace.status.kept = scene.plan().kept();
             workspace.step(scene, dt, &mut report, observer);
         } else {

@@ -62,6 +62,7 @@ pub fn busy<T>(act: impl FnOnce(&Scene<'_>) -> T) -> T {
         materials: &(),
         constraints: &(),
         substeps: 1,
+        paths: Scene::EMPTY.paths,
         meetings: Meetings::Through,
         max_bounces: Scene::EMPTY.max_bounces,
         sinks: &sink,

@@ -3,9 +3,9 @@
 use pointmass::emit::Burst;
 use pointmass::rng::Stream;
 use pointmass::shape::{Disc, Line, Plane};
-use pointmass::{Emit, Emitter, Gravity, Meetings, Method, Particle, Scene, Spread, Time, Varied, Vec3};
+use pointmass::{Emit, Emitter, Gravity, Jet, Meetings, Method, Particle, Scene, Spread, Time, Varied, Vec3};
 use pointmass_tests::emitting::{cuts, play, varied};
-use pointmass_tests::{Form, G, KS, chi_squared, f64s, gap, ks, often, point, started, turn};
+use pointmass_tests::{Form, G, KS, Random, chi_squared, f64s, gap, ks, often, point, started, turn};
 
 #[test]
 fn newborns_fly_ballistically_from_the_instant_of_birth() {
@@ -359,5 +359,40 @@ fn who_is_born_where_a_sub_step_ends_is_let_through_one_surface() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn a_jet_gives_the_births_of_an_emitter_of_which_no_more_is_asked() {
+    let mut random = Random::new(77);
+    for seed in 0..often(100) {
+        let shape = Disc { center: random.vector(3.0), normal: random.direction(), radius: random.between(0.0, 2.0) };
+        let varied = |mean, half_width| Varied { mean, half_width };
+        let (speed, lifetime) = (varied(random.unit(), random.unit()), varied(random.between(0.0, 2.0), random.unit()));
+        let angle = if seed % 5 == 0 { 0.0 } else { random.between(0.0, 3.0) };
+        let newborn =
+            Particle { drag: random.unit(), mass: 0.5 + random.unit(), radius: random.unit(), ..Particle::REST };
+        let rate = random.magnitude(1.0, 1000.0);
+        let jet = Jet { speed, angle, lifetime, ..Jet::new(shape, rate, newborn) };
+        let emitter = Emitter {
+            radius: Varied::exactly(newborn.radius),
+            speed,
+            lifetime,
+            spread: Spread::Uniform(angle),
+            ..Emitter::new(shape, rate).giving_birth_to(&newborn)
+        };
+        let [a, b]: [&dyn Emit; 2] = [&jet, &emitter];
+        let [a, b] = [a, b].map(|emitters| {
+            let scene = Scene { emitters, forces: &Gravity::EARTH, ..Scene::EMPTY };
+            let mut system = started(&scene, 100, seed as u64);
+            let hashes: Vec<u64> = (1..=50)
+                .map(|frame| {
+                    system.step_to(&scene, Time::frame(frame, 60));
+                    system.hash()
+                })
+                .collect();
+            (hashes, *system.totals())
+        });
+        assert_eq!(a, b, "{jet:?}");
     }
 }

@@ -14,8 +14,8 @@ use pointmass::reap::Verdicts;
 use pointmass::shape::{Collider, Cuboid, Hit, Plane, Segment};
 use pointmass::{
     Attention, Cause, Chance, Columns, Constraint, Contacts, Custom, Dense, Distance, Drag, Emit, Emitter, Force,
-    Gravity, Heap, Impact, Integrator, Measures, Meetings, Method, Observer, Particle, PendingDeath, Phase, Reaper,
-    Scene, Size, Slices, Storage, System, Time, Vec3, Viscosity, WhereSparse,
+    Gravity, Heap, Impact, Integrator, Measures, Meetings, Method, Observer, Particle, Paths, PendingDeath, Phase,
+    Reaper, Scene, Size, Slices, Storage, System, Time, Vec3, Viscosity, WhereSparse,
 };
 use pointmass_tests::{Random, f64s, gap, point, run, started};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -689,6 +689,7 @@ fn memory() {
         materials: &(),
         constraints: &(),
         substeps: 1,
+        paths: Paths::CURVED,
         meetings: Meetings::Through,
         max_bounces: 8,
         integrator: &Leapfrog,

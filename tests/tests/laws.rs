@@ -56,6 +56,7 @@ mod soft_bodies;
 mod springs;
 mod still;
 mod storage;
+mod straight_paths;
 mod strain_limits;
 mod strands;
 mod through_sides;

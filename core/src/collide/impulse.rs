@@ -18,7 +18,7 @@ pub(super) fn follow(passage: Passage<'_, '_>) {
     if !attributes.lives.radius.iter().any(|&radius| radius > 0.0) {
         return passage.each_by_itself();
     }
-    let Passage { tile, index, report, observer } = passage;
+    let Passage { tile, index, report, observer, .. } = passage;
     let (len, room) = (tile.position.len(), index.room());
     let Attributes { lives, inverse_mass, elasticity, .. } = tile.attributes;
     let Shares { start: [start_x, start_v], scratch, .. } = tile.layout.shares(tile.work);

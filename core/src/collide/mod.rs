@@ -10,8 +10,10 @@ mod near;
 mod packet;
 mod passage;
 mod path;
+mod paths;
 mod queue;
 mod slide;
+mod straight;
 mod sweep;
 mod tile;
 mod tile_sweep;
@@ -22,6 +24,6 @@ pub use meetings::{Impulse, Meetings};
 pub(crate) use passage::Passage;
 #[cfg(feature = "std")]
 pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
+pub use paths::Paths;
 pub(crate) use sweep::RESTING;
 pub(crate) use tile::{Obstacles, Tile};
-pub(crate) use tile_sweep::each_by_itself;

@@ -1,7 +1,7 @@
 //! A sub-step's sweep, as it is handed to whatever answers the meetings.
 
+use super::paths::Paths;
 use super::tile::Tile;
-use super::tile_sweep::each_by_itself;
 use crate::index::IndexChoice;
 use crate::observe::Observer;
 use crate::report::Report;
@@ -10,6 +10,8 @@ use crate::report::Report;
 pub(crate) struct Passage<'p, 't> {
     /// All rows.
     pub(crate) tile: &'p mut Tile<'t>,
+    /// How those go that meet no others.
+    pub(crate) paths: Paths,
     /// The index by which those are found who may meet.
     pub(crate) index: &'p dyn IndexChoice,
     pub(crate) report: &'p mut Report,
@@ -20,6 +22,6 @@ impl Passage<'_, '_> {
     /// Sends all past each other.
     #[inline(never)]
     pub(super) fn each_by_itself(self) {
-        each_by_itself(self.tile, self.report, self.observer);
+        self.paths.follow(self.tile, self.report, self.observer);
     }
 }

@@ -104,22 +104,12 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         self.walls.may_touch(hull) || self.sinks.is_some_and(|sinks| sinks.may_touch(hull))
     }
 
-    /// A newborn's path without the surface that it meets within rounding of its birth: it lies on that of its source,
-    /// on whichever side rounding put it, and leaves it the way its velocity points.
+    /// A newborn's path without the surface of its source.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn let_go(&self, path: &Path) -> Path {
-        let [start, _] = path.during;
-        let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, self.dt)) };
-        let hits = [self.walls.first_hit(&ahead), self.sinks.and_then(|sinks| sinks.first_hit(&ahead))];
-        let (step, far) = (ahead.step(), length(ahead.step()));
-        let near = |hit: &Hit| {
-            let off_surface = -dot(step, hit.normal) * hit.time <= 2.0 * hit.slack;
-            // A graze farther away is no birth on the surface.
-            off_surface && far * hit.time <= 40.0 * hit.slack
-        };
-        let beyond = |hit: Hit| along(ahead.at(hit.time), unit(step), 4.0 * hit.slack);
-        let x0 = hits.into_iter().flatten().find(near).map_or(path.x0, beyond);
-        Path { x0, x1: if path.duration() > 0.0 { path.x1 } else { x0 }, ..*path }
+        let mut path = *path;
+        let_go(self.walls, self.sinks, &mut path, self.dt);
+        path
     }
 
     /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
@@ -374,6 +364,29 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             back *= 4.0;
         }
         self.walls.carry(chord.from, self.radius, [chord.during[0], now])
+    }
+}
+
+/// Takes the surface out of a newborn's path that it meets within rounding of its birth, in a step of `dt` \[s\]: it lies on that of its
+/// source, on whichever side rounding put it, and leaves it the way its velocity points.
+pub(super) fn let_go<C>(walls: &C, sinks: Option<&dyn Collider>, path: &mut Path, dt: f32)
+where
+    C: Collider + ?Sized,
+{
+    let [start, _] = path.during;
+    let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, dt)) };
+    let hits = [walls.first_hit(&ahead), sinks.and_then(|sinks| sinks.first_hit(&ahead))];
+    let (step, far) = (ahead.step(), length(ahead.step()));
+    let near = |hit: &&Hit| {
+        let off_surface = -dot(step, hit.normal) * hit.time <= 2.0 * hit.slack;
+        // A graze farther away is no birth on the surface.
+        off_surface && far * hit.time <= 40.0 * hit.slack
+    };
+    if let Some(hit) = hits.iter().flatten().find(near) {
+        path.x0 = along(ahead.at(hit.time), unit(step), 4.0 * hit.slack);
+    }
+    if !(path.duration() > 0.0) {
+        path.x1 = path.x0;
     }
 }
 

@@ -1,9 +1,10 @@
 //! Rows that go through a step together, and what their paths are held against.
 
 use super::lead::LeadCode;
+use super::path::Path;
 use crate::force::Attributes;
 use crate::material::MaterialList;
-use crate::memory::Layout;
+use crate::memory::{Layout, Past};
 use crate::reap::PendingDeath;
 use crate::rows::Extents;
 use crate::shape::Collider;
@@ -49,5 +50,22 @@ impl Tile<'_> {
     /// When the sub-step ends.
     pub(crate) fn end(&self) -> Time {
         self.now + self.dt
+    }
+
+    /// A row's path through the sub-step.
+    pub(super) fn path(&self, past: Past<'_>, row: usize) -> Path {
+        let (Tile { dt, attributes, .. }, end) = (self, self.end());
+        // A newborn has come only part of the way.
+        let start = end - (end - attributes.lives.born[row]).min(*dt);
+        let [x0, v0] = past.start;
+        let (x1, v1) = (self.position[row], self.velocity[row]);
+        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
+    }
+
+    /// Tells whether a row moves in the sub-step: it is not fixed, nor yet to be born, nor has it vanished.
+    pub(super) fn is_under_way(&self, row: usize) -> bool {
+        let Tile { old, now, dt, attributes, .. } = self;
+        let is_still_to_come = row >= *old && attributes.lives.born[row] > *now + *dt;
+        attributes.inverse_mass[row] != 0.0 && !is_still_to_come && self.pending_death[row] == PendingDeath::Lives
     }
 }

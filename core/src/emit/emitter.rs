@@ -162,14 +162,7 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
             self.emit_bursts(burst, [first, last], births, number);
         }
         if first < last {
-            let mut due = births.due(number, self.rate, first, last);
-            while !births.is_full() {
-                let Some(at) = due.next() else { return };
-                if !self.bear(births, number, at) {
-                    break;
-                }
-            }
-            births.refuse(number, due.left());
+            births.bring(number, self.rate, [first, last], |births, at| self.bear(births, number, at));
         }
     }
 }
@@ -216,15 +209,13 @@ impl<S, M> Emitter<S, M> {
 
     /// The same emitter with births of exactly this mass, drag, elasticity and lifetime, fixed if this is.
     #[must_use]
-    pub fn giving_birth_to(self, newborn: &Particle) -> Self {
-        Self {
-            mass: Varied::exactly(newborn.mass),
-            fixed: newborn.fixed,
-            drag: Varied::exactly(newborn.drag),
-            elasticity: Varied::exactly(newborn.elasticity),
-            lifetime: Varied::exactly(newborn.lifetime),
-            ..self
-        }
+    pub const fn giving_birth_to(mut self, newborn: &Particle) -> Self {
+        self.mass = Varied::exactly(newborn.mass);
+        self.fixed = newborn.fixed;
+        self.drag = Varied::exactly(newborn.drag);
+        self.elasticity = Varied::exactly(newborn.elasticity);
+        self.lifetime = Varied::exactly(newborn.lifetime);
+        self
     }
 }
 

@@ -4,10 +4,12 @@
 //! floor(R(t + dt)) − floor(R(t)), R being the rate times the time, and each has an instant of its own.
 
 mod emitter;
+mod jet;
 mod state;
 mod vary;
 
 pub use emitter::{Burst, Emitter, WhereSparse};
+pub use jet::Jet;
 pub use state::EmitterState;
 pub use vary::{Spread, Varied};
 
@@ -164,6 +166,18 @@ impl Births<'_> {
         if self.bear(stream, at, &particle).is_err() {
             self.miss(at);
         }
+    }
+
+    /// Lets the births happen that a rate owes in a span, as long as `bear` says that they find room; refuses the others.
+    fn bring(&mut self, number: usize, rate: f32, [from, to]: [Time; 2], bear: impl Fn(&mut Self, Time) -> bool) {
+        let mut due = self.due(number, rate, from, to);
+        while !self.is_full() {
+            let Some(at) = due.next() else { return };
+            if !bear(self, at) {
+                break;
+            }
+        }
+        self.refuse(number, due.left());
     }
 
     /// The random numbers of an emitter's next birth.

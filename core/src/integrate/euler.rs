@@ -1,6 +1,6 @@
 //! The two Euler methods.
 
-use super::{Drift, Dynamics, Integrator, Motion, add_scaled};
+use super::{Drift, Dynamics, Integrator, Linearising, Motion, add_scaled};
 use crate::time::Time;
 
 /// Explicit Euler: x += h v, then v += h a, both from the step's beginning.
@@ -31,6 +31,10 @@ impl Integrator for Euler {
         Some(Drift::Before)
     }
 
+    fn linearising(&self) -> Option<Linearising> {
+        None
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let ([a], h) = (motion.work.take(), step.seconds());
         world.accelerations(time, motion.position, motion.velocity, a);
@@ -50,6 +54,10 @@ impl Integrator for Symplectic {
 
     fn drift(&self) -> Option<Drift> {
         Some(Drift::After)
+    }
+
+    fn linearising(&self) -> Option<Linearising> {
+        None
     }
 
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {

@@ -1,6 +1,6 @@
 //! Forces over masses: what a method asks for accelerations.
 
-use super::{Dynamics, Linear};
+use super::{Dynamics, Linear, Linearising, Now};
 use crate::force::{Finder, Force, SpringForce, State, Steady};
 use crate::observe::{Observer, Phase};
 use crate::rows::{BLOCKS, each_row_with};
@@ -18,6 +18,7 @@ pub(crate) struct Field<'a> {
     /// The particles, from a row on, and what the forces need to find in their state.
     pub(crate) finder: Finder<'a>,
     pub(crate) observer: &'a mut dyn Observer,
+    pub(crate) linearising: Option<Linearising>,
 }
 
 impl Dynamics for Field<'_> {
@@ -36,12 +37,10 @@ impl Dynamics for Field<'_> {
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
-        let Self { forces, springs, ref mut finder, .. } = *self;
-        let inverse_mass = &finder.attributes.inverse_mass[..position.len()];
-        finder.with_state(time, position, velocity, &mut |state| {
-            let springs: &dyn Force = springs.map_or(&(), |force| force(&state.springs));
-            then(&Linear::about(state, [forces, springs], inverse_mass));
-        });
+        let Self { forces, springs, ref mut finder, linearising, .. } = *self;
+        if let Some(code) = linearising {
+            (code.0)(finder, forces, springs, Now { time, position, velocity }, then);
+        }
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {

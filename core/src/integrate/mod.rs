@@ -36,7 +36,7 @@ pub use named::{Method, Tuned, Tuning, UnknownMethod};
 pub use rk4::Rk4;
 pub use verlet::Verlet;
 
-use crate::force::{Force, Perturbation, State};
+use crate::force::{Finder, Force, Perturbation, SpringForce, State};
 use crate::math::{largest, max};
 use crate::report::Effort;
 pub(crate) use crate::rows::{add_scaled, advance_by};
@@ -95,6 +95,38 @@ impl<'a> Linear<'a> {
     }
 }
 
+/// Makes linear systems of a scene's forces. A function, so that a program without a method that asks for them does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct Linearising(pub(crate) Linearise);
+
+type Linearise = fn(&mut Finder<'_>, &dyn Force, Option<SpringForce>, Now<'_>, &mut dyn FnMut(&Linear<'_>));
+
+/// Where all are at an instant, and how fast.
+pub(crate) struct Now<'a> {
+    pub(crate) time: Time,
+    pub(crate) position: &'a [Vec3],
+    pub(crate) velocity: &'a [Vec3],
+}
+
+impl Linearising {
+    /// Of all forces, springs included.
+    pub const FORCES: Self = Self(linearise);
+}
+
+fn linearise(
+    finder: &mut Finder<'_>,
+    forces: &dyn Force,
+    springs: Option<SpringForce>,
+    Now { time, position, velocity }: Now<'_>,
+    then: &mut dyn FnMut(&Linear<'_>),
+) {
+    let inverse_mass = &finder.attributes.inverse_mass[..position.len()];
+    finder.with_state(time, position, velocity, &mut |state| {
+        let springs: &dyn Force = springs.map_or(&(), |force| force(&state.springs));
+        then(&Linear::about(state, [forces, springs], inverse_mass));
+    });
+}
+
 /// A method to solve the equations of motion. It keeps no state of its own.
 ///
 /// ```
@@ -144,6 +176,12 @@ pub trait Integrator: Sync {
     /// everything, to the bits of [`advance`](Self::advance).
     fn drift(&self) -> Option<Drift> {
         None
+    }
+
+    /// The function behind [`Dynamics::linearise`], which a method that never asks for it need not hand out: without it, nothing is
+    /// linearised, and a chip is spared the code.
+    fn linearising(&self) -> Option<Linearising> {
+        Some(Linearising::FORCES)
     }
 
     /// Moves everything from `time` to `time` + `step`.

@@ -83,8 +83,9 @@ macro_rules! storage {
 
         impl Slices<'_> {
             /// The number of particles that fit.
+            #[cfg_attr(target_os = "none", inline(never))]
             pub(crate) fn capacity(&self) -> usize {
-                self.columns().capacity()
+                [$(self.$p.len(),)+ $(self.$c.len()),+].into_iter().fold(usize::MAX, usize::min)
             }
 
             /// Moves row `from` onto row `to`; both exist.
@@ -344,19 +345,21 @@ impl<T: Storage + ?Sized> Storage for alloc::boxed::Box<T> {
     }
 }
 
+impl Size {
+    /// That of memory for so many particles, by the lengths of its other columns.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(super) fn of(particles: usize, [emitters, incident, work, kept]: [usize; 4]) -> Self {
+        let share = |words: usize| words.checked_div(particles).unwrap_or(usize::MAX);
+        Self { particles, emitters, springs: incident / 2, columns: share(work), kept: share(kept) }
+    }
+}
+
 impl Columns<'_> {
     /// How much there is.
-    #[cfg_attr(target_os = "none", inline(never))]
     #[must_use]
     pub fn size(&self) -> Size {
-        let particles = self.capacity();
-        Size {
-            particles,
-            emitters: self.emitter_states.len(),
-            springs: self.incident.len() / 2,
-            columns: self.work.len().checked_div(particles).unwrap_or(usize::MAX),
-            kept: self.kept.len().checked_div(particles).unwrap_or(usize::MAX),
-        }
+        let Self { emitter_states, incident, work, kept, .. } = self;
+        Size::of(self.capacity(), [emitter_states.len(), incident.len(), work.len(), kept.len()])
     }
 }
 

@@ -1,6 +1,6 @@
 //! A system with its memory at hand: every phase of a step works on it, and particles are put into it.
 
-use super::{Slices, Words};
+use super::{Size, Slices, Words};
 use crate::index::Listed;
 use crate::particles::{Full, Id, Particle};
 use crate::reap::PendingDeath;
@@ -121,6 +121,13 @@ impl Status {
         totals: Report::NOTHING,
     };
 
+    /// Forgets everything. Apart: spread over its caller, it would be copied from a chip's flash, part by part.
+    #[inline(never)]
+    pub(crate) fn begin(&mut self, seed: u64) {
+        *self = Self::NEW;
+        self.seed = seed;
+    }
+
     /// An instant before which nobody dies of age.
     pub(crate) fn next_end(&self) -> Time {
         Time::NEVER - self.ends_before_never
@@ -138,6 +145,12 @@ impl Status {
 }
 
 impl Workspace<'_> {
+    /// How much memory there is.
+    pub(crate) fn size(&self) -> Size {
+        let Slices { emitter_states, incident, work, kept, .. } = &self.memory;
+        Size::of(self.capacity, [emitter_states.len(), incident.len(), work.len(), kept.len()])
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.status.len
     }

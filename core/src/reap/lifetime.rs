@@ -1,45 +1,37 @@
 //! Death of age.
 
-use super::{CHUNK, Cause, FEW, Reaper, Verdicts};
-use crate::force::State;
+use super::{CHUNK, Cause, FEW, Verdicts};
 use crate::lanes::widest;
 use crate::rows::BLOCKS;
 use crate::time::Time;
-use core::ops::Range;
 
 /// The last instant at which anybody dies.
 const BEFORE_NEVER: Time = Time::from_ticks(Time::NEVER.ticks() - 1);
 
-/// Ends those whose time has come.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lifetime;
-
-impl Reaper for Lifetime {
-    fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
-        let last = state.time.min(BEFORE_NEVER);
-        let dies = &state.dies[rows];
-        if !BLOCKS {
-            return end_due(0, dies, last, verdicts);
-        }
-        let next = last + Time::from_ticks(1);
-        let mut end_few = |first: usize, dies: &[Time]| {
-            for (few, dies) in dies.chunks(FEW).enumerate().filter(|(_, dies)| may_end(dies, next)) {
-                end_due(first + FEW * few, dies, last, verdicts);
-            }
-        };
-        widest(
-            #[inline(always)]
-            || {
-                let (chunks, rest) = dies.as_chunks::<CHUNK>();
-                for (nth, dies) in chunks.iter().enumerate() {
-                    if may_end(dies, next) {
-                        end_few(CHUNK * nth, dies);
-                    }
-                }
-                end_few(dies.len() - rest.len(), rest);
-            },
-        );
+/// Ends those whose time has come by now: these are the instants at which all die.
+pub(crate) fn end_old(dies: &[Time], now: Time, verdicts: &mut Verdicts<'_>) {
+    let last = now.min(BEFORE_NEVER);
+    if !BLOCKS {
+        return end_due(0, dies, last, verdicts);
     }
+    let next = last + Time::from_ticks(1);
+    let mut end_few = |first: usize, dies: &[Time]| {
+        for (few, dies) in dies.chunks(FEW).enumerate().filter(|(_, dies)| may_end(dies, next)) {
+            end_due(first + FEW * few, dies, last, verdicts);
+        }
+    };
+    widest(
+        #[inline(always)]
+        || {
+            let (chunks, rest) = dies.as_chunks::<CHUNK>();
+            for (nth, dies) in chunks.iter().enumerate() {
+                if may_end(dies, next) {
+                    end_few(CHUNK * nth, dies);
+                }
+            }
+            end_few(dies.len() - rest.len(), rest);
+        },
+    );
 }
 
 /// Ends those of some rows from the first on whose time has come by `last`.

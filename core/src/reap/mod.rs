@@ -21,8 +21,8 @@ use crate::index::{IndexChoice, Neighbours};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
-pub(crate) use lifetime::Lifetime;
-pub(crate) use nonfinite::Nonfinite;
+pub(crate) use lifetime::end_old;
+pub(crate) use nonfinite::end_lost;
 
 /// Rows that are looked at together, and those of them that are looked at closer where some of all may matter.
 pub(crate) const CHUNK: usize = 64;

@@ -138,6 +138,7 @@ impl<const P: usize, const S: usize, const N: usize> InlineScene<P, S, N> {
             materials: &(),
             constraints: &(),
             substeps: 1,
+            paths: Scene::EMPTY.paths,
             meetings: Meetings::Through,
             max_bounces: Scene::EMPTY.max_bounces,
             integrator: &Rk4,

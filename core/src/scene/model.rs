@@ -156,6 +156,7 @@ impl Model {
             materials: &self.materials,
             constraints: &self.constraints,
             substeps: self.substeps,
+            paths: Scene::EMPTY.paths,
             meetings: self.contacts.map_or(Meetings::Through, |response| response.meetings()),
             max_bounces: self.max_bounces,
             integrator: &self.integrator,

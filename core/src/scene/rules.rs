@@ -1,6 +1,6 @@
 //! The scene as a system steps through it.
 
-use crate::collide::{Meetings, Obstacles};
+use crate::collide::{Meetings, Obstacles, Paths};
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
@@ -45,6 +45,8 @@ pub struct Scene<'a> {
     /// parts of a step do what as many steps of their length do, but for births and deaths, reapers, springs that break, ageing, the sides of a periodic room, columns
     /// that forces write and what constraints do once a step, such as making lists, which are once a step.
     pub substeps: u32,
+    /// How their paths are held against all that.
+    pub paths: Paths,
     /// The answer of those that have a radius where they meet.
     pub meetings: Meetings,
     /// How often a particle may bounce in one sub-step before it waits at the surface for its end, which is counted in
@@ -79,6 +81,7 @@ impl Scene<'_> {
         materials: &(),
         constraints: &(),
         substeps: 1,
+        paths: Paths::CURVED,
         meetings: Meetings::Through,
         max_bounces: 8,
         integrator: &Symplectic,

@@ -37,8 +37,9 @@ impl Workspace<'_> {
         } else {
             self.phase_by_phase(scene, span, old, report, observer);
         }
-        if let Some(code) = scene.forces.needs().write {
-            self.write(code, scene, span, report);
+        let has_custom = scene.custom.count() > 0;
+        if has_custom {
+            self.let_forces_write(scene, span, report);
         }
         let len = self.len();
         scene.index.wrap(&mut self.memory.position[..len]);
@@ -48,7 +49,7 @@ impl Workspace<'_> {
             self.status.hint = Time::ZERO;
         }
         self.tell(Phase::Delete, scene, observer);
-        if scene.custom.count() > 0 {
+        if has_custom {
             self.let_write(scene, observer);
         }
     }
@@ -96,16 +97,18 @@ impl Workspace<'_> {
         let ([now, end], met) = (substep.during, report.hits + report.contacts);
         let (rows, capacity) = (0..self.len(), self.capacity());
         let tile = &mut self.tile(scene, [now, end - now], old, rows, capacity);
-        scene.meetings.follow(Passage { tile, index: scene.index, report: &mut *report, observer });
+        scene.meetings.follow(Passage { tile, paths: scene.paths, index: scene.index, report: &mut *report, observer });
         if report.hits + report.contacts > met {
             self.status.hint = Time::ZERO;
         }
     }
 
-    /// Says how far the step has come.
+    /// Says how far the step has come, to whoever listens.
     #[inline(never)]
     fn tell(&self, phase: Phase, scene: &Scene<'_>, observer: &mut dyn Observer) {
-        observer.after(phase, &self.state(scene));
+        if observer.attention() > Attention::Nothing {
+            observer.after(phase, &self.state(scene));
+        }
     }
 
     /// Takes a few rows at a time through all phases: the old, then the newborn.

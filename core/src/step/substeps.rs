@@ -36,7 +36,8 @@ impl Scene<'_> {
         let (needs, index, effort) = (self.forces.needs(), self.index, Effort::NONE);
         let finder = Finder { attributes, custom, needs, index, tree, near, lists, first, effort };
         let springs = self.springs.code().map(|code| code.force);
-        Field { forces: self.forces, springs, steady: self.steady(), finder, observer }
+        let linearising = self.integrator.linearising();
+        Field { forces: self.forces, springs, steady: self.steady(), finder, observer, linearising }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rows that go through a step together: all that there are, or few enough to stay in the cache meanwhile.
 
 use super::substeps::Carried;
-use crate::collide::{Tile, each_by_itself};
+use crate::collide::Tile;
 use crate::constrain::Substep;
 use crate::custom::CustomColumns;
 use crate::force::{Attributes, Springs, State, Steady};
@@ -9,7 +9,7 @@ use crate::index::{Listed, Neighbours};
 use crate::integrate::Drift;
 use crate::memory::{Layout, Status, TILED, Workspace};
 use crate::observe::Observer;
-use crate::reap::{Lifetime, Nonfinite, Reaper, Verdicts};
+use crate::reap::{Verdicts, end_lost, end_old};
 use crate::report::Report;
 use crate::rows::{BLOCKS, Extents, farthest_of_finite};
 use crate::scene::Scene;
@@ -205,7 +205,7 @@ impl<'a> Tile<'a> {
         let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
         self.advance(scene, substep, carried, report, observer);
         if scene.is_swept() {
-            each_by_itself(self, report, observer);
+            scene.paths.follow(self, report, observer);
         }
     }
 
@@ -263,18 +263,17 @@ impl Tile<'_> {
     /// of `h` \[s\].
     #[inline(never)]
     pub(super) fn judge(&mut self, h: f32) -> u64 {
-        let rows = 0..self.position.len();
-        let state = self.attributes.lives.moved(self.end(), self.position, self.velocity);
+        let end = self.end();
         let mut verdicts = Verdicts::on(self.pending_death);
         if self.may_end {
-            Lifetime.judge(&state, rows.clone(), &mut verdicts);
+            end_old(&self.attributes.lives.dies[..self.position.len()], end, &mut verdicts);
         }
         let (farthest, are_finite) = match self.reached.filter(|_| BLOCKS) {
             Some(Extents { place, .. }) => (place, true),
             None => farthest_of_finite(self.position, self.velocity),
         };
         if !are_finite {
-            Nonfinite.judge(&state, rows, &mut verdicts);
+            end_lost(self.position, self.velocity, &mut verdicts);
         }
         if stall::may_be(farthest, h) { stall::count(self.position, self.velocity, h) } else { 0 }
     }

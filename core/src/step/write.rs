@@ -2,7 +2,7 @@
 
 use crate::collide::Tile;
 use crate::custom::CustomColumnsMut;
-use crate::force::{State, Writing, Written};
+use crate::force::{State, Written};
 use crate::memory::Workspace;
 use crate::observe::Observer;
 use crate::report::Report;
@@ -12,7 +12,8 @@ use crate::time::Time;
 impl Workspace<'_> {
     /// Lets forces write, at a step's end.
     #[inline(never)]
-    pub(super) fn write(&mut self, code: Writing, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
+    pub(super) fn let_forces_write(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
+        let Some(code) = scene.forces.needs().write else { return };
         let (len, capacity) = (self.len(), self.capacity());
         let kept = core::mem::take(&mut self.memory.kept);
         let Tile { attributes, position, velocity, work, layout, .. } =

@@ -13,19 +13,7 @@ use crate::shape::{Collider, Facing};
 impl TileSweep<'_, '_> {
     /// A row's path through the sub-step.
     pub(super) fn path(&self, row: usize) -> Path {
-        let (Tile { dt, attributes, .. }, end) = (&*self.tile, self.tile.end());
-        // A newborn has come only part of the way.
-        let start = end - (end - attributes.lives.born[row]).min(*dt);
-        let [x0, v0] = self.past.start;
-        let (x1, v1) = (self.tile.position[row], self.tile.velocity[row]);
-        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
-    }
-
-    /// Tells whether a row moves in the sub-step: it is not fixed, nor yet to be born, nor has it vanished.
-    fn is_under_way(&self, row: usize) -> bool {
-        let Tile { old, now, dt, attributes, .. } = *self.tile;
-        let is_still_to_come = row >= old && attributes.lives.born[row] > now + dt;
-        attributes.inverse_mass[row] != 0.0 && !is_still_to_come && self.tile.pending_death[row] == PendingDeath::Lives
+        self.tile.path(self.past, row)
     }
 
     /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
@@ -37,10 +25,10 @@ impl TileSweep<'_, '_> {
     /// The same past these, of which so much is known.
     #[inline(never)]
     pub(super) fn follow_past(&mut self, row: usize, walls: &dyn Collider, known: Option<Facing>) {
-        if !self.is_under_way(row) {
+        if !self.tile.is_under_way(row) {
             return;
         }
-        let path = self.path(row);
+        let path = self.tile.path(self.past, row);
         let Self { tile, past, report, observer, .. } = self;
         let observer: Option<&mut dyn Observer> = match observer {
             Some(observer) => Some(&mut **observer),
