@@ -2,7 +2,10 @@
 
 mod closest;
 mod contact;
+mod eights;
+mod listing;
 mod lists;
+mod look;
 mod near;
 mod pair;
 mod renew;
@@ -13,6 +16,7 @@ mod settle;
 mod solver;
 mod taut;
 mod tree;
+mod waiting;
 mod zones;
 
 use super::{Bodies, Constraint, Demand, Share};
