@@ -24,5 +24,5 @@ pub(crate) use one::One;
 pub(crate) use row::{Row, load, mask_of, saved};
 pub(crate) use run::{run, run_abreast, widest};
 pub(crate) use sums::{Pull, dot, splat, sqrt, total, turned};
-pub(crate) use vectors::Vectors;
+pub(crate) use vectors::{Vectors, gathered};
 pub(crate) use width::{ABREAST, LANES, NOWHERE};

@@ -1,14 +1,14 @@
 //! What touches: blows since the picture before, and what lies on scenery, on bodies, on balls and on cloth now.
 
 use super::AHEAD;
-use super::sheets::{self, across, nearest};
+use super::sheets::{self, across};
 use glam::{Mat3, Vec3};
 use pointmass::constrain::{Hull, HullFace, HullList};
 use pointmass::draw::{Instance, Line, arrow, body};
 use pointmass::force::State;
 use pointmass::index::{SpatialIndex, Structure};
 use pointmass::scene::Model;
-use pointmass::shape::Collider;
+use pointmass::shape::{Collider, Surface, Triangle};
 use pointmass::{Attention, Color, Heap, Impact, Observer, RigidBodies, RigidBox, System};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -141,7 +141,7 @@ impl Standing<'_> {
                 // Beyond an edge no face is near, though its plane is.
                 let outside = |face: &&HullFace| face.normal.dot(own) > face.offset;
                 let triangles = hull.faces.iter().filter(outside).flat_map(|face| hull.triangles(face));
-                let nearest = triangles.map(|corners| own.distance(nearest(own, corners))).reduce(f32::min);
+                let nearest = triangles.map(|corners| own.distance(Triangle { corners }.nearest(own))).reduce(f32::min);
                 if nearest.is_some_and(|far| far > reach) {
                     return None;
                 }

@@ -1,15 +1,17 @@
 //! Where cloth lies on cloth: points over triangles, and edges across edges, that are as near each other as their thickness keeps them.
 
 use glam::Vec3;
-use pointmass::draw::Line;
 use pointmass::force::State;
 use pointmass::index::{SpatialIndex, Structure};
 use pointmass::scene::SheetContactsBuf;
-use pointmass::{Color, Particle};
+use pointmass::shape::{Line, Surface, Triangle};
+use pointmass::{Color, Particle, draw};
 use std::collections::BTreeMap;
 
 /// The share of their thickness by which two may be farther apart than that and touch all the same.
 const SLACK: f32 = 0.05;
+/// The share of a triangle that rounding makes of none.
+const ROUNDING: f32 = 1e-5;
 
 /// The lines of all that touch, upright on both and as far on one side as on the other, so `long` \[m\].
 pub(super) fn lines(
@@ -18,10 +20,10 @@ pub(super) fn lines(
     start: &[Particle],
     long: f32,
     color: Color,
-) -> Vec<Line> {
+) -> Vec<draw::Line> {
     let line = |[a, b]: [Vec3; 2]| {
         let (middle, half) = ((a + b) * 0.5, (a - b).normalize_or_zero() * (0.5 * long));
-        Line::plain([middle - half, middle + half], color)
+        draw::Line::plain([middle - half, middle + half], color)
     };
     touches(state, sheets, start).into_iter().map(|touch| line(touch.places)).collect()
 }
@@ -70,17 +72,17 @@ impl Sheets {
 
     /// Puts a point and a triangle on the list, if they touch.
     fn point(&self, point: u32, triangle: [u32; 3], list: &mut BTreeMap<Key, Touch>) {
-        let nearest = |of: &[Vec3]| {
-            let corners = triangle.map(|corner| of[corner as usize]);
-            let shares = over(of[point as usize], corners);
-            (shares, corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2])
+        let ends = |of: &[Vec3]| {
+            let (place, corners) = (of[point as usize], triangle.map(|corner| of[corner as usize]));
+            [place, Triangle { corners }.nearest(place)]
         };
-        let (shares, place) = nearest(&self.now);
-        let places = [self.now[point as usize], place];
-        let begun = || nearest(&self.begun).1.distance(self.begun[point as usize]);
+        let places = ends(&self.now);
+        let begun = || {
+            let [point, place] = ends(&self.begun);
+            point.distance(place)
+        };
         if let Some(distance) = self.distance([point, triangle[0]], places, begun) {
-            let mut between: Vec<_> = (0..3).filter(|&i| shares[i] > 0.0).map(|i| triangle[i]).collect();
-            between.sort_unstable();
+            let between = between(places[1], triangle, triangle.map(|corner| self.now[corner as usize]));
             list.insert((vec![point], between), Touch { places, distance, triangle: Some(triangle) });
         }
     }
@@ -180,35 +182,14 @@ fn root(sheet: &[u32], mut of: u32) -> u32 {
     of
 }
 
-/// The place of a triangle that is nearest to a point.
-pub(super) fn nearest(point: Vec3, corners: [Vec3; 3]) -> Vec3 {
-    let shares = over(point, corners);
-    corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2]
-}
-
-/// The shares of a triangle's corners in its place that is nearest to a point (Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
-fn over(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
-    let (ab, ac, [p, q, r]) = (b - a, c - a, [a, b, c].map(|corner| point - corner));
-    let [d1, d2, d3, d4, d5, d6] = [ab.dot(p), ac.dot(p), ab.dot(q), ac.dot(q), ab.dot(r), ac.dot(r)];
-    let [va, vb, vc] = [d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2];
-    if d1 <= 0.0 && d2 <= 0.0 {
-        [1.0, 0.0, 0.0]
-    } else if d3 >= 0.0 && d4 <= d3 {
-        [0.0, 1.0, 0.0]
-    } else if d6 >= 0.0 && d5 <= d6 {
-        [0.0, 0.0, 1.0]
-    } else if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let share = d1 / (d1 - d3);
-        [1.0 - share, share, 0.0]
-    } else if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let share = d2 / (d2 - d6);
-        [1.0 - share, 0.0, share]
-    } else if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        [0.0, 1.0 - share, share]
-    } else {
-        [va, vb, vc].map(|part| part / (va + vb + vc))
-    }
+/// The corners that a place of a triangle lies between, in order: one of three, two at an edge.
+fn between(place: Vec3, triangle: [u32; 3], corners: [Vec3; 3]) -> Vec<u32> {
+    let double = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length();
+    let least = ROUNDING * double(corners);
+    let share = |i: usize| double([place, corners[(i + 1) % 3], corners[(i + 2) % 3]]);
+    let mut between: Vec<_> = (0..3).filter(|&i| share(i) > least).map(|i| triangle[i]).collect();
+    between.sort_unstable();
+    between
 }
 
 /// The places where two edges are nearest to each other, if these are at the end of neither.
@@ -227,11 +208,7 @@ pub(super) fn across([[a, b], [c, d]]: [[Vec3; 2]; 2]) -> Option<[Vec3; 2]> {
 /// How far apart two edges are \[m\].
 fn apart(edges: [[Vec3; 2]; 2]) -> f32 {
     let [one, other] = edges;
-    // An edge is a triangle without width.
-    let from = |place: Vec3, [a, b]: [Vec3; 2]| {
-        let shares = over(place, [a, b, b]);
-        place.distance(a * shares[0] + b * (shares[1] + shares[2]))
-    };
+    let from = |place: Vec3, [from, to]: [Vec3; 2]| place.distance(Line { from, to }.nearest(place));
     let ends = one.map(|end| from(end, other)).into_iter().chain(other.map(|end| from(end, one)));
     let across = across(edges).map(|[a, b]| a.distance(b));
     ends.chain(across).fold(f32::INFINITY, f32::min)
@@ -317,11 +294,18 @@ mod tests {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y * 2.0];
         let at = |x: f32, y: f32, z: f32| {
             let place = Vec3::new(x, y, z);
-            let shares = over(place, corners);
-            assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-6 && shares.iter().all(|&share| share >= 0.0));
-            let nearest = corners.iter().zip(shares).map(|(&corner, share)| corner * share).sum::<Vec3>();
-            let coarse = sampled(place, corners);
-            assert!(coarse >= place.distance(nearest) - 1e-5 && coarse < place.distance(nearest) + 0.06, "{place}");
+            let nearest = Triangle { corners }.nearest(place);
+            let least = |of: &[u32]| {
+                let ends: Vec<_> = of.iter().map(|&corner| corners[corner as usize]).collect();
+                match ends[..] {
+                    [a] => place.distance(a),
+                    [a, b] => place.distance(Line { from: a, to: b }.nearest(place)),
+                    _ => (place.dot(Vec3::Z)).abs(),
+                }
+            };
+            // They are all that it takes to find the place.
+            let far = least(&between(nearest, [0, 1, 2], corners));
+            assert!((far - place.distance(nearest)).abs() < 1e-5, "{place}: {far}");
         };
         for i in 0..343 {
             let [x, y, z] = [i % 7, i / 7 % 7, i / 49].map(|k| 0.6 * k as f32 - 1.7);

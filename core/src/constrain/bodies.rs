@@ -4,7 +4,7 @@ use crate::custom::CustomColumnsMut;
 use crate::index::{IndexChoice, Room, between};
 use crate::material::MaterialList;
 use crate::memory::{Demand, Kept, take};
-use crate::observe::{Impact, Observer};
+use crate::observe::{Attention, Impact, Observer};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::report::Report;
@@ -190,6 +190,11 @@ impl Bodies<'_> {
     /// How far off the scenery a constraint keeps the particle in a row \[m\]; zero: none does.
     pub(crate) fn clearance(&self, row: usize) -> f32 {
         f32::from_bits(self.marks[row] & !DONE)
+    }
+
+    /// Tells whether somebody watches who wants to be told.
+    pub(crate) fn is_watched(&self) -> bool {
+        self.observer.attention() > Attention::Nothing
     }
 
     /// Tells whoever watches that a particle is kept from another thing with which it came together.

@@ -86,6 +86,34 @@ impl<F: Eight> Vectors<F> {
     }
 }
 
+/// The vectors of corners; none, if one is missing or the last.
+#[inline(always)]
+pub(crate) fn gathered<F: Eight, const N: usize>(
+    like: F,
+    column: &[Vec3],
+    corners: &[[u32; N]; LANES],
+) -> Option<[Vectors<F>; N]> {
+    let last = column.len().checked_sub(1)?;
+    let mut most = 0;
+    for of in corners {
+        for &corner in of {
+            most = most.max(corner);
+        }
+    }
+    if most as usize >= last {
+        return None;
+    }
+    let mut all = [Vectors([like.all(0.0); 3]); N];
+    for (i, vectors) in all.iter_mut().enumerate() {
+        let mut rows = [0; LANES];
+        for (row, of) in rows.iter_mut().zip(corners) {
+            *row = of[i] as usize;
+        }
+        *vectors = Vectors::gather(like, column, last, &rows);
+    }
+    Some(all)
+}
+
 impl<F: Eight> core::ops::Add for Vectors<F> {
     type Output = Self;
     #[inline(always)]

@@ -119,7 +119,7 @@ impl Fall {
 }
 
 /// The largest strain of an edge along warp or weft.
-fn strain(x: &[Vec3], side: usize, rest: f32) -> f32 {
+pub(super) fn strain(x: &[Vec3], side: usize, rest: f32) -> f32 {
     let edges = (0..x.len()).flat_map(|i| {
         let beside = (i % side + 1 < side).then_some(i + 1);
         [beside, Some(i + side).filter(|&j| j < x.len())].into_iter().flatten().map(move |j| (i, j))

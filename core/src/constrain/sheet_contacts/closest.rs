@@ -1,6 +1,6 @@
 //! The nearest places of a point and a triangle, and of two edges; and what happens between them as they move straight on.
 
-use crate::math::{dot, length, max, min};
+use crate::math::{dot, length, max, min, sqrt};
 use glam::Vec3;
 
 /// The corners of two simple things: a point and a triangle, or two edges. The first so many of the four are those of the first one.
@@ -116,6 +116,31 @@ pub(super) struct Meeting {
 
 /// Steps along the way at the most: as many as it takes past each other at a distance of which the way is 50 times as long.
 const STEPS: u32 = 64;
+/// How far one may go in a sub-step, as seen from all, as a multiple of how far it may be pushed between searches: so far no two can be followed in
+/// vain that are as far apart as they are looked for.
+pub(super) const FARTHEST: f32 = 50.0;
+/// A share of a distance that is more than its rounding.
+pub(super) const MARGIN: f32 = 1e-3;
+
+/// Tells whether the direction between the middles of two things keeps them farther than `reach` apart all the way, as it does of most that are
+/// neighbours in a sheet.
+pub(super) fn parts(kind: Kind, ends: &[[Vec3; 4]; 2], reach: f32) -> bool {
+    let [a, b, c, d] = ends[0];
+    let way = match kind {
+        Kind::PointTriangle => a * 3.0 - (b + c + d),
+        Kind::EdgeEdge => (a + b) - (c + d),
+    };
+    let far = min(apart(kind, &ends[0], way), apart(kind, &ends[1], way));
+    far > 0.0 && far * far > reach * reach * dot(way, way)
+}
+
+/// The square of how far any corner of the one goes as seen from any of the other \[m²\].
+pub(super) fn fastest(kind: Kind, ends: &[[Vec3; 4]; 2]) -> f32 {
+    let ways: [Vec3; 4] = core::array::from_fn(|i| ends[1][i] - ends[0][i]);
+    let (first, second) = ways.split_at(kind.split());
+    let all = first.iter().flat_map(|&a| second.iter().map(move |&b| a - b));
+    all.fold(0.0, |most, way| max(dot(way, way), most))
+}
 
 impl Meeting {
     /// The encounter of two things whose corners go straight from the first places to the second ones, in which their first
@@ -136,7 +161,7 @@ impl Meeting {
         if ended > near && apart(kind, &ends[0], closest.gap / ended) > 0.0 {
             return Some(Self { closest, distance, meets: false });
         }
-        let speed = fastest(kind, ends);
+        let speed = sqrt(fastest(kind, ends));
         let (mut time, mut left, mut last) = (0.0, begun, first);
         for _ in 0..STEPS {
             time += (left - 0.5 * near) / speed;
@@ -157,12 +182,4 @@ impl Meeting {
         }
         Some(Self { closest: last, distance, meets: true })
     }
-}
-
-/// How far any corner of the one goes as seen from any of the other \[m\].
-fn fastest(kind: Kind, ends: &[[Vec3; 4]; 2]) -> f32 {
-    let ways: [Vec3; 4] = core::array::from_fn(|i| ends[1][i] - ends[0][i]);
-    let (first, second) = ways.split_at(kind.split());
-    let all = first.iter().flat_map(|&a| second.iter().map(move |&b| length(a - b)));
-    all.fold(0.0, |most, way| max(way, most))
 }

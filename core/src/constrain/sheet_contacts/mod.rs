@@ -2,7 +2,10 @@
 
 mod closest;
 mod contact;
+mod eights;
+mod listing;
 mod lists;
+mod look;
 mod near;
 mod pair;
 mod renew;
@@ -12,7 +15,9 @@ mod search;
 mod settle;
 mod solver;
 mod taut;
+mod tell;
 mod tree;
+mod waiting;
 mod zones;
 
 use super::{Bodies, Constraint, Demand, Share};
@@ -45,6 +50,10 @@ use rest::Rest;
 /// Friction is Coulomb's by all that presses, by position and by velocity, so that its coefficient is right with every method; with explicit
 /// Euler and two sub-steps what should lie still creeps by millimetres all the same. What leans against a sheet (edges on edges, points beyond a
 /// rim) pushes only where points over triangles leave it too near.
+///
+/// [`Observer`](crate::Observer)s are told of whatever comes together faster than what rests does in a step, once, as it begins
+/// ([`touched`](crate::Observer::touched)): of both sides, for each of which that corner stands that touches most, and of a particle that this
+/// keeps off the scenery.
 ///
 /// Parts of one sheet that are nearer at rest than twice the thickness are kept only half as far apart as they are there, so that a mesh may be
 /// as fine as it likes, and triangles with a common corner do not mind each other. Two sheets that begin nearer than they may be are let apart

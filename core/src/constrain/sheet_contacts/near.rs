@@ -1,19 +1,17 @@
 //! Lists of who may come near whom in the sub-steps to come, for as long as all go on about as they do.
 //!
 //! Everyone is expected to go on as in the sub-step in which they are made. Two are listed unless some direction keeps them apart by more
-//! than they are looked for and two skins, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than a skin
-//! is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
+//! than they are looked for and two skins, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than a skin, as seen
+//! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
 //!
 //! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::pair::Look) finds nothing of.
 
+use super::closest::MARGIN;
 use super::pair::Pair;
-use super::rest::{Face, Rest};
-use crate::math::max;
+use super::rest::Rest;
+use crate::math::{clamp, dot, length, max, min, sqrt};
 use glam::Vec3;
-
-/// A share of a distance that is more than its rounding.
-pub(super) const MARGIN: f32 = 1e-3;
 
 /// The facts known of the lists.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -50,6 +48,27 @@ pub(super) struct Near<'m> {
     pub(super) pairs: &'m mut [Listed],
 }
 
+/// The least and the most that anyone may leave the expected way by, as multiples of how far one may be pushed between searches.
+const SKINS: [f32; 2] = [0.25, 1.0];
+
+/// How far anyone may leave the expected way: no farther, if it can be, than leaves neighbours in the sheets out of the lists while these are as
+/// they are at rest, as most triangles' least heights tell.
+fn skin(rest: &Rest<'_>) -> f32 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for face in &*rest.faces {
+        let [a, b, c] = face.corners.map(|corner| rest.places.get(corner as usize).copied().unwrap_or(Vec3::NAN));
+        let (e, f, g) = (b - a, c - b, a - c);
+        let height = length(e.cross(f)) / sqrt(max(max(dot(e, e), dot(f, f)), dot(g, g)));
+        let spare = height - rest.reach(min(0.5 * height, 2.0 * rest.widest(face)));
+        if spare.is_finite() {
+            sum += 0.45 * spare;
+            count += 1.0;
+        }
+    }
+    let [least, most] = SKINS.map(|share| share * rest.facts.budget);
+    clamp(sum / max(count, 1.0), least, most)
+}
+
 /// Pairs that there is room for, for each particle, and besides.
 const ROOM: [usize; 2] = [24, 64];
 /// The words of facts, of a particle, and of a pair.
@@ -78,20 +97,18 @@ impl<'m> Near<'m> {
     }
 
     /// Forgets all, as a step begins.
-    pub(super) fn forget(&mut self) {
-        *self.facts = bytemuck::Zeroable::zeroed();
+    pub(super) fn forget(&mut self, rest: &Rest<'_>) {
+        *self.facts = Facts { skin: skin(rest), ..bytemuck::Zeroable::zeroed() };
     }
 
-    /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each particle has left its way.
+    /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each triangle has left its way.
     pub(super) fn pairs<'a>(&'a self, rest: &'a Rest<'_>, strays: &'a [f32]) -> impl Iterator<Item = &'a Listed> {
         let Facts { pairs, skin, .. } = *self.facts;
         let all = &self.pairs[..pairs as usize];
         all.iter().filter(move |listed| {
-            let [one, other] = listed.pair.faces().map(|face| &rest.faces[face]);
-            let far = |face: &Face| face.corners.iter().fold(0.0, |most, &i| max(strays[i as usize], most));
-            let far = [far(one), far(other)];
+            let [one, other] = listed.pair.faces().map(|face| strays[face]);
             let least = rest.reach(listed.wanted) * (1.0 + MARGIN);
-            far[0] <= skin && far[1] <= skin && !(listed.apart - far[0] - far[1] > least)
+            one <= skin && other <= skin && !(listed.apart - one - other > least)
         })
     }
 }

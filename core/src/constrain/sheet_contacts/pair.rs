@@ -1,19 +1,12 @@
 //! A point and a triangle, or two edges, that may come near each other, and what becomes of them in a sub-step: that depends on these
 //! two alone, however they were found.
 
-use super::closest::{Closest, Kind, Meeting};
-use super::contact::Contact;
+use super::closest::{Closest, Kind};
 use super::rest::{Face, Rest};
-use super::tree::Bounds;
-use crate::math::{high, length, low, max, min};
+use super::tree::{Bounds, Tree};
+use crate::math::{high, length, low, min};
 use glam::Vec3;
 
-/// How much of the distance between two each may go before it has to be looked again: less than half of it.
-pub(super) const SHARE: f32 = 0.45;
-/// Two that come so near to each other, as a share of their thickness, have come together.
-const NEAR: f32 = 0.1;
-/// The share of a gap that is missing that a sub-step gives back.
-const RECOVERY: f32 = 0.2;
 /// The feature that is a triangle as a whole; lesser ones are its corners or edges.
 const WHOLE: u32 = 3;
 
@@ -26,6 +19,8 @@ pub(super) struct Pair {
 }
 
 impl Pair {
+    pub(super) const NONE: Self = Self { first: 0, second: 0 };
+
     pub(super) fn kind(self) -> Kind {
         if self.second % 4 == WHOLE { Kind::PointTriangle } else { Kind::EdgeEdge }
     }
@@ -51,32 +46,24 @@ impl Pair {
     }
 
     /// Visits the corners of one triangle with the other, and the edges of one with those of the other, as far as they are their own,
-    /// have no corner in common, and the boxes around their corners' ways are within `reach`.
+    /// have no corner in common, and the boxes around them overlap.
     #[inline(always)]
-    pub(super) fn all(
-        faces: &[Face],
-        [i, j]: [usize; 2],
-        ways: &[Bounds],
-        reach: f32,
-        mut visit: impl FnMut(Self, [u32; 4]),
-    ) {
+    pub(super) fn all(faces: &[Face], [i, j]: [usize; 2], tree: &Tree<'_>, mut visit: impl FnMut(Self, [u32; 4])) {
         let [one, other] = [&faces[i], &faces[j]];
-        let ([a, b, c], [p, q, r]) = (one.corners, other.corners);
-        let way = |corner: u32| ways[corner as usize];
-        let [a, b, c, p, q, r] = [way(a), way(b), way(c), way(p), way(q), way(r)];
-        let [first, second] = [a.and(b).and(c).wider(reach), p.and(q).and(r).wider(reach)];
-        Self::points(i, one, [a, b, c], (j, other, &second), &mut visit);
-        Self::points(j, other, [p, q, r], (i, one, &first), &mut visit);
-        let edges = [p.and(q), q.and(r), r.and(p)];
-        for (k, edge) in [a.and(b), b.and(c), c.and(a)].into_iter().enumerate() {
-            if !(one.owns_edge(k) && edge.overlaps(&second)) {
+        let (ways, [first, second]) = (tree.corners(), [tree.face(i), tree.face(j)]);
+        Self::points((i, one), (j, other), ways, second, &mut visit);
+        Self::points((j, other), (i, one), ways, first, &mut visit);
+        let around = |[p, q]: [u32; 2]| ways[p as usize].and(&ways[q as usize]);
+        for k in (0..3).filter(|&k| one.owns_edge(k)) {
+            let [p, q] = one.edge(k);
+            let edge = around([p, q]);
+            if !edge.overlaps(second) {
                 continue;
             }
-            let ([p, q], around) = (one.edge(k), edge.wider(reach));
-            for (l, edge) in edges.iter().enumerate().filter(|&(l, _)| other.owns_edge(l)) {
+            for l in (0..3).filter(|&l| other.owns_edge(l)) {
                 let [r, s] = other.edge(l);
                 let strangers = p != r && p != s && q != r && q != s;
-                if strangers && edge.overlaps(&around) {
+                if strangers && edge.overlaps(&around([r, s])) {
                     visit(Self { first: (4 * i + k) as u32, second: (4 * j + l) as u32 }, [p, q, r, s]);
                 }
             }
@@ -86,16 +73,16 @@ impl Pair {
     /// Visits the corners of one triangle that come near the other.
     #[inline(always)]
     fn points(
-        i: usize,
-        of: &Face,
-        ways: [Bounds; 3],
-        (j, with, around): (usize, &Face, &Bounds),
+        (i, of): (usize, &Face),
+        (j, with): (usize, &Face),
+        ways: &[Bounds],
+        around: &Bounds,
         visit: &mut impl FnMut(Self, [u32; 4]),
     ) {
         let [p, q, r] = with.corners;
-        for (k, way) in ways.iter().enumerate().filter(|&(k, _)| of.owns_corner(k)) {
+        for k in (0..3).filter(|&k| of.owns_corner(k)) {
             let corner = of.corners[k];
-            if corner != p && corner != q && corner != r && way.overlaps(around) {
+            if corner != p && corner != q && corner != r && ways[corner as usize].overlaps(around) {
                 visit(Self { first: (4 * i + k) as u32, second: 4 * j as u32 + WHOLE }, [corner, p, q, r]);
             }
         }
@@ -126,10 +113,14 @@ impl Rest<'_> {
         self.half[corners[0] as usize] + self.half[corners[kind.split()] as usize]
     }
 
+    pub(super) fn are_of_one_sheet(&self, kind: Kind, corners: [u32; 4]) -> bool {
+        self.sheet[corners[0] as usize] == self.sheet[corners[kind.split()] as usize]
+    }
+
     /// How far apart two are kept: in one sheet no farther than half of what they are at rest.
     pub(super) fn wanted(&self, kind: Kind, corners: [u32; 4]) -> f32 {
-        let (sheet, thickness) = (|corner: u32| self.sheet[corner as usize], self.thickness(kind, corners));
-        if sheet(corners[0]) != sheet(corners[kind.split()]) {
+        let thickness = self.thickness(kind, corners);
+        if !self.are_of_one_sheet(kind, corners) {
             return thickness;
         }
         min(0.5 * length(Closest::of(kind, seen(self.places, corners)).gap), thickness)
@@ -141,77 +132,9 @@ impl Rest<'_> {
     }
 }
 
-/// Looks at pairs, and lists what comes of them.
-pub(super) struct Look<'m, 'r> {
-    pub(super) rest: &'m Rest<'r>,
-    pub(super) from: &'m [Vec3],
-    pub(super) now: &'m [Vec3],
-    /// How far each may be pushed from where it is.
-    pub(super) room: &'m mut [f32],
-    pub(super) contacts: &'m mut [Contact],
-    /// The number of contacts, and of those that found no room.
-    pub(super) count: usize,
-    pub(super) lost: u64,
-    /// The number of pairs that would pass each other.
-    pub(super) meetings: u32,
-}
-
-impl Look<'_, '_> {
-    /// Looks at two of which it is not known how far apart they are kept.
-    pub(super) fn at(&mut self, pair: Pair, corners: [u32; 4]) {
-        let (kind, rest) = (pair.kind(), self.rest);
-        let ends = [seen(self.from, corners), seen(self.now, corners)];
-        if !are_apart(kind, &ends, rest.reach(rest.thickness(kind, corners))) {
-            self.meet(pair, corners, &ends, rest.wanted(kind, corners));
-        }
-    }
-
-    /// Looks at two that are kept so far apart.
-    pub(super) fn with(&mut self, pair: Pair, wanted: f32) {
-        let corners = pair.corners(self.rest.faces);
-        let ends = [seen(self.from, corners), seen(self.now, corners)];
-        self.meet(pair, corners, &ends, wanted);
-    }
-
-    fn meet(&mut self, pair: Pair, corners: [u32; 4], ends: &[[Vec3; 4]; 2], wanted: f32) {
-        let (kind, reach) = (pair.kind(), self.rest.reach(wanted));
-        if are_apart(kind, ends, reach) {
-            return;
-        }
-        let near = NEAR * max(wanted, self.rest.facts.budget);
-        let Some(meeting) = Meeting::of(kind, ends, reach, near) else { return };
-        let Meeting { closest, distance: [begun, ended], meets } = meeting;
-        if !meets && ended >= reach {
-            return;
-        }
-        for corner in corners {
-            let room = &mut self.room[corner as usize];
-            *room = min(SHARE * ended, *room);
-        }
-        self.meetings += u32::from(meets);
-        if !meets && !is_own(kind, &closest.weights, &self.rest.faces[pair.faces()[1]]) {
-            return;
-        }
-        let normal = closest.gap / length(closest.gap);
-        if !normal.is_finite() {
-            return;
-        }
-        let Some(place) = self.contacts.get_mut(self.count) else {
-            self.lost += 1;
-            return;
-        };
-        self.count += 1;
-        let recovery = RECOVERY * max(wanted - begun, 0.0);
-        let target = if begun < wanted { begun + recovery } else { wanted };
-        let (split, weights, meets) = (kind.split() as u32, closest.weights, u32::from(meets));
-        let (touch, tangent) = (bytemuck::Zeroable::zeroed(), bytemuck::Zeroable::zeroed());
-        *place = Contact { corners, split, weights, normal, target, recovery, meets, touch, tangent };
-    }
-}
-
 /// Tells whether the nearest place is the triangle's own: where others share it, they are as near, and one of them does for all. Edges
 /// touch where they cross; at their ends points do.
-fn is_own(kind: Kind, weights: &[f32; 4], with: &Face) -> bool {
+pub(super) fn is_own(kind: Kind, weights: &[f32; 4], with: &Face) -> bool {
     let [_, a, b, c] = weights.map(|weight| weight != 0.0);
     match (kind, [a, b, c]) {
         (Kind::EdgeEdge, [a, b, c]) => weights[0] != 0.0 && a && b && c,

@@ -1,47 +1,66 @@
 //! Making lists of who may come near whom, and telling for how long they are good.
 
 use super::super::{Bodies, Substep};
-use super::closest::{Closest, Kind, apart};
+use super::closest::{FARTHEST, MARGIN};
+use super::listing::Listing;
 use super::lists::{Kept, Work};
-use super::near::{Facts, Listed, MARGIN, Near};
-use super::pair::{Pair, are_apart, seen};
+use super::near::{Facts, Near};
+use super::pair::Pair;
 use super::rest::{Face, Rest};
 use super::tree::{ROUNDING, Ways};
-use crate::math::{dot, largest, length, max, min, sqrt};
+use crate::math::{dot, largest, length, max, sqrt};
 use glam::Vec3;
 
-/// How far anyone may leave the expected way, as a multiple of how far one may be pushed between searches.
-const SKIN: f32 = 2.0;
-/// How far a particle goes on average, as seen from all, until lists end, as a multiple of the same.
+/// How far a particle goes on average, as seen from all, until lists end, as a multiple of how far one may be pushed between
+/// searches.
 const STRETCH: f32 = 16.0;
 /// One triangle of so many may be astray before lists are made anew.
 const ASTRAY: usize = 4;
-/// How far one that is not astray goes in a sub-step, as seen from all, as a multiple of the same: so far no pair can be followed in vain that
-/// is as far apart as it is looked for (see `closest::STEPS`).
-const FARTHEST: f32 = 50.0;
+
 impl Near<'_> {
-    /// Notes how far each has left the expected way, and whose triangles are astray; returns how many these are. None: the lists are no longer
-    /// good for the sub-step.
+    /// How far off its expected way one is at both ends of a sub-step that comes so many after the first.
+    fn off(&self, i: usize, since: f32, [from, now]: [Vec3; 2]) -> [Vec3; 2] {
+        let (base, going) = (self.base[i], self.going[i]);
+        [from - (base + going * since), now - (base + going * (since + 1.0))]
+    }
+
+    /// How far off all are on average, which brings nobody near anybody.
+    fn shared(&self, work: &Work<'_>, since: f32) -> [Vec3; 2] {
+        let ([mut begun, mut ended], mut count) = ([Vec3::ZERO; 2], 0.0);
+        for (i, (&from, &now)) in work.from.iter().zip(&*work.now).enumerate() {
+            let off = self.off(i, since, [from, now]);
+            if off[0].is_finite() && off[1].is_finite() {
+                (begun, ended, count) = (begun + off[0], ended + off[1], count + 1.0);
+            }
+        }
+        [begun, ended].map(|sum| sum / max(count, 1.0))
+    }
+
+    /// Notes how far each has left the expected way, as seen from all, and whose triangles are astray; returns how many these are. None: the
+    /// lists are no longer good for the sub-step.
     fn follow(&self, rest: &Rest<'_>, work: &mut Work<'_>, substep: Substep, drift: Vec3) -> Option<usize> {
         let Facts { first, horizon, skin, .. } = *self.facts;
         let since = substep.number.checked_sub(first).filter(|&since| since < horizon)? as f32;
         let farthest = FARTHEST * rest.facts.budget;
+        let all = self.shared(work, since);
+        let shared = max(largest(all[0]), largest(all[1]));
         for (i, stray) in work.strays.iter_mut().enumerate() {
             let (from, now) = (work.from[i], work.now[i]);
-            let (base, going) = (self.base[i], self.going[i]);
-            let (begun, way) = (from - (base + going * since), now - from - drift);
-            let ended = now - (base + going * (since + 1.0));
+            let (off, way) = (self.off(i, since, [from, now]), now - from - drift);
+            let (begun, ended) = (off[0] - all[0], off[1] - all[1]);
             let square = max(dot(begun, begun), dot(ended, ended));
             let sound = dot(way, way) <= farthest * farthest && square < f32::INFINITY;
-            let slack = ROUNDING * max(largest(from), largest(now));
+            let slack = ROUNDING * max(max(largest(from), largest(now)), shared);
             *stray = if sound { sqrt(square) + slack } else { f32::INFINITY };
             // Who was not there, and is not, has nobody near.
-            if !(base.is_finite() || from.is_finite() && now.is_finite()) {
+            if !(self.base[i].is_finite() || from.is_finite() && now.is_finite()) {
                 *stray = 0.0;
             }
         }
         Some(work.tree.mark(rest.faces, |face| {
-            face.corners.iter().any(|&i| work.strays.get(i as usize).is_some_and(|&stray| !(stray <= skin)))
+            let stray = |i: u32| work.strays.get(i as usize).copied().unwrap_or(0.0);
+            let most = face.corners.iter().fold(0.0, |most, &i| max(stray(i), most));
+            if most <= skin { most } else { f32::INFINITY }
         }))
     }
 
@@ -58,16 +77,12 @@ impl Near<'_> {
         }
         let left = substep.count - substep.number;
         let most = (STRETCH * rest.facts.budget * count / way).clamp(1.0, left as f32) as u32;
-        let skin = SKIN * rest.facts.budget;
-        for horizon in [most, 1] {
+        let skin = self.facts.skin;
+        for (horizon, skin) in [(most, skin), (1, 0.25 * skin)] {
             *self.facts = Facts { first: substep.number, horizon, pairs: 0, full: 0, skin };
-            match self.fill(rest, work, drift) {
-                Some(pairs) => {
-                    self.facts.pairs = pairs as u32;
-                    return true;
-                }
-                None if horizon == 1 => break,
-                None => {}
+            if let Some(pairs) = self.fill(rest, work) {
+                self.facts.pairs = pairs as u32;
+                return true;
             }
         }
         *self.facts = Facts { horizon: 0, full: 1, ..*self.facts };
@@ -75,75 +90,21 @@ impl Near<'_> {
     }
 
     /// Lists whoever may come near each other; returns how many pairs there are. None: there is no room.
-    fn fill(&mut self, rest: &Rest<'_>, work: &mut Work<'_>, drift: Vec3) -> Option<usize> {
+    fn fill(&mut self, rest: &Rest<'_>, work: &mut Work<'_>) -> Option<usize> {
         let Facts { horizon, skin, .. } = *self.facts;
-        let (ahead, skins) = (horizon as f32, 2.0 * skin);
+        let ahead = horizon as f32;
         for (end, (base, going)) in work.searched.iter_mut().zip(self.base.iter().zip(&*self.going)) {
             *end = *base + *going * ahead;
         }
-        let ways = Ways { from: self.base, to: work.searched, drift: drift * ahead };
+        let ways = Ways { from: self.base, to: work.searched };
         let half = |face: &Face| (rest.widest(face) + rest.facts.budget) * (1.0 + MARGIN) + skin;
         work.tree.fit(rest.faces, ways, half);
-        let mut count = 0;
+        let mut listing = Listing::of(rest, ways, 2.0 * skin, self.pairs);
         work.tree.pairs(true, |i, j| {
-            let reach = half(&rest.faces[i]) + half(&rest.faces[j]);
-            Pair::all(rest.faces, [i, j], work.tree.corners(), reach, |pair, corners| {
-                if let Some(listed) = expected(rest, &ways, pair, corners, skins) {
-                    if let Some(place) = self.pairs.get_mut(count) {
-                        *place = listed;
-                    }
-                    count += 1;
-                }
-            });
+            Pair::all(rest.faces, [i, j], &work.tree, |pair, corners| listing.add(pair, corners));
         });
-        (count <= self.pairs.len()).then_some(count)
+        listing.finish()
     }
-}
-
-/// Two as they are listed, unless they are farther from each other than they are looked for, and so much more, on the expected ways.
-fn expected(rest: &Rest<'_>, ways: &Ways<'_>, pair: Pair, corners: [u32; 4], more: f32) -> Option<Listed> {
-    let kind = pair.kind();
-    let ends = [seen(ways.from, corners), seen(ways.to, corners)];
-    let far = |wanted: f32| rest.reach(wanted) * (1.0 + MARGIN) + more;
-    let reach = far(rest.thickness(kind, corners));
-    if are_apart(kind, &ends, reach) {
-        return None;
-    }
-    // Most are neighbours in a sheet, which the direction between their middles keeps apart.
-    if parts(kind, &ends, middle(kind, &ends[0]), reach) {
-        return None;
-    }
-    let mut apart = least(kind, &ends, 0);
-    if apart < reach {
-        apart = max(least(kind, &ends, 1), apart);
-    }
-    if apart >= reach {
-        return None;
-    }
-    let wanted = rest.wanted(kind, corners);
-    (!(apart >= far(wanted))).then_some(Listed { pair, apart, wanted })
-}
-
-/// The way from the middle of the second thing to that of the first, some times over.
-fn middle(kind: Kind, [a, b, c, d]: &[Vec3; 4]) -> Vec3 {
-    match kind {
-        Kind::PointTriangle => *a * 3.0 - (*b + *c + *d),
-        Kind::EdgeEdge => (*a + *b) - (*c + *d),
-    }
-}
-
-/// Tells whether two things are farther than `reach` apart along a way of any length, at both ends.
-fn parts(kind: Kind, ends: &[[Vec3; 4]; 2], way: Vec3, reach: f32) -> bool {
-    let far = min(apart(kind, &ends[0], way), apart(kind, &ends[1], way));
-    far > 0.0 && far * far > reach * reach * dot(way, way)
-}
-
-/// How far apart two things stay at the least, as the direction tells that is between them at one of both ends \[m\].
-fn least(kind: Kind, ends: &[[Vec3; 4]; 2], at: usize) -> f32 {
-    let gap = Closest::of(kind, ends[at]).gap;
-    let direction = gap / length(gap);
-    let all = min(apart(kind, &ends[0], direction), apart(kind, &ends[1], direction));
-    if all > 0.0 { all } else { 0.0 }
 }
 
 /// Has lists that are good for where all are now, and the triangles marked that are astray; returns how many these are. None: there is no room

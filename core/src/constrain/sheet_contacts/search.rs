@@ -5,10 +5,12 @@ use super::super::contacts::Touch;
 use super::closest::Kind;
 use super::contact::Contact;
 use super::lists::{Kept, Work};
-use super::pair::{Look, Pair, SHARE};
+use super::look::{Look, SHARE};
+use super::pair::Pair;
 use super::renew::ready;
-use super::rest::Rest;
+use super::rest::{Face, Rest};
 use super::tree::Ways;
+use super::waiting::Waiting;
 use crate::material::of_two;
 use crate::math::max;
 use glam::Vec3;
@@ -20,10 +22,10 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     work.old[..known].copy_from_slice(&kept.contacts[..known]);
     let drift = drift(work);
     let astray = ready(rest, kept, work, bodies, drift);
-    let mut found = look(rest, kept, work, (drift, astray));
+    let mut found = look(rest, kept, work, astray);
     if found.lost > 0 && astray.is_some() {
         // Which of them find room is for the order to say in which a search of all meets them.
-        found = look(rest, kept, work, (drift, None));
+        found = look(rest, kept, work, None);
     }
     bodies.report.effort.streamed += u64::from(astray.is_none());
     bodies.report.caps.contacts += found.lost;
@@ -49,20 +51,24 @@ struct Found {
 }
 
 /// Looks at all who may come near each other: by lists and at the triangles astray, of which there are so many, or all anew without lists.
-fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, (drift, astray): (Vec3, Option<usize>)) -> Found {
+fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>) -> Found {
     let budget = rest.facts.budget;
     work.room.fill(2.0 * SHARE * budget);
     let (from, now) = (&*work.from, &*work.now);
-    let mut look = Look { rest, from, now, room: work.room, contacts: kept.contacts, count: 0, lost: 0, meetings: 0 };
+    let (count, lost, meetings, waiting) = (0, 0, 0, Waiting::none());
+    let mut look = Look { rest, from, now, room: work.room, contacts: kept.contacts, count, lost, meetings, waiting };
     if let Some(near) = kept.near.as_ref().filter(|_| astray.is_some()) {
-        near.pairs(rest, work.strays).for_each(|listed| look.with(listed.pair, listed.wanted));
+        let all = near.pairs(rest, work.tree.strays());
+        all.for_each(|listed| look.at(listed.pair, listed.pair.corners(rest.faces), listed.wanted));
+        look.finish();
     }
     if astray != Some(0) {
-        work.tree.fit(rest.faces, Ways { from, to: now, drift }, |face| rest.widest(face) + budget);
+        let half = |face: &Face| rest.widest(face) + budget;
+        work.tree.fit(rest.faces, Ways { from, to: now }, half);
         work.tree.pairs(astray.is_none(), |i, j| {
-            let reach = rest.reach(rest.widest(&rest.faces[i]) + rest.widest(&rest.faces[j]));
-            Pair::all(rest.faces, [i, j], work.tree.corners(), reach, |pair, corners| look.at(pair, corners));
+            Pair::all(rest.faces, [i, j], &work.tree, |pair, corners| look.at(pair, corners, f32::NAN));
         });
+        look.finish();
     }
     Found { count: look.count, lost: look.lost, meetings: look.meetings }
 }

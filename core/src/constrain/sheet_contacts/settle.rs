@@ -5,6 +5,7 @@ use super::super::contacts::{Touch, bounce};
 use super::contact::{Contact, Surface};
 use super::lists::{Kept, NOBODY};
 use super::solver::ease;
+use super::tell;
 use super::zones::{LITTLE, Whole};
 use crate::math::{aside, length, min};
 use glam::Vec3;
@@ -23,6 +24,7 @@ pub(super) fn settle(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
         torque += rub(kept, bodies);
     }
     keep_spin(kept, bodies, torque);
+    tell::tell(kept, bodies);
     count(kept, bodies);
 }
 

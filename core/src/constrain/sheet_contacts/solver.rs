@@ -20,7 +20,7 @@ const SWEEPS: u32 = 4;
 pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) {
     kept.counts.contacts = 0;
     if let Some(near) = kept.near.as_mut().filter(|_| bodies.substep.number == 0) {
-        near.forget();
+        near.forget(rest);
     }
     scenery::gather(rest, kept, work, bodies);
     let h = bodies.substep.seconds();

@@ -2,7 +2,8 @@
 
 use super::membrane::Cell;
 use crate::cloth::Hinge;
-use crate::lanes::{Eight, LANES, Vectors};
+pub(super) use crate::lanes::gathered;
+use crate::lanes::{Eight, LANES};
 use glam::Vec3;
 
 /// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
@@ -73,32 +74,4 @@ pub(super) fn vector([x, y, z, _]: [f32; 4]) -> Vec3 {
 pub(super) fn all_corners(hinges: &[Hinge; LANES]) -> [[u32; 4]; LANES] {
     let [a, b, c, d, e, f, g, h] = hinges;
     [a.corners(), b.corners(), c.corners(), d.corners(), e.corners(), f.corners(), g.corners(), h.corners()]
-}
-
-/// The vectors of corners; none, if one is missing or the last.
-#[inline(always)]
-pub(super) fn gathered<F: Eight, const N: usize>(
-    like: F,
-    column: &[Vec3],
-    corners: &[[u32; N]; LANES],
-) -> Option<[Vectors<F>; N]> {
-    let last = column.len().checked_sub(1)?;
-    let mut most = 0;
-    for of in corners {
-        for &corner in of {
-            most = most.max(corner);
-        }
-    }
-    if most as usize >= last {
-        return None;
-    }
-    let mut all = [Vectors([like.all(0.0); 3]); N];
-    for (i, vectors) in all.iter_mut().enumerate() {
-        let mut rows = [0; LANES];
-        for (row, of) in rows.iter_mut().zip(corners) {
-            *row = of[i] as usize;
-        }
-        *vectors = Vectors::gather(like, column, last, &rows);
-    }
-    Some(all)
 }

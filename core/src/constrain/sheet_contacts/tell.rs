@@ -1,0 +1,69 @@
+//! Telling whoever watches of what comes together.
+
+use super::super::Bodies;
+use super::contact::Contact;
+use super::lists::Kept;
+use crate::math::{dot, max};
+use crate::observe::Impact;
+use crate::particles::Id;
+use glam::Vec3;
+
+/// Tells of what has pressed in the sub-step, and came together faster than what rests does in a step.
+pub(super) fn tell(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
+    if !bodies.is_watched() {
+        return;
+    }
+    let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
+    for contact in kept.contacts[..contacts].iter().filter(|contact| contact.touch.pressed() > 0.0) {
+        let along = |of: &[Vec3]| dot(contact.between(|i| of[kept.rows[i] as usize]), contact.normal);
+        let ends = [along(bodies.before[1]), dot(contact.between(|i| kept.pushed[i]), contact.normal)];
+        let Some(closing) = closing(ends, bodies.substep.count) else { continue };
+        let [one, other] = most(contact);
+        let id = |i: usize| bodies.id(kept.rows[i] as usize);
+        let both = [(one, id(other), contact.normal), (other, id(one), -contact.normal)];
+        for (i, other, normal) in both {
+            met(kept, bodies, (i, other, normal), (closing, Vec3::ZERO));
+        }
+    }
+    for surface in kept.surfaces[..surfaces].iter().filter(|surface| surface.touch.pressed() > 0.0) {
+        let i = surface.particle as usize;
+        let along = |v: Vec3| dot(v - surface.velocity, surface.normal);
+        let ends = [along(bodies.before[1][kept.rows[i] as usize]), along(kept.pushed[i])];
+        if let Some(closing) = closing(ends, bodies.substep.count) {
+            met(kept, bodies, (i, None, surface.normal), (closing, surface.velocity));
+        }
+    }
+}
+
+/// How fast two came together that parted at the first speed before forces pressed them, and at the second one then \[m/s\]; none, if that is no more
+/// than forces give what rests in a step of so many sub-steps.
+fn closing([begun, ended]: [f32; 2], substeps: u32) -> Option<f32> {
+    let rests = substeps as f32 * max(begun - ended, 0.0);
+    let closing = max(-begun, -ended);
+    (closing > rests && closing < f32::INFINITY).then_some(closing)
+}
+
+/// The corner of each side that has the largest share in the place that touches.
+fn most(contact: &Contact) -> [usize; 2] {
+    let sides = [0..contact.split as usize, contact.split as usize..4];
+    sides.map(|side| {
+        let first = side.start;
+        let most =
+            side.fold(first, |most, i| if contact.weights[i].abs() > contact.weights[most].abs() { i } else { most });
+        contact.corners[most] as usize
+    })
+}
+
+/// Tells of a particle, unless it is fixed, that has met another, or a collider that moves there with a velocity.
+fn met(
+    kept: &Kept<'_>,
+    bodies: &mut Bodies<'_>,
+    (i, other, normal): (usize, Option<Id>, Vec3),
+    (closing, surface): (f32, Vec3),
+) {
+    let row = kept.rows[i] as usize;
+    let Some(id) = bodies.id(row).filter(|_| kept.weight[i] > 0.0) else { return };
+    let (before, after) = (kept.pushed[i], bodies.velocity[row]);
+    let (mass, place, time) = (bodies.mass[row], bodies.position[row], bodies.substep.during[1]);
+    bodies.tell(&Impact { id, row, other, mass, place, normal, closing, before, after, surface, time });
+}
