@@ -25,3 +25,4 @@ pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub(crate) use sweep::RESTING;
 pub(crate) use tile::{Obstacles, Tile};
 pub(crate) use tile_sweep::each_by_itself;
+pub(crate) use tile_sweep::face::leap_by_itself;
