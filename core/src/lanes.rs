@@ -22,7 +22,7 @@ pub(crate) use hits::{COUNTS, HITS};
 #[cfg(any(test, target_os = "none"))]
 pub(crate) use one::One;
 pub(crate) use row::{Row, load, mask_of, saved};
-pub(crate) use run::{run, run_abreast, widest};
+pub(crate) use run::{run, run_abreast, run_at_length, widest};
 pub(crate) use sums::{Pull, dot, splat, sqrt, total, turned};
 pub(crate) use vectors::{Vectors, gathered};
 pub(crate) use width::{ABREAST, LANES, NOWHERE};

@@ -206,7 +206,8 @@ pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
     } else if number >> 64 == 0 {
         (number as u64 / by, number as u64 % by)
     } else {
-        ((number / by as u128) as u64, (number % by as u128) as u64)
+        let quotient = (number / by as u128) as u64;
+        (quotient, (number as u64).wrapping_sub(quotient.wrapping_mul(by)))
     }
 }
 

@@ -27,3 +27,4 @@ pub(crate) use path::{CHORD_ERROR, MAX_CHORDS};
 pub use paths::Paths;
 pub(crate) use sweep::RESTING;
 pub(crate) use tile::{Obstacles, Tile};
+pub(crate) use tile_sweep::face::leap_by_itself;

@@ -15,7 +15,7 @@ use glam::Vec3;
 use hits::{Hits, Meetings, Segments};
 use leads::Leads;
 use paths::Cubics;
-pub(super) use paths::Paths;
+pub(super) use paths::{CLOSE, Paths};
 
 /// Properties of eight particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
 pub(super) struct Riders<F, const POINTS: bool> {
@@ -43,9 +43,9 @@ pub(super) struct Outcome<F> {
     /// Particles that are at the end of the step now, and those to be followed alone.
     pub(super) settled: u32,
     pub(super) left: u32,
-    /// How often those who are at the end were hit, and the largest of their coordinates \[m\].
+    /// How often those who are at the end were hit, and the largest coordinate of each \[m\].
     pub(super) hits: u32,
-    pub(super) farthest: f32,
+    pub(super) farthest: F,
     /// Places and velocities.
     pub(super) ends: [Vectors<F>; 2],
 }
@@ -54,7 +54,7 @@ impl<F: Eight> Outcome<F> {
     /// The outcome for those who are `settled` on their paths, after so many hits, and for those who are `left`.
     #[inline(always)]
     fn of(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
-        let farthest = (paths.x1.largest() & settled).largest_lane();
+        let farthest = paths.x1.largest() & settled;
         Self { settled: settled.to_bitmask(), left, hits, farthest, ends: [paths.x1, paths.v1] }
     }
 }

@@ -29,6 +29,11 @@ impl Paths {
     /// that bounce off each other ([`Meetings::IMPULSE`](crate::Meetings::IMPULSE)) paths are curved whatever this says.
     pub const STRAIGHT: Self = Self { name: "Straight", follow: straight::follow };
 
+    /// True if paths bend as the method moves particles.
+    pub(crate) fn are_curved(&self) -> bool {
+        *self == Self::CURVED
+    }
+
     /// Sends every free particle of a tile along its path, past all others.
     pub(crate) fn follow(&self, tile: &mut Tile<'_>, report: &mut Report, observer: &mut dyn Observer) {
         (self.follow)(tile, report, observer);

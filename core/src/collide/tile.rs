@@ -54,12 +54,17 @@ impl Tile<'_> {
 
     /// A row's path through the sub-step.
     pub(super) fn path(&self, past: Past<'_>, row: usize) -> Path {
+        let [x0, v0] = past.start;
+        self.path_from(row, [x0[row], v0[row]])
+    }
+
+    /// The same from where it was, with the velocity that it had there.
+    pub(super) fn path_from(&self, row: usize, [x0, v0]: [Vec3; 2]) -> Path {
         let (Tile { dt, attributes, .. }, end) = (self, self.end());
         // A newborn has come only part of the way.
         let start = end - (end - attributes.lives.born[row]).min(*dt);
-        let [x0, v0] = past.start;
         let (x1, v1) = (self.position[row], self.velocity[row]);
-        Path { x0: x0[row], v0: v0[row], x1, v1, during: [start, end] }
+        Path { x0, v0, x1, v1, during: [start, end] }
     }
 
     /// Tells whether a row moves in the sub-step: it is not fixed, nor yet to be born, nor has it vanished.

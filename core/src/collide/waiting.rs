@@ -1,69 +1,120 @@
 //! Rows that wait until there are enough of them to go side by side.
 
-use crate::lanes::LANES;
+use crate::lanes::{Eight, HITS, LANES, Vectors};
+use glam::Vec3;
 
-/// Places in a queue: for a word of marks besides fewer than eight of before.
-const PLACES: usize = 128;
+/// Places in a list: for some words of marks.
+const PLACES: usize = 7 * u64::BITS as usize;
 
-/// Rows that wait until there are eight.
-#[derive(Clone, Copy)]
-pub(super) struct Queue {
+/// Rows in the order in which they are met.
+pub(super) struct List {
     rows: [u32; PLACES],
+    len: usize,
+}
+
+/// Where a row was and how fast when the step began, each with some number behind it.
+pub(super) type Start = [[f32; 4]; 2];
+
+/// Rows that wait until there are eight, with where they were.
+pub(super) struct Queue {
+    rows: [u32; LANES],
+    starts: [Start; LANES],
     len: usize,
 }
 
 /// Rows that go together, the first of them in place of those that are missing, and how many they are.
 #[derive(Clone, Copy)]
-pub(super) struct Packet {
-    pub(super) rows: [u32; LANES],
+pub(super) struct Packet<'q> {
+    pub(super) rows: &'q [u32; LANES],
     pub(super) len: usize,
 }
 
-impl Packet {
+impl Packet<'_> {
     /// A bit for each that is not missing.
     pub(super) fn present(&self) -> u32 {
         (1 << self.len) - 1
     }
 }
 
-impl Queue {
-    pub(super) const EMPTY: Self = Self { rows: [0; PLACES], len: 0 };
-
-    /// Puts a row in, behind no more than there is room for.
+impl List {
     #[inline(always)]
-    pub(super) fn push(&mut self, row: u32) {
-        self.rows[self.len % PLACES] = row;
-        self.len += 1;
+    pub(super) fn empty() -> Self {
+        Self { rows: [0; PLACES], len: 0 }
     }
 
-    /// Puts in those from the first on that are marked.
+    /// Tells whether it has no room for another word of marks.
     #[inline(always)]
-    pub(super) fn push_all(&mut self, first: u32, mut marks: u64) {
-        let end = self.len + marks.count_ones() as usize;
-        let Some(places) = self.rows.get_mut(self.len..end) else { return };
-        for place in places {
-            *place = first + marks.trailing_zeros();
-            marks &= marks.wrapping_sub(1);
+    pub(super) fn is_full(&self) -> bool {
+        self.len + (u64::BITS as usize + LANES) > PLACES
+    }
+
+    /// Puts in those from the first on that are marked, if there is room: by a table instead of one after the other, so that there is no
+    /// branch to guess.
+    #[inline(always)]
+    pub(super) fn add(&mut self, first: u32, marks: u64) {
+        let mut len = self.len;
+        for (byte, marks) in marks.to_le_bytes().into_iter().enumerate() {
+            let Some(places) = self.rows.get_mut(len..) else { return };
+            let Some(places) = places.first_chunk_mut::<LANES>() else { return };
+            let (lanes, mut rows) = (HITS[usize::from(marks)], [first + (LANES * byte) as u32; LANES]);
+            for (row, lane) in rows.iter_mut().zip(lanes) {
+                *row += lane;
+            }
+            *places = rows;
+            len += marks.count_ones() as usize;
         }
-        self.len = end;
+        self.len = len;
     }
 
-    /// The last eight, once there are so many.
+    /// All of them, eight by eight, who are not listed any longer, and how many there are of the last eight: the first of these is in place
+    /// of those that are missing.
+    pub(super) fn take_eights(&mut self) -> (&[[u32; LANES]], usize) {
+        let len = core::mem::take(&mut self.len);
+        let (eights, _) = self.rows.as_chunks_mut();
+        let eights = eights.get_mut(..len.div_ceil(LANES)).unwrap_or_default();
+        let last = len - LANES * eights.len().saturating_sub(1);
+        if let Some(rows) = eights.last_mut() {
+            let first = rows[0];
+            rows[last.min(LANES)..].fill(first);
+        }
+        (eights, last)
+    }
+}
+
+impl Queue {
     #[inline(always)]
-    pub(super) fn pop(&mut self) -> Option<Packet> {
-        let rest = self.len.checked_sub(LANES)?;
-        let rows = *self.rows.get(rest..)?.first_chunk()?;
-        self.len = rest;
-        Some(Packet { rows, len: LANES })
+    pub(super) fn empty() -> Self {
+        Self { rows: [0; LANES], starts: [[[0.0; 4]; 2]; LANES], len: 0 }
     }
 
-    /// Those who still wait, if anybody does.
-    pub(super) fn rest(&self) -> Option<Packet> {
-        let mut rows = *self.rows.first_chunk()?;
-        let (first, len) = (rows[0], self.len.min(LANES));
-        rows[len..].fill(first);
-        (len > 0).then_some(Packet { rows, len })
+    /// Puts a row in that was there, so fast. Says whether there are eight then, who have to go before another comes.
+    #[inline(always)]
+    pub(super) fn push(&mut self, row: u32, [x, v]: [Vec3; 2]) -> bool {
+        let place = self.len % LANES;
+        self.rows[place] = row;
+        self.starts[place] = [[x.x, x.y, x.z, 0.0], [v.x, v.y, v.z, 0.0]];
+        self.len = place + 1;
+        self.len == LANES
     }
+
+    /// Those who wait, who do not wait any longer.
+    pub(super) fn take(&mut self) -> Option<(Packet<'_>, &[Start; LANES])> {
+        let len = core::mem::take(&mut self.len);
+        let first = (self.rows[0], self.starts[0]);
+        self.rows[len..].fill(first.0);
+        self.starts[len..].fill(first.1);
+        (len > 0).then_some((Packet { rows: &self.rows, len }, &self.starts))
+    }
+}
+
+/// Where they were and how fast, side by side in such registers as `like` is in.
+#[inline(always)]
+pub(super) fn side_by_side<F: Eight>(like: F, starts: &[Start; LANES]) -> [Vectors<F>; 2] {
+    let (mut places, mut velocities) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES]);
+    for (start, (place, velocity)) in starts.iter().zip(places.iter_mut().zip(&mut velocities)) {
+        [*place, *velocity] = *start;
+    }
+    [Vectors(like.columns_of(places)), Vectors(like.columns_of(velocities))]
 }
 
 /// The numbers of the bits that are set.

@@ -53,8 +53,9 @@ impl<S: Surface + Sync> Emit for Jet<S> {
         1
     }
 
-    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) {
+    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
         visit(&self.newborn);
+        true
     }
 
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {

@@ -58,8 +58,8 @@ pub(crate) use spring_force::SpringForce;
 pub use spring_force::{SpringCode, SpringList};
 pub(crate) use state::Backdrop;
 pub use state::State;
-pub(crate) use steady::Inertia;
 pub use steady::Steady;
+pub(crate) use steady::{Ends, Inertia};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 

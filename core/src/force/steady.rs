@@ -1,7 +1,7 @@
 //! Forces that one pass over the columns can work out: what falls, and is braked by the air.
 
 use crate::integrate::Drift;
-use crate::lanes::run;
+use crate::lanes::{run, run_at_length};
 use crate::rows::{Accelerate, Extents, Fall, Leap};
 use glam::Vec3;
 
@@ -58,10 +58,18 @@ impl Steady {
         h: f32,
     ) -> Option<Extents> {
         match (self.acceleration.is_some(), self.drags) {
-            (false, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, false>(rows), ends, start, h }),
-            (true, false) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, false>(rows), ends, start, h }),
-            (false, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, true>(rows), ends, start, h }),
-            (true, true) => run(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, true>(rows), ends, start, h }),
+            (false, false) => {
+                run_at_length(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, false>(rows), ends, start, h })
+            }
+            (true, false) => {
+                run_at_length(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, false>(rows), ends, start, h })
+            }
+            (false, true) => {
+                run_at_length(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<false, true>(rows), ends, start, h })
+            }
+            (true, true) => {
+                run_at_length(Leap::<_, _, SYMPLECTIC> { fall: self.fall::<true, true>(rows), ends, start, h })
+            }
         }
     }
 

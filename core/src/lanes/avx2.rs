@@ -152,6 +152,15 @@ impl Eight for Wide {
     fn most(self, other: Self) -> Self {
         Self(self.0.max(other.0))
     }
+    // The instructions have the second of two that are equal, and where there is no number.
+    #[inline(always)]
+    fn greater(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
     #[inline(always)]
     fn thrice(self) -> [Self; 3] {
         let avx2 = self.0.token();

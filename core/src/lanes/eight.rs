@@ -36,6 +36,15 @@ pub(crate) trait Eight:
     /// The smaller of two, and the larger; either, or none, where one is no number.
     fn least(self, other: Self) -> Self;
     fn most(self, other: Self) -> Self;
+    /// The larger of two numbers, and the smaller: the second where they are equal, or either is no number.
+    #[inline(always)]
+    fn greater(self, other: Self) -> Self {
+        self.simd_gt(other).select(self, other)
+    }
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        self.simd_lt(other).select(self, other)
+    }
     /// Each three times, one after the other.
     #[inline(always)]
     fn thrice(self) -> [Self; 3] {
@@ -109,13 +118,13 @@ pub(crate) trait Kernel {
 /// The larger of two numbers, as [`crate::math::max`] has it.
 #[inline(always)]
 pub(crate) fn max<F: Eight>(a: F, b: F) -> F {
-    a.simd_gt(b).select(a, b)
+    a.greater(b)
 }
 
 /// The smaller of two numbers, as [`crate::math::min`] has it.
 #[inline(always)]
 pub(crate) fn min<F: Eight>(a: F, b: F) -> F {
-    a.simd_lt(b).select(a, b)
+    a.lesser(b)
 }
 
 /// Numbers with their signs turned round, those of zeros as well.

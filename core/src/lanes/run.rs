@@ -18,6 +18,20 @@ pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(wide::f32x8::ZERO)
 }
 
+/// The same for one that keeps more numbers at hand than there are registers, where there may be twice as many of these.
+#[inline(always)]
+pub(crate) fn run_at_length<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    if let Some((avx512, avx2)) = fearless_simd::Level::new().as_avx512().zip(fearless_simd::Level::new().as_avx2()) {
+        return fearless_simd::Simd::vectorize(
+            avx512,
+            #[inline(always)]
+            || kernel.run(super::avx2::Wide::zero(avx2)),
+        );
+    }
+    run(kernel)
+}
+
 /// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
 #[inline(always)]
 pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {

@@ -2,7 +2,7 @@
 
 use super::filled;
 use crate::lanes::{Eight, Kernel, not};
-use crate::math::{largest, max};
+use crate::math::{high, largest, low, max};
 use glam::Vec3;
 
 /// The steady pull that makes rows fall, each braked by its own drag.
@@ -72,6 +72,16 @@ struct Seen<F> {
 }
 
 impl Extents {
+    /// How far these rows have got and others.
+    pub(crate) fn and(self, others: Self) -> Self {
+        let [least, most] = self.change;
+        Self {
+            place: max(self.place, others.place),
+            speed: max(self.speed, others.speed),
+            change: [low(least, others.change[0]), high(most, others.change[1])],
+        }
+    }
+
     /// The same with a row somewhere else, if that is finite.
     pub(crate) fn with(self, position: Vec3, velocity: Vec3) -> Option<Self> {
         let is_finite = position.is_finite() && velocity.is_finite();

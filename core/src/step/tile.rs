@@ -1,10 +1,10 @@
 //! Rows that go through a step together: all that there are, or few enough to stay in the cache meanwhile.
 
 use super::substeps::Carried;
-use crate::collide::Tile;
+use crate::collide::{Tile, leap_by_itself};
 use crate::constrain::Substep;
 use crate::custom::CustomColumns;
-use crate::force::{Attributes, Springs, State, Steady};
+use crate::force::{Attributes, Ends, Springs, State, Steady};
 use crate::index::{Listed, Neighbours};
 use crate::integrate::Drift;
 use crate::memory::{Layout, Status, TILED, Workspace};
@@ -24,6 +24,10 @@ const TILE: usize = 1280;
 /// The same where a step goes over them hardly more than once: the second cache will do.
 const ONE_PASS: usize = 4 * TILE;
 
+/// The same where they leap and are swept a few at a time: what is left of these in the end is all that more rows would share. No thread
+/// has fewer.
+const LEAPT: usize = 3 * TILE;
+
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 4 * TILE;
@@ -31,7 +35,11 @@ const SHARE: usize = 4 * TILE;
 impl Scene<'_> {
     /// Rows of a tile.
     pub(super) fn tile_rows(&self) -> usize {
-        if !self.is_swept() && self.leap().is_some() { ONE_PASS } else { TILE }
+        match (self.leap().is_some(), self.is_swept()) {
+            (true, true) => LEAPT,
+            (true, false) => ONE_PASS,
+            (false, _) => TILE,
+        }
     }
 
     /// The forces that one pass over the columns can work out, if there are no others.
@@ -201,6 +209,18 @@ impl<'a> Tile<'a> {
 
     /// Takes the rows through a sub-step.
     fn go(&mut self, scene: &Scene<'_>, substep: Substep, report: &mut Report, observer: &mut dyn Observer) {
+        let leaps = scene.paths.are_curved() && scene.is_swept() && self.old == self.position.len();
+        let leap = if leaps { scene.leap() } else { None };
+        if let Some((steady, drift)) = leap {
+            let ([now, end], attributes) = (substep.during, self.attributes);
+            (self.now, self.dt) = (now, end - now);
+            let h = self.dt.seconds();
+            report.effort.evaluations += u64::from(self.old > 0);
+            let leap = &mut |rows: Range<usize>, ends: Ends<'_>, start: Ends<'_>| {
+                steady.leap(attributes.inertia(rows), ends, start, h, drift)
+            };
+            return leap_by_itself(self, leap, report, observer);
+        }
         let (mut hint, mut listed) = (Time::ZERO, Listed::NONE);
         let carried = Carried { kept: &mut [], hint: &mut hint, listed: &mut listed, changes: 0 };
         self.advance(scene, substep, carried, report, observer);

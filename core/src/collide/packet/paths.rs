@@ -3,6 +3,10 @@
 use crate::collide::path::CHORD_ERROR;
 use crate::lanes::{Eight, Vectors, max, not};
 
+/// How far from the origin places may be together with a hundred times as far as anybody gets in a step \[m\]: their rounding, and
+/// eight times that of the ways, are 20 µm then.
+pub(in crate::collide) const CLOSE: f32 = 200.0;
+
 /// Eight cubics, as `Path`.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Paths<F> {
@@ -24,10 +28,6 @@ pub(super) struct Cubics<F> {
 }
 
 impl<F: Eight> Paths<F> {
-    /// How far from the origin places may be together with a hundred times as far as anybody gets in a step \[m\]: their rounding, and
-    /// eight times that of the ways, are 20 µm then.
-    pub(in crate::collide) const CLOSE: f32 = 200.0;
-
     /// The first of two where a mask says so, else the second.
     #[inline(always)]
     pub(super) fn select(mask: F, a: Self, b: Self) -> Self {
@@ -63,7 +63,7 @@ impl<F: Eight> Paths<F> {
     }
 
     /// Those that one chord is near enough to for sure, if the cubic leads to their end but for rounding, and all is within
-    /// [`Self::CLOSE`]: what rounding adds to the bend is less than as much again.
+    /// [`CLOSE`]: what rounding adds to the bend is less than as much again.
     #[inline(always)]
     pub(super) fn hardly_bend(&self) -> F {
         const HALF: f32 = 2.0 * CHORD_ERROR;

@@ -9,26 +9,52 @@ use crate::observe::Observer;
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::shape::{Collider, Facing};
+use glam::Vec3;
 
 impl TileSweep<'_, '_> {
+    /// Where a row was when the sub-step began, and how fast.
+    pub(super) fn start_of(&self, row: usize) -> [Vec3; 2] {
+        let row = if SHORT_WAY { row - self.first } else { row };
+        let [x, v] = self.past.start;
+        [x[row], v[row]]
+    }
+
     /// A row's path through the sub-step.
     pub(super) fn path(&self, row: usize) -> Path {
-        self.tile.path(self.past, row)
+        self.tile.path_from(row, self.start_of(row))
     }
 
     /// Follows the particle in a row to its first hit and on, if its own box may touch anything.
     pub(super) fn follow(&mut self, row: usize) {
-        let known = Some(self.facing).filter(|known| *known != Facing::Several);
-        self.follow_past(row, self.tile.obstacles.colliders, known);
+        self.follow_from(row, None, self.tile.obstacles.colliders, self.known());
+    }
+
+    /// All that is known of the scenery, if that is one thing or none.
+    pub(super) fn known(&self) -> Option<Facing> {
+        Some(self.facing).filter(|known| *known != Facing::Several)
     }
 
     /// The same past these, of which so much is known.
-    #[inline(never)]
     pub(super) fn follow_past(&mut self, row: usize, walls: &dyn Collider, known: Option<Facing>) {
+        self.follow_from(row, None, walls, known);
+    }
+
+    /// The same from where it was and as fast, if that is told here.
+    #[inline(never)]
+    pub(super) fn follow_from(
+        &mut self,
+        row: usize,
+        start: Option<[Vec3; 2]>,
+        walls: &dyn Collider,
+        known: Option<Facing>,
+    ) {
         if !self.tile.is_under_way(row) {
             return;
         }
-        let path = self.tile.path(self.past, row);
+        let path = match start.filter(|_| SHORT_WAY) {
+            Some(start) => self.tile.path_from(row, start),
+            None => self.path(row),
+        };
         let Self { tile, past, report, observer, .. } = self;
         let observer: Option<&mut dyn Observer> = match observer {
             Some(observer) => Some(&mut **observer),
