@@ -220,6 +220,69 @@ fn short_ways_have_the_bits_of_the_long_one() {
     assert!(hits > 50 * count as u64, "{hits}");
 }
 
+/// Points and balls that lie, slide, bounce and graze among spheres and boxes, inside of them too, wherever that is: whatever goes eight at a time
+/// has the bits of what goes one by one.
+#[test]
+fn who_goes_among_things_has_the_bits_of_the_long_way() {
+    let (mut hits, count) = (0, often(150));
+    for number in 0..count {
+        let r = &mut Random::new(104_729 * number as u64 + 7);
+        let scale = one_of(r, &[1.0, 1.0, 1e-3, 40.0]);
+        let far = one_of(r, &[0.0, 1.0, 1e3]) * scale;
+        let normals = [Vec3::Y, Vec3::Y, Vec3::X * 2.0, r.direction()];
+        let plane = Plane { point: r.vector(far), normal: one_of(r, &normals) };
+        let up = plane.normal.normalize();
+        let sizes = [scale, one_of(r, &[0.0, 0.0, 0.0, 0.02, 0.2]) * scale];
+        let tame = |r: &mut Random| Particle {
+            elasticity: one_of(r, &[0.0, 0.5, 0.9, 1.0, 0.3]),
+            drag: one_of(r, &[0.0, 0.2]),
+            mass: 1.0,
+            lifetime: 0.0,
+            ..particle(r, &plane, sizes, false)
+        };
+        let start: Vec<Particle> = (0..one_of(r, &[9, 150, 500])).map(|_| tame(r)).collect();
+        let thing = |i: u64, r: &mut Random| {
+            let aside = r.vector(3.0 * scale);
+            let center = plane.point + aside - up * aside.dot(up) + up * (r.between(-0.2, 0.3) * scale);
+            let size = r.between(0.05, 0.4) * scale * one_of(r, &[1.0, 1.0, 0.1, 4.0]);
+            match i % 2 {
+                0 => Shape::Sphere(Sphere { center, radius: size }),
+                _ => Shape::Box(Cuboid { min: center - size, max: center + Vec3::new(1.0, 0.3, 2.0) * size }),
+            }
+        };
+        let (many, ground) = (one_of(r, &[1, 5, 30, 90]), r.word() % 4);
+        let list: Vec<Form> = (0..many).map(|i| if i == ground { Shape::Plane(plane) } else { thing(i, r) }).collect();
+        let scenery = Scenery::new(list.iter().map(|thing| (thing.clone(), thing.bounds())).collect());
+        let askew = up * -9.8 * scale + r.vector(1.0 * scale);
+        let g = Gravity { acceleration: one_of(r, &[up * -9.8 * scale, up * -9.8 * scale, askew]) };
+        let forces = (g, Drag {});
+        let method = one_of(r, &[&Euler as &dyn Integrator, &Symplectic, &Symplectic]);
+        let friction = ContactMaterial { friction: Some(Friction { static_: 0.5, kinetic: 0.4 }), elasticity: None };
+        let materials = [friction, ContactMaterial { elasticity: Some(0.3), friction: None }];
+        let fast = Scene { start: &start, forces: &forces, colliders: &scenery, integrator: method, ..Scene::EMPTY };
+        let max_bounces = one_of(r, &[8, 8, 8, 2, 4]);
+        let fast = if number.is_multiple_of(4) { Scene { materials: &materials, ..fast } } else { fast };
+        let fast = Scene { max_bounces, ..fast };
+        let stepped = Reticent { method, is_local: true, drifts: false };
+        let (silent, long) = (Silent(&list), Unsteady(&forces));
+        let long = Scene { forces: &long, colliders: &silent, integrator: &stepped, ..fast };
+        let slow = Scene { integrator: &stepped, ..fast };
+        let scenes = [&long, &fast, &slow];
+        let mut systems = scenes.map(|scene| started(scene, start.len(), 5));
+        let dt = Time::from_seconds(one_of(r, &[1.0 / 60.0, 1.0 / 60.0, 1.0 / 24.0, 1.0 / 200.0]));
+        for step in 0..40 {
+            let mut ways =
+                systems.iter_mut().zip(scenes).map(|(system, scene)| (system.step(scene, dt), system.hash()));
+            let long = ways.next().expect("there are three");
+            for (way, short) in ways.enumerate() {
+                assert_eq!(short, long, "scene {number}, step {step}, way {way}");
+            }
+        }
+        hits += systems[0].totals().hits;
+    }
+    assert!(hits > 200 * count as u64, "{hits}");
+}
+
 /// At the end of all time nothing moves, and just before it only as far as that, whichever way rows go.
 #[test]
 fn no_way_leads_beyond_the_end_of_time() {

@@ -2,7 +2,7 @@
 
 use crate::lanes::{Eight, Kernel, LANES, run, turned, widest};
 use crate::math::{largest, max, min};
-use crate::rows::{Extents, farthest, filled, flat, largest_of};
+use crate::rows::{Extents, farthest, filled, largest_of};
 use crate::shape::{Aabb, Face};
 use core::ops::Range;
 use glam::Vec3;
@@ -34,8 +34,7 @@ pub(super) struct Block<'a> {
     balls: Balls<'a>,
     /// The vectors between which velocities change \[m/s\], where that is known.
     change: Option<[Vec3; 2]>,
-    /// The largest number of the velocities, of the control points, and of the radii; or more, but what is no number does not count.
-    fastest: f32,
+    /// The largest number of the control points, and of the radii; or more, but what is no number does not count.
     largest: f32,
     radius: f32,
 }
@@ -59,12 +58,12 @@ impl<'a> Balls<'a> {
             // Where they are, no coordinate is beyond `place`. They began no farther from there than the way at the largest speed, and
             // a control point is a third of that way from its end.
             Some(Extents { place, speed, change }) => {
-                Block { balls, change: Some(change), fastest: speed, largest: place + (time + third) * speed, radius }
+                Block { balls, change: Some(change), largest: place + (time + third) * speed, radius }
             }
             None => {
                 let [x0, v0, x1, v1] = balls.ends.map(farthest);
                 let largest = max(x0 + third * v0, x1 + third * v1);
-                Block { balls, change: None, fastest: max(v0, v1), largest, radius }
+                Block { balls, change: None, largest, radius }
             }
         }
     }
@@ -152,35 +151,12 @@ impl Block<'_> {
         self.radius == 0.0
     }
 
-    /// How far any of them may get from the ends of its path when it is followed on after hits among things as far from the origin as
-    /// `size` \[m\], as [`surroundings`](super::sweep::surroundings) has it, or farther.
-    pub(super) fn reach(&self, size: f32) -> f32 {
-        let Self { balls: Balls { ends: [_, v0, _, v1], time, .. }, change, fastest, largest, radius } = *self;
-        let apart =
-            change.map_or_else(|| most_apart(v0, v1), |change| max(self::largest(change[0]), self::largest(change[1])));
-        // No vector is longer than the root of three times its largest coordinate; a third of the time is for the path itself.
-        let way = 2.5 * time * (fastest + 4.0 * apart);
-        way + 2.0 * radius + (largest + radius + size) * (512.0 * f32::EPSILON)
+    /// How much any number of their velocities changes at the most \[m/s\], where that is known, and what rounding may come to among things
+    /// as far from the origin as `size` \[m\].
+    pub(super) fn limits(&self, size: f32) -> (Option<f32>, f32) {
+        let change = self.change.map(|[least, most]| max(largest(least), largest(most)));
+        (change, (self.largest + self.radius + size) * (512.0 * f32::EPSILON))
     }
-}
-
-/// The largest difference of two columns' numbers; what is no number does not count.
-fn most_apart(a: &[Vec3], b: &[Vec3]) -> f32 {
-    let ((a, a_rest), (b, b_rest)) = (flat(a).as_chunks::<16>(), flat(b).as_chunks::<16>());
-    let most = widest(
-        #[inline(always)]
-        || {
-            let mut most = [0.0; 16];
-            for (a, b) in a.iter().zip(b) {
-                for i in 0..16 {
-                    most[i] = max((a[i] - b[i]).abs(), most[i]);
-                }
-            }
-            most
-        },
-    );
-    let rest = a_rest.iter().zip(b_rest).fold(0.0, |most, (a, b)| max((a - b).abs(), most));
-    most.into_iter().fold(rest, max)
 }
 
 impl<const AXIS: usize, const BENT: bool> Kernel for Slab<'_, AXIS, BENT> {

@@ -6,16 +6,19 @@
 mod hits;
 mod leads;
 mod paths;
+mod things;
+mod walls;
 
 use super::sweep::{LAIN, RESTING};
-use crate::lanes::{Eight, LANES, Vectors, max, negated, not};
+use crate::lanes::{Eight, LANES, Vectors, mask_of, max, negated, not};
 use crate::shape::Face;
 use crate::time::Time;
 use glam::Vec3;
-use hits::{Hits, Meetings, Segments};
+use hits::{Hits, Meetings, Seats, Segments, Walls};
 use leads::Leads;
 use paths::Cubics;
 pub(super) use paths::{CLOSE, Paths};
+pub(super) use things::Things;
 
 /// Properties of eight particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
 pub(super) struct Riders<F, const POINTS: bool> {
@@ -50,6 +53,24 @@ pub(super) struct Outcome<F> {
     pub(super) ends: [Vectors<F>; 2],
 }
 
+/// The ways of a packet after some hits.
+struct Flight<F> {
+    onward: Paths<F>,
+    /// Particles that are at the end of the step, and those that have hit something beside the face.
+    settled: F,
+    astray: F,
+    /// A bit for each particle that has been hit so many times.
+    hits: [u32; ROUNDS],
+}
+
+impl<F> Flight<F> {
+    /// How often these were hit.
+    #[inline(always)]
+    fn hits_of(&self, which: u32) -> u32 {
+        self.hits.iter().map(|hits| (hits & which).count_ones()).sum()
+    }
+}
+
 impl<F: Eight> Outcome<F> {
     /// The outcome for those who are `settled` on their paths, after so many hits, and for those who are `left`.
     #[inline(always)]
@@ -64,19 +85,12 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
     #[inline(always)]
     pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome<F> {
         let acceleration = paths.acceleration();
-        let (lying, normal) = self.seated(paths, face, acceleration);
+        let (lying, normal, _) = self.seated(paths, face, acceleration);
         let lying = lying & self.are_free;
         if !lying.any() {
             return Outcome::of(paths, lying, 0, 0);
         }
-        let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
-        let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
-        let ([way, end], is_steady) = self.slide(slip, drive, pressing, paths.time);
-        let mut along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
-        if self.swing {
-            let leads = Leads::of(&paths.cubics(), paths.time, paths.time.all(0.0), normal);
-            along.x1 = leads.slid(along.x1, drive * paths.time, end - slip);
-        }
+        let (along, is_steady) = self.along(paths, acceleration, normal);
         let mut straight = along.hardly_bend();
         if !(self.are_close && is_steady) || (lying & not(straight)).any() {
             straight = along.cubics().chords().simd_eq(paths.time.all(1.0));
@@ -87,25 +101,34 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         Outcome::of(&along, settled, lying.to_bitmask() & !which, which.count_ones())
     }
 
-    /// Those that begin on the face and leaves it only to come back to it within the step; and the normals toward them.
+    /// The ways of those who lie on surfaces with these normals, and whether all are driven steadily.
     #[inline(always)]
-    fn seated(&self, paths: &Paths<F>, face: &Face, acceleration: Vectors<F>) -> (F, Vectors<F>) {
-        let (time, like) = (paths.time, paths.time);
-        let (all, zero) = (|x| like.all(x), like.all(0.0));
+    fn along(&self, paths: &Paths<F>, acceleration: Vectors<F>, normal: Vectors<F>) -> (Paths<F>, bool) {
+        let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
+        let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
+        let ([way, end], is_steady) = self.slide(slip, drive, pressing, paths.time);
+        let mut along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
+        if self.swing {
+            let leads = Leads::of(&paths.cubics(), paths.time, paths.time.all(0.0), normal);
+            along.x1 = leads.slid(along.x1, drive * paths.time, end - slip);
+        }
+        (along, is_steady)
+    }
+
+    /// Those that begin on one surface and leave it only to come back to it within the step, the normals toward them, and those of which it
+    /// cannot be told.
+    #[inline(always)]
+    fn seated(&self, paths: &Paths<F>, walls: &impl Walls<F>, acceleration: Vectors<F>) -> (F, Vectors<F>, F) {
+        let (time, all) = (paths.time, |x| paths.time.all(x));
         let fall = |acceleration: F| all(0.5) * acceleration * time * time;
-        let [point, _, unit] = face.vectors();
-        let (point, unit) = (Vectors::splat(like, point), Vectors::splat(like, unit));
-        let away = unit.dot(paths.x0 - point);
-        let normal = Vectors::select(away.simd_lt(zero), -unit, unit);
-        let distance = (unit * away).dot(normal);
-        let slack = all(4.0 * f32::EPSILON) * (paths.x0.largest() + distance + all(face.size()));
-        let is_near = distance.simd_le(self.radius + fall(acceleration.length()));
+        let reach = self.radius + fall(acceleration.length());
+        let Seats { are, normal, distance, slack, unclear } = walls.seats(paths.x0, reach);
         let gap = distance - self.radius;
         let (leaving, pressing) = (paths.v0.dot(normal).abs(), negated(acceleration.dot(normal)));
         let lain = all(LAIN) * slack;
         let is_there = gap.simd_ge(all(0.5) * slack) & gap.simd_le(lain) & fall(pressing).simd_gt(gap);
         let rests = (leaving * time).simd_le(lain) & (all(2.0) * leaving).simd_lt(all(RESTING) * time * pressing);
-        (is_near & is_there & rests, normal)
+        (are & is_there & rests, normal, unclear)
     }
 
     /// How far they slide in a time, and how fast they are then, as `Slide` has it; and whether all are driven steadily meanwhile.
@@ -160,15 +183,32 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         step: Time,
         max_bounces: u32,
     ) -> Outcome<F> {
-        let (mut onward, mut cubics) = (*paths, paths.cubics());
-        let mut clear = self.are_free & not(cubics.lag());
+        let cubics = paths.cubics();
+        let clear = self.are_free & not(cubics.lag());
         if step.ticks() > MOST_TICKS {
             return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
         }
-        let mut meetings = paths.first_meetings::<POINTS>(&cubics, face, self.radius, clear);
+        let flight = self.fly(*paths, cubics, face, clear, step, max_bounces);
+        let which = flight.settled.to_bitmask() & present;
+        Outcome::of(&flight.onward, flight.settled, !which, flight.hits_of(which))
+    }
+
+    /// The same among walls of any kind, of those who are `clear`.
+    #[inline(always)]
+    fn fly(
+        &self,
+        mut onward: Paths<F>,
+        mut cubics: Cubics<F>,
+        walls: &impl Walls<F>,
+        mut clear: F,
+        step: Time,
+        max_bounces: u32,
+    ) -> Flight<F> {
+        let mut meetings = onward.first_meetings::<POINTS>(&cubics, walls, self.radius, clear);
         let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);
         let (mut left, mut hits, mut rounds) = ([step.ticks() as i32; LANES], [0; ROUNDS], 1);
+        let mut astray = clear & not(clear);
         for hits in &mut hits {
             hit = hit & clear;
             if !hit.any() || rounds >= max_bounces {
@@ -176,18 +216,18 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
             }
             rounds += 1;
             *hits = hit.to_bitmask();
-            let (next, is_free) = self.rebound(&onward, &cubics, &meetings, face, step.seconds(), &mut left);
+            astray = astray | (hit & meetings.hits.beside_face);
+            let (next, is_free) = self.rebound(&onward, &cubics, &meetings, walls, step.seconds(), &mut left);
             // Who has no time left is followed by itself.
             clear = clear & not(hit & not(is_free & next.time.simd_gt(next.time.all(0.0))));
             onward = Paths::select(hit, next, onward);
             cubics = onward.cubics();
-            meetings = onward.first_meetings::<POINTS>(&cubics, face, self.radius, hit);
+            meetings = onward.first_meetings::<POINTS>(&cubics, walls, self.radius, hit);
             clear = clear & not(hit & meetings.unclear);
             hit = hit & meetings.hits.are;
         }
         let settled = clear & not(hit) & onward.end_finite();
-        let which = settled.to_bitmask() & present;
-        Outcome::of(&onward, settled, !which, hits.iter().map(|hits| (hits & which).count_ones()).sum())
+        Flight { onward, settled, astray, hits }
     }
 
     /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, and whose are free.
@@ -197,7 +237,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         paths: &Paths<F>,
         cubics: &Cubics<F>,
         meetings: &Meetings<F>,
-        face: &Face,
+        walls: &impl Walls<F>,
         dt: f32,
         left: &mut [i32; LANES],
     ) -> (Paths<F>, F) {
@@ -217,7 +257,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
         let outgoing = incoming.simd_lt(zero).select(negated(incoming) * self.elasticity, incoming);
-        let (beside, is_free) = self.set_off(paths, cubics, meetings, face, incoming);
+        let (beside, is_free) = self.set_off(paths, cubics, meetings, walls, incoming);
         let onward = slowed(outgoing, acceleration.dot(beside - place));
         let pressing = negated(acceleration.dot(normal));
         let rests = pressing.simd_gt(zero)
@@ -270,7 +310,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         paths: &Paths<F>,
         cubics: &Cubics<F>,
         meetings: &Meetings<F>,
-        face: &Face,
+        walls: &impl Walls<F>,
         incoming: F,
     ) -> (Vectors<F>, F) {
         let Meetings { hits: Hits { time, normal, slack, .. }, place, begun, chord_from, .. } = *meetings;
@@ -279,8 +319,8 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let beside = place + normal * (all(2.0) * slack);
         let back = all(2.0) * slack / (closing * paths.time);
         let before = cubics.at(max(time - back, begun));
-        let is_free = not(Segments { from: chord_from, to: before }.first_hits::<POINTS>(face, self.radius).are);
-        let aside = Segments { from: before, to: beside }.first_hits::<POINTS>(face, self.radius).are;
+        let is_free = not(walls.first_hits::<POINTS>(&Segments { from: chord_from, to: before }, self.radius).are);
+        let aside = walls.first_hits::<POINTS>(&Segments { from: before, to: beside }, self.radius).are;
         (Vectors::select(aside, before, beside), is_free)
     }
 
@@ -292,6 +332,37 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let all_of_it = speed.simd_le(self.at_rest * press) | speed.simd_le(held);
         let answer = Vectors::select(all_of_it, -slip, slip * (negated(held) / speed));
         answer.masked(speed.simd_gt(zero) & press.simd_gt(zero))
+    }
+}
+
+impl<F: Eight> Riders<F, true> {
+    /// Those of who are `present` who lie on a face or a solid, or bounce off them. Whose solid is not `alone` may hit nothing else but the
+    /// face.
+    #[inline(always)]
+    pub(in crate::collide) fn go<const BOXES: bool>(
+        &self,
+        paths: &Paths<F>,
+        things: &Things<F, BOXES>,
+        [present, alone]: [u32; 2],
+        step: Time,
+        max_bounces: u32,
+    ) -> Outcome<F> {
+        let acceleration = paths.acceleration();
+        let (lying, normal, unclear) = self.seated(paths, things, acceleration);
+        let mut onward = *paths;
+        if lying.any() {
+            onward = Paths::select(lying, self.along(paths, acceleration, normal).0, onward);
+        }
+        let cubics = onward.cubics();
+        let clear = self.are_free & (lying | not(cubics.lag())) & not(unclear);
+        if step.ticks() > MOST_TICKS {
+            return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
+        }
+        let flight = self.fly(onward, cubics, things, clear, step, max_bounces);
+        let settled = flight.settled & not(flight.astray & not(mask_of(flight.settled, alone)));
+        let which = settled.to_bitmask() & present;
+        let hits = flight.hits_of(which) + (lying.to_bitmask() & which).count_ones();
+        Outcome::of(&flight.onward, settled, !which, hits)
     }
 }
 

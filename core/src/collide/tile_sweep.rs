@@ -4,6 +4,9 @@ mod among;
 pub(super) mod face;
 mod follow;
 mod packets;
+mod pairs;
+mod seek;
+mod ways;
 
 use super::near::{Balls, Marks as Bits};
 use super::sweep::facing;
@@ -38,10 +41,13 @@ struct TileSweep<'s, 'a> {
     observer: Option<&'s mut dyn Observer>,
 }
 
+/// Places in the list of those who may lie: for some words of marks.
+const LISTED: usize = 7 * u64::BITS as usize;
+
 /// Rows that wait to go past a face: as if they lay on it, and as if they bounced off it.
 struct Waiting {
     face: Face,
-    lying: List,
+    lying: List<LISTED>,
     bouncing: Queue,
 }
 

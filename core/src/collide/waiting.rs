@@ -3,11 +3,8 @@
 use crate::lanes::{Eight, HITS, LANES, Vectors};
 use glam::Vec3;
 
-/// Places in a list: for some words of marks.
-const PLACES: usize = 7 * u64::BITS as usize;
-
-/// Rows in the order in which they are met.
-pub(super) struct List {
+/// Rows in the order in which they are met, with some places.
+pub(super) struct List<const PLACES: usize> {
     rows: [u32; PLACES],
     len: usize,
 }
@@ -36,7 +33,7 @@ impl Packet<'_> {
     }
 }
 
-impl List {
+impl<const PLACES: usize> List<PLACES> {
     #[inline(always)]
     pub(super) fn empty() -> Self {
         Self { rows: [0; PLACES], len: 0 }

@@ -1,6 +1,6 @@
 //! Boxes by the cells of a grid that they reach into: what a small box meets is told by a few lists.
 
-use super::Aabb;
+use super::{Aabb, Few};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -103,22 +103,29 @@ impl Cells {
         CellRange { first: cells(bounds.min), last: cells(bounds.max) }
     }
 
-    /// Tells whether any of the boxes may meet another.
+    /// Those of the boxes that meet another; several, if they are too far apart.
     #[inline]
-    pub(super) fn any(&self, boxes: &[Aabb], bounds: &Aabb) -> bool {
+    pub(super) fn few(&self, boxes: &[Aabb], bounds: &Aabb) -> Few {
         if self.starts.is_empty() {
-            return false;
+            return Few::Nothing;
         }
         let range = self.range(bounds);
-        let mut any = range.len() > LOOKS;
-        if !any {
-            range.lines(self.counts, |cells| {
-                for &number in self.numbers_in(cells) {
-                    any |= boxes.get(number as usize).is_some_and(|one| meet(one, bounds));
-                }
-            });
+        if range.len() > LOOKS {
+            return Few::Several;
         }
-        any
+        let mut few = Few::Nothing;
+        range.lines(self.counts, |cells| {
+            for &number in self.numbers_in(cells) {
+                if boxes.get(number as usize).is_some_and(|one| meet(one, bounds)) {
+                    few = match few {
+                        Few::Nothing => Few::One(number as usize),
+                        Few::One(other) if other == number as usize => few,
+                        _ => Few::Several,
+                    };
+                }
+            }
+        });
+        few
     }
 
     /// The numbers in the lists of cells side by side, which follow one another.
@@ -183,7 +190,7 @@ impl CellRange {
 
 /// Tells whether two boxes share a point.
 #[inline]
-fn meet(a: &Aabb, b: &Aabb) -> bool {
+pub(super) fn meet(a: &Aabb, b: &Aabb) -> bool {
     let meets = |axis: usize| (a.min[axis] <= b.max[axis]) & (a.max[axis] >= b.min[axis]);
     meets(0) & meets(1) & meets(2)
 }
@@ -225,6 +232,12 @@ mod tests {
                 }
                 told += 1;
                 let met = (0..boxes.len()).filter(|&k| k != 7 && meet(&boxes[k], &bounds));
+                let few = match (met.clone().next(), met.clone().count()) {
+                    (None, _) => Few::Nothing,
+                    (Some(number), 1) => Few::One(number),
+                    _ => Few::Several,
+                };
+                assert_eq!(cells.few(&boxes, &bounds), few, "{i}");
                 assert!(met.eq(found.iter().map(|&number| number as usize)), "{i}");
             }
             assert!(told > 400, "{told}");

@@ -1,7 +1,7 @@
 //! Things that a moving point can run into, one by one or in lists.
 
 use super::hit::earlier;
-use super::{Aabb, Affine, Contact, Face, Facing, Hit, Hulls, Marks, Ride, Segment};
+use super::{Aabb, Affine, Clearance, Contact, Face, Facing, Hit, Hulls, Marks, Ride, Segment, Solid};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -88,6 +88,12 @@ pub trait Collider: Sync {
         None
     }
 
+    /// It as a solid that goes side by side with others, if that is all that it is.
+    #[cfg(feature = "alloc")]
+    fn solid(&self) -> Option<Solid> {
+        None
+    }
+
     /// Visits the places of it that are nearest to `center` and within `reach` \[m\] of it at an instant, one for each
     /// of its faces: what a ball there leans on, or is about to. None by default, which leaves all to `first_hit`.
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
@@ -139,12 +145,39 @@ pub trait Many: Sync {
     /// Where there is nothing but the flat face it does not, and says so by false.
     fn near(&self, bounds: &Aabb, then: &mut dyn FnMut(&dyn Collider)) -> bool;
 
-    /// A mask of the boxes, of which there are eight at the most, that there may be more in: the first in the lowest bit, and never fewer
-    /// than `near` says so of.
-    fn are_near(&self, bounds: &[Aabb]) -> u8 {
-        let _ = bounds;
-        u8::MAX
+    /// How far more than the flat face is from anywhere, if that is known.
+    fn clearance(&self) -> Option<Clearance<'_>> {
+        None
     }
+
+    /// One of them by the number that the clearance knows it by, if it is a solid, and whether it comes after the flat face in their order.
+    fn solid(&self, number: usize) -> Option<(Solid, bool)> {
+        let _ = number;
+        None
+    }
+
+    /// Tells whether a box may share a point with one of them, known by its number.
+    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
+        let _ = (number, bounds);
+        true
+    }
+
+    /// Those of them that may share a point with a box.
+    fn few(&self, bounds: &Aabb) -> Few {
+        let _ = bounds;
+        Few::Several
+    }
+}
+
+/// How many of many things there may be in a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Few {
+    /// None.
+    Nothing,
+    /// One, by its number.
+    One(usize),
+    /// One or more.
+    Several,
 }
 
 impl Collider for () {
@@ -178,6 +211,10 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn many(&self) -> Option<&dyn Many> {
         (**self).many()
+    }
+    #[cfg(feature = "alloc")]
+    fn solid(&self) -> Option<Solid> {
+        (**self).solid()
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);

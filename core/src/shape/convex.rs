@@ -128,8 +128,13 @@ pub(super) fn ball_contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit
 
 /// Implements `Collider` for convex solids.
 macro_rules! convex_collider {
-    ($($solid:ty),+) => {$(
+    ($solid:ty $(, $as_solid:expr)?) => {
         impl crate::shape::Collider for $solid {
+            $(#[cfg(feature = "alloc")]
+            fn solid(&self) -> Option<crate::shape::Solid> {
+                let as_solid: fn(&Self) -> crate::shape::Solid = $as_solid;
+                Some(as_solid(self))
+            })?
             fn first_hit(&self, segment: &crate::shape::Segment) -> Option<crate::shape::Hit> {
                 if segment.radius > 0.0 {
                     return crate::shape::convex::ball_first_hit(self, segment);
@@ -162,6 +167,6 @@ macro_rules! convex_collider {
                 crate::shape::convex::Hollow::stretched(self, map, visit);
             }
         }
-    )+};
+    };
 }
 pub(super) use convex_collider;

@@ -1,5 +1,7 @@
 //! The surface of an axis-aligned box.
 
+#[cfg(feature = "alloc")]
+use super::Solid;
 use super::ball::{Filled, leave_span};
 use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Placed, Segment, Spot, Surface, Triangle};
@@ -153,4 +155,4 @@ impl Hollow for Cuboid {
         }
     }
 }
-convex_collider!(Cuboid);
+convex_collider!(Cuboid, |cuboid| Solid::Box(cuboid.bounds()));

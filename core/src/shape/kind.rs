@@ -91,6 +91,10 @@ impl<M: Collider> Collider for Shape<M> {
     fn facing(&self, bounds: &Aabb) -> Facing {
         each!(self, s => s.facing(bounds))
     }
+    #[cfg(feature = "alloc")]
+    fn solid(&self) -> Option<super::Solid> {
+        each!(self, s => s.solid())
+    }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         each!(self, s => s.contacts(center, reach, at, visit));
     }

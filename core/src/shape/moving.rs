@@ -146,6 +146,11 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
         None
     }
 
+    #[cfg(feature = "alloc")]
+    fn solid(&self) -> Option<super::Solid> {
+        if self.motion.is_none() { self.collider.solid() } else { None }
+    }
+
     fn may_touch(&self, bounds: &Aabb) -> bool {
         if self.motion.is_none() { self.collider.may_touch(bounds) } else { self.reach.overlaps(bounds) }
     }

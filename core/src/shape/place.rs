@@ -101,6 +101,11 @@ impl<C: Mapped> Collider for Placed<C> {
         }
     }
 
+    #[cfg(feature = "alloc")]
+    fn solid(&self) -> Option<super::Solid> {
+        if self.maps.is_none() && self.material.is_none() { self.collider.solid() } else { None }
+    }
+
     fn is_empty(&self) -> bool {
         self.collider.is_empty()
     }

@@ -1,7 +1,8 @@
 //! Many things to run into, behind an index of their boxes.
 
-use super::cells::{Cells, Found, insert};
-use super::{Aabb, Collider, Contact, Face, Facing, Hit, Hulls, Many, Marks, Ride, Segment, earlier};
+use super::cells::{Cells, Found, insert, meet};
+use super::clearance::{Clearance, ClearanceBuf};
+use super::{Aabb, Collider, Contact, Face, Facing, Few, Hit, Hulls, Many, Marks, Ride, Segment, Solid, earlier};
 use crate::math::{largest, max};
 use crate::rays::{IndexBuf, Pieces, Structure};
 use crate::time::Time;
@@ -29,6 +30,10 @@ pub struct Scenery<C> {
     endless: Vec<usize>,
     /// The other boxes by the cells of a grid, for whoever is asked about a small place.
     cells: Cells,
+    /// How far they are from anywhere.
+    clearance: ClearanceBuf,
+    /// Those that are solids.
+    solids: Vec<Option<Solid>>,
     /// An index of them for all others; none, if there are few.
     index: IndexBuf,
 }
@@ -68,7 +73,10 @@ impl<C: Collider> Scenery<C> {
         let is_few = things.len() < WORTH_AN_INDEX;
         let index = if is_few { IndexBuf::default() } else { IndexBuf::new(Structure::Bvh, &boxes) };
         let cells = Cells::new(&boxes.0, &all, &|number| !is_endless(&boxes.0[number]));
-        Self { things, boxes, all, endless, cells, index }
+        let ends: Vec<(u32, &Aabb)> = (0..).zip(&boxes.0).filter(|(_, bounds)| !is_endless(bounds)).collect();
+        let clearance = ClearanceBuf::new(&ends, &all);
+        let solids = things.iter().map(Collider::solid).collect();
+        Self { things, boxes, all, endless, cells, clearance, solids, index }
     }
 
     /// Finds those that a box may share a point with; false, if they may be too many.
@@ -178,9 +186,21 @@ impl<C: Collider> Many for Scenery<C> {
         is_anything
     }
 
-    fn are_near(&self, bounds: &[Aabb]) -> u8 {
-        // The first comes last, into the lowest bit.
-        bounds.iter().rev().fold(0, |all, one| all << 1 | u8::from(self.cells.any(&self.boxes.0, one)))
+    fn clearance(&self) -> Option<Clearance<'_>> {
+        Some(self.clearance.view())
+    }
+
+    fn solid(&self, number: usize) -> Option<(Solid, bool)> {
+        let solid = (*self.solids.get(number)?)?;
+        Some((solid, self.endless.first().is_some_and(|&face| face < number)))
+    }
+
+    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
+        self.boxes.0.get(number).is_none_or(|one| meet(one, bounds))
+    }
+
+    fn few(&self, bounds: &Aabb) -> Few {
+        self.cells.few(&self.boxes.0, bounds)
     }
 }
 

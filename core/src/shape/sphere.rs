@@ -1,5 +1,7 @@
 //! The surface of a sphere.
 
+#[cfg(feature = "alloc")]
+use super::Solid;
 use super::ball::{Filled, circle_span, leave_circle};
 use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Segment, Spot, Surface};
@@ -86,4 +88,4 @@ impl Hollow for Sphere {
     /// Not of an ellipsoid.
     fn stretched(&self, _: &Affine, _: &mut dyn FnMut(u32, &dyn Collider)) {}
 }
-convex_collider!(Sphere);
+convex_collider!(Sphere, |sphere| Solid::Sphere { center: sphere.center, radius: sphere.radius });

@@ -1,4 +1,4 @@
-//! Where eight paths side by side meet a flat face.
+//! Where eight paths side by side meet walls.
 
 use super::paths::{Cubics, Paths};
 use crate::collide::path::MAX_CHORDS;
@@ -14,6 +14,8 @@ pub(super) struct Hits<F> {
     pub(super) time: F,
     pub(super) normal: Vectors<F>,
     pub(super) slack: F,
+    /// Those with something else than the face.
+    pub(super) beside_face: F,
 }
 
 /// The same on the paths.
@@ -24,6 +26,31 @@ pub(super) struct Meetings<F> {
     pub(super) place: Vectors<F>,
     pub(super) begun: F,
     pub(super) chord_from: Vectors<F>,
+}
+
+/// Walls that eight particles meet, all the same ones or each its own.
+pub(super) trait Walls<F: Eight> {
+    /// The flat face that they are, if they are no more than that.
+    fn face(&self) -> Option<&Face> {
+        None
+    }
+
+    /// Where balls that go along straight pieces first meet them; if all are `POINTS`, their radius is nothing.
+    fn first_hits<const POINTS: bool>(&self, piece: &Segments<F>, radius: F) -> Hits<F>;
+
+    /// The one surface that each place is within reach of.
+    fn seats(&self, place: Vectors<F>, reach: F) -> Seats<F>;
+}
+
+/// Surfaces that particles may lie on, as `Contact` has them.
+pub(super) struct Seats<F> {
+    /// Particles that are near one surface, and no other.
+    pub(super) are: F,
+    pub(super) normal: Vectors<F>,
+    pub(super) distance: F,
+    pub(super) slack: F,
+    /// Particles of which it cannot be told here.
+    pub(super) unclear: F,
 }
 
 /// Straight pieces of them.
@@ -51,7 +78,8 @@ impl<F: Eight> Segments<F> {
         let (before, after) = (normal.dot(from - point), normal.dot(to - point));
         let [falls, rises] = crossed(before, after);
         let time = min(max(before / (before - after), zero), one);
-        let center = Hits { are: falls | rises, time, normal: Vectors::select(falls, unit, -unit), slack };
+        let normal = Vectors::select(falls, unit, -unit);
+        let center = Hits { are: falls | rises, time, normal, slack, beside_face: zero };
         let wide = radius.simd_gt(slack);
         if POINTS || !wide.any() {
             return center;
@@ -63,7 +91,7 @@ impl<F: Eight> Segments<F> {
         let touched = wide & closing.simd_gt(zero) & time.simd_le(one);
         let is_first = touched & not(center.are & center.time.simd_lt(time));
         let mut hits = center;
-        hits.take(is_first, Hits { are: touched, time, normal, slack });
+        hits.take(is_first, Hits { are: touched, time, normal, slack, beside_face: zero });
         hits
     }
 }
@@ -84,13 +112,15 @@ impl<F: Eight> Hits<F> {
         self.time = mask.select(others.time, self.time);
         self.normal = Vectors::select(mask, others.normal, self.normal);
         self.slack = mask.select(others.slack, self.slack);
+        self.beside_face = mask.select(others.beside_face, self.beside_face);
     }
 }
 
 impl<F: Eight> Meetings<F> {
     fn none(place: Vectors<F>, unclear: F) -> Self {
         let (like, zero) = (unclear, unclear.all(0.0));
-        let hits = Hits { are: zero, time: zero, normal: Vectors::splat(like, Vec3::ZERO), slack: zero };
+        let normal = Vectors::splat(like, Vec3::ZERO);
+        let hits = Hits { are: zero, time: zero, normal, slack: zero, beside_face: zero };
         Self { hits, unclear, place, begun: zero, chord_from: place }
     }
 
@@ -100,7 +130,7 @@ impl<F: Eight> Meetings<F> {
         &mut self,
         paths: &Paths<F>,
         cubics: &Cubics<F>,
-        face: &Face,
+        walls: &impl Walls<F>,
         radius: F,
         end: F,
     ) {
@@ -119,7 +149,7 @@ impl<F: Eight> Meetings<F> {
         let [from, to] = [max(time - reach, self.begun), min(time + reach, end)];
         let begin = Vectors::select(from.simd_eq(all(0.0)), paths.x0, cubics.at(from));
         let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(all(1.0)), paths.x1, cubics.at(to)) };
-        let near = piece.first_hits::<POINTS>(face, radius);
+        let near = walls.first_hits::<POINTS>(&piece, radius);
         let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(all(0.0));
         let nearby = piece.at(near.time);
         let height = (nearby - found).dot(self.hits.normal).abs();
@@ -135,19 +165,19 @@ impl<F: Eight> Meetings<F> {
 }
 
 impl<F: Eight> Paths<F> {
-    /// Where those who are asked for first meet a face.
+    /// Where those who are asked for first meet walls.
     #[inline(always)]
     pub(super) fn first_meetings<const POINTS: bool>(
         &self,
         cubics: &Cubics<F>,
-        face: &Face,
+        walls: &impl Walls<F>,
         radius: F,
         asked: F,
     ) -> Meetings<F> {
-        if POINTS {
-            return self.meetings_of_points(cubics, face, asked);
+        match walls.face() {
+            Some(face) if POINTS => self.meetings_of_points(cubics, face, asked),
+            _ => self.meetings_on_chords::<POINTS>(cubics, walls, radius, asked),
         }
-        self.meetings_of_balls(cubics, face, radius, asked)
     }
 
     /// The same of points, of which it is enough to know on which side of the face each chord ends.
@@ -189,7 +219,13 @@ impl<F: Eight> Paths<F> {
     }
 
     #[inline(always)]
-    fn meetings_of_balls(&self, cubics: &Cubics<F>, face: &Face, radius: F, asked: F) -> Meetings<F> {
+    fn meetings_on_chords<const POINTS: bool>(
+        &self,
+        cubics: &Cubics<F>,
+        walls: &impl Walls<F>,
+        radius: F,
+        asked: F,
+    ) -> Meetings<F> {
         let all = |x| radius.all(x);
         let chords = asked.select(cubics.chords(), all(1.0));
         let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
@@ -202,7 +238,7 @@ impl<F: Eight> Paths<F> {
             let to = Vectors::select(ends.simd_eq(chords), self.x1, cubics.at(share));
             let piece = Segments { from, to };
             let open = asked & begun.simd_lt(chords) & not(found.hits.are | unclear);
-            let hits = piece.first_hits::<false>(face, radius);
+            let hits = walls.first_hits::<POINTS>(&piece, radius);
             let are = hits.are & open;
             if are.any() {
                 found.chord_from = Vectors::select(are, from, found.chord_from);
@@ -215,7 +251,7 @@ impl<F: Eight> Paths<F> {
             from = to;
         }
         if found.hits.are.any() {
-            found.put_on_path::<false>(self, cubics, face, radius, end);
+            found.put_on_path::<POINTS>(self, cubics, walls, radius, end);
         }
         found
     }

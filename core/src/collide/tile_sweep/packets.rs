@@ -31,7 +31,7 @@ struct Bounce<'t, 's, 'a, const POINTS: bool> {
 
 /// What all packets have in common.
 #[derive(Clone, Copy)]
-struct Terms {
+pub(super) struct Terms {
     /// How long they take \[s\].
     time: f32,
     /// As [`Riders`] have it.
@@ -43,9 +43,9 @@ struct Terms {
 
 /// The rows of a packet that are to be followed alone, and those that neither are nor have come to the end of the step: a bit each.
 #[derive(Default)]
-struct Unsettled {
-    left: u32,
-    others: u32,
+pub(super) struct Unsettled {
+    pub(super) left: u32,
+    pub(super) others: u32,
 }
 
 impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
@@ -58,7 +58,7 @@ impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
         let (mut farthest, mut gone) = (like.all(0.0), (eights.len(), Unsettled::default()));
         for (nth, rows) in eights.iter().enumerate() {
             let packet = Packet { rows, len: if nth + 1 == eights.len() { last } else { LANES } };
-            let (riders, paths) = of.packet::<F, true, POINTS>(like, rows, first, None, terms, face);
+            let (riders, paths) = of.packet::<F, true, POINTS>(like, rows, first, None, terms, face.material());
             let outcome = riders.lie(&paths, face, packet.present());
             farthest = outcome.farthest.most(farthest);
             let unsettled = of.settle(&packet, first, &outcome);
@@ -77,7 +77,8 @@ impl<const POINTS: bool> Kernel for Bounce<'_, '_, '_, POINTS> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Unsettled {
         let Self { of, packet, starts, face } = self;
-        let (riders, paths) = of.packet::<F, false, POINTS>(like, packet.rows, 0, Some(starts), of.terms(), face);
+        let (riders, paths) =
+            of.packet::<F, false, POINTS>(like, packet.rows, 0, Some(starts), of.terms(), face.material());
         let Tile { dt, ref obstacles, .. } = *of.tile;
         let outcome = riders.bounce(&paths, face, packet.present(), dt, obstacles.max_bounces);
         of.reach(outcome.farthest.largest_lane());
@@ -127,7 +128,7 @@ impl TileSweep<'_, '_> {
 
     /// No coordinate of those who are put somewhere is beyond this \[m\].
     #[inline(always)]
-    fn reach(&mut self, farthest: f32) {
+    pub(super) fn reach(&mut self, farthest: f32) {
         if let Some(reached) = &mut self.tile.reached {
             reached.place = max(reached.place, farthest);
         }
@@ -135,7 +136,7 @@ impl TileSweep<'_, '_> {
 
     /// Puts rows where they have come to, none of which is before the `first`, and says which are left.
     #[inline(always)]
-    fn settle<F: Eight>(&mut self, packet: &Packet<'_>, first: usize, outcome: &Outcome<F>) -> Unsettled {
+    pub(super) fn settle<F: Eight>(&mut self, packet: &Packet<'_>, first: usize, outcome: &Outcome<F>) -> Unsettled {
         let present = packet.present();
         self.report.hits += u64::from(outcome.hits);
         let (position, velocity) = (&mut self.tile.position[first..], &mut self.tile.velocity[first..]);
@@ -160,7 +161,7 @@ impl TileSweep<'_, '_> {
 
     /// What all packets have in common.
     #[inline(always)]
-    fn terms(&self) -> Terms {
+    pub(super) fn terms(&self) -> Terms {
         let Tile { reached, dt, .. } = *self.tile;
         let time = dt.seconds();
         let are_close = reached.is_some_and(|to| to.place + 100.0 * to.speed * time <= CLOSE);
@@ -170,14 +171,14 @@ impl TileSweep<'_, '_> {
     /// Rows side by side, none of which is before the `first`, nor the tile's last; of some it is known where they started. Of those who may
     /// lie on a face, only what that takes is read.
     #[inline(always)]
-    fn packet<F: Eight, const LIES: bool, const POINTS: bool>(
+    pub(super) fn packet<F: Eight, const LIES: bool, const POINTS: bool>(
         &self,
         like: F,
         rows: &[u32; LANES],
         first: usize,
         starts: Option<&[Start; LANES]>,
         Terms { time, are_close, have_leapt, swing }: Terms,
-        face: &Face,
+        material: Option<u16>,
     ) -> (Riders<F, POINTS>, Paths<F>) {
         let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
         let (at, last) = (&places_from(first, rows), position.len() - 1 - first);
@@ -206,7 +207,7 @@ impl TileSweep<'_, '_> {
             elasticity = column(m.elasticity);
         }
         if self.has_materials {
-            [elasticity, at_rest, kinetic] = self.mixed(rows, face, &elasticity);
+            [elasticity, at_rest, kinetic] = self.mixed(rows, material, &elasticity);
         }
         let riders = Riders {
             are_free,
@@ -220,14 +221,14 @@ impl TileSweep<'_, '_> {
         (riders, paths)
     }
 
-    /// The elasticities of rows on a face, and the coefficients of friction at rest and in motion.
+    /// The elasticities of rows on a surface, and the coefficients of friction at rest and in motion.
     #[inline(never)]
-    fn mixed(&self, rows: &[u32; LANES], face: &Face, elasticity: &[f32; LANES]) -> [[f32; LANES]; 3] {
+    fn mixed(&self, rows: &[u32; LANES], material: Option<u16>, elasticity: &[f32; LANES]) -> [[f32; LANES]; 3] {
         let mut mixed = [[0.0; LANES]; 3];
         let [bounces, at_rest, kinetic] = &mut mixed;
         for (i, (&row, &elasticity)) in rows.iter().zip(elasticity).enumerate() {
             let own = self.tile.attributes.lives.material[row as usize].checked_sub(1);
-            let mixed = on_surface(self.tile.obstacles.materials, elasticity, own, face.material());
+            let mixed = on_surface(self.tile.obstacles.materials, elasticity, own, material);
             (bounces[i], at_rest[i], kinetic[i]) = (mixed.elasticity, mixed.friction.static_, mixed.friction.kinetic);
         }
         mixed

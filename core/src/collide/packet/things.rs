@@ -1,0 +1,241 @@
+//! A flat face and one solid before each of eight points.
+//!
+//! Every number is made as the solid makes it by itself, in the same order, and so has the same bits.
+
+use super::hits::{Hits, Seats, Segments, Walls};
+use super::walls::slack;
+use crate::lanes::{Eight, LANES, Vectors, mask_of, max, min, negated, not};
+use crate::shape::{Aabb, Face, Solid};
+
+/// Solids, one before each point: all of them spheres, or all of them `BOXES`.
+pub(in crate::collide) struct Things<F, const BOXES: bool> {
+    /// The face that all are on, and those whose solid comes after it in their order.
+    face: Option<Face>,
+    after: F,
+    /// The boxes around them.
+    min: Vectors<F>,
+    max: Vectors<F>,
+    center: Vectors<F>,
+    radius: F,
+    /// How far they reach from the origin.
+    size: F,
+}
+
+impl<F: Eight, const BOXES: bool> Things<F, BOXES> {
+    #[inline(always)]
+    pub(in crate::collide) fn of(like: F, solids: &[Solid; LANES], after: u32, face: Option<Face>) -> Self {
+        let (mut min, mut max, mut center) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES], [[0.0; 4]; LANES]);
+        for (i, solid) in solids.iter().enumerate() {
+            let Aabb { min: low, max: high } = solid.bounds();
+            let (middle, radius) = solid.ball();
+            min[i] = [low.x, low.y, low.z, radius];
+            max[i] = [high.x, high.y, high.z, solid.reach()];
+            center[i] = [middle.x, middle.y, middle.z, 0.0];
+        }
+        let ([x, y, z, radius], [u, v, w, size]) = (like.quads_of(min), like.quads_of(max));
+        let center = Vectors(like.columns_of(center));
+        let after = mask_of(like, after);
+        Self { face, after, min: Vectors([x, y, z]), max: Vectors([u, v, w]), center, radius, size }
+    }
+
+    /// Those that boxes may touch, as `Aabb::overlaps` says.
+    #[inline(always)]
+    fn may_touch(&self, low: Vectors<F>, high: Vectors<F>) -> F {
+        let room = self.size.all(8.0 * f32::EPSILON);
+        let [x, y, z] = axes(
+            #[inline(always)]
+            |axis| {
+                let (low, high) = (max(self.min.0[axis], low.0[axis]), min(self.max.0[axis], high.0[axis]));
+                (low - room * low.abs()).simd_le(high + room * high.abs())
+            },
+        );
+        x & y & z
+    }
+
+    /// Those that places lie strictly inside of.
+    #[inline(always)]
+    fn contain(&self, place: Vectors<F>) -> F {
+        if BOXES {
+            let [x, y, z] = axes(
+                #[inline(always)]
+                |axis| place.0[axis].simd_gt(self.min.0[axis]) & place.0[axis].simd_lt(self.max.0[axis]),
+            );
+            return x & y & z;
+        }
+        let offset = place - self.center;
+        offset.dot(offset).simd_lt(self.radius * self.radius)
+    }
+
+    /// Where points that go along straight pieces first hit the solids, from outside or from inside, as `convex::first_hit` has it.
+    #[inline(always)]
+    fn hits(&self, piece: &Segments<F>) -> Hits<F> {
+        let (like, &Segments { from, to }) = (self.size, piece);
+        let (all, zero, one) = (|x| like.all(x), like.all(0.0), like.all(1.0));
+        let step = to - from;
+        let (starts, ends) = (self.contain(from), self.contain(to));
+        let slack = all(4.0 * f32::EPSILON) * (max(from.largest(), to.largest()) + self.size);
+        let room = max(low(from, to).largest(), high(from, to).largest()) * all(8.0 * f32::EPSILON);
+        let (least, most) = (low(from, to), high(from, to));
+        let room = Vectors([room, room, room]);
+        let asked = self.may_touch(least - room, most + room) & not(step.is_zero() | (starts & ends));
+        let Span { are, enter, leave, normal } = self.span(from, step, starts);
+        let back = -step.unit();
+        let normal = Vectors::select(step.dot(normal).simd_lt(zero) & are, normal, back);
+        let time = min(max(starts.select(leave, enter), zero), one);
+        // Straight through. A start within rounding of the surface may seem inside the span: it enters if the entrance is the nearer end.
+        let ahead = enter.simd_gt(zero) | negated(enter).simd_lt(leave);
+        let through = ahead & enter.simd_le(one);
+        // The line may just miss where the ends differ.
+        let hits = (are & (starts | ends | through)) | (not(are) & (starts ^ ends));
+        let are_all = all(f32::from_bits(u32::MAX));
+        Hits { are: asked & hits, time: time & are, normal, slack, beside_face: are_all }
+    }
+
+    /// Where lines run inside, and the outward normals where they enter, or where they leave for those that are asked for that; turned
+    /// inward there.
+    #[inline(always)]
+    fn span(&self, from: Vectors<F>, step: Vectors<F>, leaves: F) -> Span<F> {
+        if BOXES { self.box_span(from, step, leaves) } else { self.sphere_span(from, step, leaves) }
+    }
+
+    #[inline(always)]
+    fn sphere_span(&self, from: Vectors<F>, step: Vectors<F>, leaves: F) -> Span<F> {
+        let offset = from - self.center;
+        let square = step.dot(step);
+        let middle = negated(offset.dot(step)) / square;
+        let nearest = offset + step * middle;
+        let rest = self.radius * self.radius - nearest.dot(nearest);
+        let half = (rest / square).sqrt();
+        let (enter, leave) = (middle - half, middle + half);
+        let normal = (offset + step * leaves.select(leave, enter)).unit();
+        Span { are: rest.simd_gt(self.size.all(0.0)), enter, leave, normal: Vectors::select(leaves, -normal, normal) }
+    }
+
+    #[inline(always)]
+    fn box_span(&self, from: Vectors<F>, step: Vectors<F>, leaves: F) -> Span<F> {
+        let (all, zero) = (|x| from.0[0].all(x), from.0[0].all(0.0));
+        let (mut enter, mut leave) = (all(f32::NEG_INFINITY), all(f32::INFINITY));
+        let mut are = zero.simd_eq(zero);
+        // The axes across which they enter and leave.
+        let (mut entered, mut left) = (all(3.0), all(3.0));
+        for axis in 0..3 {
+            let (x, dx, least, most) = (from.0[axis], step.0[axis], self.min.0[axis], self.max.0[axis]);
+            let (a, b) = ((least - x) / dx, (most - x) / dx);
+            let (rises, stays) = (dx.simd_gt(zero), dx.simd_eq(zero));
+            let first = stays.select(all(f32::NEG_INFINITY), rises.select(a, b));
+            let last = stays.select(all(f32::INFINITY), rises.select(b, a));
+            let (is_later, is_sooner) = (first.simd_gt(enter), last.simd_lt(leave));
+            // The first axis begins with its own numbers, whatever they are.
+            let (is_later, is_sooner) = if axis == 0 { (not(stays), not(stays)) } else { (is_later, is_sooner) };
+            entered = is_later.select(all(axis as f32), entered);
+            left = is_sooner.select(all(axis as f32), left);
+            (enter, leave) = (is_later.select(first, enter), is_sooner.select(last, leave));
+            let is_between = least.simd_lt(x) & x.simd_lt(most);
+            are = are & (not(stays) | is_between) & if axis == 0 { are } else { enter.simd_le(leave) };
+        }
+        let across = leaves.select(left, entered);
+        let is_across = axes(
+            #[inline(always)]
+            |axis| across.simd_eq(all(axis as f32)),
+        );
+        let [x, y, z] = axes(
+            #[inline(always)]
+            |axis| step.0[axis].simd_gt(zero) & is_across[axis],
+        );
+        // Against the step; zeros have the sign as well.
+        let sign = all(-0.0) & (x | y | z);
+        let normal = axes(
+            #[inline(always)]
+            |axis| (all(1.0) & is_across[axis]) ^ sign,
+        );
+        Span { are, enter, leave, normal: Vectors(normal) }
+    }
+
+    /// The ways to places outside from the nearest places of the solids, and how far the walls are from places inside, about.
+    #[inline(always)]
+    fn gaps(&self, place: Vectors<F>) -> (Vectors<F>, F) {
+        let zero = self.size.all(0.0);
+        if BOXES {
+            let gap = axes(
+                #[inline(always)]
+                |axis| max(place.0[axis] - self.max.0[axis], zero) - max(self.min.0[axis] - place.0[axis], zero),
+            );
+            let [x, y, z] = axes(
+                #[inline(always)]
+                |axis| (place.0[axis] - self.min.0[axis]).least(self.max.0[axis] - place.0[axis]),
+            );
+            return (Vectors(gap), x.least(y).least(z));
+        }
+        let offset = place - self.center;
+        let length = offset.length();
+        (offset.unit() * max(length - self.radius, zero), self.radius - length)
+    }
+}
+
+/// The parts of lines inside solids.
+struct Span<F> {
+    are: F,
+    enter: F,
+    leave: F,
+    normal: Vectors<F>,
+}
+
+/// A number for each axis.
+#[inline(always)]
+fn axes<F>(of: impl Fn(usize) -> F) -> [F; 3] {
+    [of(0), of(1), of(2)]
+}
+
+#[inline(always)]
+fn low<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    Vectors(axes(
+        #[inline(always)]
+        |axis| min(a.0[axis], b.0[axis]),
+    ))
+}
+
+#[inline(always)]
+fn high<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    Vectors(axes(
+        #[inline(always)]
+        |axis| max(a.0[axis], b.0[axis]),
+    ))
+}
+
+impl<F: Eight, const BOXES: bool> Walls<F> for Things<F, BOXES> {
+    #[inline(always)]
+    fn first_hits<const POINTS: bool>(&self, piece: &Segments<F>, radius: F) -> Hits<F> {
+        let things = self.hits(piece);
+        let Some(face) = &self.face else { return things };
+        let mut hits = piece.first_hits::<POINTS>(face, radius);
+        // The first in their order, unless the other is earlier.
+        let is_earlier = self.after.select(things.time.simd_lt(hits.time), not(hits.time.simd_lt(things.time)));
+        hits.take(things.are & (is_earlier | not(hits.are)), things);
+        hits
+    }
+
+    /// Of those inside solids and near a wall it is not clear: they may be near several.
+    #[inline(always)]
+    fn seats(&self, place: Vectors<F>, reach: F) -> Seats<F> {
+        let (gap, wall) = self.gaps(place);
+        let normal = gap.unit();
+        let distance = gap.dot(normal);
+        let reaches = Vectors([reach, reach, reach]);
+        let is_within = self.contain(place);
+        let is_near = self.may_touch(place - reaches, place + reaches)
+            & distance.simd_le(reach)
+            & not(normal.is_zero() | is_within);
+        let is_unclear = is_within & not(wall.simd_gt(reach.all(1.001) * reach));
+        let slack = slack(place, distance, self.size);
+        let things = Seats { are: is_near & not(is_unclear), normal, distance, slack, unclear: is_unclear };
+        let Some(face) = &self.face else { return things };
+        let seats = face.seats(place, reach);
+        Seats {
+            are: (seats.are ^ things.are) & not(is_unclear),
+            normal: Vectors::select(things.are, things.normal, seats.normal),
+            distance: things.are.select(things.distance, seats.distance),
+            slack: things.are.select(things.slack, seats.slack),
+            unclear: is_unclear,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Rows that wait until there are eight, each before a solid of its own.
+
+use super::TileSweep;
+use super::packets::Unsettled;
+use crate::collide::packet::Things;
+use crate::collide::tile::Tile;
+use crate::collide::waiting::Packet;
+use crate::lanes::{Eight, Kernel, LANES};
+use crate::shape::{Face, Solid};
+use glam::Vec3;
+
+/// Rows that wait until there are eight, each with the solid that it is near.
+pub(super) struct Pairs {
+    pub(super) rows: [u32; LANES],
+    solids: [Solid; LANES],
+    /// A bit for each whose solid comes after the face in their order, and for each that gets near nothing but both whatever it hits.
+    after: u32,
+    alone: u32,
+    len: usize,
+}
+
+/// Rows past solids of a kind, so many of which are not missing.
+pub(super) struct PastThings<'t, 's, 'a, const BOXES: bool> {
+    pub(super) of: &'t mut TileSweep<'s, 'a>,
+    pub(super) len: usize,
+    pub(super) pairs: &'t Pairs,
+    pub(super) face: Option<Face>,
+}
+
+impl<const BOXES: bool> Kernel for PastThings<'_, '_, '_, BOXES> {
+    type Output = Unsettled;
+
+    #[inline(always)]
+    fn run<F: Eight>(self, like: F) -> Unsettled {
+        let Self { of, len, pairs: Pairs { rows, solids, after, alone, .. }, face } = self;
+        let (first, packet) = (of.first, Packet { rows, len });
+        let (riders, paths) = of.packet::<F, false, true>(like, rows, first, None, of.terms(), None);
+        let things = Things::<F, BOXES>::of(like, solids, *after, face);
+        let Tile { dt, ref obstacles, .. } = *of.tile;
+        let outcome = riders.go(&paths, &things, [packet.present(), *alone], dt, obstacles.max_bounces);
+        of.reach(outcome.farthest.largest_lane());
+        of.settle(&packet, first, &outcome)
+    }
+}
+
+impl Pairs {
+    pub(super) const EMPTY: Self = Self {
+        rows: [0; LANES],
+        solids: [Solid::Sphere { center: Vec3::ZERO, radius: 0.0 }; LANES],
+        after: 0,
+        alone: 0,
+        len: 0,
+    };
+
+    /// Puts a row in; true, if there are eight now.
+    pub(super) fn push(&mut self, row: u32, (solid, is_after): (Solid, bool), is_alone: bool) -> bool {
+        let place = self.len % LANES;
+        (self.rows[place], self.solids[place]) = (row, solid);
+        self.after |= u32::from(is_after) << place;
+        self.alone |= u32::from(is_alone) << place;
+        self.len = place + 1;
+        self.len == LANES
+    }
+
+    /// Takes all out that are there, and says how many; the first of them is in place of those that are missing.
+    pub(super) fn take(&mut self) -> Option<(usize, Self)> {
+        let len = self.len;
+        let mut taken = core::mem::replace(self, Self::EMPTY);
+        for i in len..LANES {
+            (taken.rows[i], taken.solids[i]) = (taken.rows[0], taken.solids[0]);
+        }
+        taken.after |= (taken.after & 1).wrapping_neg() << len;
+        taken.alone |= (taken.alone & 1).wrapping_neg() << len;
+        (len > 0).then_some((len, taken))
+    }
+}

@@ -1,0 +1,250 @@
+//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in: most who ask are told enough by one number.
+
+use super::Aabb;
+use crate::lanes::{Eight, LANES, Vectors};
+#[cfg(feature = "alloc")]
+use crate::math::max;
+#[cfg(feature = "alloc")]
+use alloc::{vec, vec::Vec};
+
+/// Cells for each box, at the most, and for a few of them.
+#[cfg(feature = "alloc")]
+const CELLS: usize = 32;
+#[cfg(feature = "alloc")]
+const FEW: usize = 1 << 14;
+
+/// Cells that boxes are entered in, for each of them, at the most.
+#[cfg(feature = "alloc")]
+const ENTRIES: usize = 1024;
+
+/// Cells in all, at the most: so few that their numbers are exact beside a power of two.
+#[cfg(feature = "alloc")]
+const MOST: usize = 1 << 22;
+
+/// Sides of cells as far as which distances are told.
+#[cfg(feature = "alloc")]
+const SIDES: f32 = 3.0;
+
+/// What is added to numbers to have the nearest whole ones in their last bits.
+const WHOLE: f32 = 8_388_608.0;
+
+/// The distances of boxes from anywhere around them, or less.
+#[derive(Clone, Copy, Debug)]
+pub struct Clearance<'a> {
+    grid: Grid,
+    free: &'a [u8],
+    nearest: &'a [Nearest],
+}
+
+/// The box that is nearest to a cell, and how far all others are from anywhere in it at the least \[units\].
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    number: u32,
+    others: u8,
+}
+
+/// The same with its own numbers.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Debug)]
+pub(super) struct ClearanceBuf {
+    grid: Grid,
+    /// The least distance along the axes from anywhere in each cell to a box, in units; the largest number stands for more as well.
+    free: Vec<u8>,
+    nearest: Vec<Nearest>,
+}
+
+/// Cells around boxes.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    around: Aabb,
+    /// Cells to a metre, and along each axis.
+    scale: f32,
+    counts: [usize; 3],
+    /// The unit of distances \[m\].
+    unit: f32,
+}
+
+#[cfg(feature = "alloc")]
+impl ClearanceBuf {
+    /// That of boxes which are all in another. Takes time in proportion to their number.
+    pub(super) fn new(boxes: &[(u32, &Aabb)], around: &Aabb) -> Self {
+        let (most, entries) = ((CELLS * boxes.len()).clamp(FEW, MOST), ENTRIES * boxes.len());
+        let mut side = (around.max - around.min).max_element();
+        let mut grid = Grid::divided(around, side);
+        // As fine as there is use for.
+        for _ in 0..64 {
+            side *= 0.75;
+            let finer = Grid::divided(around, side);
+            let all_entries = || boxes.iter().map(|(_, bounds)| finer.entries(bounds)).sum::<usize>();
+            if finer.scale == 0.0 || finer.len() > most || all_entries() > entries {
+                break;
+            }
+            grid = finer;
+        }
+        let cells = if grid.scale == 0.0 { 0 } else { grid.len() };
+        let nobody = Nearest { number: u32::MAX, others: u8::MAX };
+        let mut all = Self { grid, free: vec![u8::MAX; cells], nearest: vec![nobody; cells] };
+        if cells > 0 {
+            boxes.iter().for_each(|(number, bounds)| all.enter(*number, bounds));
+        }
+        all
+    }
+
+    pub(super) fn view(&self) -> Clearance<'_> {
+        Clearance { grid: self.grid, free: &self.free, nearest: &self.nearest }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl ClearanceBuf {
+    fn enter(&mut self, number: u32, bounds: &Aabb) {
+        let Grid { around, scale, counts: [columns, rows, _], unit } = self.grid;
+        let side = 1.0 / scale;
+        let gap = |axis: usize, cell: usize| {
+            let [low, high] = [cell, cell + 1].map(|edge| around.min[axis] + side * edge as f32);
+            max(max(low - bounds.max[axis], bounds.min[axis] - high), 0.0)
+        };
+        let [x, y, z] = self.grid.reached(bounds);
+        for layer in z[0]..z[1] {
+            for row in y[0]..y[1] {
+                let (aside, line) = (max(gap(1, row), gap(2, layer)), columns * (rows * layer + row));
+                let cells = line + x[0]..line + x[1];
+                let places = self.free[cells.clone()].iter_mut().zip(&mut self.nearest[cells]);
+                for (column, (free, nearest)) in (x[0]..x[1]).zip(places) {
+                    // The cast rounds down and saturates.
+                    let distance = (max(gap(0, column), aside) / unit) as u8;
+                    if distance < *free {
+                        *nearest = Nearest { number, others: *free };
+                        *free = distance;
+                    } else {
+                        nearest.others = nearest.others.min(distance);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Grid {
+    fn divided(around: &Aabb, side: f32) -> Self {
+        let extent = around.max - around.min;
+        let is_divisible = extent.is_finite() && side > 0.0 && (1.0 / side).is_finite();
+        let scale = if is_divisible { 1.0 / side } else { 0.0 };
+        let counts = [0, 1, 2].map(|axis| ((extent[axis] * scale) as usize).min(MOST) + 1);
+        Self { around: *around, scale, counts, unit: SIDES * side / f32::from(u8::MAX) }
+    }
+
+    fn len(&self) -> usize {
+        self.counts.iter().fold(1, |all, &count| all.saturating_mul(count))
+    }
+
+    /// The cells along each axis that a box's distance is told in: from one to before another.
+    fn reached(&self, bounds: &Aabb) -> [[usize; 2]; 3] {
+        [0, 1, 2].map(|axis| {
+            let cell = |x: f32, more: f32| ((x - self.around.min[axis]) * self.scale + more) as usize;
+            let end = (cell(bounds.max[axis], SIDES + 1.0) + 1).min(self.counts[axis]);
+            [cell(bounds.min[axis], -(SIDES + 1.0)).min(end), end]
+        })
+    }
+
+    fn entries(&self, bounds: &Aabb) -> usize {
+        self.reached(bounds).iter().fold(1, |all, [from, to]| all.saturating_mul(to - from))
+    }
+}
+
+impl Clearance<'_> {
+    /// Tells which cubes, so far from their middles to their sides, are surely free of boxes, and the cells of the middles; none of what is no
+    /// number is. For rounding of places they have room themselves.
+    #[inline(always)]
+    pub(crate) fn are_free<F: Eight>(&self, middle: Vectors<F>, half: F) -> (F, [u32; LANES]) {
+        let Grid { around: Aabb { min: least, max: most }, scale, counts, unit } = self.grid;
+        let (all, zero) = (|x| half.all(x), half.all(0.0));
+        let (mut beside, mut cells) = (zero, [zero; 3]);
+        for axis in 0..3 {
+            let x = middle.0[axis];
+            beside = beside.most((all(least[axis]) - x).most(x - all(most[axis])));
+            let cell = (x - all(least[axis])) * all(scale) - all(0.5);
+            cells[axis] = (cell.most(zero).least(all((counts[axis] - 1) as f32)) + all(WHOLE)) - all(WHOLE);
+        }
+        let [columns, rows, _] = counts.map(|count| all(count as f32));
+        let numbers = (cells[2] * rows + cells[1]) * columns + cells[0] + all(WHOLE);
+        let (mut free, mut cells) = ([0.0; LANES], [0; LANES]);
+        for ((free, cell), number) in free.iter_mut().zip(&mut cells).zip(numbers.to_array()) {
+            *cell = number.to_bits() & (WHOLE as u32 - 1);
+            *free = f32::from(self.free.get(*cell as usize).copied().unwrap_or(0));
+        }
+        // From beside all boxes they are no nearer than from the nearest place of what is around them.
+        let is_far = half.simd_lt(beside) | half.simd_lt(half.of(free) * all(unit));
+        let [x, y, z] = (middle * zero).0;
+        (is_far & (x + y + z).simd_eq(zero), cells)
+    }
+
+    /// The number of the box that is nearest to a cell, and how far all others are from anywhere in it at the least \[m\].
+    pub(crate) fn nearest(&self, cell: u32) -> Option<(usize, f32)> {
+        let Nearest { number, others } = *self.nearest.get(cell as usize)?;
+        Some((number as usize, f32::from(others) * self.grid.unit))
+    }
+}
+
+#[cfg(all(test, feature = "alloc"))]
+mod tests {
+    use super::*;
+    use crate::lanes::{Kernel, run};
+    use crate::rng::Stream;
+    use glam::Vec3;
+
+    struct Free<'a>(Clearance<'a>, [[f32; LANES]; 3], [f32; LANES]);
+
+    impl Kernel for Free<'_> {
+        type Output = (u32, u32);
+        #[inline(always)]
+        fn run<F: Eight>(self, like: F) -> (u32, u32) {
+            let [x, y, z] = self.1.map(|lanes| like.of(lanes));
+            let (are_free, cells) = self.0.are_free(Vectors([x, y, z]), like.of(self.2));
+            (are_free.to_bitmask(), cells[0])
+        }
+    }
+
+    #[test]
+    fn nothing_is_in_what_is_free() {
+        let vector = |i: u32, k: u64| {
+            let ([x, y], [z, _]) = (Stream::new(k, 0, i).units(0), Stream::new(k, 1, i).units(0));
+            Vec3::new(x, y, z) - 0.5
+        };
+        for (count, size, shape) in [(1, 0.1, Vec3::ONE), (40, 0.3, Vec3::ONE), (300, 0.02, Vec3::new(8.0, 0.1, 5.0))] {
+            let around = |middle: Vec3, half: Vec3| Aabb { min: middle - half.abs(), max: middle + half.abs() };
+            let boxes: Vec<Aabb> =
+                (0..count).map(|i| around(vector(i, 1) * shape + 30.0, vector(i, 2) * size)).collect();
+            let all = boxes.iter().fold(Aabb::EMPTY, |all, one| all.join(*one));
+            let clearance = ClearanceBuf::new(&(0..).zip(&boxes).collect::<Vec<_>>(), &all);
+            let (mut told, mut apart, mut alone) = (0, 0, 0);
+            for i in 0..4000 {
+                let (middle, half) = (vector(i, 3) * shape * 1.5 + 30.0, 0.2 * vector(i, 4).x.abs());
+                let free = Free(clearance.view(), middle.to_array().map(|x| [x; LANES]), [half + 1e-4; LANES]);
+                let meets = |one: &Aabb| one.min.cmple(middle + half).all() && one.max.cmpge(middle - half).all();
+                let is_free = !boxes.iter().any(meets);
+                let (are_free, cell) = run(free);
+                let is_told = are_free != 0;
+                if let Some((nearest, others)) =
+                    clearance.view().nearest(cell).filter(|(_, others)| half + 1e-4 < *others)
+                {
+                    assert!(
+                        boxes.iter().enumerate().all(|(i, one)| i == nearest || !meets(one)),
+                        "{count}: {middle} {half}"
+                    );
+                    alone += usize::from(!is_told && others > 0.0);
+                }
+                assert!(is_free || !is_told, "{count}: {middle} {half}");
+                (told, apart) = (told + usize::from(is_told), apart + usize::from(is_free));
+            }
+            // Most of what is free is told to be so.
+            assert!(told > apart / 2 && apart > 100, "{count}: {told} of {apart}");
+            assert!(alone > 20, "{count}: {alone}");
+            for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                assert_eq!(run(Free(clearance.view(), [[number; LANES]; 3], [0.1; LANES])).0, 0);
+                assert_eq!(run(Free(clearance.view(), [[50.0; LANES]; 3], [f32::NAN; LANES])).0, 0);
+            }
+        }
+    }
+}
