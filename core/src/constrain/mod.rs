@@ -36,7 +36,7 @@ pub use kind::ConstraintKind;
 pub(crate) use moved::{Moment, Moved};
 pub use rigid::{Hull, HullEdge, HullFace, HullList, RigidBodies, RigidBox};
 #[cfg(feature = "alloc")]
-pub use rigid::{HullBuf, HullError};
+pub use rigid::{CompoundBuf, CompoundError, HullBuf, HullError};
 pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
 pub use sheet_contacts::SheetContacts;

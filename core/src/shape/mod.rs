@@ -32,6 +32,8 @@ mod revolve;
 mod scenery;
 mod segment;
 mod sliver;
+#[cfg(feature = "alloc")]
+pub(crate) mod solid;
 mod sphere;
 mod surface;
 mod triangle;
@@ -62,6 +64,8 @@ pub use plane::Plane;
 #[cfg(feature = "alloc")]
 pub use scenery::Scenery;
 pub use segment::Segment;
+#[cfg(feature = "alloc")]
+pub use solid::NotSolid;
 pub use sphere::Sphere;
 pub use surface::{Spot, Surface};
 pub use triangle::Triangle;
