@@ -16,8 +16,6 @@ pub enum NotSolid {
     Open([Vec3; 2]),
     /// Two triangles run along the edge between these places the same way \[m\].
     Turned([Vec3; 2]),
-    /// So many triangles meet at the edge between these places that it cannot be told which of them belong together \[m\].
-    Branching([Vec3; 2]),
     /// Two of its shells pass through each other, of which one has its first corner here \[m\].
     Crossing(Vec3),
     /// It encloses nothing.
@@ -29,13 +27,12 @@ impl fmt::Display for NotSolid {
         let ([from, to], what) = match self {
             Self::Open(edge) => (edge, "a triangle is missing there: close it"),
             Self::Turned(edge) => (edge, "both of its triangles run along it the same way: turn them alike"),
-            Self::Branching(edge) => (edge, "more than two triangles of one shell meet: part them"),
             Self::Crossing(place) => {
                 return write!(f, "has shells that pass through each other, one of them from {place}: unite them");
             }
             Self::Empty => return f.write_str("is a mesh that encloses nothing"),
         };
-        let [from, to] = [from, to].map(|end| end.to_array());
+        let [from, to] = [from, to].map(Vec3::to_array);
         write!(f, "is no closed mesh: at its edge from {from:?} to {to:?} {what}")
     }
 }
@@ -104,14 +101,18 @@ fn shells(mesh: &MeshBuf) -> Result<Vec<Vec<[u32; 3]>>, NotSolid> {
             shell[a.max(b) as usize] = a.min(b);
         }
     }
-    // Where more meet, each shell has to be closed by itself.
+    // Where more meet, all belong together unless each shell there is closed by itself.
     for edge in sides.chunk_by(|a, b| a.0 == b.0).filter(|edge| edge.len() > 2) {
-        for side in edge {
+        let mut is_open = |side: &Side| {
             let own = root(&mut shell, side.2);
             let ways = edge.iter().filter(|other| root(&mut shell, other.2) == own).map(|other| other.1);
             let (back, all) = ways.fold((0, 0), |(back, all), is_back| (back + usize::from(is_back), all + 1));
-            if 2 * back != all {
-                return Err(NotSolid::Branching(side.0.map(|end| Vec3::from_array(end.map(f32::from_bits)))));
+            2 * back != all
+        };
+        if edge.iter().any(&mut is_open) {
+            for side in edge {
+                let [a, b] = [edge[0].2, side.2].map(|number| root(&mut shell, number));
+                shell[a.max(b) as usize] = a.min(b);
             }
         }
     }

@@ -59,7 +59,10 @@ impl fmt::Display for CompoundError {
             Self::Solid(error) => error.fmt(f),
             Self::Pieces(count) => write!(f, "has {count} pieces; there have to be from 1 to {MOST}"),
             Self::Coarse(count, far) => {
-                write!(f, "cannot be cut into {count} pieces within that: they are still {far:?} m off it in some place")
+                write!(
+                    f,
+                    "cannot be cut into {count} pieces within that: they are still {far:?} m off it in some place"
+                )
             }
         }
     }

@@ -17,6 +17,12 @@ const EDGES: usize = 24;
 const TURNS: f32 = 0.25;
 /// How far an edge has to turn inward, as a share of the solid's size.
 const INWARD: f32 = 1e-4;
+/// As many pairs of triangles at one edge are looked at, at the most.
+const MEET: usize = 6;
+/// An edge counts as sharp whose normals differ by this much: some 30°. Curved surfaces are cut across, not along their triangles.
+const SHARP: f32 = 0.5;
+/// Corners so near a cut are in it, as a share of the solid's size: as near as hulls tell places apart.
+const NEAR: f64 = 1e-4;
 /// Places across a part's middle where it may be cut, along each axis.
 const ACROSS: [f32; 3] = [0.5, 0.25, 0.75];
 /// A part smaller than this share of another is no part.
@@ -137,7 +143,8 @@ impl Part {
     /// None: it has no hull.
     fn of(faces: Vec<Face>) -> Option<Self> {
         let hull = hull_of(&faces, WRAPPED)?;
-        let leaves = leaves(&faces, &hull);
+        let [within, beyond] = leaves(&faces, &hull);
+        let leaves = max(within, beyond);
         Some(Self { faces, hull, leaves })
     }
 
@@ -153,7 +160,10 @@ impl Part {
             }
             let [Some(a), Some(b)] = [hull_of(&halves[0], 0), hull_of(&halves[1], 0)] else { continue };
             let held = f64::from(a.lend().volume()) + f64::from(b.lend().volume());
-            let score = held / whole + BALANCE * (volumes[0] - volumes[1]).abs() / whole;
+            // Of cuts that leave as much between hulls and solid those count that bring them nearer to each other.
+            let far = [(&halves[0], a, volumes[0]), (&halves[1], b, volumes[1])];
+            let far: f64 = far.iter().map(|(half, hull, volume)| f64::from(leaves(half, hull)[0]) * volume).sum();
+            let score = (held + far / f64::from(size) + BALANCE * (volumes[0] - volumes[1]).abs()) / whole;
             if best.as_ref().is_none_or(|(least, _)| score < least - BETTER) {
                 best = Some((score, halves));
             }
@@ -173,7 +183,11 @@ impl Part {
             Plane { normal, offset: crate::shape::solid::dot(normal, place) }
         };
         for &&(_, place, [a, b]) in sharp.iter().step_by(sharp.len().div_ceil(EDGES).max(1)) {
-            planes.extend([a, b, unit(a - b)].map(|normal| through(normal, place)));
+            let turns = a - b;
+            if dot(turns, turns) > SHARP * SHARP {
+                planes.extend([a, b].map(|normal| through(normal, place)));
+            }
+            planes.push(through(unit(turns), place));
         }
         let [least, most] = bounds(&self.faces);
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
@@ -199,14 +213,17 @@ fn inward(faces: &[Face], least: f32) -> Vec<(f32, Place, [Vec3; 2])> {
     sides.sort_unstable();
     let mut edges = Vec::new();
     for pair in sides.chunk_by(|a, b| a.0 == b.0) {
-        let &[(_, a, i), (_, b, j)] = pair else { continue };
-        let (a, b) = (&faces[a], &faces[b]);
-        let ((Some(one), Some(other)), from) = ((a.out, b.out), a.corners[i]) else { continue };
-        let rises = dot(one, single(minus(b.corners[(j + 2) % 3], from)));
-        let along = single(minus(a.corners[(i + 1) % 3], from));
-        let turns = one - other;
-        if rises > least {
-            edges.push((sqrt(dot(along, along)) * sqrt(dot(turns, turns)), from, [one, other]));
+        // Where solids touch along an edge, more than two meet.
+        let all = |i: usize| pair.iter().skip(i + 1).map(move |other| (pair[i], *other));
+        for ((_, a, i), (_, b, j)) in (0..pair.len()).flat_map(all).take(MEET) {
+            let (a, b) = (&faces[a], &faces[b]);
+            let ((Some(one), Some(other)), from) = ((a.out, b.out), a.corners[i]) else { continue };
+            let rises = dot(one, single(minus(b.corners[(j + 2) % 3], from)));
+            let along = single(minus(a.corners[(i + 1) % 3], from));
+            let turns = one - other;
+            if rises > least {
+                edges.push((sqrt(dot(along, along)) * sqrt(dot(turns, turns)), from, [one, other]));
+            }
         }
     }
     edges
@@ -220,41 +237,69 @@ fn volume(faces: &[Face]) -> f64 {
 fn beyond(faces: &[Face], plane: Plane, side: f64, size: f64) -> Vec<Face> {
     let far = |place: Place| {
         let far = crate::shape::solid::dot(plane.normal, place) - plane.offset;
-        if far.abs() <= 1e-7 * size { 0.0 } else { far }
+        if far.abs() <= NEAR * size { 0.0 } else { far }
     };
-    // What is in the plane belongs to its upper side.
-    let is_in = |far: f64| if side > 0.0 { far >= 0.0 } else { far < 0.0 };
     let (mut kept, mut middle) = (Vec::new(), None);
     for face in faces {
         let fars = face.corners.map(far);
-        let mut polygon = heapless::Vec::<Place, 4>::new();
-        // Where the triangle's own sides leave this side of the plane, and come back.
-        let (mut leaves, mut enters) = (None, None);
-        for i in 0..3 {
-            let j = (i + 1) % 3;
-            let crossing = |inner: usize, outer: usize| {
-                let share = fars[inner] / (fars[inner] - fars[outer]);
-                between(face.corners[inner], face.corners[outer], share)
-            };
-            if is_in(fars[i]) {
-                let _ = polygon.push(face.corners[i]);
-            }
-            match (is_in(fars[i]), is_in(fars[j])) {
-                (true, false) => leaves = Some(crossing(i, j)),
-                (false, true) => enters = Some(crossing(j, i)),
-                _ => continue,
-            }
-            polygon.extend(if is_in(fars[i]) { leaves } else { enters });
+        if fars == [0.0; 3] {
+            flat(face, single(plane.normal), side, &mut kept);
+            continue;
         }
-        for i in 1..polygon.len().saturating_sub(1) {
-            kept.push(Face { corners: [polygon[0], polygon[i], polygon[i + 1]], out: face.out });
+        let (polygon, crossed) = clipped(face.corners, fars, side);
+        // What only touches the plane from the other side is no part of this one's surface.
+        if fars.iter().any(|far| far * side > 0.0) {
+            for i in 1..polygon.len().saturating_sub(1) {
+                kept.push(Face { corners: [polygon[0], polygon[i], polygon[i + 1]], out: face.out });
+            }
         }
-        if let (Some(leaves), Some(enters)) = (leaves, enters) {
+        if let Some([leaves, enters]) = crossed {
             let middle = *middle.get_or_insert(enters);
             kept.push(Face { corners: [middle, enters, leaves], out: None });
         }
     }
     kept
+}
+
+/// Adds a triangle that lies in the plane of a cut: to the surface of the side that it closes. Cuts count what is in their plane to the upper side.
+fn flat(face: &Face, normal: Vec3, side: f64, kept: &mut Vec<Face>) {
+    let closes_lower = face.out.is_some_and(|out| dot(out, normal) > 0.0);
+    let [a, b, c] = face.corners;
+    match (side > 0.0, closes_lower) {
+        (true, false) => kept.push(*face),
+        (true, true) => kept.push(Face { out: None, ..*face }),
+        (false, true) => kept.extend([*face, Face { corners: [a, c, b], out: None }]),
+        (false, false) => {}
+    }
+}
+
+/// The part of a triangle on one side of a plane that its corners are so far from, and where its own sides leave that side and come back.
+fn clipped(corners: [Place; 3], fars: [f64; 3], side: f64) -> (heapless::Vec<Place, 4>, Option<[Place; 2]>) {
+    let is_in = |far: f64| if side > 0.0 { far >= 0.0 } else { far < 0.0 };
+    let crossing = |inner: usize, outer: usize| match (fars[inner], fars[outer]) {
+        (_, 0.0) => corners[outer],
+        (0.0, _) => corners[inner],
+        (near, far) => between(corners[inner], corners[outer], near / (near - far)),
+    };
+    let (mut polygon, mut leaves, mut enters) = (heapless::Vec::new(), None, None);
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        if is_in(fars[i]) {
+            let _ = polygon.push(corners[i]);
+        }
+        match (is_in(fars[i]), is_in(fars[j])) {
+            (true, false) => {
+                leaves = Some(crossing(i, j));
+                polygon.extend(leaves);
+            }
+            (false, true) => {
+                enters = Some(crossing(j, i));
+                polygon.extend(enters);
+            }
+            _ => {}
+        }
+    }
+    (polygon, leaves.zip(enters).map(|(leaves, enters)| [leaves, enters]))
 }
 
 /// The hull of the surface in a part: of all of its corners, if they are no more than `most`, or of the outermost.
@@ -285,7 +330,8 @@ fn outermost(points: &[Vec3], directions: usize) -> Vec<Vec3> {
             let (sin, cos) = sin_cos_turns(i as f32 * 0.381_966);
             let aside = sqrt(max(1.0 - height * height, 0.0));
             let along = Vec3::new(aside * cos, height, aside * sin);
-            let farther = |best: usize, other: usize| if dot(along, points[other] - points[best]) > 0.0 { other } else { best };
+            let farther =
+                |best: usize, other: usize| if dot(along, points[other] - points[best]) > 0.0 { other } else { best };
             (0..points.len()).reduce(farther)
         })
         .collect();
@@ -296,9 +342,9 @@ fn outermost(points: &[Vec3], directions: usize) -> Vec<Vec3> {
 
 /// How far a surface is from the hull around it \[m\]: on the way straight out of it, at the corners and in the middle of each triangle; and how far
 /// its corners are beyond that.
-fn leaves(faces: &[Face], hull: &HullBuf) -> f32 {
+fn leaves(faces: &[Face], hull: &HullBuf) -> [f32; 2] {
     let hull = hull.lend();
-    let mut most = 0.0;
+    let (mut most, mut beyond) = (0.0, 0.0);
     for face in faces {
         let Some(out) = face.out else { continue };
         let corners = face.corners.map(|corner| single(corner) - hull.center);
@@ -307,7 +353,7 @@ fn leaves(faces: &[Face], hull: &HullBuf) -> f32 {
             let mut exit = f32::INFINITY;
             for face in hull.faces {
                 let (along, far) = (dot(face.normal, out), face.offset - dot(face.normal, place));
-                most = max(most, -far);
+                beyond = max(beyond, -far);
                 if along > ASKEW {
                     exit = min(exit, far / along);
                 }
@@ -315,5 +361,5 @@ fn leaves(faces: &[Face], hull: &HullBuf) -> f32 {
             most = max(most, exit);
         }
     }
-    most
+    [most, beyond]
 }

@@ -150,7 +150,8 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         let boxes = self.boxes.as_ref();
         let particles = boxes.iter().fold(0, |sum: u64, body| sum.wrapping_add(u64::from(body.count)));
         let particles = usize::try_from(particles).unwrap_or(usize::MAX);
-        let more = boxes.iter().fold(0, |sum: usize, body| sum.saturating_add(usize::from(body.pieces).saturating_sub(1)));
+        let more =
+            boxes.iter().fold(0, |sum: usize, body| sum.saturating_add(usize::from(body.pieces).saturating_sub(1)));
         Sizes { bodies: boxes.len(), particles, balls: self.balls as usize, more }
     }
 

@@ -4,7 +4,7 @@
 use super::body::Body;
 use super::forms::{Form, Forms};
 use super::manifold::Manifold;
-use crate::math::{dot, largest, min};
+use crate::math::{dot, min};
 use glam::Vec3;
 
 /// How far off a piece a place is held against the others, as a share of its least half side.
@@ -50,5 +50,5 @@ pub(super) fn shows(forms: Forms<'_>, body: &Body, (number, piece): (u32, u8), [
 /// Tells whether a place may be so near a piece \[m\].
 fn may_be_near(form: &Form<'_>, place: Vec3, far: f32) -> bool {
     let Form::Piece(hull) = form else { return true };
-    largest((place - hull.center).abs() - hull.half()) <= far
+    ((place - hull.center).abs() - hull.half()).cmple(Vec3::splat(far)).all()
 }
