@@ -8,14 +8,13 @@ use crate::stage::{look, moves, tessellate};
 use crate::style::{Style, Styled};
 use crate::viewpoint::Viewpoint;
 use glam::Vec3;
-use pointmass::constrain::{Hull, HullList};
 use pointmass::draw::{
     Appearance, Instance, Knot, Line, Ring, Sprite, Trails, Vertex, View, appearance, body, solid, sprite, strained,
     strains, surface,
 };
 use pointmass::force::State;
 use pointmass::scene::{Material, Model, PatchBuf, SceneFile};
-use pointmass::{Color, Heap, RigidBodies, RigidBox, System, Time};
+use pointmass::{Color, Heap, RigidBox, System, Time};
 use pointmass_draw::{self as draw, Billboard, Dot, Piece, Surface, shapes};
 use std::collections::HashMap;
 
@@ -237,12 +236,9 @@ impl<'m> Cast<'m> {
                 let light = file.light_on_strands(self.view.eye);
                 seen.ribbons.extend(model.locks.iter().flat_map(|lock| self.curves(state, lock, &light, model)));
                 seen.pieces.extend(model.patches.iter().filter_map(|patch| self.cloth(state, patch, file, model)));
-                let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
+                let boxes = &model.constraints.1.boxes;
                 let standing = boxes.iter().filter_map(|of| Some((of, body(state, of, &model.particles)?)));
-                seen.pieces.extend(standing.map(|(of, instance)| {
-                    let hull = of.hull.and_then(|number| hulls.hull(usize::from(number)));
-                    rigid(&instance, hull.as_ref().map(|hull| (hull, of.half)), file)
-                }));
+                seen.pieces.extend(standing.map(|(of, instance)| rigid(&instance, (model, of), file)));
             }
         });
         seen
@@ -350,14 +346,13 @@ fn styled<T>(state: &State<'_>, style: Option<Style>, size: f32, see: impl FnOnc
     see(&State { material: &material, materials: &materials, radius: &radius, ..*state })
 }
 
-/// A rigid body: the box that it is, or its hull in a box of so much about its centroid.
-fn rigid(instance: &Instance, hull: Option<(&Hull<'_>, Vec3)>, file: &SceneFile) -> Piece {
+/// A rigid body: the box that it is, or its surface in a box of so much about its middle.
+fn rigid(instance: &Instance, (model, of): (&Model, &RigidBox), file: &SceneFile) -> Piece {
     let Instance { center, axes, color, material } = *instance;
-    let surface = match hull {
+    let surface = match model.surface(of) {
         None => shapes::cuboid(Vec3::ZERO, Vec3::splat(2.0)),
-        Some((hull, half)) => {
-            let corners = hull.faces.iter().flat_map(|face| hull.triangles(face)).flatten();
-            let places: Vec<_> = corners.map(|corner| corner / half).collect();
+        Some((corners, triangles)) => {
+            let places: Vec<_> = triangles.iter().flatten().map(|&corner| corners[corner as usize] / of.half).collect();
             let triangles: Vec<_> = (0..places.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
             shapes::mesh(&places, &triangles)
         }

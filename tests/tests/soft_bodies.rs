@@ -117,6 +117,35 @@ fn a_mesh_of_a_box_is_that_box() {
 }
 
 /// Where the upper part is held the rest hangs by g / (2 π f)², or by so many percent of the height, whatever the mesh and the share that is held.
+/// A cavity weighs nothing, and what stands apart counts, whichever way the triangles of each are turned; what crosses is refused.
+#[test]
+fn meshes_of_several_shells_weigh_what_is_filled() {
+    let shells = |of: &[(f32, Vec3)], turned: usize| {
+        let mut all = One(Vec::new(), Vec::new());
+        for (i, &(side, middle)) in of.iter().enumerate() {
+            let (first, One(corners, triangles)) = (all.0.len() as u32, cuboid(Vec3::splat(side), middle));
+            all.0.extend(corners);
+            let turn = |[a, b, c]: [u32; 3]| if turned >> i & 1 == 1 { [a, c, b] } else { [a, b, c] };
+            all.1.extend(triangles.into_iter().map(|face| turn(face.map(|corner| first + corner))));
+        }
+        all
+    };
+    let text = body(r#"{"mesh": "it.off"}"#, 0.5, r#""position": [0, 0, 0], "give": 2"#);
+    for turned in 0..4 {
+        for (of, volume) in
+            [([(4.0, Vec3::ZERO), (2.0, Vec3::ZERO)], 56.0), ([(4.0, Vec3::ZERO), (2.0, Vec3::X * 4.0)], 72.0)]
+        {
+            let model = model(&text, &mut shells(&of, turned)).unwrap();
+            let mass: f64 = model.particles.iter().map(|p| f64::from(p.mass)).sum();
+            assert!((mass / (800.0 * volume) - 1.0).abs() < 1e-5, "{turned} {volume}: {mass}");
+            // As many particles as cells that are filled.
+            assert!((model.particles.len() as f64 / (8.0 * volume) - 1.0).abs() < 0.02, "{}", model.particles.len());
+        }
+        let error = model(&text, &mut shells(&[(4.0, Vec3::ZERO), (2.0, Vec3::X * 2.0)], turned)).unwrap_err();
+        assert!(error.contains("form") && error.contains("pass through each other"), "{error}");
+    }
+}
+
 #[test]
 fn what_is_held_hangs_by_its_softness_however_fine_it_is() {
     let (corners, triangles) = icosahedron();

@@ -2,7 +2,6 @@
 
 use js_sys::Float32Array;
 use pointmass::Color;
-use pointmass::constrain::HullList;
 use pointmass::draw::{
     Instance, Line, Lock, Sprite, StrandLight, Vertex, View, back_to_front, body, solids, springs, sprites, strands,
     surface,
@@ -71,12 +70,11 @@ pub(crate) fn surfaces_of(state: &State<'_>, model: &Model) -> Float32Array {
         triangles.truncate(count);
         triangles.into_iter().map(move |corners| corners.map(|corner| vertices[corner as usize]))
     });
-    let bodies = &model.constraints.1;
-    let hulls = bodies.boxes.iter().filter_map(|of| {
-        let hull = bodies.hulls.hull(usize::from(of.hull?))?;
+    let hulls = model.constraints.1.boxes.iter().filter_map(|of| {
+        let (corners, triangles) = model.surface(of)?;
         let Instance { center, axes, color, .. } = body(state, of, &model.particles)?;
-        let triangles = hull.faces.iter().flat_map(|face| hull.triangles(face)).map(|corners| {
-            let [a, b, c] = corners.map(|corner| center + axes * (corner / of.half));
+        let triangles = triangles.into_iter().map(|ends| {
+            let [a, b, c] = ends.map(|corner| center + axes * (corners[corner as usize] / of.half));
             let normal = (b - a).cross(c - a).normalize_or_zero();
             [a, b, c].map(|place| Vertex { place, normal, color })
         });

@@ -1,7 +1,7 @@
 //! Memory must not run out: WebAssembly cannot go on after an allocation that fails, so room is made sure of before.
 
 use crate::files::Files;
-use pointmass::scene::{Form, SceneFile};
+use pointmass::scene::{BoxForm, Form, SceneFile};
 use wasm_bindgen::JsError;
 
 /// Bytes that an object of a scene takes at most, from its text to the running world, while lists of it grow.
@@ -10,7 +10,7 @@ const OBJECT: usize = 1536;
 /// Bytes that a particle of a cloth takes at most, with its springs.
 const WOVEN: usize = 2048;
 
-/// Bytes that a rigid box takes at most, with its particles.
+/// Bytes that a rigid box takes at most, with its particles, and as many for each further piece of a body.
 const BOX: usize = 9728;
 
 /// Makes sure that so many bytes are to be had, for `what`.
@@ -48,7 +48,15 @@ pub(crate) fn room_to_build(file: &SceneFile, files: &Files) -> Result<(), JsErr
     });
     let particles = particles.fold(0_usize, usize::saturating_add);
     room(particles.saturating_mul(WOVEN), "the cloths of the scene")?;
-    let boxes = file.boxes.iter().map(|boxes| product(&boxes.count, 0)).fold(0_usize, usize::saturating_add);
+    let boxes = file.boxes.iter().map(|boxes| {
+        let pieces = match &boxes.form {
+            BoxForm::Pieces(pieces) => pieces.len(),
+            BoxForm::Solid(solid) => usize::from(solid.pieces),
+            _ => 1,
+        };
+        product(&boxes.count, 0).saturating_mul(pieces)
+    });
+    let boxes = boxes.fold(0_usize, usize::saturating_add);
     room(boxes.saturating_mul(BOX), "the boxes of the scene")?;
     let strands = file.strands.iter().map(|tuft| tuft.particles() as usize).fold(0_usize, usize::saturating_add);
     room(strands.saturating_mul(WOVEN), "the strands of the scene")?;

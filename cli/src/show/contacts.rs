@@ -70,15 +70,17 @@ impl Blows {
     }
 }
 
-/// A rigid body as it stands.
+/// A rigid body, or a piece of one, as it stands.
 struct Standing<'m> {
+    /// The number of its body.
+    of: usize,
     center: Vec3,
     rotation: Mat3,
     half: Vec3,
     hull: Option<Hull<'m>>,
 }
 
-/// All rigid bodies, and their particles by their place in the scene's start.
+/// All rigid bodies, piece by piece, and their particles by their place in the scene's start.
 struct Bodies<'m> {
     standing: Vec<Standing<'m>>,
     members: Vec<Range<u32>>,
@@ -86,17 +88,27 @@ struct Bodies<'m> {
 
 impl<'m> Bodies<'m> {
     fn of(state: &State<'_>, model: &'m Model) -> Self {
-        let RigidBodies { boxes, hulls, .. } = &model.constraints.1;
-        let stand = |of: &RigidBox| {
+        let RigidBodies { boxes, hulls: all, .. } = &model.constraints.1;
+        let stand = |(number, of): (usize, &RigidBox)| {
             let Instance { center, axes, .. } = body(state, of, &model.particles)?;
             let axis = |axis: Vec3| axis.normalize_or_zero();
             let rotation = Mat3::from_cols(axis(axes.x_axis), axis(axes.y_axis), axis(axes.z_axis));
-            let hull = of.hull.and_then(|number| hulls.hull(usize::from(number)));
-            Some(Standing { center, rotation, half: of.half, hull })
+            let hulls = of.hull.map(usize::from).map_or(0..0, |first| first..first + usize::from(of.pieces));
+            let mut pieces: Vec<_> = hulls
+                .filter_map(|hull| all.hull(hull))
+                .map(|hull| {
+                    let half = if of.pieces > 1 { hull.half() } else { of.half };
+                    Standing { of: number, center: center + rotation * hull.center, rotation, half, hull: Some(hull) }
+                })
+                .collect();
+            if pieces.is_empty() {
+                pieces.push(Standing { of: number, center, rotation, half: of.half, hull: None });
+            }
+            Some(pieces)
         };
         let mut members: Vec<_> = boxes.iter().map(|of| of.first..of.first.saturating_add(of.count)).collect();
         members.sort_unstable_by_key(|range| range.start);
-        Self { standing: boxes.iter().filter_map(stand).collect(), members }
+        Self { standing: boxes.iter().enumerate().filter_map(stand).flatten().collect(), members }
     }
 
     /// Tells whether a particle of the scene's start belongs to one.
@@ -204,11 +216,11 @@ impl Lines {
     fn pile(&mut self, state: &State<'_>, serial: &[u32], bodies: &Bodies<'_>) {
         let balls = (0..serial.len()).filter(|&row| state.radius[row] > 0.0 && !bodies.has(serial[row]));
         let balls = balls.map(|row| (usize::MAX, state.position[row], state.radius[row]));
-        let corners = bodies.standing.iter().enumerate();
-        let corners = corners.flat_map(|(of, body)| body.corners().into_iter().map(move |corner| (of, corner, 0.0)));
+        let corners = bodies.standing.iter();
+        let corners = corners.flat_map(|body| body.corners().into_iter().map(move |corner| (body.of, corner, 0.0)));
         for (of, place, radius) in balls.chain(corners) {
-            for (number, body) in bodies.standing.iter().enumerate().filter(|&(number, _)| number != of) {
-                if let Some([on, normal]) = body.face(place, radius + self.slack).filter(|_| number != of) {
+            for body in bodies.standing.iter().filter(|body| body.of != of) {
+                if let Some([on, normal]) = body.face(place, radius + self.slack) {
                     self.push(on, normal, EACH_OTHER);
                 }
             }
@@ -221,7 +233,7 @@ impl Lines {
         for (number, one) in bodies.standing.iter().enumerate() {
             for (other, edges_of_other) in bodies.standing.iter().zip(&edges).take(number) {
                 let way = one.center - other.center;
-                if way.length() > one.half.length() + other.half.length() + self.slack {
+                if one.of == other.of || way.length() > one.half.length() + other.half.length() + self.slack {
                     continue;
                 }
                 for (a, b) in edges[number].iter().flat_map(|a| edges_of_other.iter().map(move |b| (a, b))) {
@@ -283,6 +295,7 @@ mod tests {
         let made = HullBuf::of(&corners).expect("a hull");
         let on_edge = Mat3::from_rotation_x(std::f32::consts::FRAC_PI_4);
         let beam = |height: f32, turn: f32, is_hull: bool| Standing {
+            of: usize::from(turn > 1.0),
             center: Vec3::new(0.2, height, -0.1),
             rotation: Mat3::from_rotation_y(turn) * on_edge,
             half,
@@ -310,8 +323,8 @@ mod tests {
         let corners = corners.map(|i| Vec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 })) * half);
         let made = HullBuf::of(&corners).expect("a hull");
         let rotation = Mat3::from_rotation_z(0.4);
-        let plain = Standing { center: Vec3::X, rotation, half, hull: None };
-        let hull = Standing { center: Vec3::X, rotation, half, hull: Some(made.lend()) };
+        let plain = Standing { of: 0, center: Vec3::X, rotation, half, hull: None };
+        let hull = Standing { of: 0, center: Vec3::X, rotation, half, hull: Some(made.lend()) };
         let mut touched = 0;
         for i in 0..1000 {
             let own = Vec3::from([i % 10, i / 10 % 10, i / 100].map(|k| 0.1 * k as f32 - 0.4613));
@@ -324,6 +337,7 @@ mod tests {
         let tip = [Vec3::X * 0.5, Vec3::new(-0.5, 0.1, 0.0), Vec3::new(-0.5, -0.1, 0.1), Vec3::new(-0.5, -0.1, -0.1)];
         let made = HullBuf::of(&tip).expect("a hull");
         let sharp = Standing {
+            of: 0,
             center: Vec3::ZERO,
             rotation: Mat3::IDENTITY,
             half: made.lend().half(),

@@ -34,9 +34,9 @@ pub use distance::Distance;
 #[cfg(feature = "alloc")]
 pub use kind::ConstraintKind;
 pub(crate) use moved::{Moment, Moved};
-pub use rigid::{Hull, HullEdge, HullFace, HullList, RigidBodies, RigidBox};
 #[cfg(feature = "alloc")]
-pub use rigid::{HullBuf, HullError};
+pub use rigid::{CompoundBuf, CompoundError, HullBuf, HullError};
+pub use rigid::{Hull, HullEdge, HullFace, HullList, RigidBodies, RigidBox};
 pub use rope::Rope;
 pub use shape_matching::ShapeMatching;
 pub use sheet_contacts::SheetContacts;

@@ -1,11 +1,11 @@
-//! Rigid boxes and other convex bodies in scene files: one, or a block of many that differ by chance.
+//! Rigid boxes and other bodies in scene files: one, or a block of many that differ by chance.
 
-use crate::constrain::{Hull, HullBuf, HullError, RigidBox};
+use crate::constrain::{CompoundBuf, CompoundError, HullError, RigidBox};
 use crate::math::{high, length, low, sin_cos, unit};
 use crate::particles::{Color, Particle};
 use crate::rng::Stream;
 use crate::shape::MeshBuf;
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use glam::Vec3;
 
@@ -15,7 +15,7 @@ use glam::Vec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Boxes {
-    /// What they are: a box unless it says otherwise, or the convex hull of some points.
+    /// What they are: a box unless it says otherwise, the convex hull of some points, or a body of several pieces, which need not be convex.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "BoxForm::is_box"))]
     pub form: BoxForm,
     /// The lengths of a box's sides \[m\]; of the sides of the upright box around another form, which is stretched to fill it.
@@ -23,7 +23,7 @@ pub struct Boxes {
     pub sides: Vec3,
     /// The mass of each \[kg\].
     pub mass: f32,
-    /// Where the middle of the first is, its centroid \[m\].
+    /// Where the middle of the first is, its centre of mass \[m\].
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub position: Vec3,
     /// How many there are along x, y and z.
@@ -90,6 +90,26 @@ pub enum BoxForm {
     Points(Vec<Vec3>),
     /// The convex hull of a triangle mesh by its file, relative to the scene's.
     Mesh(String),
+    /// The convex hulls of several groups of points, together: they may touch, as the two arms of an L, or overlap, where the mass counts twice.
+    #[cfg_attr(feature = "schema", schemars(with = "alloc::vec::Vec<alloc::vec::Vec<[f32; 3]>>"))]
+    Pieces(Vec<Vec<Vec3>>),
+    /// A closed triangle mesh as it is, with its hollows and holes.
+    Solid(SolidMesh),
+}
+
+/// A closed triangle mesh that bodies have the form of: cut into convex pieces when the scene is loaded, with the mass, centre and inertia of the mesh
+/// itself.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SolidMesh {
+    /// Its file, relative to the scene's.
+    pub mesh: String,
+    /// How far the pieces may be off its surface \[m\].
+    pub within: f32,
+    /// How many pieces there may be, from 1 to 255.
+    #[cfg_attr(feature = "serde", serde(default = "many"))]
+    pub pieces: u16,
 }
 
 impl BoxForm {
@@ -98,8 +118,17 @@ impl BoxForm {
         *self == Self::Box
     }
 
-    /// Points whose convex hull it is; `mesh` is that of its file. A box has none.
-    fn points(&self, mesh: Option<&MeshBuf>) -> Option<Vec<Vec3>> {
+    /// The file of its mesh, if it has one.
+    pub(super) fn file(&self) -> Option<&str> {
+        match self {
+            Self::Mesh(name) => Some(name),
+            Self::Solid(solid) => Some(&solid.mesh),
+            _ => None,
+        }
+    }
+
+    /// The points whose convex hulls its pieces are; `mesh` is that of its file. A box has none.
+    fn points(&self, mesh: Option<&MeshBuf>) -> Option<Vec<Vec<Vec3>>> {
         /// The golden ratio.
         const PHI: f32 = 1.618_034;
         let signs = |x: f32, y: f32, z: f32| {
@@ -110,15 +139,17 @@ impl BoxForm {
         };
         // Both signs of nothing are one: a hull does not mind points twice.
         let turned = |y: f32, z: f32| signs(0.0, y, z).chain(signs(z, 0.0, y)).chain(signs(y, z, 0.0));
-        Some(match self {
+        let points = match self {
             Self::Box => return None,
+            Self::Pieces(pieces) => return Some(pieces.clone()),
             Self::Tetrahedron => signs(1.0, 1.0, 1.0).filter(|v| v.x * v.y * v.z > 0.0).collect(),
             Self::Octahedron => turned(0.0, 1.0).collect(),
             Self::Dodecahedron => signs(1.0, 1.0, 1.0).chain(turned(1.0 / PHI, PHI)).collect(),
             Self::Icosahedron => turned(1.0, PHI).collect(),
             Self::Points(points) => points.clone(),
-            Self::Mesh(_) => mesh?.vertices().to_vec(),
-        })
+            Self::Mesh(_) | Self::Solid(_) => mesh?.vertices().to_vec(),
+        };
+        Some(Vec::from([points]))
     }
 }
 
@@ -139,6 +170,12 @@ pub struct Scatter {
     pub seed: u32,
 }
 
+/// As many pieces as a mesh is cut into where a scene says nothing.
+#[cfg(feature = "serde")]
+const fn many() -> u16 {
+    64
+}
+
 /// One box.
 #[cfg(feature = "serde")]
 const fn one() -> [u32; 3] {
@@ -156,30 +193,48 @@ impl Boxes {
         self.number().saturating_mul(8)
     }
 
-    /// The hull of each, if they are no boxes; `mesh` is that of their form.
-    pub(super) fn hull(&self, mesh: Option<&MeshBuf>) -> Option<Result<HullBuf, HullError>> {
-        let mut points = self.form.points(mesh)?;
+    /// The form of each, if they are no boxes, and the mesh that it was cut from, about its centre of mass; `mesh` is that of its file.
+    pub(super) fn compound(&self, mesh: Option<&MeshBuf>) -> Option<Result<(CompoundBuf, Option<MeshBuf>), String>> {
+        let mut pieces = self.form.points(mesh)?;
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (least, most) = points.iter().fold(start, |(a, b), &point| (low(a, point), high(b, point)));
+        let all = || pieces.iter().flatten();
+        let (least, most) = all().fold(start, |(a, b), &point| (low(a, point), high(b, point)));
         let (middle, stretch) = ((least + most) * 0.5, self.sides / (most - least));
-        if !(points.iter().all(|point| point.is_finite()) && stretch.is_finite()) {
-            return Some(Err(if (least - most).is_finite() { HullError::Flat } else { HullError::NotFinite }));
+        if !(all().all(|point| point.is_finite()) && stretch.is_finite()) {
+            let error = if (least - most).is_finite() { HullError::Flat } else { HullError::NotFinite };
+            return Some(Err(error.to_string()));
         }
-        points.iter_mut().for_each(|point| *point = (*point - middle) * stretch);
-        Some(HullBuf::of(&points))
+        pieces.iter_mut().flatten().for_each(|point| *point = (*point - middle) * stretch);
+        let told = |error: CompoundError| match error {
+            CompoundError::Hull(_, error) if pieces.len() == 1 => error.to_string(),
+            error => error.to_string(),
+        };
+        let (BoxForm::Solid(solid), Some(mesh)) = (&self.form, mesh) else {
+            return Some(CompoundBuf::of(&pieces).map(|form| (form, None)).map_err(told));
+        };
+        let sized = |places: Vec<Vec3>| MeshBuf::new(places, mesh.triangles().to_vec()).map_err(|bad| bad.to_string());
+        let cut = sized(pieces[0].clone()).and_then(|sized| {
+            CompoundBuf::of_mesh(&sized, solid.within, usize::from(solid.pieces)).map_err(|error| error.to_string())
+        });
+        Some(cut.and_then(|form| {
+            let places = pieces[0].iter().map(|&place| place - form.center()).collect();
+            Ok((form, Some(sized(places)?)))
+        }))
     }
 
-    /// Its particles and bodies, the first particle having number `first` in the scene's start; `hull` is that of each, and its number.
-    pub(super) fn make(&self, first: u32, hull: Option<(u16, Hull<'_>)>) -> (Vec<Particle>, Vec<RigidBox>) {
+    /// Its particles and bodies, the first particle having number `first` in the scene's start; `form` is that of each, and the number of its
+    /// first hull.
+    pub(super) fn make(&self, first: u32, form: Option<(u16, &CompoundBuf)>) -> (Vec<Particle>, Vec<RigidBox>) {
         let [nx, ny, nz] = self.count;
         let places = (0..ny).flat_map(|y| (0..nz).flat_map(move |z| (0..nx).map(move |x| [x, y, z])));
         let (mut particles, mut bodies) = (Vec::new(), Vec::new());
         for (number, place) in places.enumerate() {
             let (mut body, whole, spin) = self.body(number as u32, place, first + particles.len() as u32);
-            if let Some((number, hull)) = hull {
-                (body.hull, body.half) = (Some(number), hull.half());
+            if let Some((number, form)) = form {
+                let RigidBox { half, pieces, .. } = RigidBox::with_compound(form, number, body.center, body.first);
+                body = RigidBox { hull: Some(number), half, pieces, ..body };
             }
-            let solid = hull.map_or_else(|| body.solid(whole), |(_, hull)| body.solid_hull(&hull, whole));
+            let solid = form.map_or_else(|| body.solid(whole), |(_, form)| body.solid_compound(form, whole));
             let load = |i: usize, axis: usize| if i >> axis & 1 == 1 { self.load[axis] } else { -self.load[axis] };
             particles.extend(solid.into_iter().enumerate().map(|(i, corner)| Particle {
                 velocity: corner.velocity + spin.cross(corner.position - body.center),

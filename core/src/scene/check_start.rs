@@ -3,7 +3,7 @@
 use super::check_shape::check_shape;
 use super::filling::MOST_OF_SOFT;
 use super::numbers::{Checked, above_zero, check_breaking, finite, zero_or_more};
-use super::{Air, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
+use super::{Air, BoxForm, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
 use crate::cloth::{ClothSprings, Sheet};
 use crate::math::length;
 use crate::motion::Motion;
@@ -97,6 +97,12 @@ impl SceneFile {
             let Scatter { position, turn, velocity, spin, seed: _ } = boxes.scatter.unwrap_or_default();
             for (name, number) in [("position", position), ("turn", turn), ("velocity", velocity), ("spin", spin)] {
                 zero_or_more(&at(&format!("scatter.{name}")), number)?;
+            }
+            if let BoxForm::Solid(solid) = &boxes.form {
+                above_zero(&at("form.solid.within"), solid.within)?;
+                if !(1..=255).contains(&solid.pieces) {
+                    return Err(SceneError::value(at("form.solid.pieces"), "has to be from 1 to 255"));
+                }
             }
             finite(&at("drag"), &[boxes.drag])?;
             finite(&at("elasticity"), &[boxes.elasticity])?;

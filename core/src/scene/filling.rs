@@ -1,10 +1,10 @@
 //! How solids of scene files are filled with particles: at the crossings of a grid, as many as there is room for.
 
 use crate::math::{floor, max};
+use crate::shape::enclosed::Enclosed;
 use crate::shape::{MeshBuf, Surface};
-use alloc::collections::BTreeMap;
 use alloc::format;
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use glam::Vec3;
 
@@ -92,37 +92,7 @@ pub(super) fn filled(form: &SoftForm, mesh: Option<&MeshBuf>, scale: f32, spacin
     Ok(Filling { places, volume, size })
 }
 
-/// The volume of a closed mesh \[m³\], whichever side its triangles are seen from; corners in one place are one.
+/// The volume of a closed mesh \[m³\].
 fn volume(mesh: &MeshBuf) -> Result<f64, Fault> {
-    let vertices = mesh.vertices();
-    // Both zeros are one place.
-    let place = |corner: u32| vertices[corner as usize].to_array().map(|x| (x + 0.0).to_bits());
-    // How often triangles run along each edge, and how often the other way.
-    let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
-    for &[a, b, c] in mesh.triangles() {
-        for [from, to] in [[a, b], [b, c], [c, a]].map(|edge| edge.map(place)) {
-            if from != to {
-                let back = usize::from(from > to);
-                edges.entry([from.min(to), from.max(to)]).or_default()[back] += 1;
-            }
-        }
-    }
-    if let Some((ends, [there, back])) = edges.iter().find(|(_, [there, back])| there != back) {
-        let [from, to] = ends.map(|end| end.map(f32::from_bits));
-        let what = match (there + back) % 2 {
-            0 => "both of its triangles run along it the same way: turn them alike",
-            _ => "a triangle is missing there: close it",
-        };
-        return Err(("form", format!("is no closed mesh: at its edge from {from:?} to {to:?} {what}")));
-    }
-    let origin = vertices.first().copied().unwrap_or_default();
-    let six = mesh.triangles().iter().map(|corners| {
-        // From one of the corners, so that what lies far from the world's origin loses nothing.
-        let way = |corner: u32| (vertices[corner as usize] - origin).to_array().map(f64::from);
-        let [[a, b, c], [d, e, f], [g, h, i]] = corners.map(way);
-        a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
-    });
-    let six: f64 = six.sum();
-    let volume = if six < 0.0 { six / -6.0 } else { six / 6.0 };
-    if volume > 0.0 { Ok(volume) } else { Err(("form", "is a mesh that encloses nothing".into())) }
+    Enclosed::of(mesh).map(|solid| solid.volume).map_err(|error| ("form", error.to_string()))
 }

@@ -71,7 +71,7 @@ mod write;
 #[cfg(feature = "alloc")]
 pub use air::{Fog, Sky};
 #[cfg(feature = "alloc")]
-pub use boxes::{BoxForm, Boxes, Scatter};
+pub use boxes::{BoxForm, Boxes, Scatter, SolidMesh};
 #[cfg(feature = "alloc")]
 pub use cloth::{Air, Cloth, Form, Gas, Hung, PatchBuf, SheetContactsBuf};
 #[cfg(feature = "alloc")]

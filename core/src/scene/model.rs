@@ -18,9 +18,10 @@ use crate::particles::Particle;
 use crate::reap::ReaperKind;
 use crate::shape::{MeshBuf, Moving, Placed, Scenery, Shape};
 use crate::system::System;
-use alloc::collections::TryReserveError;
+use alloc::collections::{BTreeMap, TryReserveError};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use glam::Vec3;
 
 /// Forces, the pull of sinks, what pushes balls apart, and what leads to goals.
 pub type Forces = (Vec<ForceKind>, Vec<Sink<Arc<MeshBuf>>>, Vec<Penalty>, Vec<Goal<Arc<MeshBuf>>>);
@@ -74,6 +75,8 @@ pub struct Model {
     pub patches: Vec<PatchBuf>,
     /// The strands, then the ropes, to be drawn as curves.
     pub locks: Vec<Lock>,
+    /// The meshes that rigid bodies were cut from, in their frames \[m\], by the numbers of their first hulls.
+    pub surfaces: BTreeMap<u16, MeshBuf>,
     /// The shapes that particles are drawn as, by the numbers of their materials.
     pub shapes: Vec<Option<Shape<Arc<MeshBuf>>>>,
 }
@@ -131,8 +134,33 @@ impl Model {
             soft_bodies: start.soft_bodies,
             patches: start.patches,
             locks: start.locks,
+            surfaces: start.surfaces,
             shapes,
         })
+    }
+
+    /// The surface of a rigid body that is no box, in its frame \[m\]: corners, and triangles between them. It is that of the mesh that the body was
+    /// cut from, or of all its hulls.
+    #[must_use]
+    pub fn surface(&self, body: &RigidBox) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
+        let first = body.hull?;
+        if let Some(mesh) = self.surfaces.get(&first) {
+            return Some((mesh.vertices().to_vec(), mesh.triangles().to_vec()));
+        }
+        let first = usize::from(first);
+        let hulls = self.constraints.1.hulls.get(first..first + usize::from(body.pieces))?;
+        let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+        for hull in hulls.iter().map(HullBuf::lend) {
+            let before = corners.len() as u32;
+            corners.extend(hull.corners.iter().map(|&corner| hull.center + corner));
+            for face in hull.faces {
+                let (first, count) = (usize::from(face.first), usize::from(face.count));
+                let list = hull.loops.get(first..first + count).unwrap_or_default();
+                let number = |place: usize| before + u32::from(list[place]);
+                triangles.extend((2..list.len()).map(|last| [number(0), number(last - 1), number(last)]));
+            }
+        }
+        Some((corners, triangles))
     }
 
     /// Tells whether particles may have a radius: some of those it begins with, or some that are born.

@@ -3,7 +3,7 @@
 use super::filling::MOST_OF_SOFT;
 use super::placing::Placing;
 use super::references::color;
-use super::{Body, BoxForm, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf, SoftForm};
+use super::{Body, Form, Growth, PatchBuf, SceneError, SceneFile, SheetContactsBuf, SoftForm};
 use crate::constrain::{ConstraintKind, HullBuf, RigidBox, SheetContacts, TiedRope};
 use crate::draw::Lock;
 use crate::emit::Emitter;
@@ -13,8 +13,11 @@ use crate::particles::Particle;
 use crate::shape::MeshBuf;
 use alloc::collections::BTreeMap;
 use alloc::format;
-use alloc::string::{String, ToString};
+use alloc::string::String;
 use alloc::vec::Vec;
+
+/// As many pieces as the bodies of a scene may have that are no boxes: they take about 10 kB each.
+const MOST_PIECES: u64 = 1 << 16;
 
 /// A root of strands that is to be tied: the number of these, the particle, and the body.
 type Root = (usize, u32, Body);
@@ -41,6 +44,8 @@ pub(super) struct Start {
     pub(super) contacts: SheetContactsBuf,
     pub(super) locks: Vec<Lock>,
     pub(super) hulls: Vec<HullBuf>,
+    /// The meshes that bodies were cut from, in their frames, by the numbers of their first hulls.
+    pub(super) surfaces: BTreeMap<u16, MeshBuf>,
     /// The number of the scene's own particles, and where those of each rope begin.
     pub(super) own: u32,
     pub(super) ropes: Vec<usize>,
@@ -64,6 +69,7 @@ impl Start {
             contacts: SheetContacts { particles: Vec::new(), triangles: Vec::new(), thickness: Vec::new() },
             locks: Vec::new(),
             hulls: Vec::new(),
+            surfaces: BTreeMap::new(),
             own: file.particles.len() as u32,
             ropes: Vec::new(),
             soft_bodies: Vec::new(),
@@ -131,19 +137,24 @@ impl Start {
     }
 
     fn add_boxes(&mut self, file: &SceneFile, meshes: &mut Placing<'_>) -> Result<(), SceneError> {
+        let mut pieces = 0;
         for (i, boxes) in file.boxes.iter().enumerate() {
-            let mesh = match &boxes.form {
-                BoxForm::Mesh(name) => Some(meshes.load(&format!("boxes[{i}].form"), name)?),
-                _ => None,
-            };
-            let hull = boxes.hull(mesh.as_deref()).transpose();
-            let hull = hull.map_err(|error| {
-                SceneError::value(format!("boxes[{i}].form"), error.to_string()).in_file(meshes.path)
-            })?;
+            let at = || format!("boxes[{i}].form");
+            let mesh = boxes.form.file().map(|name| meshes.load(&at(), name)).transpose()?;
+            let form = boxes.compound(mesh.as_deref()).transpose();
+            let form = form.map_err(|error| SceneError::value(at(), error).in_file(meshes.path))?;
             let number = self.hulls.len() as u16;
-            let lent = hull.as_ref().map(|hull| (number, hull.lend()));
+            let lent = form.as_ref().map(|(form, _)| (number, form));
             let (particles, bodies) = boxes.make(self.particles.len() as u32, lent);
-            self.hulls.extend(hull);
+            if let Some((form, surface)) = form {
+                self.hulls.extend_from_slice(form.pieces());
+                pieces += boxes.number().saturating_mul(form.pieces().len() as u64);
+                self.surfaces.extend(surface.map(|surface| (number, surface)));
+            }
+            if pieces > MOST_PIECES || self.hulls.len() > usize::from(u16::MAX) {
+                let message = format!("makes too many pieces; the bodies of a scene may have {MOST_PIECES}");
+                return Err(SceneError::value(at(), message).in_file(meshes.path));
+            }
             if !particles.iter().all(Particle::is_sound) {
                 let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
                 return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));

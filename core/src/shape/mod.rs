@@ -13,6 +13,8 @@ mod convex;
 mod cuboid;
 mod cylinder;
 mod disc;
+#[cfg(feature = "alloc")]
+pub(crate) mod enclosed;
 mod exact;
 mod facing;
 mod heightfield;
@@ -47,6 +49,8 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
+#[cfg(feature = "alloc")]
+pub use enclosed::NotSolid;
 pub use facing::{Face, Facing};
 pub use heightfield::{BadHeights, HeightField};
 #[cfg(feature = "alloc")]

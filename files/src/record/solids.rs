@@ -43,17 +43,8 @@ impl Solid {
     fn of(body: &RigidBox, model: &Model) -> Self {
         let numbers = body.first..body.first.saturating_add(body.count);
         let members = numbers.filter_map(|number| Some((number, model.particles.get(number as usize)?.position)));
-        let hull = body.hull.and_then(|number| model.constraints.1.hulls.get(usize::from(number)));
-        let (corners, triangles): (Vec<_>, Vec<_>) = match hull.map(|hull| hull.lend()) {
-            Some(hull) => {
-                let fan = |list: &[u8]| {
-                    let first = u32::from(list[0]);
-                    list.windows(2).skip(1).map(|pair| [first, pair[0].into(), pair[1].into()]).collect::<Vec<_>>()
-                };
-                let lists = hull.faces.iter().map(|face| (usize::from(face.first), usize::from(face.count)));
-                let lists = lists.filter_map(|(first, count)| hull.loops.get(first..first + count));
-                (hull.corners.to_vec(), lists.filter(|list| list.len() > 2).flat_map(fan).collect())
-            }
+        let (corners, triangles): (Vec<_>, Vec<_>) = match model.surface(body) {
+            Some(surface) => surface,
             None => {
                 let side = |corner: u32, bit: u32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
                 let corner = |i| body.half * Vec3::new(side(i, 0), side(i, 1), side(i, 2));

@@ -7,6 +7,7 @@ use pointmass::{ContactMaterial, Gravity, Inline, Particle, Scene, System, Time,
 
 /// A prism over a triangle whose slanted sides rise by 3 in 4, about its centroid.
 pub(crate) const WEDGE: Hull<'static> = Hull {
+    center: Vec3::ZERO,
     corners: &[
         Vec3::new(0.24, -0.1, 0.0),
         Vec3::new(-0.12, -0.1, -0.27),
@@ -38,6 +39,7 @@ pub(crate) const WEDGE: Hull<'static> = Hull {
 
 /// An octahedron twice as long as it is wide: each face has a normal of (1, 2, 2) / 3, but for signs.
 pub(crate) const SPINDLE: Hull<'static> = Hull {
+    center: Vec3::ZERO,
     corners: &[
         Vec3::new(0.24, 0.0, 0.0),
         Vec3::new(-0.24, 0.0, 0.0),

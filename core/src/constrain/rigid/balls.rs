@@ -55,7 +55,7 @@ pub(super) fn invite(
             }
             ask(position[row], &mut |body| {
                 let (number, of) = (body + 1, &all[body as usize + 1]);
-                let far = forms.of(number).nearest(of, of.place(position[row])).2 - radius[row];
+                let far = forms.gap(number, of, of.place(position[row])) - radius[row];
                 if !(far <= of.max_travel + max_travel) {
                     return;
                 }

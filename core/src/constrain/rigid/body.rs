@@ -126,7 +126,7 @@ impl Body {
 
     /// Tells whether it is pushed by one that touches it, and has lain there (1) since before it fell asleep or not.
     #[inline(always)]
-    pub(super) fn gives(&self, rested: u32) -> bool {
+    pub(super) fn gives(&self, rested: u16) -> bool {
         self.inverse_mass > 0.0 && (rested == 0 || self.asleep == 0)
     }
 
@@ -143,6 +143,11 @@ impl Body {
     /// The middle of its box \[m\].
     pub(super) fn middle(&self) -> Vec3 {
         self.center - self.rotation * self.rest
+    }
+
+    /// The place in the world of one that lies so far from the middle of its box in its frame \[m\].
+    pub(super) fn beside_middle(&self, place: Vec3) -> Vec3 {
+        self.center - self.rotation * (self.rest - place)
     }
 
     /// A bound on the speed of any point of its box \[m/s\].
@@ -440,6 +445,11 @@ impl Body {
 
     /// A length that is small beside its box \[m\].
     pub(super) fn small(&self) -> f32 {
-        max(min(self.half.x, min(self.half.y, self.half.z)) * 0.02, f32::EPSILON * sqrt(self.center.dot(self.center)))
+        self.small_for(self.half)
+    }
+
+    /// The same beside a part of it of these half sides \[m\].
+    pub(super) fn small_for(&self, half: Vec3) -> f32 {
+        max(min(half.x, min(half.y, half.z)) * 0.02, f32::EPSILON * sqrt(self.center.dot(self.center)))
     }
 }

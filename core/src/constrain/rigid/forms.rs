@@ -13,6 +13,8 @@ use glam::{Mat3, Vec3};
 pub(super) enum Form<'a> {
     Box,
     Hull(Hull<'a>),
+    /// One of several hulls that a body consists of.
+    Piece(Hull<'a>),
     /// A loose particle with a radius.
     Ball,
 }
@@ -25,16 +27,34 @@ pub(super) struct Forms<'a> {
 }
 
 impl<'a> Forms<'a> {
-    /// The form of the body with a number, from 1; what comes after the scene's bodies are balls.
-    pub(super) fn of(&self, number: u32) -> Form<'a> {
+    /// The form of a piece of the body with a number, from 1; what comes after the scene's bodies are balls.
+    pub(super) fn piece(&self, number: u32, piece: u8) -> Form<'a> {
         let Some(of) = self.boxes.get((number as usize).wrapping_sub(1)) else { return Form::Ball };
-        let hull = of.hull.and_then(|hull| self.hulls.hull(usize::from(hull)));
-        hull.map_or(Form::Box, Form::Hull)
+        let hull = of.hull.and_then(|hull| self.hulls.hull(usize::from(hull) + usize::from(piece)));
+        hull.map_or(Form::Box, if of.pieces > 1 { Form::Piece } else { Form::Hull })
+    }
+
+    /// How many pieces a body has: those of its hulls that there are.
+    pub(super) fn count(&self, number: u32) -> u8 {
+        let Some(of) = self.boxes.get((number as usize).wrapping_sub(1)) else { return 1 };
+        let Some(first) = of.hull.filter(|_| of.pieces > 1) else { return 1 };
+        let is_there = |piece: &u8| self.hulls.hull(usize::from(first) + usize::from(*piece)).is_some();
+        (0..of.pieces.min(u16::from(u8::MAX)) as u8).take_while(is_there).count().max(1) as u8
+    }
+
+    /// The forms of all pieces of a body.
+    pub(super) fn pieces(self, number: u32) -> impl Iterator<Item = Form<'a>> {
+        (0..self.count(number)).map(move |piece| self.piece(number, piece))
+    }
+
+    /// How far out of a body a place of its frame is \[m\]: below zero inside.
+    pub(super) fn gap(self, number: u32, body: &Body, place: Vec3) -> f32 {
+        self.pieces(number).fold(f32::INFINITY, |least, form| min(least, form.nearest(body, place).2))
     }
 
     /// Tells whether both of two are boxes.
     pub(super) fn are_boxes(&self, numbers: [u32; 2]) -> bool {
-        numbers.iter().all(|&number| matches!(self.of(number), Form::Box))
+        numbers.iter().all(|&number| matches!(self.piece(number, 0), Form::Box))
     }
 }
 
@@ -44,7 +64,10 @@ impl Form<'_> {
     pub(super) fn nearest(&self, body: &Body, place: Vec3) -> (Vec3, Vec3, f32) {
         match self {
             Self::Box => boxes::nearest(body.half, place),
-            Self::Hull(hull) => hull.nearest(place),
+            Self::Hull(hull) | Self::Piece(hull) => {
+                let (on, out, far) = hull.nearest(place - hull.center);
+                (on + hull.center, out, far)
+            }
             Self::Ball => {
                 let far = length(place);
                 let out = if far > 0.0 { place * (1.0 / far) } else { Vec3::Y };
@@ -57,15 +80,35 @@ impl Form<'_> {
     pub(super) fn corners(&self) -> usize {
         match self {
             Self::Box => 8,
-            Self::Hull(hull) => hull.corners.len(),
+            Self::Hull(hull) | Self::Piece(hull) => hull.corners.len(),
             Self::Ball => 0,
         }
+    }
+
+    /// Where its middle is \[m\].
+    pub(super) fn middle(&self, body: &Body) -> Vec3 {
+        match self {
+            Self::Hull(hull) | Self::Piece(hull) => body.beside_middle(hull.center),
+            Self::Box | Self::Ball => body.middle(),
+        }
+    }
+
+    /// Half the sides of the box about that which holds it \[m\].
+    pub(super) fn half(&self, body: &Body) -> Vec3 {
+        if let Self::Piece(hull) = self { hull.half() } else { body.half }
+    }
+
+    /// A length that is small beside it \[m\].
+    pub(super) fn small(&self, body: &Body) -> f32 {
+        body.small_for(self.half(body))
     }
 
     /// One of them, in the body's frame \[m\].
     pub(super) fn corner(&self, body: &Body, number: usize) -> Vec3 {
         match self {
-            Self::Hull(hull) => hull.corners.get(number).copied().unwrap_or(Vec3::ZERO),
+            Self::Hull(hull) | Self::Piece(hull) => {
+                hull.corners.get(number).map_or(Vec3::ZERO, |&corner| corner + hull.center)
+            }
             _ => corner(body.half, number as u32),
         }
     }
@@ -81,8 +124,11 @@ pub(super) fn with_hulls(
     then: &mut dyn FnMut(&Apart, [&dyn Faceted; 2]),
 ) {
     let lends = [BoxHull::of(a.half), BoxHull::of(b.half)];
-    let hull = |side: usize| if let Form::Hull(hull) = forms[side] { hull } else { lends[side].lend() };
-    let (a, b) = (Posed::new(a, hull(0)), Posed::new(b, hull(1)));
+    let hull = |side: usize| match forms[side] {
+        Form::Hull(hull) | Form::Piece(hull) => hull,
+        Form::Box | Form::Ball => lends[side].lend(),
+    };
+    let (a, b) = (Posed::new(a, hull(0), forms[0].half(a)), Posed::new(b, hull(1), forms[1].half(b)));
     if let Some(apart) = apart(&a, &b, bound) {
         then(&apart, [&a, &b]);
     }
@@ -128,14 +174,14 @@ impl BoxHull {
     }
 
     fn lend(&self) -> Hull<'_> {
-        Hull { corners: &self.corners, faces: &self.faces, loops: &LOOPS, edges: &EDGES }
+        Hull { center: Vec3::ZERO, corners: &self.corners, faces: &self.faces, loops: &LOOPS, edges: &EDGES }
     }
 }
 
 /// A hull that stands somewhere.
 struct Posed<'a> {
     hull: Hull<'a>,
-    /// Where its origin is \[m\].
+    /// Where its centroid is \[m\].
     middle: Vec3,
     axes: Mat3,
     /// Its corners as they are turned, from there \[m\].
@@ -145,11 +191,12 @@ struct Posed<'a> {
 }
 
 impl<'a> Posed<'a> {
-    fn new(body: &Body, hull: Hull<'a>) -> Self {
+    /// `half` are half the sides of the box that holds it \[m\].
+    fn new(body: &Body, hull: Hull<'a>, half: Vec3) -> Self {
         let mut corners = heapless::Vec::new();
         corners.extend(hull.corners.iter().take(CORNERS).map(|&corner| body.rotation * corner));
-        let Vec3 { x, y, z } = body.half;
-        Self { hull, middle: body.middle(), axes: body.rotation, corners, least: min(x, min(y, z)) }
+        let Vec3 { x, y, z } = half;
+        Self { hull, middle: body.beside_middle(hull.center), axes: body.rotation, corners, least: min(x, min(y, z)) }
     }
 
     /// How far it reaches along a direction from its middle \[m\].

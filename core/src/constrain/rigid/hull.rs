@@ -10,8 +10,8 @@ pub(super) const SIDES: usize = 16;
 /// The most faces that it may have: as many as triangles over so many corners.
 pub(super) const FACES: usize = 2 * CORNERS - 4;
 
-/// A convex polyhedron about its centroid, the origin, as its corners, faces and edges: on a host [`HullBuf`](super::HullBuf) finds them by the
-/// corners alone.
+/// A convex polyhedron about its centroid, as its corners, faces and edges: on a host [`HullBuf`](super::HullBuf) finds them by the
+/// corners alone. It is a body's whole form, or one of several pieces of it.
 ///
 /// ```
 /// use pointmass::constrain::HullBuf;
@@ -26,7 +26,9 @@ pub(super) const FACES: usize = 2 * CORNERS - 4;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hull<'a> {
-    /// The corners \[m\], 64 at the most.
+    /// Where its centroid is in the frame of its body \[m\]: zero, where it is all of that.
+    pub center: Vec3,
+    /// The corners, from there \[m\], 64 at the most.
     pub corners: &'a [Vec3],
     /// The faces.
     pub faces: &'a [HullFace],
@@ -41,7 +43,7 @@ pub struct Hull<'a> {
 pub struct HullFace {
     /// The unit vector out of the hull.
     pub normal: Vec3,
-    /// How far from the origin it is along that \[m\].
+    /// How far from the centroid it is along that \[m\].
     pub offset: f32,
     /// Where the numbers of its corners begin in the hull's loops, and how many there are, from 3 to 16.
     pub first: u16,
@@ -107,6 +109,7 @@ impl<'a> Hull<'a> {
         let faults = [
             (!(4..=CORNERS).contains(&self.corners.len()), "corners", "have to be from 4 to 64"),
             (!self.corners.iter().all(|corner| corner.is_finite()), "corners", "have to be finite"),
+            (!self.center.is_finite(), "center", "has to be finite"),
             (!(4..=FACES).contains(&self.faces.len()), "faces", "have to be from 4 to 124"),
             (
                 !self.faces.iter().all(face),
@@ -152,7 +155,7 @@ impl<'a> Hull<'a> {
         self.tetrahedra().map(|(six, _)| six).sum::<f32>() / 6.0
     }
 
-    /// Where its centroid is \[m\]: at the origin, but for rounding.
+    /// Where the centroid of its corners is from `center` \[m\]: there, but for rounding.
     #[must_use]
     pub fn centroid(&self) -> Vec3 {
         let (mut volume, mut sum) = (0.0, Vec3::ZERO);
@@ -171,7 +174,7 @@ impl<'a> Hull<'a> {
 
     /// Σ m x xᵀ over its mass, about its centroid \[m²\]: of a tetrahedron with a corner at the origin V/20 (s sᵀ + Σ x xᵀ), s being the sum of the
     /// other corners x (Tonon, "Explicit Exact Formulas for the 3-D Tetrahedron Inertia Tensor", J. Math. Stat. 1, 2005).
-    fn spread(&self) -> Mat3 {
+    pub(super) fn spread(&self) -> Mat3 {
         let outer = |a: Vec3, b: Vec3| Mat3::from_cols(a * b.x, a * b.y, a * b.z);
         let (mut volume, mut sum) = (0.0, Mat3::ZERO);
         for (six, [a, b, c]) in self.tetrahedra() {
@@ -186,15 +189,7 @@ impl<'a> Hull<'a> {
     /// mass (Cholesky). Of a box they are 1/√3 of the way to the corners.
     #[must_use]
     pub fn particles(&self) -> [Vec3; 8] {
-        let Mat3 { x_axis: x, y_axis: y, z_axis: z } = self.spread();
-        let root = |square: f32| sqrt(max(square, f32::MIN_POSITIVE));
-        let a = root(x.x);
-        let (b, c) = (x.y / a, x.z / a);
-        let d = root(y.y - b * b);
-        let e = (y.z - c * b) / d;
-        let f = root(z.z - c * c - e * e);
-        let columns = Mat3::from_cols(Vec3::new(a, b, c), Vec3::new(0.0, d, e), Vec3::new(0.0, 0.0, f));
-        core::array::from_fn(|i| columns * corner(Vec3::ONE, i as u32))
+        eight(self.spread())
     }
 
     /// The place on its surface that is nearest to a place \[m\], the way out there, and how far out the place is \[m\]: below zero inside.
@@ -245,6 +240,19 @@ impl<'a> Hull<'a> {
         }
         best.0
     }
+}
+
+/// Eight places about the origin \[m\] at which eight equal particles have a Σ m x xᵀ over their mass \[m²\]: L (±1, ±1, ±1), L Lᵀ being that
+/// (Cholesky).
+pub(super) fn eight(Mat3 { x_axis: x, y_axis: y, z_axis: z }: Mat3) -> [Vec3; 8] {
+    let root = |square: f32| sqrt(max(square, f32::MIN_POSITIVE));
+    let a = root(x.x);
+    let (b, c) = (x.y / a, x.z / a);
+    let d = root(y.y - b * b);
+    let e = (y.z - c * b) / d;
+    let f = root(z.z - c * c - e * e);
+    let columns = Mat3::from_cols(Vec3::new(a, b, c), Vec3::new(0.0, d, e), Vec3::new(0.0, 0.0, f));
+    core::array::from_fn(|i| columns * corner(Vec3::ONE, i as u32))
 }
 
 /// The corner of a box with a number from 0 to 7, from its middle along its own axes \[m\].

@@ -9,6 +9,7 @@ use glam::Vec3;
 /// A [`Hull`] that owns its memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HullBuf {
+    center: Vec3,
     corners: Vec<Vec3>,
     faces: Vec<HullFace>,
     loops: Vec<u8>,
@@ -57,6 +58,20 @@ impl HullBuf {
     /// # Errors
     /// If there is none, or it has more corners than a body may have.
     pub fn of(points: &[Vec3]) -> Result<Self, HullError> {
+        Ok(Self::in_place(points)?.at(Vec3::ZERO))
+    }
+
+    /// It, with its centroid elsewhere in the frame of its body \[m\].
+    #[must_use]
+    pub fn at(self, center: Vec3) -> Self {
+        Self { center, ..self }
+    }
+
+    /// The convex hull of points where they are, as a piece of a body in whose frame these are \[m\].
+    ///
+    /// # Errors
+    /// As for [`of`](Self::of).
+    pub fn in_place(points: &[Vec3]) -> Result<Self, HullError> {
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (least, most) = points.iter().fold(start, |(l, h), &point| (low(l, point), high(h, point)));
         let (middle, size) = ((least + most) * 0.5, 0.5 * largest(most - least));
@@ -72,13 +87,15 @@ impl HullBuf {
             }
         }
         wrapped.all()?;
-        wrapped.finish(size)
+        let hull = wrapped.finish(size)?;
+        let center = hull.center + middle;
+        Ok(hull.at(center))
     }
 
     /// It, lent.
     #[must_use]
     pub fn lend(&self) -> Hull<'_> {
-        Hull { corners: &self.corners, faces: &self.faces, loops: &self.loops, edges: &self.edges }
+        Hull { center: self.center, corners: &self.corners, faces: &self.faces, loops: &self.loops, edges: &self.edges }
     }
 
     /// Stretched along the axes, about its centroid.
@@ -272,6 +289,7 @@ impl Wrap {
         for _ in 0..2 {
             let centroid = hull.lend().centroid();
             hull.corners.iter_mut().for_each(|corner| *corner -= centroid);
+            hull.center += centroid;
         }
         for number in 0..hull.faces.len() {
             let (normal, offset) = plane(hull.lend().polygon(&hull.faces[number]));

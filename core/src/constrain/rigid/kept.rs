@@ -14,6 +14,8 @@ use glam::Vec3;
 const PAIRS: usize = 12;
 /// Pairs of bodies whose balls are near that there is room for, for each body.
 const CANDIDATES: usize = 24;
+/// Pairs of pieces that there is room for besides, for each piece of a body beyond its first.
+const AMONG_PIECES: usize = 6;
 /// Pairs of a ball and a body that there is room for, for each ball.
 const NEAR: usize = 2;
 
@@ -70,12 +72,13 @@ pub(super) struct Kept<'a> {
     pub(super) places: &'a mut [u32],
 }
 
-/// The numbers of bodies, of their particles, and of balls that may be near them.
+/// The numbers of bodies, of their particles, of balls that may be near them, and of pieces beyond one for each body.
 #[derive(Clone, Copy)]
 pub(super) struct Sizes {
     pub(super) bodies: usize,
     pub(super) particles: usize,
     pub(super) balls: usize,
+    pub(super) more: usize,
 }
 
 /// Words of a thing.
@@ -86,9 +89,10 @@ pub(super) const fn words<T>() -> usize {
 impl Sizes {
     /// The number of pairs there is room for.
     fn pairs(&self) -> usize {
-        let Self { bodies, balls, .. } = *self;
+        let Self { bodies, balls, more, .. } = *self;
         let among = bodies.saturating_mul(PAIRS).min(bodies.saturating_mul(bodies.saturating_sub(1)) / 2);
-        among.saturating_add(balls.saturating_mul(NEAR))
+        let pieces = if bodies.saturating_add(balls) > 1 { more.saturating_mul(AMONG_PIECES) } else { 0 };
+        among.saturating_add(balls.saturating_mul(NEAR)).saturating_add(pieces)
     }
 
     /// The number of pairs that may be looked at for that.
@@ -110,7 +114,7 @@ impl Sizes {
             .saturating_add(each(self.bodies, 3))
             .saturating_add(each(self.candidates(), 2));
         let touching = self.pairs().saturating_add(each(all, DIRECTIONS));
-        let solving = each(packs_of(self.pairs(), all), words::<Pack>())
+        let solving = each(packs_of(self.pairs(), all, self.more), words::<Pack>())
             .saturating_add(touching)
             .saturating_add(each(all.saturating_add(1), words::<Moving>()));
         let scratch = listing.max(solving);

@@ -75,8 +75,7 @@ fn look(all: &[Body], pairs: &mut [Manifold], forms: Forms<'_>, h: f32) {
             if !(pair.spare <= if pair.count == 0 { 2.0 * way } else { way }) {
                 pair.spare -= way;
             } else if !forms.are_boxes(pair.bodies) {
-                let both = pair.bodies.map(|number| &all[number as usize]);
-                pair.find(both, pair.bodies.map(|number| forms.of(number)), 2.0 * way);
+                pair.find(pair.bodies.map(|number| &all[number as usize]), forms, 2.0 * way);
                 pair.spare -= way;
             } else {
                 if due.is_full() {
@@ -107,7 +106,7 @@ fn look_at_boxes(all: &[Body], pairs: &mut [Manifold], due: &[(u32, f32)]) {
 /// Makes the list. Those that were in the list before go on with what they have.
 fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch: &mut [u32]) {
     let count = forms.boxes.len();
-    let sizes = Sizes { bodies: count, particles: 0, balls: kept.balls.len() };
+    let sizes = Sizes { bodies: count, particles: 0, balls: kept.balls.len(), more: 0 };
     let mut rest = scratch;
     let rows = take(&mut rest, if kept.balls.is_empty() { 0 } else { bodies.len() });
     let middles = take_vectors(&mut rest, count);
@@ -236,37 +235,40 @@ fn admit(
     let Kept { bodies: all, pairs, balls, .. } = kept;
     let (mut before, mut len) = (before.iter().peekable(), 0);
     for &[a, b] in candidates {
-        let (key, is_far) = ([a, b & !FAR], b & FAR != 0);
-        while before.peek().is_some_and(|pair| pair.bodies < key) {
-            before.next();
-        }
-        let ball = (key[1] as usize).checked_sub(forms.boxes.len() + 1).and_then(|ball| balls.get(ball));
-        let known = before.peek().filter(|pair| pair.bodies == key && !ball.is_some_and(Ball::is_new));
-        let pair = key.map(|number| &all[number as usize]);
-        let holds = known.is_some_and(|pair| pair.count > 0);
+        let (numbers, is_far) = ([a, b & !FAR], b & FAR != 0);
+        let ball = (numbers[1] as usize).checked_sub(forms.boxes.len() + 1).and_then(|ball| balls.get(ball));
+        let pair = numbers.map(|number| &all[number as usize]);
         let [a, b] = pair;
-        let are_apart = || {
-            let boxes = forms.are_boxes(key);
-            is_far || !boxes && !are_near(pair, key.map(|number| forms.of(number)), a.max_travel + b.max_travel)
-        };
-        if ball.is_none() && !holds && are_apart() {
-            continue;
-        }
-        let Some(place) = pairs.get_mut(len) else {
-            bodies.report.caps.contacts += 1;
-            continue;
-        };
-        len += 1;
-        match known {
-            Some(known) => place.take(known),
-            None => {
-                let materials = [a.material, b.material].map(|number| (number as u16).checked_sub(1));
-                place.take(&Manifold::of(key, of_two(bodies.materials, [a.elasticity, b.elasticity], materials)));
+        let counts = numbers.map(|number| forms.count(number));
+        for pieces in (0..counts[0]).flat_map(|a| (0..counts[1]).map(move |b| [a, b])) {
+            let key = (numbers, pieces);
+            while before.next_if(|pair| pair.key() < key).is_some() {}
+            let known = before.peek().filter(|pair| pair.key() == key && !ball.is_some_and(Ball::is_new));
+            let holds = known.is_some_and(|pair| pair.count > 0);
+            let are_apart = || {
+                let both = [0, 1].map(|side| forms.piece(numbers[side], pieces[side]));
+                is_far || !forms.are_boxes(numbers) && !are_near(pair, both, a.max_travel + b.max_travel)
+            };
+            let is_near_ball = ball.is_some() && counts == [1; 2];
+            if !is_near_ball && !holds && are_apart() {
+                continue;
             }
-        }
-        if ball.is_some() {
-            // Whatever else has moved the ball: where it touches is looked for again.
-            place.spare = 0.0;
+            let Some(place) = pairs.get_mut(len) else {
+                bodies.report.caps.contacts += 1;
+                continue;
+            };
+            len += 1;
+            match known {
+                Some(known) => place.take(known),
+                None => {
+                    let materials = [a.material, b.material].map(|number| (number as u16).checked_sub(1));
+                    place.take(&Manifold::of(key, of_two(bodies.materials, [a.elasticity, b.elasticity], materials)));
+                }
+            }
+            if ball.is_some() {
+                // Whatever else has moved the ball: where it touches is looked for again.
+                place.spare = 0.0;
+            }
         }
     }
     len

@@ -39,6 +39,9 @@ pub(super) const POINTS: usize = 4;
 /// Directions that one body can be pressed in by the scenery at a time.
 pub(super) const DIRECTIONS: usize = 3;
 
+/// Two bodies, and the pieces of each of them, by their numbers: lists are in this order.
+pub(super) type Key = ([u32; 2], [u8; 2]);
+
 /// Two that may touch.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -52,7 +55,9 @@ pub(super) struct Manifold {
     /// Its place in the order.
     pub(super) colour: u32,
     /// 1 if they have touched since before one of them fell asleep, which is fixed for the other now.
-    pub(super) rested: u32,
+    pub(super) rested: u16,
+    /// Which of the pieces of each it is that may touch, by their numbers.
+    pub(super) pieces: [u8; 2],
     /// 1 if one presses on the other.
     pub(super) presses: u32,
     /// The force of the first on the second, and its torque about the first's centre, when one of them fell asleep \[N, N m\].
@@ -68,10 +73,16 @@ pub(super) struct Manifold {
 
 impl Manifold {
     /// Two that touch nowhere yet.
-    pub(super) fn of(bodies: [u32; 2], mixed: Mixed) -> Self {
+    pub(super) fn of((bodies, pieces): Key, mixed: Mixed) -> Self {
         let Mixed { elasticity, friction } = mixed;
         let elasticity = min(max(elasticity, 0.0), 1.0);
-        Self { bodies, elasticity, friction: [friction.static_, friction.kinetic], ..bytemuck::Zeroable::zeroed() }
+        let friction = [friction.static_, friction.kinetic];
+        Self { bodies, pieces, elasticity, friction, ..bytemuck::Zeroable::zeroed() }
+    }
+
+    /// Who it is of.
+    pub(super) fn key(&self) -> Key {
+        (self.bodies, self.pieces)
     }
 
     /// Takes what is known of another pair: the places that it has, not those beyond.

@@ -1,4 +1,4 @@
-//! Rigid bodies of particles that collide as boxes.
+//! Rigid bodies of particles that collide as boxes, as hulls, or as several hulls.
 
 mod ball;
 mod balls;
@@ -6,6 +6,10 @@ mod beside;
 mod body;
 mod bound;
 mod boxes;
+#[cfg(feature = "alloc")]
+mod compound;
+#[cfg(feature = "alloc")]
+mod cut;
 mod facets;
 mod fly;
 mod forms;
@@ -27,6 +31,7 @@ mod pass;
 mod pose;
 mod rigid_box;
 mod scenery;
+mod skin;
 mod sleep;
 mod solver;
 mod span;
@@ -38,6 +43,8 @@ use super::{Bodies, Constraint, Demand, Share};
 use crate::memory::take;
 use ball::Ball;
 use body::Body;
+#[cfg(feature = "alloc")]
+pub use compound::{CompoundBuf, CompoundError};
 use forms::Forms;
 pub use hull::{Hull, HullEdge, HullFace, HullList};
 #[cfg(feature = "alloc")]
@@ -48,8 +55,8 @@ use order::Order;
 pub use rigid_box::RigidBox;
 use span::Span;
 
-/// Rigid bodies, each a few particles and a box or a convex hull: they fly as their particles do, all as one, and touch each other, the scene's
-/// colliders and loose balls as such, with friction and elasticity.
+/// Rigid bodies, each a few particles and a box, a convex hull or several hulls, its pieces: they fly as their particles do, all as one, and touch
+/// each other, the scene's colliders and loose balls as such, with friction and elasticity.
 ///
 /// A body has the mass, centre and inertia of its particles, and their momenta; it turns by Euler's equations as
 /// [`ShapeMatching`](crate::ShapeMatching) does, and in the end its particles are put where it says. Eight equal particles at 1/√3 of the way to
@@ -130,7 +137,10 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
     /// The first number of any body that cannot be used, and what it has to be.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
-        let hull = |body: &RigidBox| self.hulls.hull(usize::from(body.hull?))?.fault();
+        let hull = |body: &RigidBox| {
+            let first = usize::from(body.hull?);
+            (first..first + usize::from(body.pieces)).find_map(|number| self.hulls.hull(number)?.fault())
+        };
         let boxes = self.boxes.as_ref();
         boxes.iter().find_map(RigidBox::fault).or_else(|| boxes.iter().find_map(hull))
     }
@@ -140,7 +150,9 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         let boxes = self.boxes.as_ref();
         let particles = boxes.iter().fold(0, |sum: u64, body| sum.wrapping_add(u64::from(body.count)));
         let particles = usize::try_from(particles).unwrap_or(usize::MAX);
-        Sizes { bodies: boxes.len(), particles, balls: self.balls as usize }
+        let more =
+            boxes.iter().fold(0, |sum: usize, body| sum.saturating_add(usize::from(body.pieces).saturating_sub(1)));
+        Sizes { bodies: boxes.len(), particles, balls: self.balls as usize, more }
     }
 
     fn forms(&self) -> Forms<'_> {
@@ -216,7 +228,7 @@ fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) 
             continue;
         }
         if body.moves() && (number < first || body.pressed != 0) {
-            scenery::meet(bodies, body, forms.of(number as u32), number as u32, slots);
+            scenery::meet(bodies, body, forms, number as u32, slots);
         } else {
             scenery::clear(body, slots);
         }
@@ -237,8 +249,9 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let Sizes { bodies: count, particles, balls } = self.sizes();
-        share.claim(*b"rigi", &[count, particles, balls]);
+        let Sizes { bodies: count, particles, balls, more } = self.sizes();
+        let sizes = [count, particles, balls, more];
+        share.claim(*b"rigi", &sizes[..if more > 0 { 4 } else { 3 }]);
         let Some(mut kept) = Kept::of(share.kept.fixed, self.sizes()) else { return };
         let mut is_news = false;
         if bodies.substep.number == 0 {

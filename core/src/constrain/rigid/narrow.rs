@@ -4,16 +4,26 @@ use super::beside::Gaps;
 use super::body::Body;
 use super::boxes::{Oriented, touching};
 use super::facets::{Apart, Spots, four};
-use super::forms::{Form, with_hulls};
+use super::forms::{Form, Forms, with_hulls};
 use super::manifold::{Manifold, POINTS, Point};
-use crate::math::min;
+use super::skin;
+use crate::math::{length, min};
 
 impl Manifold {
     /// Looks where two bodies touch that are not both boxes, or will when they have gone `reach` \[m\] against each other.
-    pub(super) fn find(&mut self, [a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) {
+    pub(super) fn find(&mut self, [a, b]: [&Body; 2], all: Forms<'_>, reach: f32) {
+        let forms = [0, 1].map(|side| all.piece(self.bodies[side], self.pieces[side]));
+        self.find_pieces([a, b], forms, reach);
+        if self.count > 0 && !skin::meets(self, [a, b], all) {
+            self.count = 0;
+        }
+    }
+
+    /// The same of a piece of each, whatever others there are.
+    fn find_pieces(&mut self, [a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) {
         let [form, other] = forms;
+        let small = min(form.small(a), other.small(b));
         if let Form::Ball = other {
-            let small = min(a.small(), b.small());
             let (on, out, far) = form.nearest(a, a.place(b.center));
             let gap = far - b.radius;
             if gap > reach + small {
@@ -29,7 +39,7 @@ impl Manifold {
         let (far, mut is_found) = (f32::MAX, false);
         with_hulls([a, b], forms, far, &mut |apart, features| {
             is_found = true;
-            self.meet([a, b], apart, reach, &mut |reach, spots| apart.touching(features, reach, spots));
+            self.meet([a, b], apart, [reach, small], &mut |reach, spots| apart.touching(features, reach, spots));
         });
         if !is_found {
             self.part(0.0);
@@ -38,11 +48,13 @@ impl Manifold {
 
     /// The same of two boxes, of which is known how they are apart; none: not at all.
     pub(super) fn find_boxes(&mut self, [a, b]: [&Body; 2], (gaps, lane): (&Gaps, usize), reach: f32) {
+        let small = min(a.small(), b.small());
         match gaps.gap(lane) {
-            Some(gap) if gap <= reach + min(a.small(), b.small()) => {
+            Some(gap) if gap <= reach + small => {
                 let [one, other] = [Oriented::of(a), Oriented::of(b)];
                 let apart = gaps.apart(lane, [&one, &other]);
-                self.meet([a, b], &apart, reach, &mut |reach, spots| touching([&one, &other], &apart, reach, spots));
+                let mut find = |reach: f32, spots: &mut Spots| touching([&one, &other], &apart, reach, spots);
+                self.meet([a, b], &apart, [reach, small], &mut find);
             }
             gap => self.part(gap.unwrap_or(0.0)),
         }
@@ -61,10 +73,15 @@ impl Manifold {
         before
     }
 
-    /// Takes the places where two touch that are apart in a way, or will when they have gone `reach` \[m\] against each other: `find` adds those that
-    /// are so far apart at the most.
-    fn meet(&mut self, [a, b]: [&Body; 2], apart: &Apart, reach: f32, find: &mut dyn FnMut(f32, &mut Spots)) {
-        let small = min(a.small(), b.small());
+    /// Takes the places where two touch that are apart in a way, or will when they have gone `reach` \[m\] against each other, and so far as is
+    /// `small` beside them: `find` adds those that are so far apart at the most.
+    fn meet(
+        &mut self,
+        [a, b]: [&Body; 2],
+        apart: &Apart,
+        [reach, small]: [f32; 2],
+        find: &mut dyn FnMut(f32, &mut Spots),
+    ) {
         if !(apart.gap <= reach + small) {
             self.part(apart.gap);
             return;
@@ -79,8 +96,16 @@ impl Manifold {
     }
 }
 
-/// Tells whether two bodies that are not both boxes are within `reach` \[m\] of each other.
+/// Tells whether two pieces of bodies that are not both boxes are within `reach` \[m\] of each other.
 pub(super) fn are_near([a, b]: [&Body; 2], forms: [Form<'_>; 2], reach: f32) -> bool {
+    let [one, other] = forms;
+    if matches!(one, Form::Piece(_)) || matches!(other, Form::Piece(_)) {
+        // Most pieces of two bodies are far from each other.
+        let way = other.middle(b) - one.middle(a);
+        if !(length(way) <= length(one.half(a)) + length(other.half(b)) + reach) {
+            return false;
+        }
+    }
     if let [form, Form::Ball] = forms {
         return form.nearest(a, a.place(b.center)).2 - b.radius <= reach;
     }

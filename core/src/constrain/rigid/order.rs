@@ -29,9 +29,9 @@ pub(super) struct Order<'a> {
 }
 
 /// The packs that so many pairs of so many bodies fill at the most, with what of the scenery presses on these: each colour may leave one that is not
-/// full, and pairs need fewer colours than two bodies have neighbours together.
-pub(super) fn packs_of(pairs: usize, bodies: usize) -> usize {
-    let colours = COLOURS.min(bodies.saturating_mul(2));
+/// full, and pairs need fewer colours than two bodies have neighbours together, and pieces beyond one each.
+pub(super) fn packs_of(pairs: usize, bodies: usize, more: usize) -> usize {
+    let colours = if more > 0 { COLOURS } else { COLOURS.min(bodies.saturating_mul(2)) };
     pairs.min((pairs / ABREAST).saturating_add(colours)).saturating_add(DIRECTIONS * bodies.div_ceil(ABREAST))
 }
 

@@ -1,4 +1,4 @@
-//! A rigid body as a scene says it: its particles, and the box or hull that they are in.
+//! A rigid body as a scene says it: its particles, and the box or hulls that they are in.
 
 use super::hull::{Hull, corner};
 use crate::constrain::turn::Turn;
@@ -6,28 +6,34 @@ use crate::math::sqrt;
 use crate::particles::Particle;
 use glam::{Mat3, Vec3};
 
-/// A rigid body: some particles, and the box or hull they are in.
+/// The most pieces that a body may have.
+const PIECES: u16 = 255;
+
+/// A rigid body: some particles, and the box or hull they are in, or several hulls that are its pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBox {
     /// The first of its particles, by its place in the scene's start, and their number: the next ones are the others.
     pub first: u32,
     /// How many there are.
     pub count: u32,
-    /// Half the sides of the box \[m\]; of the box about its centroid that holds a hull.
+    /// Half the sides of the box \[m\]; of the box about the middle that holds its hulls.
     pub half: Vec3,
-    /// The middle of the box, or the centroid of the hull, at the scene's start \[m\].
+    /// The middle of the box, or the centroid of the hull, at the scene's start; of several hulls where the frame is in which they are told
+    /// \[m\].
     pub center: Vec3,
     /// How it is turned then: a quaternion x, y, z, w of any length but zero.
     pub turn: [f32; 4],
     /// The number of its hull among those of [`RigidBodies::hulls`](super::RigidBodies::hulls); none: it is a box, as it is where there is no such hull.
     pub hull: Option<u16>,
+    /// How many hulls it consists of, that one and those that follow, from 1 to 255: so it need not be convex. Pieces may touch and overlap.
+    pub pieces: u16,
 }
 
 impl RigidBox {
     /// An upright box of eight particles, `first` and those that follow.
     #[must_use]
     pub const fn new(half: Vec3, center: Vec3, first: u32) -> Self {
-        Self { first, count: 8, half, center, turn: [0.0, 0.0, 0.0, 1.0], hull: None }
+        Self { first, count: 8, half, center, turn: [0.0, 0.0, 0.0, 1.0], hull: None, pieces: 1 }
     }
 
     /// An upright body of eight particles that is the hull with a number.
@@ -57,7 +63,7 @@ impl RigidBox {
     }
 
     /// Eight equal particles at places in its frame.
-    fn at(&self, places: [Vec3; 8], whole: Particle) -> [Particle; 8] {
+    pub(super) fn at(&self, places: [Vec3; 8], whole: Particle) -> [Particle; 8] {
         let turn = self.rotation();
         places.map(|place| Particle { position: self.center + turn * place, mass: whole.mass * 0.125, ..whole })
     }
@@ -71,6 +77,7 @@ impl RigidBox {
             (self.count == 0, "count", "has to be one or more"),
             (!self.half.to_array().into_iter().all(above_zero), "half", "has to be above zero, in m"),
             (!self.center.is_finite(), "center", "has to be finite"),
+            (!(1..=PIECES).contains(&self.pieces), "pieces", "has to be from 1 to 255"),
             (!above_zero(square), "turn", "has to be a quaternion x, y, z, w that is not zero"),
         ];
         faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))

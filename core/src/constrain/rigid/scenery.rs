@@ -2,8 +2,10 @@
 
 use super::super::Bodies;
 use super::body::Body;
-use super::forms::Form;
-use super::manifold::{DIRECTIONS, Manifold};
+use super::facets::{Spot, Spots, four, push};
+use super::forms::{Form, Forms};
+use super::manifold::{DIRECTIONS, Manifold, POINTS, Point};
+use super::skin;
 use crate::material::on_surface;
 use crate::math::{dot, length, max, min};
 use crate::shape::{Aabb, Contact, Segment};
@@ -14,11 +16,13 @@ const ONE_FACE: f32 = 0.9999;
 /// The cosine of the angle within which a corner of the scenery presses no otherwise than a corner of the body.
 const ALIKE: f32 = 0.9;
 
-/// A body among the scenery.
+/// A body among the scenery, and which of its pieces is looked at.
 struct Visit<'a> {
     body: &'a Body,
-    form: Form<'a>,
+    forms: Forms<'a>,
     number: u32,
+    piece: u8,
+    form: Form<'a>,
     slots: &'a mut [Manifold],
     before: [Manifold; DIRECTIONS],
     reach: f32,
@@ -27,8 +31,9 @@ struct Visit<'a> {
 /// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time.
 ///
 /// Its corners are asked for, as points: one that is beyond a surface, as seen from the body's middle, is met where the way there crosses it.
-/// Then the places of the scenery nearest to the body's middle, where they lie in it: edges and spheres smaller than it. A ball has no corners.
-pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, number: u32, slots: &mut [Manifold]) {
+/// Then the places of the scenery nearest to the body's middle, where they lie in it: edges and spheres smaller than it. A ball has no corners. Of
+/// several pieces each is looked at so by itself.
+pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, forms: Forms<'_>, number: u32, slots: &mut [Manifold]) {
     let h = bodies.substep.seconds();
     let (way, small) = (body.speed() * h, body.small());
     let is_new = bodies.substep.number == 0;
@@ -36,10 +41,8 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
         body.spare -= way;
         return;
     }
-    let around = |reach: f32| {
-        let (middle, reach) = (body.middle(), reach + length(body.half));
-        Aabb { min: middle - reach, max: middle + reach }
-    };
+    let about = |middle: Vec3, reach: f32| Aabb { min: middle - reach, max: middle + reach };
+    let around = |reach: f32| about(body.middle(), reach + length(body.half));
     let free = 0.5 * body.radius;
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around(free)) {
         clear(body, slots);
@@ -54,9 +57,17 @@ pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, form: Form<'_>, num
     }
     let Ok(&before) = <&[Manifold; DIRECTIONS]>::try_from(&*slots) else { return };
     clear(body, slots);
-    let mut visit = Visit { body, form, number, slots, before, reach };
-    (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
-    visit.scenery(bodies);
+    let mut visit = Visit { body, forms, number, piece: 0, form: forms.piece(number, 0), slots, before, reach };
+    let count = forms.count(number);
+    for piece in 0..count {
+        let form = forms.piece(number, piece);
+        if count > 1 && !bodies.colliders.may_touch(&about(form.middle(body), length(form.half(body)) + reach)) {
+            continue;
+        }
+        (visit.piece, visit.form) = (piece, form);
+        (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
+        visit.scenery(bodies);
+    }
     // Slots are taken one after the other.
     let met = visit.slots.iter().filter(|slot| slot.count > 0).count() as u32;
     body.spare = if is_carried(visit.slots) { 0.0 } else { small };
@@ -104,7 +115,7 @@ pub(super) fn holds(bodies: &Bodies<'_>, body: &Body, slots: &[Manifold]) -> boo
 impl Visit<'_> {
     /// Looks around a corner.
     fn corner(&mut self, bodies: &mut Bodies<'_>, place: Vec3) {
-        let (middle, at, colliders) = (self.body.middle(), bodies.substep.during[0], bodies.colliders);
+        let (middle, at, colliders) = (self.form.middle(self.body), bodies.substep.during[0], bodies.colliders);
         let mut point = self.body.point(place);
         let around = Aabb { min: middle.min(point) - self.reach, max: middle.max(point) + self.reach };
         if !colliders.may_touch(&around) {
@@ -140,7 +151,7 @@ impl Visit<'_> {
     /// Looks for places of the scenery in the body.
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
         let (body, at) = (self.body, bodies.substep.during[0]);
-        let (middle, half) = (body.middle(), body.half);
+        let (middle, half) = (self.form.middle(body), self.form.half(body));
         let mut near = heapless::Vec::<Contact, 8>::new();
         let mut left_out = 0;
         bodies.colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
@@ -150,7 +161,7 @@ impl Visit<'_> {
         for contact in &near {
             let place = body.place(contact.point);
             let (on, out, distance) = self.form.nearest(body, place);
-            if distance > self.reach {
+            if distance > self.reach || !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) {
                 continue;
             }
             let normal = body.rotation * -out;
@@ -175,6 +186,9 @@ impl Visit<'_> {
         }
         let near = |slot: &&Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
         let before = self.before.iter().find(near).map_or(&[][..], Manifold::points);
+        if slot.count >= 4 && matches!(self.form, Form::Piece(_)) && !make_room(slot, self.body, [on, over]) {
+            return;
+        }
         if slot.count >= 4 {
             // Of more than four on a face the deepest count.
             let (body, mut least) = (self.body, (0, f32::NEG_INFINITY));
@@ -204,7 +218,7 @@ impl Visit<'_> {
         let own = (self.body.material as u16).checked_sub(1);
         let fresh = || {
             let mixed = on_surface(bodies.materials, self.body.elasticity, own, material);
-            Manifold { normal, ..Manifold::of([0, self.number], mixed) }
+            Manifold { normal, ..Manifold::of(([0, self.number], [0; 2]), mixed) }
         };
         let is_like = |slot: &Manifold| {
             let fresh = fresh();
@@ -243,6 +257,27 @@ impl Visit<'_> {
         self.slots[number].count = 0;
         self.slot(bodies, contact)
     }
+}
+
+/// Leaves out one of four points on a face for another spot; tells whether it is not that which holds the body least. What stands on the feet of
+/// several pieces needs those that are farthest from each other.
+#[inline(never)]
+fn make_room(slot: &mut Manifold, body: &Body, spot: Spot) -> bool {
+    let mut spots = Spots::new();
+    let at = |point: &Point| [point.places[0], body.point(point.places[1])];
+    slot.points().iter().for_each(|point| push(&mut spots, at(point)));
+    push(&mut spots, spot);
+    let best = four(slot.normal, &spots);
+    let (mut kept, mut count) = (slot.points, 0);
+    for point in slot.points().iter().filter(|point| best.contains(&at(point))) {
+        kept[count] = *point;
+        count += 1;
+    }
+    let is_room = count < POINTS;
+    if is_room {
+        (slot.points, slot.count) = (kept, count as u32);
+    }
+    is_room
 }
 
 /// The mean velocity in the sub-step of what the scenery has at a contact \[m/s\]: what turns leads on along its arc.

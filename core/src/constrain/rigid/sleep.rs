@@ -157,8 +157,8 @@ pub(super) fn miss(all: &mut [Body], before: &[Manifold], pairs: &[Manifold]) {
     let (mut is_any, mut pairs) = (false, pairs.iter().peekable());
     for gone in before.iter().filter(|pair| pair.count > 0) {
         // Both lists are in the same order.
-        while pairs.next_if(|pair| pair.bodies < gone.bodies).is_some() {}
-        if pairs.peek().is_some_and(|pair| pair.bodies == gone.bodies && pair.count > 0) {
+        while pairs.next_if(|pair| pair.key() < gone.key()).is_some() {}
+        if pairs.peek().is_some_and(|pair| pair.key() == gone.key() && pair.count > 0) {
             continue;
         }
         gone.bodies.iter().for_each(|&number| call(all, number as usize));
