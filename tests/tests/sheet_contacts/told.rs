@@ -42,6 +42,9 @@ fn observers_are_told_of_sheets_that_come_together() {
         }
         assert_eq!(system.hash(), blind.hash(), "who looks on does not disturb");
         let name = format!("{size} m, {speed}, {method}");
+        // A sheet that crumples comes together with itself as well.
+        let row = |blow: &Impact| blow.other.and_then(|other| system.row(other));
+        blows.0.retain(|blow| row(blow).is_some_and(|other| (other >= first) != (blow.row >= first)));
         assert!(!blows.0.is_empty(), "{name}");
         // What is told of the upper ones is told of as many below, which are pushed the other way.
         let [above, below]: [Vec<_>; 2] =
@@ -49,7 +52,9 @@ fn observers_are_told_of_sheets_that_come_together() {
         assert_eq!(above.len(), below.len(), "{name}");
         for blow in &blows.0 {
             let up = if blow.row >= first { blow.normal.y } else { -blow.normal.y };
-            assert!(blow.other.is_some_and(|other| other != blow.id) && up > 0.3, "{name}: {blow:?}");
+            // The first blows are those of sheets that are flat; later they crumple, and touch on edge.
+            let is_first = blow.closing > 0.9 * speed * size;
+            assert!(!is_first || up > 0.9, "{name}: {blow:?}");
             assert_eq!(blow.mass, cloths.start[blow.row].mass, "{name}");
             assert!(blow.closing > 0.0 && blow.closing < 1.5 * speed * size, "{name}: {blow:?}");
         }
