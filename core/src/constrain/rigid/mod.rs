@@ -83,7 +83,8 @@ use span::Span;
 /// slowly than that stops. Without forces nothing sleeps.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for twelve
-/// touching pairs a body, two for each ball and three directions of the scenery, of more the deepest; what finds none is counted (`caps.contacts`).
+/// touching pairs a body, six more of pieces for each piece beyond its first, two for each ball and three directions of the scenery, of more the
+/// deepest; what finds none is counted (`caps.contacts`).
 ///
 /// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands,
 /// with the mass of the whole and the velocities of the body where it was struck.
