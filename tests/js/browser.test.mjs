@@ -9,7 +9,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-import { check, scenes } from "./expected.mjs";
+import { check, meshes, scenes } from "./expected.mjs";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
 // URL prefix -> folder.
@@ -74,12 +74,12 @@ async function open() {
 
 test("computes what every other engine computes", async () => {
   const { page, errors } = await open();
-  const result = await page.evaluate(async (scenes) => {
+  const result = await page.evaluate(async ([scenes, meshes]) => {
     const pointmass = await import("/npm/pointmass.js");
     await pointmass.default();
     const { run } = await import("/tests/payload.mjs");
-    return run(pointmass, scenes);
-  }, scenes);
+    return run(pointmass, scenes, meshes);
+  }, [scenes, meshes]);
   check(result);
   assert.deepEqual(errors, []);
   await page.close();

@@ -25,6 +25,16 @@ export const scenes = Object.fromEntries(
   }),
 );
 
+// name -> corners and triangles of the OFF meshes that those scenes name.
+export const meshes = Object.fromEntries(
+  [...new Set(Object.values(scenes).flatMap((text) => text.match(/assets\/\w+\.off/g) ?? []))].map((name) => {
+    const [corners, faces, , ...numbers] = read(`../../scenes/${name}`).replace("OFF", "").replace(/#.*/g, "").trim().split(/\s+/).map(Number);
+    const triangles = numbers.slice(3 * corners);
+    assert.equal(triangles.length, 4 * faces, `${name}: triangles alone`);
+    return [name, { corners: numbers.slice(0, 3 * corners), triangles: triangles.filter((_, i) => i % 4 > 0) }];
+  }),
+);
+
 export function check(result) {
   assert.equal(result.version, JSON.parse(read("../../target/npm/package.json")).version);
   assert.deepEqual(result.hashes, hashes);

@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
-import { check, scenes } from "./expected.mjs";
+import { check, meshes, scenes } from "./expected.mjs";
 import { run } from "./payload.mjs";
 
 const built = fileURLToPath(new URL("../../target/npm", import.meta.url));
@@ -28,11 +28,11 @@ before(async () => {
 
 after(() => rmSync(project, { recursive: true, force: true }));
 
-test("is ready as soon as it is imported", () => check(run(pointmass, scenes)));
+test("is ready as soon as it is imported", () => check(run(pointmass, scenes, meshes)));
 
 test("init() is allowed, as browsers need it", async () => {
   await pointmass.default();
-  check(run(pointmass, scenes));
+  check(run(pointmass, scenes, meshes));
 });
 
 test("declares the types of what it exports", () => {

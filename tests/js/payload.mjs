@@ -1,11 +1,16 @@
 // The part that is run in every JavaScript engine: computes only, so that a page can import it as well as Node.
-// `pointmass` is the package, initialised; `scenes` the texts of the hash scenes by name.
-export function run(pointmass, scenes) {
+// `pointmass` is the package, initialised; `scenes` the texts of the hash scenes by name, `meshes` those
+// that they name.
+export function run(pointmass, scenes, meshes) {
   const { World, Files, version } = pointmass;
+  const files = new Files();
+  for (const [name, { corners, triangles }] of Object.entries(meshes)) {
+    files.addMesh(name, new Float32Array(corners), new Uint32Array(triangles));
+  }
   const hashes = {};
   for (const [name, text] of Object.entries(scenes)) {
     const declared = text.startsWith("{");
-    const world = new World(text, undefined, declared ? undefined : 40);
+    const world = new World(text, declared ? files : undefined, declared ? undefined : 40);
     for (let frame = 1; frame <= (declared ? 30 : 600); frame++) world.stepTo(frame / 60);
     hashes[name] = world.hash();
     world.free();
