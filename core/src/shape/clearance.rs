@@ -223,7 +223,7 @@ mod tests {
                 // One half of them are anywhere around, the others where the boxes are; most are small.
                 let anywhere = vector(i, 3) * shape * 1.5 + 30.0;
                 let among = all.min + (all.max - all.min) * (vector(i, 3) + 0.5);
-                let middle = if i % 2 == 0 { anywhere } else { among };
+                let middle = if i.is_multiple_of(2) { anywhere } else { among };
                 let half = 1.6 * vector(i, 4).x.abs().powi(4);
                 let free = Free(clearance.view(), middle.to_array().map(|x| [x; LANES]), [half + 1e-4; LANES]);
                 let meets = |one: &Aabb| one.min.cmple(middle + half).all() && one.max.cmpge(middle - half).all();
