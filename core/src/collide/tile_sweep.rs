@@ -71,7 +71,7 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
     tile.work = work;
 }
 
-/// What is known of the scenery wherever a particle may be.
+/// The scenery as any particle may meet it, wherever it is.
 fn facing_all(tile: &Tile<'_>, outskirts: Option<(Option<Face>, Aabb)>) -> Facing {
     match outskirts {
         Some((face, things)) if things == Aabb::EMPTY => face.map_or(Facing::Nothing, Facing::Face),

@@ -214,7 +214,7 @@ impl<F: Eight, const BOXES: bool> Walls<F> for Things<F, BOXES> {
         hits
     }
 
-    /// Of those inside solids and near a wall it is not clear: they may be near several.
+    /// Points inside solids and near a wall are unclear: they may be near several.
     #[inline(always)]
     fn seats(&self, place: Vectors<F>, reach: F) -> Seats<F> {
         let (gap, wall) = self.gaps(place);

@@ -29,7 +29,7 @@ struct Bounce<'t, 's, 'a, const POINTS: bool> {
     face: &'t Face,
 }
 
-/// What all packets have in common.
+/// Terms that all packets have in common.
 #[derive(Clone, Copy)]
 pub(super) struct Terms {
     /// How long they take \[s\].
@@ -49,7 +49,7 @@ pub(super) struct Unsettled {
 }
 
 impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
-    /// How many packets have gone, and who of the last of these is unsettled: the others wait for them to be.
+    /// The number of packets that have gone, and the unsettled rows of the last: packets behind it wait for these.
     type Output = (usize, Unsettled);
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> (usize, Unsettled) {
@@ -159,7 +159,7 @@ impl TileSweep<'_, '_> {
         Unsettled { left: outcome.left & present, others: present & !(outcome.settled | outcome.left) }
     }
 
-    /// What all packets have in common.
+    /// Terms that all packets have in common.
     #[inline(always)]
     pub(super) fn terms(&self) -> Terms {
         let Tile { reached, dt, .. } = *self.tile;

@@ -5,7 +5,7 @@ use crate::collide::tile::Tile;
 use crate::lanes::{Eight, LANES, Vectors, not};
 use crate::shape::Face;
 
-/// What bounds the ways of a block's rows in the step beyond what they show themselves.
+/// Bounds on the ways of a block's rows in the step, beyond those that the rows show themselves.
 #[derive(Clone, Copy)]
 pub(super) struct Room {
     /// How much any number of their velocities changes at the most \[m/s\], if they are all on their ways by an Euler method.

@@ -27,7 +27,7 @@ const NEAR: f64 = 1e-4;
 const ACROSS: [f32; 3] = [0.5, 0.25, 0.75];
 /// A part smaller than this share of another is no part.
 const CRUMB: f64 = 1e-5;
-/// What two sides of a cut differ by counts so much less than what their hulls hold too much.
+/// The weight of the difference between two sides of a cut, beside what their hulls hold too much.
 const BALANCE: f64 = 0.01;
 /// By how much a cut has to be better than another.
 const BETTER: f64 = 1e-4;
