@@ -299,12 +299,11 @@ pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
     let z = x * x;
     let s = x + x * z * (-1.666_665_5e-1 + z * (8.332_161e-3 + z * -1.951_529_6e-4));
     let c = 1.0 - 0.5 * z + z * z * (4.166_664_6e-2 + z * (-1.388_731_6e-3 + z * 2.443_315_7e-5));
-    match quarter as i32 & 3 {
-        0 => (s, c),
-        1 => (c, -s),
-        2 => (-s, -c),
-        _ => (-c, s),
-    }
+    // By bits, as nobody guesses which quarter comes next: odd ones swap both, and each changes its sign twice in a turn.
+    let quarter = quarter as i32 as u32;
+    let (s, c) = if quarter & 1 == 0 { (s, c) } else { (c, s) };
+    let signed = |x: f32, quarter: u32| f32::from_bits(x.to_bits() ^ (quarter & 2) << 30);
+    (signed(s, quarter), signed(c, quarter.wrapping_add(1)))
 }
 
 /// Sine and cosine of an angle in radians, within 3e-7 for a few turns.
