@@ -15,7 +15,7 @@ const PAIRS: usize = 12;
 /// Pairs of bodies whose balls are near that there is room for, for each body.
 const CANDIDATES: usize = 24;
 /// Pairs of pieces that there is room for besides, for each piece of a body beyond its first.
-const AMONG_PIECES: usize = 6;
+const AMONG_PIECES: usize = 12;
 /// Pairs of a ball and a body that there is room for, for each ball.
 const NEAR: usize = 2;
 

@@ -41,8 +41,8 @@ pub(super) fn gather(
         is_over |= bodies.substep.number == 0 || balls::are_far(bodies, kept, h);
     }
     if is_over {
-        for body in kept.bodies[..first].iter_mut() {
-            body.max_travel = if body.moves() { max_travel(body, step) } else { 0.0 };
+        for (body, number) in kept.bodies[..first].iter_mut().zip(0..) {
+            body.max_travel = if body.moves() { max_travel(body, forms.count(number) > 1, step) } else { 0.0 };
         }
         list(bodies, kept, forms, scratch);
         is_awake = kept.bodies[1..].iter().any(Body::is_awake);

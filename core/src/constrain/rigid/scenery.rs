@@ -293,8 +293,12 @@ fn mean_velocity(bodies: &Bodies<'_>, contact: &Contact, small: f32) -> Vec3 {
 }
 
 /// How far a body may go before the lists are made anew \[m\], if that shall last for some time: who sleeps goes nowhere, and those around it that
-/// do not touch it are left out of the lists until it wakes.
-pub(super) fn max_travel(body: &Body, seconds: f32) -> f32 {
-    let share = if body.sleeps() { 0.02 } else { 0.25 };
+/// do not touch it are left out of the lists until it wakes. Lists of what has `many` pieces last for less: each has several neighbours.
+pub(super) fn max_travel(body: &Body, many: bool, seconds: f32) -> f32 {
+    let share = match (body.sleeps(), many) {
+        (true, _) => 0.02,
+        (_, true) => 0.05,
+        _ => 0.25,
+    };
     share * max(min(body.radius, f32::MAX), 0.0) + 0.5 * body.speed() * seconds
 }

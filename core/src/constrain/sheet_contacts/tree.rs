@@ -198,12 +198,24 @@ impl<'m> Tree<'m> {
         }
     }
 
-    /// Visits the triangles of two blocks whose boxes overlap.
+    /// Visits the triangles of two blocks whose boxes overlap; of two blocks, only those that are near the other one at all.
     fn within(&self, [a, b]: [usize; 2], mut visit: impl FnMut(usize, usize)) {
         let all = |block: usize| (block * BLOCK).min(self.faces.len())..((block + 1) * BLOCK).min(self.faces.len());
-        for i in all(a) {
-            for j in all(b) {
-                if (a != b || i < j) && self.faces[i].overlaps(&self.faces[j]) {
+        if a == b {
+            for i in all(a) {
+                for j in i + 1..all(a).end {
+                    if self.faces[i].overlaps(&self.faces[j]) {
+                        visit(i, j);
+                    }
+                }
+            }
+            return;
+        }
+        let (of_a, of_b) = (&self.nodes[self.blocks + a], &self.nodes[self.blocks + b]);
+        let near_a = all(b).fold(0_u32, |near, j| near | u32::from(self.faces[j].overlaps(of_a)) << (j - b * BLOCK));
+        for i in all(a).filter(|&i| near_a != 0 && self.faces[i].overlaps(of_b)) {
+            for j in all(b).filter(|&j| near_a >> (j - b * BLOCK) & 1 != 0) {
+                if self.faces[i].overlaps(&self.faces[j]) {
                     visit(i, j);
                 }
             }
