@@ -16,6 +16,7 @@ mod compounds;
 mod constraints;
 #[path = "contacts/main.rs"]
 mod contacts;
+mod crowds;
 mod density;
 mod drops;
 mod emission;

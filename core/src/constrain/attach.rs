@@ -1,8 +1,14 @@
 //! Particles that go where a script says, and take along whatever is bound to them.
 
+#[cfg(feature = "alloc")]
+use super::declared::Declared;
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::index::image_beside;
+#[cfg(feature = "alloc")]
+use crate::motion::MotionBuf;
 use crate::motion::Script;
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
 use glam::Vec3;
 
 /// Attaches particles to something that moves by a script: each keeps the place in its frame that it had when the constraint first
@@ -92,5 +98,16 @@ impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
             bodies.position[row] = to;
             bodies.velocity[row] = end.velocity_at(target);
         });
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Declared for Attach<Vec<u32>, MotionBuf> {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        self.motion.fault().map(|why| ("motion", why))
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [&self.particles, &[], &[]]
     }
 }

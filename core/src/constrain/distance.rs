@@ -1,5 +1,7 @@
 //! Two particles at a distance from each other: rods, links of ropes and chains, tethers.
 
+#[cfg(feature = "alloc")]
+use super::declared::Declared;
 use super::{Bodies, Constraint, Demand, SHIFTED, Share, Words};
 use crate::index::between;
 use crate::math::{dot, largest, length, max, min, sqrt};
@@ -273,5 +275,24 @@ impl Constraint for Distance {
         let gone = Some(Gone::read(share.step)).filter(|gone| gone.by.is_finite());
         let steady = gone.and_then(|gone| self.calm(bodies, gone)).filter(|force| force.is_finite());
         (*before, *last) = (*last, steady.unwrap_or(0.0).to_bits());
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Declared for Distance {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self)
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [&self.ends, &[], &[]]
+    }
+
+    fn chain(&self) -> (&[u32], bool) {
+        (&self.ends, false)
+    }
+
+    fn lengths(&self) -> &[f32] {
+        core::slice::from_ref(&self.length)
     }
 }

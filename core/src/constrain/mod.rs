@@ -9,6 +9,8 @@ mod attach;
 mod bodies;
 mod budget;
 mod contacts;
+#[cfg(feature = "alloc")]
+mod declared;
 mod distance;
 #[cfg(feature = "alloc")]
 mod kind;

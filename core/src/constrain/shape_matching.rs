@@ -1,5 +1,7 @@
 //! Clusters that keep their shape: rigid bodies and jellies of particles.
 
+#[cfg(feature = "alloc")]
+use super::declared::{Declared, twice};
 use super::turn::{Turn, about, keeping, moment, nearest, outer, solve};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{dot, max, sqrt};
@@ -371,5 +373,16 @@ impl Body {
     /// What it weighs in rotations, a share of the mass.
     fn weight(&self, bodies: &Bodies<'_>, member: &Member) -> f32 {
         if member.fixed { 0.0 } else { bodies.mass[member.row] / self.mass }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<P: AsRef<[u32]> + Sync> Declared for ShapeMatching<P> {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self).or_else(|| twice(self.particles.as_ref()))
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [self.particles.as_ref(), &[], &[]]
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Attributes, State};
 use crate::custom::{CustomColumns, CustomColumnsMut};
-use crate::index::{BarnesHut, Found, IndexChoice, ListMemory, Search, find};
+use crate::index::{ARE_KEPT, BarnesHut, Found, IndexChoice, ListMemory, Neighbours, Search, StateIndex, find};
 use crate::math::max;
 use crate::memory::Layout;
 use crate::report::Effort;
@@ -62,11 +62,10 @@ pub(crate) struct Finder<'a> {
     pub(crate) attributes: &'a Attributes<'a>,
     /// Columns of a user's own.
     pub(crate) custom: CustomColumns<'a>,
-    /// The parts of the state that the forces need to find there, the index for it, and memory.
+    /// The parts of the state that the forces need to find there, memory for trees, and the index.
     pub(crate) needs: Needs,
-    pub(crate) index: &'a dyn IndexChoice,
     pub(crate) tree: &'a mut [u32],
-    pub(crate) near: &'a mut [u32],
+    pub(crate) index: StateIndex<'a>,
     /// Lists of neighbours, where there is memory for them.
     pub(crate) lists: Option<ListMemory<'a>>,
     pub(crate) first: usize,
@@ -86,9 +85,8 @@ impl Finder<'_> {
 
     /// Calls `then` with neighbours, where anybody asks for them.
     fn with_near(&mut self, state: &State<'_>, then: Then<'_>) {
-        // A few newborn look at all others: an index would be made for them alone.
-        let are_few = self.first > 0 && state.position.len() - self.first <= FEW;
-        let looks = self.needs.reach > 0.0 && !are_few;
+        // A few newborn look at all others, unless there is an index of these: one would be made for them alone.
+        let looks = self.needs.reach > 0.0 && (self.index.is_there() || !self.are_few(state));
         match self.needs.lists.filter(|_| looks) {
             Some(lists) => (lists.0)(self, state, then),
             None => {
@@ -97,6 +95,25 @@ impl Finder<'_> {
             }
         }
     }
+
+    /// Tells whether they are but a few newborn.
+    fn are_few(&self, state: &State<'_>) -> bool {
+        self.first > 0 && state.position.len() - self.first <= FEW
+    }
+
+    /// Calls `then` with the neighbours of newborn by the index of those who were there before, if there is one; says whether there is. Newborn
+    /// are held against each other one by one: of so many that this takes longer than to sort all in, it does not.
+    fn with_newborn(&mut self, state: &State<'_>, then: Then<'_>) -> bool {
+        let (first, len) = (self.first, state.position.len());
+        let newborn = len - first;
+        if first == 0 || newborn.saturating_mul(newborn) > FEW * len {
+            return false;
+        }
+        let room = self.index.choice().room();
+        self.index.take_up(&state.position[..first], &mut |index| {
+            then(&State { near: Neighbours::by_first(index, first, state.position).in_room(room), ..*state });
+        })
+    }
 }
 
 fn write(rows: Written<'_>) {
@@ -104,10 +121,10 @@ fn write(rows: Written<'_>) {
     let (values, seen) = (layout.kept(kept).0, attributes.lives.custom);
     let mut custom = CustomColumnsMut::new(seen.list(), values, layout.capacity(), position.len());
     let mut scratch = layout.shares(work).scratch;
-    let ([tree, near], _) = scratch.moving();
+    let ([tree, near], _, lasting) = scratch.moving();
+    let index = StateIndex::new(index, near, lasting);
     let finding = Effort::NONE;
-    let mut finder =
-        Finder { attributes, custom: seen, needs, index, tree, near, lists: None, first: 0, effort: finding };
+    let mut finder = Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, effort: finding };
     finder.with_state(end, position, velocity, &mut |state| write(state, &mut custom));
     effort.found(&finder.effort);
 }
@@ -127,11 +144,17 @@ fn build(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
 }
 
 fn look_up(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
-    let (index, reach) = (finder.index, finder.needs.reach);
-    let words = (3 * index.columns() * state.position.len()).min(finder.near.len());
-    let (memory, lists) = (&mut finder.near[..words], finder.lists.as_mut().map(ListMemory::again));
+    if ARE_KEPT && finder.with_newborn(state, then) {
+        finder.effort.streamed += 1;
+        return;
+    }
+    if ARE_KEPT && finder.are_few(state) {
+        return then(state);
+    }
+    let (index, lists, reach) =
+        (finder.index.again(), finder.lists.as_mut().map(ListMemory::again), finder.needs.reach);
     let mut found = Found::AllPairs;
-    find(Search { index, memory, lists, reach }, [state.position, state.velocity], &mut |near, how| {
+    find(Search { index, lists, reach }, [state.position, state.velocity], &mut |near, how| {
         found = how;
         then(&State { near, ..*state });
     });

@@ -1,11 +1,12 @@
 //! No structure at all: every query looks at every point. What the others are held against.
 
 use super::domain::{Domain, Image, constructors};
+use super::facts::OWN;
 use super::partition::Partition;
 use super::region::{Region, Run};
 use super::search::{Search, answers};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
+use super::{Cost, Facts, Neighbour, SpatialIndex, Stats, TooSmall};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -14,6 +15,9 @@ use glam::Vec3;
 pub struct Brute<'m> {
     sorted: Sorted<'m>,
 }
+
+/// Tells its facts from those of other structures.
+const NAME: u32 = u32::from_le_bytes(*b"all ");
 
 impl<'m> Brute<'m> {
     constructors!();
@@ -48,6 +52,12 @@ impl SpatialIndex for Brute<'_> {
     }
     fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
         self.build(points, 0.0)
+    }
+    fn facts(&self) -> Option<Facts> {
+        self.sorted.facts(NAME, [0; OWN])
+    }
+    fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+        self.sorted.restore(NAME, facts).is_some() && self.sorted.renumber(points, row_of, core::iter::empty())
     }
     fn stats(&self) -> Stats {
         Stats { nodes: 1, fullest: self.sorted.len, ..self.sorted.stats() }

@@ -1,5 +1,6 @@
 //! Which index a scene's forces find their neighbours by.
 
+use super::facts::ARE_KEPT;
 use super::{Grid, Kd, Room, SpatialIndex, Structure};
 use glam::Vec3;
 
@@ -52,6 +53,12 @@ pub trait IndexChoice: Sync {
         then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
     );
 
+    /// Calls `then` with an index, empty yet, in memory where [`with_index`](Self::with_index) has left one and which has been left alone since: to be
+    /// [taken up](SpatialIndex::take_up). By default it does not.
+    fn reopen(&self, memory: &mut [u32], room: Option<&Room>, then: &mut dyn FnMut(&mut dyn SpatialIndex)) {
+        let _ = (memory, room, then);
+    }
+
     /// The room through whose sides particles are neighbours; none: they are in all of space.
     fn room(&self) -> Option<&Room> {
         None
@@ -100,6 +107,11 @@ impl IndexChoice for Structure {
         let built = index.build(points, reach).is_ok();
         then(built.then_some(&index));
     }
+    fn reopen(&self, memory: &mut [u32], room: Option<&Room>, then: &mut dyn FnMut(&mut dyn SpatialIndex)) {
+        if ARE_KEPT {
+            then(&mut self.in_room(memory, room));
+        }
+    }
 }
 
 macro_rules! by_type {
@@ -123,6 +135,11 @@ macro_rules! by_type {
                 let mut index = $index::in_room(memory, room);
                 let built = index.build(points, reach).is_ok();
                 then(built.then_some(&index));
+            }
+            fn reopen(&self, memory: &mut [u32], room: Option<&Room>, then: &mut dyn FnMut(&mut dyn SpatialIndex)) {
+                if ARE_KEPT {
+                    then(&mut $index::in_room(memory, room));
+                }
             }
         }
     )+};
@@ -180,6 +197,9 @@ impl<I: IndexChoice> IndexChoice for Periodic<I> {
         then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
     ) {
         self.index.with_index(memory, points, reach, room, then);
+    }
+    fn reopen(&self, memory: &mut [u32], room: Option<&Room>, then: &mut dyn FnMut(&mut dyn SpatialIndex)) {
+        self.index.reopen(memory, room, then);
     }
     fn room(&self) -> Option<&Room> {
         Some(&self.room).filter(|room| !room.is_open())

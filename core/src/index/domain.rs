@@ -44,6 +44,19 @@ impl Domain {
         Self { room, scale: 1.0 }
     }
 
+    pub(super) const fn room(&self) -> &Room {
+        &self.room
+    }
+
+    pub(super) const fn scale(&self) -> f32 {
+        self.scale
+    }
+
+    /// The same at another scale.
+    pub(super) const fn at_scale(self, scale: f32) -> Self {
+        Self { scale, ..self }
+    }
+
     /// Chooses the scale for points like these.
     pub(super) fn fit(&mut self, points: &[Vec3]) {
         let sound = points.iter().filter(|point| point.is_finite());

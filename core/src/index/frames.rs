@@ -35,6 +35,16 @@ impl<'m> Frames<'m> {
         self.slack = ERROR * math::max(math::largest(low), math::largest(high));
     }
 
+    /// How many there are, and their slack.
+    pub(super) fn facts(&self) -> [u32; 2] {
+        [self.len as u32, self.slack.to_bits()]
+    }
+
+    /// Goes on from such facts.
+    pub(super) fn restore(&mut self, [len, slack]: [u32; 2]) {
+        (self.len, self.slack) = (len as usize, f32::from_bits(slack));
+    }
+
     /// Adds one, and returns its number, if there is room.
     pub(super) fn add(&mut self, axes: Mat3) -> Option<u32> {
         *self.axes.get_mut(self.len)? = axes.to_cols_array();

@@ -6,7 +6,7 @@ use super::partition::Partition;
 use super::region::{Region, Run, widened};
 use super::search::{Search, answers};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
+use super::{Cost, Facts, Neighbour, SpatialIndex, Stats, TooSmall};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
@@ -85,6 +85,9 @@ impl Layout {
         self.cells.iter().product()
     }
 }
+
+/// Tells its facts from those of other structures.
+const NAME: u32 = u32::from_le_bytes(*b"grid");
 
 /// Cells grow by this factor until there is memory for all.
 const GROWTH: f32 = 1.25;
@@ -176,6 +179,25 @@ impl SpatialIndex for Grid<'_> {
 
     fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
         self.build(points, self.reach)
+    }
+
+    fn facts(&self) -> Option<Facts> {
+        let (Layout { cell, inverse, cells: [x, y, z], .. }, reach) = (self.layout, self.reach);
+        let floats = [reach, cell, inverse].map(f32::to_bits);
+        let [reach, cell, inverse] = floats;
+        let [x, y, z, enlarged] = [x, y, z, self.enlarged].map(|count| count as u32);
+        self.sorted.facts(NAME, [reach, cell, inverse, x, y, z, enlarged, 0, 0])
+    }
+
+    fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+        let Some([reach, cell, inverse, x, y, z, enlarged, ..]) = self.sorted.restore(NAME, facts) else {
+            return false;
+        };
+        let [reach, cell, inverse] = [reach, cell, inverse].map(f32::from_bits);
+        (self.reach, self.enlarged) = (reach, enlarged as usize);
+        self.layout = Layout { low: self.sorted.low, cell, inverse, cells: [x, y, z].map(|count| count as usize) };
+        let starts = self.starts.get_mut(..=self.layout.count()).unwrap_or_default();
+        self.sorted.renumber(points, row_of, starts.iter_mut())
     }
 
     fn stats(&self) -> Stats {

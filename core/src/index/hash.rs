@@ -7,7 +7,7 @@ use super::partition::Partition;
 use super::region::{Region, Run, widened};
 use super::search::{Search, answers};
 use super::sorted::Sorted;
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
+use super::{Cost, Facts, Neighbour, SpatialIndex, Stats, TooSmall};
 use crate::math::{floor, largest, max, min};
 use core::ops::Range;
 use glam::Vec3;
@@ -34,6 +34,9 @@ struct Buckets {
     cell: f32,
     inverse: f32,
 }
+
+/// Tells its facts from those of other structures.
+const NAME: u32 = u32::from_le_bytes(*b"hash");
 
 /// Rows of cells that a query can tell apart; if it needs more, it looks at everything.
 const ROWS: usize = 128;
@@ -191,6 +194,20 @@ impl SpatialIndex for Hash<'_> {
 
     fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
         self.build(points, self.reach)
+    }
+
+    fn facts(&self) -> Option<Facts> {
+        let Buckets { len, cell, inverse } = self.buckets;
+        let [reach, cell, inverse] = [self.reach, cell, inverse].map(f32::to_bits);
+        self.sorted.facts(NAME, [reach, cell, inverse, len as u32, 0, 0, 0, 0, 0])
+    }
+
+    fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+        let Some([reach, cell, inverse, len, ..]) = self.sorted.restore(NAME, facts) else { return false };
+        let [reach, cell, inverse] = [reach, cell, inverse].map(f32::from_bits);
+        (self.reach, self.buckets) = (reach, Buckets { len: len as usize, cell, inverse });
+        let starts = self.starts.get_mut(..=self.buckets.len).unwrap_or_default();
+        self.sorted.renumber(points, row_of, starts.iter_mut())
     }
 
     fn stats(&self) -> Stats {

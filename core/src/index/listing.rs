@@ -2,7 +2,7 @@
 
 use super::lists::ListMemory;
 use super::neighbours::Neighbours;
-use super::{IndexChoice, SpatialIndex};
+use super::{SpatialIndex, StateIndex};
 use glam::Vec3;
 
 /// How neighbours have been found.
@@ -20,9 +20,8 @@ pub(crate) enum Found {
 
 /// The means by which neighbours are looked up, and the distance within which they are.
 pub(crate) struct Search<'a> {
-    pub(crate) index: &'a dyn IndexChoice,
-    /// The index's memory, and that of lists, where there is some.
-    pub(crate) memory: &'a mut [u32],
+    /// The index, and the memory of lists, where there is some.
+    pub(crate) index: StateIndex<'a>,
     pub(crate) lists: Option<ListMemory<'a>>,
     pub(crate) reach: f32,
 }
@@ -33,22 +32,22 @@ pub(crate) type Then<'a> = &'a mut dyn FnMut(Neighbours<'_>, Found);
 /// Calls `then` with the neighbours of points, in lists if they last and there is room for them.
 #[inline(never)]
 pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: Then<'_>) {
-    let Search { index, memory, lists, reach } = search;
-    let room = index.room();
+    let Search { mut index, lists, reach } = search;
+    let room = index.choice().room();
     let Some(mut lists) = lists else {
-        return stream(index, memory, points, reach, then);
+        return stream(index, points, reach, then);
     };
     if cfg!(target_os = "none") {
         // A chip's indices do not answer in order.
-        return stream(index, memory, points, reach, then);
+        return stream(index, points, reach, then);
     }
     if let Some(lists) = lists.kept(points, reach) {
         return then(Neighbours::listed(lists, points).in_room(room), Found::Kept);
     }
     let Some(skin) = lists.skin(points, velocity, reach) else {
-        return stream(index, memory, points, reach, then);
+        return stream(index, points, reach, then);
     };
-    index.with_index(memory, points, reach + skin, room, &mut |index| {
+    index.with(points, reach + skin, &mut |index| {
         let made = index.and_then(|index| lists.make(index, points, [reach, skin]));
         match made {
             Some(lists) => then(Neighbours::listed(lists, points).in_room(room), Found::Listed),
@@ -57,10 +56,10 @@ pub(crate) fn find(search: Search<'_>, [points, velocity]: [&[Vec3]; 2], then: T
     });
 }
 
-/// Calls `then` with the neighbours of points by an index that is made for it.
-fn stream(index: &dyn IndexChoice, memory: &mut [u32], points: &[Vec3], reach: f32, then: Then<'_>) {
-    let room = index.room();
-    index.with_index(memory, points, reach, room, &mut |index| {
+/// Calls `then` with the neighbours of points by their index.
+fn stream(mut index: StateIndex<'_>, points: &[Vec3], reach: f32, then: Then<'_>) {
+    let room = index.choice().room();
+    index.with(points, reach, &mut |index| {
         then(Neighbours::by(index, points).in_room(room), how(index));
     });
 }

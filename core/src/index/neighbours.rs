@@ -1,10 +1,11 @@
 //! Neighbours of particles: from lists that last for a while, from an index, or by looking at all; to the same bits.
 
+use super::facts::ARE_KEPT;
 use super::lists::Lists;
 use super::nearby::{self, NOBODY, Nearby, Visit};
 use super::room::Points;
 use super::sorted::Entry;
-use super::{Room, SpatialIndex, wrapped_in};
+use super::{Room, SpatialIndex, between, wrapped_in};
 use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
@@ -29,6 +30,8 @@ pub struct Neighbours<'a> {
 enum Source<'a> {
     All,
     Index(&'a dyn SpatialIndex),
+    /// By an index of the first so many; the others are looked at one by one.
+    First(&'a dyn SpatialIndex, usize),
     Lists(Lists<'a>),
 }
 
@@ -68,6 +71,11 @@ impl<'a> Neighbours<'a> {
         Self { points, source: index.map_or(Source::All, Source::Index), room: None }
     }
 
+    /// Found by an index of the first so many of these points, and by looking at the others.
+    pub(crate) fn by_first(index: &'a dyn SpatialIndex, first: usize, points: &'a [Vec3]) -> Self {
+        Self { points, source: Source::First(index, first.min(points.len())), room: None }
+    }
+
     /// Found in lists of these points.
     pub(crate) const fn listed(lists: Lists<'a>, points: &'a [Vec3]) -> Self {
         Self { points, source: Source::Lists(lists), room: None }
@@ -84,6 +92,9 @@ impl<'a> Neighbours<'a> {
             _ if !(reach > 0.0) => {}
             Source::Lists(lists) if lists.reaches(reach) => lists.of(rows, reach, self.room, visit),
             Source::Index(index) => self.by_index(index, rows, reach, visit),
+            Source::First(index, first) if ARE_KEPT => {
+                rows.for_each(|row| self.by_first_and_others(index, first, row, reach, visit));
+            }
             _ => rows.for_each(|row| self.by_all(row, reach, visit)),
         }
     }
@@ -92,6 +103,11 @@ impl<'a> Neighbours<'a> {
     #[must_use]
     pub fn count_within(&self, place: Vec3, radius: f32) -> u64 {
         match (self.room, self.source) {
+            (room, Source::First(index, first)) if ARE_KEPT => {
+                let (points, others) = self.points.split_at(first);
+                let first = Self { points, source: Source::Index(index), room };
+                first.count_within(place, radius) + self.at(others).count_within(place, radius)
+            }
             (Some(room), source) => {
                 let index = if let Source::Index(index) = source { Some(index) } else { None };
                 (room.code.0)(room, &Points { places: self.points, index }, place, radius)
@@ -104,7 +120,7 @@ impl<'a> Neighbours<'a> {
     /// Tells whether all parts of the rows together cost no more than all rows at once, however they are divided.
     #[cfg(feature = "rayon")]
     pub(crate) fn can_be_divided(&self) -> bool {
-        !matches!(self.source, Source::Index(_))
+        !matches!(self.source, Source::Index(_) | Source::First(..))
     }
 
     /// The neighbours by an index, which has them in an order of its own.
@@ -145,6 +161,37 @@ impl<'a> Neighbours<'a> {
             len += others.len();
         });
         finish(of, &mut found, len);
+    }
+
+    /// The neighbours of one row by an index of the first points, to whom the others are held one by one.
+    #[inline(never)]
+    fn by_first_and_others(
+        &self,
+        index: &dyn SpatialIndex,
+        first: usize,
+        row: usize,
+        reach: f32,
+        visit: &mut dyn FnMut(usize, &Nearby),
+    ) {
+        let (mut found, mut len, own, mut nearby) = ([0; MOST], 0, self.place(row), Nearby::NOBODY);
+        let (farther, sure) = self.room.map_or((reach, f32::INFINITY), |room| (reach + room.slack(), reach));
+        index.within(own.1, farther, &mut |others| {
+            for &other in others.iter().filter(|&&other| other as usize != row) {
+                if let Some(room) = found.get_mut(len) {
+                    *room = other;
+                }
+                len += 1;
+            }
+        });
+        let Some(found) = found.get_mut(..len) else { return self.by_all(row, reach, visit) };
+        found.sort_unstable();
+        let is_near = |&other: &usize| {
+            let d = between(self.room, own.1, self.points[other]);
+            other != row && d.x * d.x + d.y * d.y + d.z * d.z <= reach * reach
+        };
+        let rest = (first..self.points.len()).filter(is_near).map(|other| self.entry(other as u32));
+        let others = found.iter().map(|&other| self.entry(other)).chain(rest);
+        Visit { own, others, reach: sure, room: self.room, nearby: &mut nearby, visit }.pay();
     }
 
     /// The neighbours of one row, found by looking at all others.

@@ -1,6 +1,6 @@
 //! The trait of all indices.
 
-use super::{Cost, Neighbour, Stats, TooSmall};
+use super::{Cost, Facts, Neighbour, Stats, TooSmall};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -22,6 +22,22 @@ pub trait SpatialIndex: Sync {
     /// # Errors
     /// As `build`.
     fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall>;
+
+    /// What it knows beside what lies in its memory; nothing, the default, if it cannot be taken up again.
+    fn facts(&self) -> Option<Facts> {
+        None
+    }
+
+    /// Goes on with the index of these [`facts`](Self::facts) that has been built, by the same structure, in the same memory, which nobody has written to
+    /// since. Each of its points becomes that of the row of `points` which `row_of` finds for its row, two never the same; those for which
+    /// it finds none, or a point that is not finite, are struck out. Tells whether the index is then one of `points`, where they are, all of them: else it
+    /// is good for nothing until it is built.
+    ///
+    /// An index need not be able to: then particles are sorted in anew by all who ask who is near.
+    fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+        let _ = (facts, points, row_of);
+        false
+    }
 
     /// Tells how large the structure has become.
     fn stats(&self) -> Stats;

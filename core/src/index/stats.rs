@@ -54,3 +54,6 @@ impl core::fmt::Display for TooSmall {
 }
 
 impl core::error::Error for TooSmall {}
+
+/// What an index knows beside what lies in its memory, in words of its own: see [`SpatialIndex::take_up`](super::SpatialIndex::take_up).
+pub type Facts = [u32; 25];

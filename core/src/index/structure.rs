@@ -2,7 +2,9 @@
 
 use super::cells;
 use super::sorted::Sorted;
-use super::{Brute, Bsp, Bvh, Cost, Grid, Hash, Kd, Neighbour, Octree, Quadtree, Room, SpatialIndex, Stats, TooSmall};
+use super::{
+    Brute, Bsp, Bvh, Cost, Facts, Grid, Hash, Kd, Neighbour, Octree, Quadtree, Room, SpatialIndex, Stats, TooSmall,
+};
 use crate::named::by_name;
 use core::ops::Range;
 use glam::Vec3;
@@ -95,6 +97,12 @@ impl SpatialIndex for AnyIndex<'_> {
     }
     fn refit(&mut self, points: &[Vec3]) -> Result<(), TooSmall> {
         self.get_mut().refit(points)
+    }
+    fn facts(&self) -> Option<Facts> {
+        self.get().facts()
+    }
+    fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+        self.get_mut().take_up(facts, points, row_of)
     }
     fn stats(&self) -> Stats {
         self.get().stats()

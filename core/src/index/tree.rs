@@ -12,7 +12,7 @@ use super::region::{Region, Run};
 use super::search::{Search, answers};
 use super::sorted::{LANES, Probe, Sorted};
 use super::split::{CHILDREN, Split, bounds};
-use super::{Cost, Neighbour, SpatialIndex, Stats, TooSmall};
+use super::{Cost, Facts, Neighbour, SpatialIndex, Stats, TooSmall};
 use crate::math;
 use core::ops::{ControlFlow, Range};
 use glam::Vec3;
@@ -72,6 +72,9 @@ const WAITING: usize = 256;
 
 impl<'m, S: Split> Tree<'m, S> {
     constructors!();
+
+    /// Tells its facts from those of structures whose memory is divided in another way.
+    const NAME: u32 = u32::from_le_bytes([b't', S::BYTES as u8, S::TURNS as u8, 0]);
 
     pub(super) const fn words(points: usize) -> usize {
         points.saturating_mul(7 + S::BYTES / 4).saturating_add(4 * LANES + 4 * NODE)
@@ -361,6 +364,23 @@ impl<S: Split> SpatialIndex for Tree<'_, S> {
         }
         self.redraw();
         Ok(())
+    }
+
+    fn facts(&self) -> Option<Facts> {
+        let counts = [self.len, self.depth, self.fullest, self.crowded].map(|count| count as u32);
+        let ([len, depth, fullest, crowded], [frames, slack]) = (counts, self.frames.facts());
+        self.sorted.facts(Self::NAME, [len, depth, fullest, crowded, frames, slack, 0, 0, 0])
+    }
+
+    fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+        let Some([len, depth, fullest, crowded, frames, slack, ..]) = self.sorted.restore(Self::NAME, facts) else {
+            return false;
+        };
+        let counts = [len, depth, fullest, crowded].map(|count| count as usize);
+        [self.len, self.depth, self.fullest, self.crowded] = counts;
+        self.frames.restore([frames, slack]);
+        let nodes = self.nodes.get_mut(..=self.len).unwrap_or_default();
+        self.sorted.renumber(points, row_of, nodes.iter_mut().map(|node| &mut node.first))
     }
 
     fn stats(&self) -> Stats {

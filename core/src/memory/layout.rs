@@ -1,5 +1,6 @@
 //! The memory that a scene's step asks for, and where each part of it lies. Nothing else knows.
 
+use crate::index::{ARE_KEPT, IndexChoice, Lasting, StateIndex, index_words};
 use glam::Vec3;
 
 /// So many words of 32 bits for each particle, and so many besides.
@@ -113,20 +114,37 @@ impl Plan {
         per_row.saturating_add(fixed.div_ceil(capacity.max(1)))
     }
 
+    /// The same, but that nobody asks who is near whom at a step's beginning or its end.
+    fn without_crowd(self) -> Self {
+        Self { crowd: false, ..self }
+    }
+
+    /// The words of an index that lasts from one who asks to the next.
+    fn lasting_index(&self) -> Words {
+        let of_all = Words { fixed: index_words(), ..Words::columns(self.index) };
+        if ARE_KEPT && self.crowd { of_all } else { Words::NONE }
+    }
+
     /// The words that last through the step.
     fn lasting(&self) -> Words {
         let states = Words::columns(2 * usize::from(self.start));
         let marks = Words { per_row: usize::from(self.constrained), fixed: 0 };
-        states.and(marks).and(self.constraints.step)
+        self.lasting_index().and(states).and(marks).and(self.constraints.step)
     }
 
     /// The words that its phases need in turn.
     fn passing(&self) -> Words {
-        let moving = self.method.saturating_add(self.trees).saturating_add(self.near);
+        let moving = self.method.saturating_add(self.trees).saturating_add(self.passing_index());
         let index = if self.constraints.finds_near { self.index } else { 0 };
         let constraining = Words::columns(index).and(self.constraints.scratch);
-        let crowd = if self.crowd { self.index.saturating_add(1) } else { 0 };
+        let places = if ARE_KEPT { 1 } else { self.index.saturating_add(1) };
+        let crowd = if self.crowd { places } else { 0 };
         Words::columns(moving.max(self.meetings).max(crowd)).or(constraining)
+    }
+
+    /// Vectors a particle for an index of the forces' own.
+    fn passing_index(&self) -> usize {
+        if ARE_KEPT && self.crowd { 0 } else { self.near }
     }
 }
 
@@ -195,6 +213,8 @@ impl Kept<'_> {
 #[derive(Debug)]
 pub(crate) struct Scratch<'m> {
     words: &'m mut [u32],
+    /// For the index of a state; none where nobody asks but forces and constraints.
+    index: Lasting<'m>,
     layout: Layout,
 }
 
@@ -221,6 +241,11 @@ impl Layout {
         let least = self.plan.columns(self.capacity).saturating_mul(self.capacity).min(work.len());
         let (work, lists) = work.split_at_mut(least);
         let mut rest: &'m mut [u32] = bytemuck::cast_slice_mut(work);
+        // The first, so that it lies in the same place whatever else is asked for.
+        let index = match ARE_KEPT && self.plan.crowd {
+            true => Lasting::of(take(&mut rest, self.plan.lasting_index().of(self.capacity))),
+            false => Lasting::none(),
+        };
         let pair = if self.plan.start { self.capacity } else { 0 };
         let start = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
         let marks = take(&mut rest, if self.plan.constrained { self.capacity } else { 0 });
@@ -229,18 +254,28 @@ impl Layout {
             start,
             marks,
             step,
-            scratch: Scratch { words: rest, layout: *self },
+            scratch: Scratch { words: rest, index, layout: *self },
             lists: bytemuck::cast_slice_mut(lists),
         }
     }
 
-    /// Memory for a copy of the places of `len` particles and for an index of them, before anything has been moved or
-    /// when all has been done: no more than they call for, since more would make another structure.
-    pub(crate) fn crowd<'m>(&self, work: &'m mut [Vec3], len: usize) -> (&'m mut [Vec3], &'m mut [u32]) {
-        let (places, rest) = work.split_at_mut(len.min(work.len()));
-        let words = bytemuck::cast_slice_mut(rest);
-        let len = (3 * self.plan.index * len).min(words.len());
-        (places, &mut words[..len])
+    /// The same where nobody asks who is near whom at a step's beginning or its end: there is no share for the index of a state.
+    pub(crate) fn without_crowd(self) -> Self {
+        Self { plan: self.plan.without_crowd(), ..self }
+    }
+
+    /// The index of a state, and at least a vector for each particle, before anything has been moved or when all has been done.
+    pub(crate) fn crowd<'m>(
+        &self,
+        work: &'m mut [Vec3],
+        choice: &'m dyn IndexChoice,
+    ) -> (StateIndex<'m>, &'m mut [Vec3]) {
+        let index = Words { fixed: index_words(), ..Words::columns(self.plan.index) };
+        let (index, places) = work.split_at_mut((index.of(self.capacity) / 3).min(work.len()));
+        let words: &mut [u32] = bytemuck::cast_slice_mut(index);
+        let (passing, lasting): (&mut [u32], _) =
+            if ARE_KEPT { (&mut [], Lasting::of(words)) } else { (words, Lasting::none()) };
+        (StateIndex::new(choice, passing, lasting), places)
     }
 
     /// Columns of a user's own, and what constraints keep.
@@ -270,6 +305,7 @@ impl Layout {
     /// The memory of a sub-step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
         let pair = if self.plan.start { self.capacity } else { 0 };
+        let work = if ARE_KEPT { &work[self.plan.lasting_index().of(self.capacity) / 3..] } else { work };
         let (start, rest) = work.split_at(2 * pair);
         let marks = if self.plan.constrained { &bytemuck::cast_slice(rest)[..self.capacity] } else { &[] };
         Past { start: start.split_at(pair).into(), marks }
@@ -277,13 +313,13 @@ impl Layout {
 }
 
 impl Scratch<'_> {
-    /// For trees of masses and charges, for the index of forces, and for the method.
-    pub(crate) fn moving(&mut self) -> ([&mut [u32]; 2], &mut [Vec3]) {
+    /// For trees of masses and charges, for the index of forces, and for the method; and the index that lasts, if there is one, instead.
+    pub(crate) fn moving(&mut self) -> ([&mut [u32]; 2], &mut [Vec3], Lasting<'_>) {
         let Layout { plan, capacity } = self.layout;
         let mut rest = &mut *self.words;
         let trees = take(&mut rest, 3 * plan.trees * capacity);
-        let near = take(&mut rest, 3 * plan.near * capacity);
-        ([trees, near], vectors(rest))
+        let near = take(&mut rest, 3 * plan.passing_index() * capacity);
+        ([trees, near], vectors(rest), self.index.again())
     }
 
     /// For the index of constraints, and for them.

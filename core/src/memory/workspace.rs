@@ -41,6 +41,8 @@ pub(crate) struct Status {
     pub(crate) given: u32,
     /// True if a scene has had reapers, so that keys decide what becomes of particles.
     pub(crate) is_reaped: bool,
+    /// True if nothing else has been put into the memory for the index of a state.
+    pub(crate) is_indexed: bool,
     /// Emitters that the scene had then.
     pub(crate) emitters: usize,
     /// Lists of neighbours, and how many particles have come and gone, which ends them.
@@ -109,6 +111,7 @@ impl Status {
         start: 0,
         given: 0,
         is_reaped: false,
+        is_indexed: false,
         emitters: 0,
         listed: Listed::NONE,
         changes: 0,

@@ -17,7 +17,7 @@ pub use kind::ReaperKind;
 
 use crate::composed::composed;
 use crate::force::State;
-use crate::index::{IndexChoice, Neighbours};
+use crate::index::{Neighbours, StateIndex};
 use crate::math::max;
 use core::ops::Range;
 use glam::Vec3;
@@ -96,15 +96,14 @@ pub(crate) struct Judged<'a> {
     pub(crate) state: State<'a>,
     /// The fates of all so far.
     pub(crate) pending_deaths: &'a mut [PendingDeath],
-    /// The index by which to find who is near, and memory for it.
-    pub(crate) index: &'a dyn IndexChoice,
-    pub(crate) words: &'a mut [u32],
+    /// The index by which to find who is near.
+    pub(crate) index: StateIndex<'a>,
     /// Room for the places of those who live.
     pub(crate) places: &'a mut [Vec3],
 }
 
 fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
-    let Judged { state, pending_deaths, index, words, places } = judged;
+    let Judged { state, pending_deaths, mut index, places } = judged;
     let (rows, reach) = (0..pending_deaths.len(), reapers.reach());
     if reach <= 0.0 {
         return reapers.judge(&state, rows, &mut Verdicts::on(pending_deaths));
@@ -113,8 +112,8 @@ fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
         *place = if pending_death == PendingDeath::Lives { x } else { Vec3::NAN };
     }
     let (position, mut verdicts) = (&*places, Verdicts::on(pending_deaths));
-    let room = index.room();
-    index.with_index(words, position, reach, room, &mut |near| {
+    let room = index.choice().room();
+    index.with(position, reach, &mut |near| {
         let near = Neighbours::by(near, position).in_room(room);
         reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
     });

@@ -8,6 +8,7 @@ use crate::force::{Backdrop, Force, SpringList};
 use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
 use crate::material::MaterialList;
+use crate::math::max;
 use crate::memory::{Likeness, Own, Plan, Size};
 use crate::particles::Particle;
 use crate::reap::Reaper;
@@ -128,9 +129,19 @@ impl Scene<'_> {
             // Newborns need one for their acceleration, whatever the method.
             method: self.integrator.columns().max(1),
             index: self.index.columns(),
-            crowd: self.emitters.reach() > 0.0 || self.reapers.reach() > 0.0,
+            crowd: self.asks_around(),
             meetings: self.meetings.columns() + if self.meetings.is_through() { 0 } else { self.index.columns() },
         }
+    }
+
+    /// Tells whether births or deaths depend on who is near.
+    pub(crate) fn asks_around(&self) -> bool {
+        self.emitters.reach() > 0.0 || self.reapers.reach() > 0.0
+    }
+
+    /// How far any of births, forces and deaths looks that asks who is near \[m\].
+    pub(crate) fn reach(&self) -> f32 {
+        max(self.forces.needs().reach, max(self.emitters.reach(), self.reapers.reach()))
     }
 
     /// Parts that a step is cut into.

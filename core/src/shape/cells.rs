@@ -206,21 +206,36 @@ pub(super) fn insert(found: &mut Found, number: u32) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::rng::Stream;
 
+    /// The `i`-th of the `k`-th random vectors, in a cube of side 1 about the origin.
+    pub(in crate::shape) fn vector(i: u32, k: u64) -> Vec3 {
+        let ([x, y], [z, _]) = (Stream::new(k, 0, i).units(0), Stream::new(k, 1, i).units(0));
+        Vec3::new(x, y, z) - 0.5
+    }
+
+    fn around(middle: Vec3, half: Vec3) -> Aabb {
+        Aabb { min: middle - half.abs(), max: middle + half.abs() }
+    }
+
+    /// How many boxes, how large, and how they are spread: one, some that overlap, and many that are small, in a slab.
+    pub(in crate::shape) const SPREADS: [(u32, f32, Vec3); 3] =
+        [(1, 0.1, Vec3::ONE), (40, 0.3, Vec3::ONE), (300, 0.02, Vec3::new(8.0, 0.1, 5.0))];
+
+    /// So many boxes, and the one around all.
+    pub(in crate::shape) fn spread((count, size, shape): (u32, f32, Vec3)) -> (Vec<Aabb>, Aabb) {
+        let boxes = (0..count).map(|i| around(vector(i, 1) * shape + 30.0, vector(i, 2) * size));
+        let boxes: Vec<Aabb> = boxes.collect();
+        let all = boxes.iter().fold(Aabb::EMPTY, |all, one| all.join(*one));
+        (boxes, all)
+    }
+
     #[test]
     fn whatever_meets_a_box_is_found() {
-        let vector = |i: u32, k: u64| {
-            let ([x, y], [z, _]) = (Stream::new(k, 0, i).units(0), Stream::new(k, 1, i).units(0));
-            Vec3::new(x, y, z) - 0.5
-        };
-        for (count, size, shape) in [(1, 0.1, Vec3::ONE), (40, 0.3, Vec3::ONE), (300, 0.02, Vec3::new(8.0, 0.1, 5.0))] {
-            let around = |middle: Vec3, half: Vec3| Aabb { min: middle - half.abs(), max: middle + half.abs() };
-            let boxes: Vec<Aabb> =
-                (0..count).map(|i| around(vector(i, 1) * shape + 30.0, vector(i, 2) * size)).collect();
-            let all = boxes.iter().fold(Aabb::EMPTY, |all, one| all.join(*one));
+        for (count, size, shape) in SPREADS {
+            let (boxes, all) = spread((count, size, shape));
             let cells = Cells::new(&boxes, &all, &|i| i != 7);
             assert!(cells.len() <= CELLS * boxes.len());
             let mut told = 0;

@@ -191,8 +191,7 @@ impl Clearance<'_> {
 mod tests {
     use super::*;
     use crate::lanes::{Kernel, run};
-    use crate::rng::Stream;
-    use glam::Vec3;
+    use crate::shape::cells::tests::{SPREADS, spread, vector};
 
     struct Free<'a>(Clearance<'a>, [[f32; LANES]; 3], [f32; LANES]);
 
@@ -208,15 +207,8 @@ mod tests {
 
     #[test]
     fn nothing_is_in_what_is_free() {
-        let vector = |i: u32, k: u64| {
-            let ([x, y], [z, _]) = (Stream::new(k, 0, i).units(0), Stream::new(k, 1, i).units(0));
-            Vec3::new(x, y, z) - 0.5
-        };
-        for (count, size, shape) in [(1, 0.1, Vec3::ONE), (40, 0.3, Vec3::ONE), (300, 0.02, Vec3::new(8.0, 0.1, 5.0))] {
-            let around = |middle: Vec3, half: Vec3| Aabb { min: middle - half.abs(), max: middle + half.abs() };
-            let boxes: Vec<Aabb> =
-                (0..count).map(|i| around(vector(i, 1) * shape + 30.0, vector(i, 2) * size)).collect();
-            let all = boxes.iter().fold(Aabb::EMPTY, |all, one| all.join(*one));
+        for (count, size, shape) in SPREADS {
+            let (boxes, all) = spread((count, size, shape));
             let clearance = ClearanceBuf::new(&(0..).zip(&boxes).collect::<Vec<_>>(), &all);
             let (mut told, mut apart, mut alone) = (0, 0, 0);
             for i in 0..4000 {

@@ -40,9 +40,9 @@ impl Tile<'_> {
             start[1][..len].copy_from_slice(self.velocity);
         }
         if old < len {
-            let (words, memory) = scratch.moving();
+            let (words, memory, lasting) = scratch.moving();
             let custom = attributes.custom(kept, layout.capacity());
-            let mut field = scene.field(attributes, custom, old, words, None, observer);
+            let mut field = scene.field(attributes, custom, old, (words, lasting), None, observer);
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
             report.effort.found(&field.finder.effort);

@@ -123,10 +123,11 @@ impl Workspace<'_> {
     ) {
         let h = span[1].seconds() / scene.pieces() as f32;
         let capacity = self.capacity().min(scene.tile_rows());
-        // Tiles work in the memory of lists as well.
-        self.status.listed = Listed::NONE;
+        // Tiles work in the memory of lists and of the index as well.
+        (self.status.listed, self.status.is_indexed) = (Listed::NONE, false);
         for rows in [0..old, old..self.len()] {
             let mut tile = self.tile(scene, span, old, rows, capacity);
+            tile.layout = tile.layout.without_crowd();
             #[cfg(feature = "rayon")]
             if observer.attention() == Attention::Nothing && rayon::current_thread_index().is_some() {
                 *report += tile.pass_side_by_side(scene, h);

@@ -1,5 +1,6 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
+use crate::index::ARE_KEPT;
 use crate::memory::{TILED, Workspace};
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
@@ -36,14 +37,21 @@ impl Workspace<'_> {
     #[inline(never)]
     fn judge_all(&mut self, scene: &Scene<'_>, code: ReaperCode) {
         let (time, len, capacity) = (self.status.time, self.len(), self.capacity());
-        let layout = self.layout(scene);
+        let (layout, mut is_indexed) = (self.layout(scene), self.status.is_indexed);
         let tile = self.tile(scene, [time, Time::ZERO], len, 0..len, capacity);
         let state = tile.attributes.lives.moved(time, tile.position, tile.velocity);
-        let (places, words) = layout.crowd(tile.work, len);
-        (code.0)(
-            scene.reapers,
-            Judged { state, pending_deaths: tile.pending_death, index: scene.index, words, places },
-        );
+        let (mut index, places) = layout.crowd(tile.work, scene.index);
+        let count = len.min(places.len());
+        let places = &mut places[..count];
+        if ARE_KEPT && scene.asks_around() {
+            index.begin(scene.reach(), &mut is_indexed);
+        }
+        let judged = Judged { state, pending_deaths: tile.pending_death, index: index.again(), places: &mut *places };
+        (code.0)(scene.reapers, judged);
+        if ARE_KEPT && is_indexed {
+            index.name(bytemuck::cast_slice_mut(places), state.slot);
+        }
+        self.status.is_indexed = is_indexed;
     }
 }
 

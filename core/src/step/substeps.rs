@@ -3,7 +3,7 @@
 use crate::constrain::{DONE, Moment, Moved, Substep};
 use crate::custom::CustomColumns;
 use crate::force::{Attributes, Finder};
-use crate::index::{ListMemory, Listed};
+use crate::index::{Lasting, ListMemory, Listed, StateIndex};
 use crate::integrate::{Field, Motion, Work};
 use crate::observe::Observer;
 use crate::report::Effort;
@@ -29,12 +29,13 @@ impl Scene<'_> {
         attributes: &'f Attributes<'f>,
         custom: CustomColumns<'f>,
         first: usize,
-        [tree, near]: [&'f mut [u32]; 2],
+        ([tree, near], lasting): ([&'f mut [u32]; 2], Lasting<'f>),
         lists: Option<ListMemory<'f>>,
         observer: &'f mut dyn Observer,
     ) -> Field<'f> {
-        let (needs, index, effort) = (self.forces.needs(), self.index, Effort::NONE);
-        let finder = Finder { attributes, custom, needs, index, tree, near, lists, first, effort };
+        let (needs, effort) = (self.forces.needs(), Effort::NONE);
+        let index = StateIndex::new(self.index, near, lasting);
+        let finder = Finder { attributes, custom, needs, tree, index, lists, first, effort };
         let springs = self.springs.code().map(|code| code.force);
         let linearising = self.integrator.linearising();
         Field { forces: self.forces, springs, steady: self.steady(), finder, observer, linearising }
@@ -61,10 +62,10 @@ impl Moved<'_> {
     fn integrate(&mut self, scene: &Scene<'_>, substep: Substep, hint: &mut Time) {
         let [from, to] = substep.during;
         let (len, stride) = (self.position.len(), self.layout.capacity());
-        let (words, memory) = self.scratch.moving();
+        let (words, memory, lasting) = self.scratch.moving();
         let custom = self.attributes.custom(self.kept, stride);
         let lists = Some(self.lists.again());
-        let mut field = scene.field(self.attributes, custom, 0, words, lists, self.observer);
+        let mut field = scene.field(self.attributes, custom, 0, (words, lasting), lists, self.observer);
         let motion = Motion {
             position: self.position,
             velocity: self.velocity,

@@ -429,3 +429,22 @@ impl Way {
         }
     }
 }
+
+#[cfg(feature = "alloc")]
+impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> super::declared::Declared for Rope<P, L> {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self).or_else(|| super::declared::twice(self.particles.as_ref()))
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [self.particles.as_ref(), &[], &[]]
+    }
+
+    fn chain(&self) -> (&[u32], bool) {
+        (self.particles.as_ref(), self.closed)
+    }
+
+    fn lengths(&self) -> &[f32] {
+        self.lengths.as_ref()
+    }
+}

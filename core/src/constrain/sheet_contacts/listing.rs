@@ -66,7 +66,7 @@ impl<'m, 'r> Listing<'m, 'r> {
     fn sift(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
         let Self { rest, ways, more, .. } = *self;
-        let Some((close, wanted)) = lanes::run(Sift { rest, ways, more, kind, waiting: &waiting }) else {
+        let Some((close, wanted)) = lanes::run(Sift(Expected { rest, ways, more, kind, waiting: &waiting })) else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, _)| self.one(pair, corners));
             return;
         };
@@ -81,7 +81,7 @@ impl<'m, 'r> Listing<'m, 'r> {
     fn list(&mut self, kind: Kind) {
         let waiting = self.close[kind as usize];
         let Self { rest, ways, more, .. } = *self;
-        let Some((near, apart)) = lanes::run(Expected { rest, ways, more, kind, waiting: &waiting }) else {
+        let Some((near, apart)) = lanes::run(Near(Expected { rest, ways, more, kind, waiting: &waiting })) else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, _)| self.one(pair, corners));
             return;
         };
@@ -118,9 +118,8 @@ fn least(kind: Kind, ends: &[[Vec3; 4]; 2], at: usize) -> f32 {
     if all > 0.0 { all } else { 0.0 }
 }
 
-/// Eight pairs of a kind on the ways that are expected: finds those that neither boxes nor the direction between their middles keep apart, and how far
-/// apart they are to be.
-struct Sift<'a, 'r> {
+/// Eight pairs of a kind on the ways that are expected.
+struct Expected<'a, 'r> {
     rest: &'a Rest<'r>,
     ways: Ways<'a>,
     more: f32,
@@ -128,15 +127,26 @@ struct Sift<'a, 'r> {
     waiting: &'a Waiting,
 }
 
+impl Expected<'_, '_> {
+    /// Their corners at both ends; none, if one of them has to be looked at alone.
+    #[inline(always)]
+    fn ends<F: Eight>(&self, like: F) -> Option<[Seen<F>; 2]> {
+        let corners = &self.waiting.corners;
+        Some([seen(like, self.ways.from, corners)?, seen(like, self.ways.to, corners)?])
+    }
+}
+
+/// Finds those of them that neither boxes nor the direction between their middles keep apart, and how far apart they are to be.
+struct Sift<'a, 'r>(Expected<'a, 'r>);
+
 impl Kernel for Sift<'_, '_> {
     /// None: one of them has to be looked at alone.
     type Output = Option<(u32, [f32; LANES])>;
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let Self { rest, ways, more, kind, waiting } = self;
-        let corners = &waiting.corners;
-        let ends = [seen(like, ways.from, corners)?, seen(like, ways.to, corners)?];
+        let ends = self.0.ends(like)?;
+        let Expected { rest, more, kind, waiting: Waiting { corners, .. }, .. } = self.0;
         let (boxes, [middle, way]) = (gap_of_boxes(kind, &ends), gap_of_middles(kind, &ends));
         let left = |wanted: F| {
             let reach = far(wanted, rest, more);
@@ -153,24 +163,17 @@ impl Kernel for Sift<'_, '_> {
     }
 }
 
-/// The same of those that are left: finds who may come near each other, and how far apart they stay at the least.
-struct Expected<'a, 'r> {
-    rest: &'a Rest<'r>,
-    ways: Ways<'a>,
-    more: f32,
-    kind: Kind,
-    waiting: &'a Waiting,
-}
+/// Finds those of them that may come near each other, and how far apart they stay at the least.
+struct Near<'a, 'r>(Expected<'a, 'r>);
 
-impl Kernel for Expected<'_, '_> {
+impl Kernel for Near<'_, '_> {
     /// None: one of them has to be looked at alone.
     type Output = Option<(u32, [f32; LANES])>;
 
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let Self { rest, ways, more, kind, waiting } = self;
-        let corners = &waiting.corners;
-        let ends = [seen(like, ways.from, corners)?, seen(like, ways.to, corners)?];
+        let ends = self.0.ends(like)?;
+        let Expected { rest, more, kind, waiting, .. } = self.0;
         let apart = max(least_of(kind, &ends, 0), least_of(kind, &ends, 1));
         let is_far = apart.simd_ge(far(like.of(waiting.wanted), rest, more));
         Some((lanes::not(is_far).to_bitmask(), apart.to_array()))

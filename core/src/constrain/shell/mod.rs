@@ -25,6 +25,8 @@ mod words;
 pub use params::ShellParams;
 
 use super::budget::{self, Budget};
+#[cfg(feature = "alloc")]
+use super::declared::{Declared, twice};
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
 use crate::memory::take;
@@ -308,5 +310,21 @@ where
             walls::settle(walls, bodies);
             walls::follow(walls, bodies);
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<P, T, H> Declared for Shell<P, T, H>
+where
+    P: AsRef<[u32]> + Sync,
+    T: AsRef<[[u32; 3]]> + Sync,
+    H: AsRef<[Hinge]> + Sync,
+{
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self).or_else(|| twice(self.particles.as_ref()))
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [self.particles.as_ref(), &[], &[]]
     }
 }

@@ -2,6 +2,8 @@
 
 mod cell;
 
+#[cfg(feature = "alloc")]
+use super::declared::Declared;
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{clamp, dot, max, sin_cos};
 use cell::{Cell, Held, NEARLY, Past};
@@ -362,5 +364,16 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
                 }
             }
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: AsRef<[[u32; 3]]> + Sync> Declared for StrainLimits<T> {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self)
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [self.triangles.as_ref().as_flattened(), &[], &[]]
     }
 }

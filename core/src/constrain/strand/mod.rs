@@ -9,6 +9,8 @@ mod piece;
 
 pub use params::StrandParams;
 
+#[cfg(feature = "alloc")]
+use super::declared::{Declared, twice};
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{length, sin_cos};
@@ -312,5 +314,16 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
             [longest, 1] => self.solve::<1>(bodies, share, longest),
             [longest, _] => self.solve::<WIDE>(bodies, share, longest),
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Declared for Strands<P, L> {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self).or_else(|| twice(self.particles.as_ref()))
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [self.particles.as_ref(), &[], &[]]
     }
 }

@@ -1,5 +1,7 @@
 //! How a tie holds what it ties.
 
+#[cfg(feature = "alloc")]
+use super::super::declared::{Declared, twice};
 use super::super::{Bodies, Constraint, Demand, Share, Words};
 use super::Tie;
 use super::grip::Grip;
@@ -131,5 +133,16 @@ impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Constraint for Tie<T, W> {
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let _ = self.brake(bodies, share.kept.fixed);
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Declared for Tie<T, W> {
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        Self::fault(self).or_else(|| twice(self.to.as_ref()).map(|(_, why)| ("to", why)))
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        [self.to.as_ref(), core::slice::from_ref(&self.particle), &[]]
     }
 }

@@ -5,8 +5,6 @@ mod hold;
 mod place;
 mod rope;
 
-#[cfg(feature = "alloc")]
-pub(super) use rope::BODY_TWICE;
 pub use rope::TiedRope;
 
 /// Ties a particle to a place on a body of other particles, such as a triangle of cloth or a box: C = x − Σ wᵢ xᵢ − offset n, all three numbers of it.

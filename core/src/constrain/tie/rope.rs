@@ -1,5 +1,7 @@
 //! Ropes whose ends are tied to other bodies: their direct solution feels how heavy these are.
 
+#[cfg(feature = "alloc")]
+use super::super::declared::{Declared, names_twice};
 use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share, Words};
 use super::Tie;
 use super::grip::Grip;
@@ -24,22 +26,15 @@ pub struct TiedRope<P, L, T, W = [f32; 0]> {
     pub ends: [Option<Tie<T, W>>; 2],
 }
 
-const PARTICLE_TWICE: (&str, &str) = ("particles", "must not name a particle twice");
-pub(in crate::constrain) const BODY_TWICE: (&str, &str) = ("ends", "must not name a particle of a body twice");
-
 impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRope<P, L, T, W> {
     /// The first of its numbers that cannot be used, and what it has to be. That nobody is named twice is asked of all by twos.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
-        let twice = |list: &[u32]| list.iter().enumerate().any(|(i, one)| list[..i].contains(one));
-        let bodies = || self.ends.iter().flatten().any(|tie| twice(tie.to.as_ref()));
-        self.fault_but_twice()
-            .or_else(|| twice(self.rope.particles.as_ref()).then_some(PARTICLE_TWICE))
-            .or_else(|| bodies().then_some(BODY_TWICE))
+        self.fault_by(|list| list.iter().enumerate().any(|(i, one)| list[..i].contains(one)))
     }
 
-    /// The same without asking whether somebody is named twice.
-    pub(in crate::constrain) fn fault_but_twice(&self) -> Option<(&'static str, &'static str)> {
+    /// The same, if `twice` tells whether a list names somebody twice.
+    fn fault_by(&self, twice: impl Fn(&[u32]) -> bool) -> Option<(&'static str, &'static str)> {
         let particles = self.rope.particles.as_ref();
         let ends = [particles.first(), particles.last()];
         let is_end = |(tie, end): (&Option<Tie<T, W>>, Option<&u32>)| {
@@ -47,6 +42,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
                 Some(&tie.particle) == end && !tie.to.as_ref().iter().any(|to| particles.contains(to))
             })
         };
+        let bodies = || self.ends.iter().flatten().any(|tie| twice(tie.to.as_ref()));
         let own = !self.ends.iter().zip(ends).all(is_end);
         let wrong = self.rope.closed && self.ends.iter().any(Option::is_some);
         self.rope
@@ -56,6 +52,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
                 own.then_some(("ends", "have to tie the rope's first and last particle to particles of others"))
             })
             .or_else(|| wrong.then_some(("ends", "must not be tied where the rope is closed: it has none")))
+            .or_else(|| twice(particles).then_some(("particles", "must not name a particle twice")))
+            .or_else(|| bodies().then_some(("ends", "must not name a particle of a body twice")))
     }
 
     /// The words that its ties keep.
@@ -190,5 +188,31 @@ where
         for (_, tie, place) in self.ties(share.kept.fixed) {
             let _ = tie.brake(bodies, place);
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<P, L, T, W> Declared for TiedRope<P, L, T, W>
+where
+    P: AsRef<[u32]> + Sync,
+    L: AsRef<[f32]> + Sync,
+    T: AsRef<[u32]> + Sync,
+    W: AsRef<[f32]> + Sync,
+{
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        self.fault_by(names_twice)
+    }
+
+    fn ends(&self) -> [&[u32]; 3] {
+        let to = |end: usize| self.ends[end].as_ref().map_or(&[][..], |tie| tie.to.as_ref());
+        [self.rope.particles.as_ref(), to(0), to(1)]
+    }
+
+    fn chain(&self) -> (&[u32], bool) {
+        self.rope.chain()
+    }
+
+    fn lengths(&self) -> &[f32] {
+        Declared::lengths(&self.rope)
     }
 }
