@@ -47,7 +47,7 @@ pub trait CustomList: Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct CustomCode {
     /// Gives rows from one on what they begin with.
-    pub(crate) give: fn(&dyn CustomList, &mut Slices<'_>, Newcomers),
+    pub(crate) give: fn(&dyn CustomList, &mut Slices<'_>, Newcomers<'_>),
 }
 
 impl CustomCode {
@@ -56,16 +56,16 @@ impl CustomCode {
 }
 
 /// Rows that have come in.
-pub(crate) struct Newcomers {
+pub(crate) struct Newcomers<'a> {
     /// The first of them, and the number of all rows.
     pub(crate) first: usize,
     pub(crate) len: usize,
     /// Serials below are those of the scene's start.
     pub(crate) start: u32,
-    pub(crate) layout: Layout,
+    pub(crate) layout: &'a Layout,
 }
 
-fn give(list: &dyn CustomList, memory: &mut Slices<'_>, rows: Newcomers) {
+fn give(list: &dyn CustomList, memory: &mut Slices<'_>, rows: Newcomers<'_>) {
     let Newcomers { first, len, start, layout } = rows;
     let (serial, (values, _)) = (&memory.serial[..len], layout.kept(memory.kept));
     for (number, column) in values.chunks_mut(layout.capacity().max(1)).enumerate().take(list.count()) {
@@ -88,8 +88,8 @@ impl Workspace<'_> {
     #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn give_custom(&mut self, list: &dyn CustomList, layout: &Layout, first: usize) {
         let Some(code) = list.code() else { return };
-        let rows = Newcomers { first, len: self.len(), start: self.status.start, layout: *layout };
-        (code.give)(list, &mut self.memory, rows);
+        let rows = Newcomers { first, len: self.len(), start: self.status.start, layout };
+        (code.give)(list, self.memory, rows);
     }
 }
 

@@ -229,6 +229,20 @@ pub trait MaterialList: Sync {
     fn code(&self) -> Option<MaterialCode> {
         Some(MaterialCode::ALL)
     }
+
+    /// The function that mixes how two things feel where they touch; none, where it is known that nothing feels like anything in particular.
+    fn mixing(&self) -> Option<Mixing> {
+        Some(Mixing::ON_SURFACES)
+    }
+}
+
+/// The function that mixes how a particle and a surface feel, so that a program without materials does not carry it about.
+#[derive(Clone, Copy, Debug)]
+pub struct Mixing(pub(crate) fn(&dyn MaterialList, f32, Option<u16>, Option<u16>) -> Mixed);
+
+impl Mixing {
+    /// That of contact materials.
+    pub const ON_SURFACES: Self = Self(on_surface);
 }
 
 /// The functions that lives call for in a step, so that a program without lives does not carry them about.
@@ -237,10 +251,10 @@ pub struct MaterialCode {
     /// Words that are kept of each particle.
     pub(crate) kept: fn(&dyn MaterialList) -> usize,
     /// Sets drags and masses of the first so many rows, in a step, of memory that is laid out so.
-    pub(crate) age: fn(&dyn MaterialList, [Time; 2], usize, Layout, &mut Slices<'_>),
+    pub(crate) age: fn(&dyn MaterialList, [Time; 2], usize, &Layout, &mut Slices<'_>),
     /// Tells whether anything floats.
     pub(crate) floats: fn(&dyn MaterialList) -> bool,
-    /// Takes from the weights of rows, under this gravity, what carries them.
+    /// Takes from the weights of rows, under this gravity, what carries them, if anything floats.
     pub(crate) carry: fn(&dyn MaterialList, &Floating<'_>, Range<usize>, Vec3, &mut [Vec3]),
 }
 
@@ -278,7 +292,7 @@ fn floats(list: &dyn MaterialList) -> bool {
 }
 
 /// Sets drags and masses to what they are in the middle of each row's part of a step.
-fn age(list: &dyn MaterialList, [from, to]: [Time; 2], len: usize, layout: Layout, memory: &mut Slices<'_>) {
+fn age(list: &dyn MaterialList, [from, to]: [Time; 2], len: usize, layout: &Layout, memory: &mut Slices<'_>) {
     let Slices { born, dies, material, key, drag, mass, inverse_mass, kept, .. } = memory;
     let (drag, mass, inverse_mass) = (drag.own(), mass.own(), inverse_mass.own());
     let [own_drag, own_mass] = layout.ageing(kept);
@@ -311,6 +325,9 @@ fn remembered(bits: &mut u32, now: f32) -> f32 {
 }
 
 fn carry(list: &dyn MaterialList, rows: &Floating<'_>, range: Range<usize>, gravity: Vec3, total: &mut [Vec3]) {
+    if !floats(list) {
+        return;
+    }
     for (total, row) in total.iter_mut().zip(range) {
         let material = rows.material.get(row).copied().unwrap_or(0);
         let Some(curve) = life_of(list, material).and_then(|life| life.buoyancy) else { continue };
@@ -333,6 +350,9 @@ impl MaterialList for () {
     fn code(&self) -> Option<MaterialCode> {
         None
     }
+    fn mixing(&self) -> Option<Mixing> {
+        None
+    }
 }
 
 impl<T: MaterialList + ?Sized> MaterialList for &T {
@@ -347,6 +367,9 @@ impl<T: MaterialList + ?Sized> MaterialList for &T {
     }
     fn code(&self) -> Option<MaterialCode> {
         (**self).code()
+    }
+    fn mixing(&self) -> Option<Mixing> {
+        (**self).mixing()
     }
 }
 

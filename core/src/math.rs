@@ -100,6 +100,15 @@ pub(crate) fn over(v: Vec3, k: f32) -> Vec3 {
     v / k
 }
 
+/// The same vector, number by number: what might overlap chips would copy by a routine of its own, which takes as much of their flash as a
+/// whole phase of a step.
+#[inline(always)]
+#[must_use]
+pub(crate) fn copied(v: Vec3) -> Vec3 {
+    let [x, y, z] = v.to_array();
+    Vec3::new(x, y, z)
+}
+
 /// Tells whether all coordinates of a vector are zero.
 #[cfg_attr(target_os = "none", inline(never))]
 #[cfg_attr(not(target_os = "none"), inline(always))]
@@ -211,6 +220,18 @@ pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
     }
 }
 
+/// The quotient of two counts, the divisor not zero.
+///
+/// The smallest chips, those without a compare-and-swap, divide in software: there it is [`divide`], which they have anyway.
+#[must_use]
+pub(crate) const fn quotient(number: usize, by: usize) -> usize {
+    if cfg!(all(target_os = "none", not(target_has_atomic = "32"))) {
+        divide(number as u128, by as u64).0 as usize
+    } else {
+        number / by
+    }
+}
+
 /// The same by shifts and differences.
 #[inline(never)]
 const fn long_division(number: u128, by: u64) -> (u64, u64) {
@@ -294,13 +315,13 @@ pub fn exp(x: f32) -> f32 {
 /// where libm's `sinf` goes through `f64`.
 #[must_use]
 pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
-    let quarter = floor(turns * 4.0 + 0.5);
+    let (quarter, number) = floored(turns * 4.0 + 0.5);
     let x = (turns - quarter * 0.25) * core::f32::consts::TAU;
     let z = x * x;
     let s = x + x * z * (-1.666_665_5e-1 + z * (8.332_161e-3 + z * -1.951_529_6e-4));
     let c = 1.0 - 0.5 * z + z * z * (4.166_664_6e-2 + z * (-1.388_731_6e-3 + z * 2.443_315_7e-5));
     // By bits, as nobody guesses which quarter comes next: odd ones swap both, and each changes its sign twice in a turn.
-    let quarter = quarter as i32 as u32;
+    let quarter = number as u32;
     let (s, c) = if quarter & 1 == 0 { (s, c) } else { (c, s) };
     let signed = |x: f32, quarter: u32| f32::from_bits(x.to_bits() ^ (quarter & 2) << 30);
     (signed(s, quarter), signed(c, quarter.wrapping_add(1)))
@@ -339,11 +360,18 @@ pub fn angle(x: f32, y: f32) -> f32 {
 #[inline]
 #[must_use]
 pub fn floor(x: f32) -> f32 {
+    floored(x).0
+}
+
+/// The same as a number and as a whole one, which goes as far as there are such.
+#[inline]
+fn floored(x: f32) -> (f32, i32) {
+    let number = x as i32;
     if !(x > -1_073_741_824.0 && x < 1_073_741_824.0) {
-        return x;
+        return (x, number);
     }
-    let whole = x as i32 as f32;
-    if whole > x { whole - 1.0 } else { whole }
+    let whole = number as f32;
+    if whole > x { (whole - 1.0, number - 1) } else { (whole, number) }
 }
 
 /// Two unit vectors that complete the unit vector `n` to a right-handed frame (Duff et al., "Building an

@@ -1,6 +1,7 @@
 //! A particle, and the id by which it is called.
 
 use crate::rows::are_finite;
+use crate::time::Time;
 use glam::Vec3;
 
 /// Red, green, blue and opacity, each 0 to 255, in sRGB.
@@ -62,17 +63,34 @@ impl Particle {
     /// and not below zero).
     #[must_use]
     pub fn is_sound(&self) -> bool {
-        self.lifetime.is_finite() && self.is_usable()
+        self.lifetime.is_finite() && are_finite(&[self.position, self.velocity]) && self.is_usable()
     }
 
-    /// Tells whether every number of it but the lifetime can be used.
+    /// Tells whether every number of it but its place, its velocity and its lifetime can be used.
     pub(crate) fn is_usable(&self) -> bool {
-        let finite = are_finite(&[self.position, self.velocity])
-            && (0.0..f32::INFINITY).contains(&self.radius)
-            && [self.mass, self.drag, self.charge, self.elasticity].iter().all(|x| x.is_finite());
+        let Self { mass, drag, charge, elasticity, radius, .. } = *self;
+        let are_finite = are_finite(&[Vec3::new(mass, drag, charge), Vec3::new(elasticity, radius, 0.0)]);
         // The inverse of a mass below 3e-39 kg overflows.
-        let heavy = if self.fixed { self.mass >= 0.0 } else { self.mass > 0.0 && (1.0 / self.mass).is_finite() };
-        finite && heavy
+        let is_heavy = if self.fixed { mass >= 0.0 } else { mass > 0.0 && 1.0 / mass < f32::INFINITY };
+        are_finite && is_heavy && radius >= 0.0
+    }
+}
+
+/// Where and how a particle begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Start {
+    pub(crate) position: Vec3,
+    pub(crate) velocity: Vec3,
+    pub(crate) lifetime: f32,
+    /// When.
+    pub(crate) born: Time,
+}
+
+impl Start {
+    /// As a particle says.
+    pub(crate) fn of(particle: &Particle, born: Time) -> Self {
+        let Particle { position, velocity, lifetime, .. } = *particle;
+        Self { position, velocity, lifetime, born }
     }
 }
 

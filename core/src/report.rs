@@ -69,11 +69,12 @@ impl Effort {
     };
 
     /// Counts what it took to find forces.
-    pub(crate) fn found(&mut self, more: &Self) {
-        self.evaluations += more.evaluations;
-        self.lists += more.lists;
-        self.streamed += more.streamed;
-        self.all_pairs += more.all_pairs;
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn found(&mut self, more: &Finding) {
+        self.evaluations += u64::from(more.evaluations);
+        self.lists += u64::from(more.lists);
+        self.streamed += u64::from(more.streamed);
+        self.all_pairs += u64::from(more.all_pairs);
     }
 
     /// Counts a solution.
@@ -83,6 +84,15 @@ impl Effort {
         self.residual = max(residual, self.residual);
         self.capped += u64::from(capped);
     }
+}
+
+/// The work of finding forces, in a part of a step: those counts of an [`Effort`] that it takes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Finding {
+    pub(crate) evaluations: u32,
+    pub(crate) lists: u32,
+    pub(crate) streamed: u32,
+    pub(crate) all_pairs: u32,
 }
 
 /// Particles removed, by cause.
@@ -135,10 +145,16 @@ fn add(sum: &mut u64, more: &u64) {
 /// Adds up every field of two counters; the sum of plain numbers saturates.
 macro_rules! add_fields {
     ($($counter:ident { $($field:ident)+ })+) => {$(
-        impl core::ops::AddAssign for $counter {
+        impl $counter {
             #[inline(never)]
+            fn take_in(&mut self, more: &Self) {
+                $(add(&mut self.$field, &more.$field);)+
+            }
+        }
+
+        impl core::ops::AddAssign for $counter {
             fn add_assign(&mut self, other: Self) {
-                $(add(&mut self.$field, &other.$field);)+
+                self.take_in(&other);
             }
         }
     )+};
@@ -151,16 +167,23 @@ add_fields! {
 
 impl core::ops::AddAssign for Report {
     fn add_assign(&mut self, other: Self) {
-        add(&mut self.initial, &other.initial);
-        add(&mut self.born, &other.born);
-        add(&mut self.refused, &other.refused);
-        add(&mut self.hits, &other.hits);
-        add(&mut self.contacts, &other.contacts);
-        add(&mut self.broken, &other.broken);
-        self.died += other.died;
-        self.caps += other.caps;
-        self.effort += other.effort;
-        self.effort.residual = max(self.effort.residual, other.effort.residual);
+        self.take_in(&other);
+    }
+}
+
+impl Report {
+    /// Adds another one, which a chip is spared a copy of.
+    pub(crate) fn take_in(&mut self, more: &Self) {
+        add(&mut self.initial, &more.initial);
+        add(&mut self.born, &more.born);
+        add(&mut self.refused, &more.refused);
+        add(&mut self.hits, &more.hits);
+        add(&mut self.contacts, &more.contacts);
+        add(&mut self.broken, &more.broken);
+        self.died.take_in(&more.died);
+        self.caps.take_in(&more.caps);
+        self.effort.take_in(&more.effort);
+        self.effort.residual = max(self.effort.residual, more.effort.residual);
     }
 }
 

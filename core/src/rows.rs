@@ -8,7 +8,7 @@ mod fall;
 pub(crate) use fall::{Accelerate, Extents, Fall, Leap};
 
 use crate::lanes::widest;
-use crate::math::max;
+use crate::math::{along, max, scaled};
 use glam::Vec3;
 
 /// True if there may be vectors: chips without an operating system are spared the code, and work number by number.
@@ -45,10 +45,7 @@ pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
 
 /// `total` = `f`(`total`, `vector`, `factor`), number by number, `factor` being that of the row.
 #[inline(always)]
-pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
-    if !BLOCKS {
-        return total.iter_mut().zip(vector).zip(factor).for_each(|((total, v), &k)| one(total, *v, k, &f));
-    }
+fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
     let ((t, t_rest), (v, v_rest), (k, k_rest)) = (total.as_chunks_mut(), vector.as_chunks(), factor.as_chunks());
     for ((total, vector), factor) in t.iter_mut().zip(v).zip(k) {
         block(total, vector, factor, &f);
@@ -60,16 +57,46 @@ pub(crate) fn each_row(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], f: i
 
 /// The same with one vector for all rows.
 #[inline(always)]
-pub(crate) fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
-    if !BLOCKS {
-        return total.iter_mut().zip(factor).for_each(|(total, &k)| one(total, vector, k, &f));
-    }
+fn each_row_with(total: &mut [Vec3], vector: Vec3, factor: &[f32], f: impl Fn(f32, f32, f32) -> f32) {
     let ((t, t_rest), (k, k_rest)) = (total.as_chunks_mut(), factor.as_chunks());
     for (total, factor) in t.iter_mut().zip(k) {
         block(total, &[vector; 4], factor, &f);
     }
     for (total, &factor) in t_rest.iter_mut().zip(k_rest) {
         one(total, vector, factor, &f);
+    }
+}
+
+/// `total` += `vector` × `by`(`factor`), row by row.
+#[inline(always)]
+pub(crate) fn add_each(total: &mut [Vec3], vector: &[Vec3], factor: &[f32], by: impl Fn(f32) -> f32) {
+    if BLOCKS {
+        return each_row(total, vector, factor, |total, v, k| total + v * by(k));
+    }
+    for ((total, &v), &k) in total.iter_mut().zip(vector).zip(factor) {
+        *total = along(*total, v, by(k));
+    }
+}
+
+/// `total` += `vector` × `factor`, row by row.
+#[inline(always)]
+pub(crate) fn add_one(total: &mut [Vec3], vector: Vec3, factor: &[f32]) {
+    if BLOCKS {
+        return each_row_with(total, vector, factor, |total, v, k| total + v * k);
+    }
+    for (total, &k) in total.iter_mut().zip(factor) {
+        *total = along(*total, vector, k);
+    }
+}
+
+/// `column` × `factor`, row by row; zero where that is zero, whatever is there.
+#[inline(always)]
+pub(crate) fn scale_each(column: &mut [Vec3], factor: &[f32]) {
+    if BLOCKS {
+        return each_row_with(column, Vec3::ZERO, factor, |x, _, k| if k == 0.0 { 0.0 } else { x * k });
+    }
+    for (x, &k) in column.iter_mut().zip(factor) {
+        *x = if k == 0.0 { Vec3::ZERO } else { scaled(*x, k) };
     }
 }
 

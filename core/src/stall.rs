@@ -1,7 +1,7 @@
 //! Motion that rounding swallows: steps so short, so far from the origin, that positions stay where they are.
 
 use crate::math::min;
-use crate::rows::flat;
+use crate::rows::{BLOCKS, flat};
 use glam::Vec3;
 
 /// A speed from which on motion counts \[m/s\], wherever it is.
@@ -23,22 +23,34 @@ pub(crate) fn may_be(farthest: f32, h: f32) -> bool {
 /// Counts those of these particles that stall in steps of `h` \[s\]: one of their coordinates would move at a notable
 /// speed and stays where it is, as the step's way is less than half the distance of two numbers there.
 pub(crate) fn count(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
+    if !BLOCKS {
+        return count_singly(position, velocity, h);
+    }
     let mut stalled = 0;
     for (x, v) in position.chunks(BLOCK).zip(velocity.chunks(BLOCK)) {
         if may_hold_one(x, v, h) {
-            let stalls = |(x, v): &(&Vec3, &Vec3)| (0..3).any(|axis| is_swallowed(x[axis], v[axis], h));
-            stalled += x.iter().zip(v).filter(stalls).count() as u64;
+            stalled += count_singly(x, v, h);
         }
     }
     stalled
 }
 
+/// The same, looking at each.
+fn count_singly(position: &[Vec3], velocity: &[Vec3], h: f32) -> u64 {
+    let stalls = |(x, v): &(&Vec3, &Vec3)| flat_one(x).iter().zip(flat_one(v)).any(|(&x, &v)| is_swallowed(x, v, h));
+    position.iter().zip(velocity).filter(stalls).count() as u64
+}
+
+fn flat_one(v: &Vec3) -> &[f32] {
+    flat(core::slice::from_ref(v))
+}
+
 /// Tells whether any of a block may stall: hardly ever does one, so whole blocks are passed by, in a loop that
-/// compilers make vectors of. Where there are none the loop is of no use.
+/// compilers make vectors of.
 #[inline(always)]
 fn may_hold_one(x: &[Vec3], v: &[Vec3], h: f32) -> bool {
     let any = |any: u32, (&x, &v): (&f32, &f32)| any | u32::from(may_be_swallowed(x, v, h));
-    cfg!(target_os = "none") || flat(x).iter().zip(flat(v)).fold(0, any) > 0
+    flat(x).iter().zip(flat(v)).fold(0, any) > 0
 }
 
 /// Tells whether a coordinate moves, at a speed that counts, and is where it was after a step: without shortcuts, so

@@ -63,13 +63,15 @@ impl<B: Storage> System<B> {
     /// beyond the capacity are refused and counted.
     pub fn start(&mut self, scene: &Scene<'_>, seed: u64) -> Result<(), InsufficientMemory> {
         self.status.begin(seed);
-        let mut workspace = self.workspace();
-        let have = workspace.size();
+        let mut memory = self.memory.slices();
+        let mut workspace = Workspace::on(&mut memory, &mut self.status);
+        let layout = workspace.layout(scene);
         let differs = workspace.differs(scene);
-        if differs.is_some() || !scene.fits(have) {
+        if differs.is_some() || !workspace.fits(scene, &layout) {
+            let have = workspace.size();
             return Err(InsufficientMemory { need: scene.size_for(have.particles), have, differs });
         }
-        workspace.start(scene);
+        workspace.start(scene, &layout);
         Ok(())
     }
 
@@ -97,14 +99,19 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         self.status.emitters = self.status.emitters.max(scene.emitters.count());
         self.status.is_reaped |= !scene.reapers.is_empty();
-        let mut workspace = self.workspace();
-        if scene.fits(workspace.size()) && workspace.lacks(scene).is_none() {
-            workspace.status.kept = scene.plan().kept();
-            workspace.step(scene, dt, &mut report, observer);
+        let mut memory = self.memory.slices();
+        let mut workspace = Workspace::on(&mut memory, &mut self.status);
+        let layout = workspace.layout(scene);
+        if workspace.fits(scene, &layout) && workspace.lacks(scene).is_none() {
+            workspace.status.kept = layout.kept_words();
+            let old = workspace.create(scene, &scene.backdrop(), &layout, dt, &mut report, observer);
+            let mut memory = self.memory.slices();
+            let mut workspace = Workspace::on(&mut memory, &mut self.status);
+            workspace.step(scene, &layout, old, dt, &mut report, observer);
         } else {
             report.caps.insufficient_memory = 1;
         }
-        self.status.totals += report;
+        self.status.totals.take_in(&report);
         report
     }
 
@@ -115,7 +122,7 @@ impl<B: Storage> System<B> {
     pub fn spawn(&mut self, particle: &Particle) -> Result<Id, Full> {
         let now = self.status.time;
         self.status.hint = Time::ZERO;
-        let given = self.workspace().put(particle, now);
+        let given = Workspace::on(&mut self.memory.slices(), &mut self.status).put(particle, now);
         let totals = &mut self.status.totals;
         match given {
             Ok(_) => totals.born = totals.born.saturating_add(1),
@@ -130,8 +137,8 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         report.died.other = 1;
         self.status.hint = Time::ZERO;
-        self.workspace().remove(row, scene.springs, &mut report);
-        self.status.totals += report;
+        Workspace::on(&mut self.memory.slices(), &mut self.status).remove(row, scene.springs, &mut report);
+        self.status.totals.take_in(&report);
         true
     }
 
@@ -217,12 +224,6 @@ impl<B: Storage> System<B> {
         let besides = columns.kept.get(kept.per_row * capacity..).unwrap_or(&[]);
         besides.iter().take(kept.fixed).for_each(|&word| hash.word(word));
         hash.finish()
-    }
-
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn workspace(&mut self) -> Workspace<'_> {
-        let memory = self.memory.slices();
-        Workspace { capacity: memory.capacity(), memory, status: &mut self.status }
     }
 }
 

@@ -4,6 +4,7 @@ mod event_driven;
 mod images;
 mod impulse;
 mod lead;
+mod marks;
 mod meeting;
 mod meetings;
 mod near;
@@ -20,6 +21,7 @@ mod tile_sweep;
 mod waiting;
 
 pub(crate) use lead::LeadCode;
+pub(crate) use marks::MarkCode;
 pub use meetings::{Impulse, Meetings};
 pub(crate) use passage::Passage;
 #[cfg(feature = "std")]

@@ -4,6 +4,7 @@ use crate::math::{along, dot, high, is_zero, length, low, max, minus, over, plus
 use crate::rows::are_finite;
 use crate::shape::{Aabb, Segment};
 use crate::time::Time;
+use core::slice::from_ref;
 use glam::Vec3;
 
 /// How far the chords along which hits are found may stray from a path \[m\], unless that takes more than `MAX_CHORDS`.
@@ -72,7 +73,8 @@ impl Path {
     pub(super) fn is_finite(&self) -> bool {
         // A term that is not finite makes a sum that is not; a sum may be so without one. Chips are spared the sum.
         let sum_is_finite = || (self.x0 + self.v0 + self.x1 + self.v1).is_finite();
-        !cfg!(target_os = "none") && sum_is_finite() || are_finite(&[self.x0, self.v0, self.x1, self.v1])
+        let ends = || [&self.x0, &self.v0, &self.x1, &self.v1].into_iter().all(|end| are_finite(from_ref(end)));
+        !cfg!(target_os = "none") && sum_is_finite() || ends()
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.

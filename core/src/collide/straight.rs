@@ -2,15 +2,16 @@
 
 use super::path::{Path, between};
 use super::sweep::{LAIN, RESTING, let_go};
-use super::tile::Tile;
-use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
-use crate::material::on_surface;
-use crate::math::{along, dot, is_zero, length, max, minus, plus, scaled};
+use super::tile::{Obstacles, Tile};
+use crate::force::Friction;
+use crate::material::{Mixed, Mixing};
+use crate::math::{along, copied, dot, is_zero, length, max, minus, plus, scaled};
 use crate::memory::Past;
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
 use crate::reap::PendingDeath;
 use crate::report::Report;
+use crate::rows::BLOCKS;
 use crate::shape::{Collider, Hit, Segment};
 use crate::time::Time;
 use glam::Vec3;
@@ -38,26 +39,29 @@ pub(super) fn follow(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dy
 }
 
 /// Takes a row to where it comes to.
+#[cfg_attr(target_os = "none", inline(never))]
 fn pass(tile: &mut Tile<'_>, past: Past<'_>, row: usize, report: &mut Report, observer: &mut dyn Observer) {
     let mut path = tile.path(past, row);
     if !path.is_finite() {
         return;
     }
-    // Constraints know nothing of the newborn; what they do is to be read at `TileSweep::follow_past`.
-    let mark = if row < tile.old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
-    if mark & SHIFTED != 0 {
-        path = path.straightened();
+    let (mut walls, mut radius, sinks) =
+        (tile.obstacles.colliders, tile.attributes.lives.radius[row], tile.obstacles.sinks);
+    // Constraints know nothing of the newborn.
+    if row < tile.old
+        && let Some((code, &mark)) = tile.obstacles.marks.zip(past.marks.get(row))
+    {
+        (walls, radius) = (code.0)(mark, &mut path, walls, radius);
     }
-    let (walls, sinks): (&dyn Collider, _) =
-        (if mark & CARRIED != 0 { &() } else { tile.obstacles.colliders }, tile.obstacles.sinks);
-    let radius = tile.attributes.lives.radius[row];
-    let radius = if mark & TOUCHING != 0 { 0.5 * radius } else { radius };
     if row >= tile.old && tile.attributes.lives.born[row] > tile.now {
         let_go(walls, Some(sinks), &mut path, tile.dt.seconds());
     }
     let Some(death) = (Straight { tile, walls, row, radius, report, observer }).go(&mut path) else { return };
-    (tile.position[row], tile.velocity[row], tile.pending_death[row]) = (path.x1, path.v1, death);
-    tile.reached = tile.reached.and_then(|reached| reached.with(path.x1, path.v1));
+    (tile.position[row], tile.velocity[row]) = (copied(path.x1), copied(path.v1));
+    tile.pending_death[row] = death;
+    if BLOCKS {
+        tile.reached = tile.reached.and_then(|reached| reached.with(path.x1, path.v1));
+    }
 }
 
 impl Straight<'_, '_> {
@@ -91,7 +95,11 @@ impl Straight<'_, '_> {
         let Self { tile, row, .. } = *self;
         let (lives, normal) = (&tile.attributes.lives, hit.normal);
         let own = lives.material[row].checked_sub(1);
-        let mixed = on_surface(tile.obstacles.materials, tile.attributes.elasticity[row], own, hit.material);
+        let (elasticity, Obstacles { materials, mixing, .. }) = (tile.attributes.elasticity[row], tile.obstacles);
+        let mixed = match mixing {
+            Some(Mixing(on_surface)) => on_surface(materials, elasticity, own, hit.material),
+            None => Mixed { elasticity, friction: Friction::NONE },
+        };
         let during = [between(path.during, hit.time), path.during[1]];
         let (place, rest) = (way.at(hit.time), (during[1] - during[0]).seconds());
 

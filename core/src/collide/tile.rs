@@ -1,9 +1,10 @@
 //! Rows that go through a step together, and what their paths are held against.
 
 use super::lead::LeadCode;
+use super::marks::MarkCode;
 use super::path::Path;
 use crate::force::Attributes;
-use crate::material::MaterialList;
+use crate::material::{MaterialList, Mixing};
 use crate::memory::{Layout, Past};
 use crate::reap::PendingDeath;
 use crate::rows::Extents;
@@ -17,10 +18,14 @@ pub(crate) struct Obstacles<'a> {
     pub(crate) colliders: &'a dyn Collider,
     pub(crate) sinks: &'a dyn Collider,
     pub(crate) materials: &'a dyn MaterialList,
+    /// The function that mixes them, for straight paths, if there may be any.
+    pub(crate) mixing: Option<Mixing>,
     /// How often a particle may bounce in one sub-step.
     pub(crate) max_bounces: u32,
     /// The code that leaves springs to their method along surfaces, if there are any.
     pub(crate) lead: Option<LeadCode>,
+    /// The code that heeds what constraints have done, if there are any.
+    pub(crate) marks: Option<MarkCode>,
 }
 
 /// Rows in the middle of a step.
@@ -39,7 +44,7 @@ pub(crate) struct Tile<'a> {
     pub(crate) attributes: Attributes<'a>,
     /// Memory to work with, and how that is laid out.
     pub(crate) work: &'a mut [Vec3],
-    pub(crate) layout: Layout,
+    pub(crate) layout: &'a Layout,
     /// True if any of them may come to the end of its life in the step.
     pub(crate) may_end: bool,
     /// How far the step has taken them, where that is known.

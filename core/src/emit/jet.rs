@@ -1,8 +1,8 @@
 //! An emitter for those who have little room for code.
 
 use super::{Births, Emit, Spread, Varied};
-use crate::math::along;
-use crate::particles::Particle;
+use crate::math::{along, plus};
+use crate::particles::{Particle, Start};
 use crate::rng::Stream;
 use crate::shape::Surface;
 use crate::time::Time;
@@ -61,22 +61,18 @@ impl<S: Surface + Sync> Emit for Jet<S> {
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
         births.bring(number, self.rate, [from, to], |births, at| {
-            births.give(number, at, |random| self.newborn(random)).is_ok()
+            births.give_like(number, at, &self.newborn, |random| self.start(random, at)).is_ok()
         });
     }
 }
 
 impl<S: Surface> Jet<S> {
-    /// A newborn: each property draws from the place that it has in an `Emitter`, whose sums of what is nothing here make zeros positive.
-    fn newborn(&self, random: Stream) -> Particle {
+    /// How a newborn begins: each property draws from the place that it has in an `Emitter`, whose sums of what is nothing here make zeros positive.
+    fn start(&self, random: Stream, born: Time) -> Start {
         let [[u, v], [w, p], [q, speed], [_, life]] = random.units_of([0, 1, 2, 4]);
         let spot = self.shape.sample([u, v, w]);
         let direction = Spread::Uniform(self.angle).direction(spot.normal, [p, q]);
-        Particle {
-            position: spot.point + Vec3::ZERO,
-            velocity: along(Vec3::ZERO, direction, self.speed.pick(speed)),
-            lifetime: self.lifetime.pick(life),
-            ..self.newborn
-        }
+        let velocity = along(Vec3::ZERO, direction, self.speed.pick(speed));
+        Start { position: plus(spot.point, Vec3::ZERO), velocity, lifetime: self.lifetime.pick(life), born }
     }
 }

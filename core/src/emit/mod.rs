@@ -19,7 +19,7 @@ use crate::index::{Neighbours, SpatialIndex};
 use crate::math::{divide, max};
 use crate::memory::{Layout, Storage, Workspace};
 use crate::observe::{LifeEvent, Observer};
-use crate::particles::{Full, Particle};
+use crate::particles::{Full, Particle, Start};
 use crate::report::Report;
 use crate::rng::Stream;
 use crate::time::{Time, fixed_32};
@@ -87,7 +87,7 @@ pub trait Emit: Sync {
 /// The place that emitters give birth into.
 #[allow(missing_debug_implementations)]
 pub struct Births<'a> {
-    pub(crate) workspace: Workspace<'a>,
+    pub(crate) workspace: &'a mut Workspace<'a>,
     pub(crate) layout: &'a Layout,
     pub(crate) backdrop: &'a Backdrop<'a>,
     pub(crate) report: &'a mut Report,
@@ -151,21 +151,30 @@ impl Births<'_> {
     /// # Errors
     /// If there is no room, which is counted. It has used up its random numbers all the same.
     pub fn give(&mut self, number: usize, at: Time, make: impl FnOnce(Stream) -> Particle) -> Result<(), Full> {
-        let Some(stream) = self.next(number) else { return Err(Full) };
-        if self.workspace.is_full() {
-            self.miss(at);
-            return Err(Full);
-        }
-        self.bear(stream, at, &make(stream)).inspect_err(|_| self.miss(at))
+        let stream = self.next_with_room(number, at)?;
+        let particle = make(stream);
+        self.bear(stream, &particle, &Start::of(&particle, at))
+    }
+
+    /// The same of one that is like another but for how it begins.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn give_like(
+        &mut self,
+        number: usize,
+        at: Time,
+        like: &Particle,
+        make: impl FnOnce(Stream) -> Start,
+    ) -> Result<(), Full> {
+        let stream = self.next_with_room(number, at)?;
+        self.bear(stream, like, &make(stream))
     }
 
     /// A birth of emitter `number` that may come to nothing: `make` sees who is there. What finds no room is counted.
     pub fn offer(&mut self, number: usize, at: Time, make: impl FnOnce(Stream, &Self) -> Option<Particle>) {
         let Some(stream) = self.next(number) else { return };
         let Some(particle) = make(stream, self) else { return };
-        if self.bear(stream, at, &particle).is_err() {
-            self.miss(at);
-        }
+        // What finds no room is counted there.
+        let _ = self.bear(stream, &particle, &Start::of(&particle, at));
     }
 
     /// Lets the births happen that a rate owes in a span, as long as `bear` says that they find room; refuses the others.
@@ -188,12 +197,26 @@ impl Births<'_> {
         Some(Stream::new(self.workspace.seed(), number as u32, serial))
     }
 
-    fn bear(&mut self, stream: Stream, at: Time, particle: &Particle) -> Result<(), Full> {
-        let id = self.workspace.spawn(particle, at, stream.name())?;
+    /// The same, if there is room for it; else that is counted.
+    fn next_with_room(&mut self, number: usize, at: Time) -> Result<Stream, Full> {
+        let stream = self.next(number).ok_or(Full)?;
+        if self.workspace.is_full() {
+            self.miss(at);
+            return Err(Full);
+        }
+        Ok(stream)
+    }
+
+    /// Puts a newborn in, or counts that it finds no room.
+    fn bear(&mut self, stream: Stream, like: &Particle, start: &Start) -> Result<(), Full> {
+        let Ok(id) = self.workspace.spawn(like, start, stream.name()) else {
+            self.miss(start.born);
+            return Err(Full);
+        };
         self.workspace.give_custom(self.backdrop.custom, self.layout, self.workspace.len() - 1);
         self.report.born += 1;
-        let Particle { position: place, velocity, .. } = *particle;
-        self.observer.born(&LifeEvent { id, place, velocity, time: at });
+        let Start { position: place, velocity, born: time, .. } = *start;
+        self.observer.born(&LifeEvent { id, place, velocity, time });
         Ok(())
     }
 

@@ -19,14 +19,11 @@ pub(crate) struct Attributes<'a> {
 
 impl<'a> Attributes<'a> {
     /// The first rows somewhere, at some time, with columns of a user's own.
-    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn state<'s>(&self, custom: CustomColumns<'s>, time: Time, [x, v]: [&'s [Vec3]; 2]) -> State<'s>
     where
         'a: 's,
     {
-        let mut state = self.lives.moved(time, x, v);
-        state.custom = custom.rows(0..x.len());
-        state
+        self.lives.moved_with(custom, time, [x, v])
     }
 
     /// Columns of a user's own as they are now: where constraints may change them, those that are lent for it.

@@ -2,7 +2,7 @@
 
 use super::{Force, Perturbation, State};
 use crate::math::max;
-use crate::rows::each_row;
+use crate::rows::add_each;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -25,11 +25,11 @@ impl Force for Drag {
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        each_row(total, &state.velocity[rows.clone()], &state.drag[rows], |total, v, k| total - v * k);
+        add_each(total, &state.velocity[rows.clone()], &state.drag[rows], |k| -k);
     }
 
     fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
-        each_row(total, change.along, state.drag, |total, along, k| total - along * (max(k, 0.0) * change.velocity));
+        add_each(total, change.along, state.drag, |k| -(max(k, 0.0) * change.velocity));
     }
 
     fn add_stiffness(&self, state: &State<'_>, [_, velocity]: [f32; 2], total: &mut [Vec3]) {

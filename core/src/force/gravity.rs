@@ -2,7 +2,7 @@
 
 use super::{Force, State};
 use crate::material::Floating;
-use crate::rows::each_row_with;
+use crate::rows::add_one;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -25,7 +25,7 @@ impl Gravity {
 impl Gravity {
     /// Takes off what carries those that are buoyant.
     fn carry(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        if let Some(code) = state.materials.code().filter(|code| (code.floats)(state.materials)) {
+        if let Some(code) = state.materials.code() {
             let State { time, born, dies, material, key, mass, .. } = *state;
             let floating = Floating { time, born, dies, material, key, mass };
             (code.carry)(state.materials, &floating, rows, self.acceleration, total);
@@ -44,7 +44,7 @@ impl Force for Gravity {
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        each_row_with(total, self.acceleration, &state.mass[rows.clone()], |total, g, m| total + g * m);
+        add_one(total, self.acceleration, &state.mass[rows.clone()]);
         self.carry(state, rows, total);
     }
 

@@ -5,7 +5,7 @@ use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::index::{ARE_KEPT, BarnesHut, Found, IndexChoice, ListMemory, Neighbours, Search, StateIndex, find};
 use crate::math::max;
 use crate::memory::Layout;
-use crate::report::Effort;
+use crate::report::{Effort, Finding};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -32,7 +32,7 @@ pub(crate) struct Written<'a> {
     pub(crate) ends: [&'a [Vec3]; 2],
     pub(crate) kept: &'a mut [u32],
     pub(crate) work: &'a mut [Vec3],
-    pub(crate) layout: Layout,
+    pub(crate) layout: &'a Layout,
     pub(crate) end: Time,
     pub(crate) effort: &'a mut Effort,
     /// What changes the columns.
@@ -69,13 +69,13 @@ pub(crate) struct Finder<'a> {
     /// Lists of neighbours, where there is memory for them.
     pub(crate) lists: Option<ListMemory<'a>>,
     pub(crate) first: usize,
-    pub(crate) effort: Effort,
+    pub(crate) finding: Finding,
 }
 
 impl Finder<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
     pub(crate) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
-        self.effort.evaluations += u64::from(!position.is_empty());
+        self.finding.evaluations += u32::from(!position.is_empty());
         let state = self.attributes.state(self.custom, time, [position, velocity]);
         match self.needs.mass_tree.or(self.needs.charge_tree) {
             Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
@@ -90,7 +90,7 @@ impl Finder<'_> {
         match self.needs.lists.filter(|_| looks) {
             Some(lists) => (lists.0)(self, state, then),
             None => {
-                self.effort.all_pairs += u64::from(looks);
+                self.finding.all_pairs += u32::from(looks);
                 then(state);
             }
         }
@@ -122,11 +122,10 @@ fn write(rows: Written<'_>) {
     let mut custom = CustomColumnsMut::new(seen.list(), values, layout.capacity(), position.len());
     let mut scratch = layout.shares(work).scratch;
     let ([tree, near], _, lasting) = scratch.moving();
-    let index = StateIndex::new(index, near, lasting);
-    let finding = Effort::NONE;
-    let mut finder = Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, effort: finding };
+    let (index, finding) = (StateIndex::new(index, near, lasting), Finding::default());
+    let mut finder = Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, finding };
     finder.with_state(end, position, velocity, &mut |state| write(state, &mut custom));
-    effort.found(&finder.effort);
+    effort.found(&finder.finding);
 }
 
 fn build(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
@@ -145,7 +144,7 @@ fn build(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
 
 fn look_up(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
     if ARE_KEPT && finder.with_newborn(state, then) {
-        finder.effort.streamed += 1;
+        finder.finding.streamed += 1;
         return;
     }
     if ARE_KEPT && finder.are_few(state) {
@@ -158,9 +157,9 @@ fn look_up(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
         found = how;
         then(&State { near, ..*state });
     });
-    finder.effort.lists += u64::from(found == Found::Listed);
-    finder.effort.streamed += u64::from(found == Found::Streamed);
-    finder.effort.all_pairs += u64::from(found == Found::AllPairs);
+    finder.finding.lists += u32::from(found == Found::Listed);
+    finder.finding.streamed += u32::from(found == Found::Streamed);
+    finder.finding.all_pairs += u32::from(found == Found::AllPairs);
 }
 
 /// The needs of a force: all that it has to find in the state, beyond the particles.

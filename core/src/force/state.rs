@@ -85,20 +85,46 @@ impl<'a> State<'a> {
     where
         'a: 's,
     {
+        self.moved_with(self.custom, time, [position, velocity])
+    }
+
+    /// The same with other columns of a user's own.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn moved_with<'s>(
+        &self,
+        custom: CustomColumns<'s>,
+        time: Time,
+        [position, velocity]: [&'s [Vec3]; 2],
+    ) -> State<'s>
+    where
+        'a: 's,
+    {
+        let len = position.len();
         State {
             time,
             position,
             velocity,
+            radius: &self.radius[..len],
+            mass: &self.mass[..len],
+            drag: &self.drag[..len],
+            charge: &self.charge[..len],
+            born: &self.born[..len],
+            dies: &self.dies[..len],
+            slot: &self.slot[..len],
+            key: &self.key[..len],
+            color: &self.color[..len],
+            material: &self.material[..len],
+            materials: self.materials,
+            springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
+            custom: custom.rows(0..len),
             near: self.near.at(position),
             mass_tree: None,
             charge_tree: None,
-            ..self.attributes_of(0..position.len())
         }
     }
 
     /// The attributes of some rows, without places and velocities.
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[inline(always)]
     pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
         // Changed in a copy: to write out the whole of it would take a chip more flash.
         let mut some = *self;

@@ -3,7 +3,7 @@
 use super::{Dynamics, Linear, Linearising, Now};
 use crate::force::{Finder, Force, SpringForce, State, Steady};
 use crate::observe::{Observer, Phase};
-use crate::rows::{BLOCKS, each_row_with};
+use crate::rows::{BLOCKS, scale_each};
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -26,7 +26,7 @@ impl Dynamics for Field<'_> {
         let Self { forces, springs, ref mut finder, .. } = *self;
         let (attributes, rows) = (finder.attributes, finder.first..position.len());
         if let Some(steady) = self.steady.filter(|_| BLOCKS) {
-            finder.effort.evaluations += u64::from(!position.is_empty());
+            finder.finding.evaluations += u32::from(!position.is_empty());
             return steady.accelerate(attributes.inertia(rows.clone()), &velocity[rows], acceleration);
         }
         let inverse_mass = &attributes.inverse_mass[rows.clone()];
@@ -52,10 +52,8 @@ impl Dynamics for Field<'_> {
 /// Makes accelerations of forces. Apart, so that compilers know that the columns are two, and make vectors of them.
 #[inline(never)]
 fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
-    each_row_with(forces, Vec3::ZERO, inverse_mass, |force, _, inverse| {
-        // A fixed particle stays so under a force that is beyond an f32.
-        if inverse == 0.0 { 0.0 } else { force * inverse }
-    });
+    // A fixed particle stays so under a force that is beyond an f32.
+    scale_each(forces, inverse_mass);
 }
 
 /// The forces on some rows, those of springs behind the others.

@@ -1,6 +1,7 @@
 //! The memory that a scene's step asks for, and where each part of it lies. Nothing else knows.
 
 use crate::index::{ARE_KEPT, IndexChoice, Lasting, StateIndex, index_words};
+use crate::math::quotient;
 use glam::Vec3;
 
 /// So many words of 32 bits for each particle, and so many besides.
@@ -98,9 +99,19 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// Vectors for each of so many particles that all of it takes.
+    ///
+    /// By plain division: it is for who asks, and compilers leave that out where nobody reads the answer.
     pub(crate) fn columns(&self, capacity: usize) -> usize {
-        let words = self.lasting().and(self.passing()).of(capacity.max(1));
-        words.div_ceil(3 * capacity.max(1))
+        let capacity = capacity.max(1);
+        self.words(capacity, self.lasting(capacity).div_ceil(3)).div_ceil(3 * capacity)
+    }
+
+    /// Words for so many particles, what lasts through the step lying in so many vectors.
+    #[inline(always)]
+    fn words(&self, capacity: usize, lasting: usize) -> usize {
+        let states = Words::columns(2 * usize::from(self.start));
+        let lasting = Words { per_row: 0, fixed: lasting.saturating_mul(3) };
+        self.lasting_index().and(states).and(self.passing()).and(lasting).of(capacity)
     }
 
     /// The words kept from step to step: columns of a user's own, what materials change, and what constraints keep.
@@ -125,11 +136,15 @@ impl Plan {
         if ARE_KEPT && self.crowd { of_all } else { Words::NONE }
     }
 
-    /// The words that last through the step.
-    fn lasting(&self) -> Words {
-        let states = Words::columns(2 * usize::from(self.start));
-        let marks = Words { per_row: usize::from(self.constrained), fixed: 0 };
-        self.lasting_index().and(states).and(marks).and(self.constraints.step)
+    /// Marks, and words that constraints keep through the step, for so many particles.
+    fn marks_and_step(&self, capacity: usize) -> [usize; 2] {
+        [if self.constrained { capacity } else { 0 }, self.constraints.step.of(capacity)]
+    }
+
+    /// Both.
+    fn lasting(&self, capacity: usize) -> usize {
+        let [marks, step] = self.marks_and_step(capacity);
+        marks.saturating_add(step)
     }
 
     /// The words that its phases need in turn.
@@ -153,6 +168,9 @@ impl Plan {
 pub(crate) struct Layout {
     plan: Plan,
     capacity: usize,
+    /// The vectors that what lasts through the step lies in, and those that all of it takes.
+    lasting: usize,
+    least: usize,
 }
 
 /// The parts of the memory that a step works with.
@@ -212,10 +230,10 @@ impl Kept<'_> {
 /// Memory that is used for one thing after the other.
 #[derive(Debug)]
 pub(crate) struct Scratch<'m> {
-    words: &'m mut [u32],
+    vectors: &'m mut [Vec3],
     /// For the index of a state; none where nobody asks but forces and constraints.
     index: Lasting<'m>,
-    layout: Layout,
+    layout: &'m Layout,
 }
 
 /// The parts of its beginning that a sub-step remembers, for reading.
@@ -228,7 +246,19 @@ pub(crate) struct Past<'m> {
 
 impl Layout {
     pub(crate) fn of(plan: Plan, capacity: usize) -> Self {
-        Self { plan, capacity }
+        let lasting = over(plan.lasting(capacity), 3);
+        let columns = over(plan.words(capacity, lasting), 3 * capacity.max(1));
+        Self { plan, capacity, lasting, least: columns.saturating_mul(capacity) }
+    }
+
+    /// The same for tiles of so many rows, if there is room for more: there is no share for the index of a state.
+    pub(crate) fn of_tiles(&self, rows: usize) -> Self {
+        Self::of(self.plan.without_crowd(), self.capacity.min(rows))
+    }
+
+    /// The words kept from step to step.
+    pub(crate) fn kept_words(&self) -> Words {
+        self.plan.kept()
     }
 
     /// The number of particles that there is room for.
@@ -236,32 +266,35 @@ impl Layout {
         self.capacity
     }
 
+    /// Tells whether so many vectors to work with and so many words to keep will do.
+    pub(crate) fn fits(&self, work: usize, kept: usize) -> bool {
+        self.least <= work && (self.plan.kept().of(self.capacity) <= kept || self.capacity == 0)
+    }
+
     /// All shares.
-    pub(crate) fn shares<'m>(&self, work: &'m mut [Vec3]) -> Shares<'m> {
-        let least = self.plan.columns(self.capacity).saturating_mul(self.capacity).min(work.len());
-        let (work, lists) = work.split_at_mut(least);
-        let mut rest: &'m mut [u32] = bytemuck::cast_slice_mut(work);
+    pub(crate) fn shares<'m>(&'m self, work: &'m mut [Vec3]) -> Shares<'m> {
+        let (mut rest, lists) = work.split_at_mut(self.least.min(work.len()));
         // The first, so that it lies in the same place whatever else is asked for.
         let index = match ARE_KEPT && self.plan.crowd {
-            true => Lasting::of(take(&mut rest, self.plan.lasting_index().of(self.capacity))),
+            true => Lasting::of(bytemuck::cast_slice_mut(take(&mut rest, self.lasting_index()))),
             false => Lasting::none(),
         };
         let pair = if self.plan.start { self.capacity } else { 0 };
-        let start = [take_vectors(&mut rest, pair), take_vectors(&mut rest, pair)];
-        let marks = take(&mut rest, if self.plan.constrained { self.capacity } else { 0 });
-        let step = take(&mut rest, self.plan.constraints.step.of(self.capacity));
+        let start = [take(&mut rest, pair), take(&mut rest, pair)];
+        let [marks, step] = self.plan.marks_and_step(self.capacity);
+        let mut lasting = bytemuck::cast_slice_mut(take(&mut rest, self.lasting));
         Shares {
             start,
-            marks,
-            step,
-            scratch: Scratch { words: rest, index, layout: *self },
+            marks: take(&mut lasting, marks),
+            step: take(&mut lasting, step),
+            scratch: Scratch { vectors: rest, index, layout: self },
             lists: bytemuck::cast_slice_mut(lists),
         }
     }
 
-    /// The same where nobody asks who is near whom at a step's beginning or its end: there is no share for the index of a state.
-    pub(crate) fn without_crowd(self) -> Self {
-        Self { plan: self.plan.without_crowd(), ..self }
+    /// Vectors for the index that lasts, which takes a whole number of them.
+    fn lasting_index(&self) -> usize {
+        self.plan.lasting_index().of(self.capacity) / 3
     }
 
     /// The index of a state, and at least a vector for each particle, before anything has been moved or when all has been done.
@@ -305,7 +338,7 @@ impl Layout {
     /// The memory of a sub-step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
         let pair = if self.plan.start { self.capacity } else { 0 };
-        let work = if ARE_KEPT { &work[self.plan.lasting_index().of(self.capacity) / 3..] } else { work };
+        let work = if ARE_KEPT { &work[self.lasting_index()..] } else { work };
         let (start, rest) = work.split_at(2 * pair);
         let marks = if self.plan.constrained { &bytemuck::cast_slice(rest)[..self.capacity] } else { &[] };
         Past { start: start.split_at(pair).into(), marks }
@@ -315,17 +348,16 @@ impl Layout {
 impl Scratch<'_> {
     /// For trees of masses and charges, for the index of forces, and for the method; and the index that lasts, if there is one, instead.
     pub(crate) fn moving(&mut self) -> ([&mut [u32]; 2], &mut [Vec3], Lasting<'_>) {
-        let Layout { plan, capacity } = self.layout;
-        let mut rest = &mut *self.words;
-        let trees = take(&mut rest, 3 * plan.trees * capacity);
-        let near = take(&mut rest, 3 * plan.passing_index() * capacity);
-        ([trees, near], vectors(rest), self.index.again())
+        let Layout { plan, capacity, .. } = self.layout;
+        let mut rest = &mut *self.vectors;
+        let [trees, near] = [plan.trees, plan.passing_index()].map(|columns| take(&mut rest, columns * capacity));
+        ([bytemuck::cast_slice_mut(trees), bytemuck::cast_slice_mut(near)], rest, self.index.again())
     }
 
     /// For the index of constraints, and for them.
     pub(crate) fn constraining(&mut self) -> [&mut [u32]; 2] {
-        let Layout { plan, capacity } = self.layout;
-        let mut rest = &mut *self.words;
+        let Layout { plan, capacity, .. } = self.layout;
+        let mut rest = bytemuck::cast_slice_mut(self.vectors);
         let near = if plan.constraints.finds_near { 3 * plan.index * capacity } else { 0 };
         [take(&mut rest, near), rest]
     }
@@ -335,16 +367,21 @@ impl<'m> Scratch<'m> {
     /// For meetings of so many, when all have been moved: for their events, for where they were at the sub-step's beginning, and for an
     /// index of that.
     pub(crate) fn meeting(self, len: usize) -> (&'m mut [u32], &'m mut [Vec3], &'m mut [u32]) {
-        let (plan, mut rest) = (self.layout.plan, self.words);
-        let events = take(&mut rest, 9 * len);
-        let home = take_vectors(&mut rest, len);
-        (events, home, take(&mut rest, 3 * plan.index * len))
+        let mut rest = self.vectors;
+        let (events, home) = (take(&mut rest, 3 * len), take(&mut rest, len));
+        let index = take(&mut rest, self.layout.plan.index * len);
+        (bytemuck::cast_slice_mut(events), home, bytemuck::cast_slice_mut(index))
     }
 }
 
-/// The first so many words, or all that there are.
+/// The parts of a size in which so many have room.
+fn over(many: usize, size: usize) -> usize {
+    if many == 0 { 0 } else { quotient(many - 1, size) + 1 }
+}
+
+/// The first so many, or all that there are.
 #[cfg_attr(target_os = "none", inline(never))]
-pub(crate) fn take<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [u32] {
+pub(crate) fn take<'m, T>(rest: &mut &'m mut [T], len: usize) -> &'m mut [T] {
     let all = core::mem::take(rest);
     let (first, others) = all.split_at_mut(len.min(all.len()));
     *rest = others;

@@ -15,5 +15,6 @@ pub use heap::Heap;
 pub use layout::{Demand, Kept, Words};
 pub(crate) use layout::{Layout, Past, Plan, Scratch, Shares, take, take_vectors};
 pub use likeness::{Likeness, Own};
+pub(crate) use storage::Attribute;
 pub use storage::{Alike, Columns, Common, Inline, Size, Slices, Storage};
 pub(crate) use workspace::{Inertias, Status, TILED, Workspace};

@@ -4,6 +4,7 @@
 
 use super::Column;
 use super::table::columns;
+use crate::math::copied;
 use crate::particles::Particle;
 use glam::Vec3;
 
@@ -38,6 +39,22 @@ macro_rules! storage {
             $($(#[$w_doc])* pub $w: &'a mut [$w_ty],)+
         }
 
+        /// An attribute that all particles may have in common. A name is looked up only where it is read.
+        // Ends of lists of springs are in the table with the others, though no particle says them.
+        #[allow(non_camel_case_types, dead_code)]
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) enum Attribute {
+            $($c,)+
+        }
+
+        impl Attribute {
+            pub(crate) fn name(self) -> &'static str {
+                match self {
+                    $(Self::$c => stringify!($c),)+
+                }
+            }
+        }
+
         /// A system's memory, for reading.
         #[derive(Clone, Copy, Debug)]
         pub struct Columns<'a> {
@@ -49,7 +66,7 @@ macro_rules! storage {
             $($(#[$w_doc])* pub $w: &'a [$w_ty],)+
         }
 
-        // Asked for in many places: apart, it is in a chip's flash once. So are those of the owners.
+        // Asked for in several places: apart, it is in a chip's flash once. So are those of the owners.
         impl Storage for Slices<'_> {
             #[inline(never)]
             fn slices(&mut self) -> Slices<'_> {
@@ -57,7 +74,6 @@ macro_rules! storage {
                     $($p: self.$p,)+ $($c: self.$c.again(),)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
                 }
             }
-            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: self.$p,)+ $($c: &self.$c,)+ $($e: self.$e,)+ $($s: self.$s,)+ $($k: self.$k,)+ $($w: self.$w,)+
@@ -100,11 +116,11 @@ macro_rules! storage {
             /// # Errors
             /// The first of them that the particle has otherwise than this memory holds it for all.
             #[cfg_attr(target_os = "none", inline(never))]
-            pub(crate) fn give(&mut self, row: usize, particle: &Particle) -> Result<(), &'static str> {
+            pub(crate) fn give(&mut self, row: usize, particle: &Particle) -> Result<(), Attribute> {
                 $(storage!(@unless_by_number $c {
                     let $particle = particle;
                     if !self.$c.put(row, $c_of) {
-                        return Err(stringify!($c));
+                        return Err(Attribute::$c);
                     }
                 });)+
                 Ok(())
@@ -168,7 +184,6 @@ macro_rules! storage {
                     $($w: self.$w.as_flattened_mut(),)+
                 }
             }
-            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: &self.$p,)+
@@ -183,7 +198,7 @@ macro_rules! storage {
 
         /// Memory in the value itself for particles that are alike: those attributes that [`Common`] has of all are not kept of
         /// each, which takes 57 bytes a particle where [`Inline`] takes 91, besides the columns to work with. There are no springs. What all have lies in
-        /// flash, as often as there are rows: up to 34 bytes a particle, less where several attributes have one value.
+        /// flash, as often as there are rows: up to 36 bytes a particle, less where several attributes have the same bits.
         ///
         /// A scene that begins with other particles, or whose emitters would bear others, is refused by
         /// [`start`](crate::System::start) with the name of the attribute; what is born otherwise all the same is refused and counted.
@@ -222,9 +237,10 @@ macro_rules! storage {
         /// What all have, as often as there are rows.
         #[allow(non_upper_case_globals)]
         impl<C: Common, const P: usize, const E: usize, const W: usize, const K: usize> Alike<C, P, E, W, K> {
-            $(const $c: &'static [$c_ty; P] = {
+            // A word for each, so that what has the same bits lies in flash once.
+            $(const $c: &'static [[$c_ty; 4 / size_of::<$c_ty>()]; P] = {
                 let $particle = &C::PARTICLE;
-                &[$c_of; P]
+                &[[$c_of; 4 / size_of::<$c_ty>()]; P]
             };)+
 
             /// Fresh memory, all zeros: in a `static` it costs no flash.
@@ -251,18 +267,17 @@ macro_rules! storage {
             fn slices(&mut self) -> Slices<'_> {
                 Slices {
                     $($p: &mut self.$p,)+
-                    $($c: Column::Common(Self::$c),)+
+                    $($c: Column::Common(&Self::$c.as_flattened()[..P]),)+
                     $($e: &mut self.$e,)+
                     $($s: &mut [],)+
                     $($k: self.$k.as_flattened_mut(),)+
                     $($w: self.$w.as_flattened_mut(),)+
                 }
             }
-            #[inline(never)]
             fn columns(&self) -> Columns<'_> {
                 Columns {
                     $($p: &self.$p,)+
-                    $($c: Self::$c,)+
+                    $($c: &Self::$c.as_flattened()[..P],)+
                     $($e: &self.$e,)+
                     $($s: &[],)+
                     $($k: self.$k.as_flattened(),)+
@@ -274,7 +289,8 @@ macro_rules! storage {
     // By slot and by number, not by row.
     (@living $self:ident, $len:ident, row_of) => { $self.row_of };
     (@living $self:ident, $len:ident, last_spring) => { $self.last_spring };
-    (@living $self:ident, $len:ident, $column:ident) => { &$self.$column[..$len] };
+    // Without a panic, so that compilers leave out what nobody reads.
+    (@living $self:ident, $len:ident, $column:ident) => { $self.$column.get(..$len).unwrap_or(&[]) };
     (@unless_by_number last_spring $code:block) => {};
     (@unless_by_number $c:ident $code:block) => { $code };
     // By slot, not by row: it stays where it is.
@@ -302,13 +318,9 @@ pub trait Common {
     const PARTICLE: Particle;
 }
 
-/// Copies a vector, number by number: of a whole one compilers make a call that copies ranges which may overlap.
+/// Copies a vector.
 fn copy(column: &mut [Vec3], from: usize, to: usize) {
-    let Vec3 { x, y, z } = column[from];
-    let place = &mut column[to];
-    place.x = x;
-    place.y = y;
-    place.z = z;
+    column[to] = copied(column[from]);
 }
 
 /// How much memory a system has, or a scene needs.

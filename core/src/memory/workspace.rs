@@ -2,10 +2,11 @@
 
 use super::{Size, Slices, Words};
 use crate::index::Listed;
-use crate::particles::{Full, Id, Particle};
+use crate::particles::{Full, Id, Particle, Start};
 use crate::reap::PendingDeath;
 use crate::report::Report;
 use crate::rng::Stream;
+use crate::rows::are_finite;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -18,7 +19,7 @@ const NO_EMITTER: u32 = u32::MAX;
 /// A system with its memory at hand: every algorithm works on it, and it is generic over nothing.
 #[derive(Debug)]
 pub(crate) struct Workspace<'a> {
-    pub(crate) memory: Slices<'a>,
+    pub(crate) memory: &'a mut Slices<'a>,
     /// The number of particles that fit.
     pub(crate) capacity: usize,
     pub(crate) status: &'a mut Status,
@@ -147,10 +148,17 @@ impl Status {
     }
 }
 
+impl<'a> Workspace<'a> {
+    /// On memory that a system lives in.
+    pub(crate) fn on(memory: &'a mut Slices<'a>, status: &'a mut Status) -> Self {
+        Self { capacity: memory.capacity(), memory, status }
+    }
+}
+
 impl Workspace<'_> {
     /// How much memory there is.
     pub(crate) fn size(&self) -> Size {
-        let Slices { emitter_states, incident, work, kept, .. } = &self.memory;
+        let Slices { emitter_states, incident, work, kept, .. } = &*self.memory;
         Size::of(self.capacity, [emitter_states.len(), incident.len(), work.len(), kept.len()])
     }
 
@@ -174,17 +182,20 @@ impl Workspace<'_> {
     pub(crate) fn put(&mut self, particle: &Particle, born: Time) -> Result<Id, Full> {
         let number = self.status.given;
         self.status.given = number.wrapping_add(1);
-        self.spawn(particle, born, Stream::new(self.status.seed, NO_EMITTER, number).name())
+        let start = Start::of(particle, born);
+        self.spawn(particle, &start, Stream::new(self.status.seed, NO_EMITTER, number).name())
     }
 
-    /// Puts a particle into the next row; `key` is what its random numbers are drawn by as long as it lives.
-    pub(crate) fn spawn(&mut self, particle: &Particle, born: Time, key: u32) -> Result<Id, Full> {
+    /// Puts a particle into the next row that is like another but for how it begins; `key` is what its random numbers are drawn by as long
+    /// as it lives.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn spawn(&mut self, like: &Particle, start: &Start, key: u32) -> Result<Id, Full> {
         if self.is_full() {
             return Err(Full);
         }
         let (m, capacity, status) = (&mut self.memory, self.capacity, &mut *self.status);
         let row = status.len;
-        if m.give(row, particle).is_err() {
+        if m.give(row, like).is_err() {
             return Err(Full);
         }
         let slot = if status.free > 0 {
@@ -200,17 +211,18 @@ impl Workspace<'_> {
         m.slot[row] = slot;
         m.serial[row] = serial;
         m.key[row] = key;
-        m.position[row] = particle.position;
+        m.position[row] = start.position;
         // A particle with a number that cannot be used is taken out at the step's end, whichever number it is. Any
         // lifetime can be used: one that is no number or beyond all is for ever.
-        let velocity = if particle.fixed { Vec3::ZERO } else { particle.velocity };
-        m.velocity[row] = if particle.is_usable() { velocity } else { Vec3::NAN };
-        m.born[row] = born;
-        let dies = death(born, particle.lifetime);
+        let velocity = if like.fixed { Vec3::ZERO } else { start.velocity };
+        let is_usable = are_finite(&[start.position, start.velocity]) && like.is_usable();
+        m.velocity[row] = if is_usable { velocity } else { Vec3::NAN };
+        m.born[row] = start.born;
+        let dies = death(start.born, start.lifetime);
         m.dies[row] = dies;
         if TILED {
             status.ends_at(dies);
-            status.inertias.add(particle);
+            status.inertias.add(like);
         }
         m.pending_death[row] = PendingDeath::Lives;
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);

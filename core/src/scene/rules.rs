@@ -1,6 +1,6 @@
 //! The scene as a system steps through it.
 
-use crate::collide::{Meetings, Obstacles, Paths};
+use crate::collide::{MarkCode, Meetings, Obstacles, Paths};
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
@@ -113,8 +113,8 @@ impl Scene<'_> {
         self.plan().kept_columns(self.start.len())
     }
 
-    /// The memory that a step works with. Asked for in many places: apart, it is in a chip's flash once.
-    #[inline(never)]
+    /// The memory that a step works with. Of a scene that is known when it is linked hardly more than numbers is left of it.
+    #[inline(always)]
     pub(crate) fn plan(&self) -> Plan {
         let needs = self.forces.needs();
         let constrained = !self.constraints.is_empty();
@@ -204,13 +204,6 @@ impl Scene<'_> {
     pub(crate) fn needs_start(&self) -> bool {
         self.integrator.needs_start() || self.is_swept() || !self.constraints.is_empty()
     }
-
-    /// Tells whether a step can be made in memory of size `have`: all but the particles must fit.
-    pub(crate) fn fits(&self, have: Size) -> bool {
-        let need = self.size_for(have.particles);
-        let pairs = [[need.emitters, have.emitters], [need.springs, have.springs], [need.columns, have.columns]];
-        pairs.iter().all(|[need, have]| need <= have) && need.kept <= have.kept
-    }
 }
 
 impl<'a> Scene<'a> {
@@ -225,7 +218,9 @@ impl<'a> Scene<'a> {
     pub(crate) fn obstacles(&self) -> Obstacles<'a> {
         let Self { colliders, sinks, materials, max_bounces, .. } = *self;
         let lead = self.springs.code().filter(|_| !self.springs.list().is_empty()).map(|code| code.lead);
-        Obstacles { colliders, sinks, materials, max_bounces, lead }
+        let marks = self.constraints.code().map(|_| MarkCode::ALL);
+        let mixing = materials.mixing();
+        Obstacles { colliders, sinks, materials, mixing, max_bounces, lead, marks }
     }
 }
 

@@ -5,7 +5,7 @@
 //! ball fits are the same solid, smaller by the radius, which the path leaves where the ball touches.
 
 use super::{Contact, Hit, Segment};
-use crate::math::{clamp, dot, length, max, minus, sqrt, unit};
+use crate::math::{clamp, dot, is_zero, largest, length, max, minus, sqrt, unit};
 use glam::Vec3;
 
 /// The largest number of times that Newton's method looks again.
@@ -63,10 +63,10 @@ pub(super) fn lean(center: Vec3, gap: Vec3, normal: Vec3, reach: [f32; 2], visit
 /// The place `gap` before `center`, if it is within reach and there is a normal; the surface itself reaches so far from the origin.
 pub(super) fn leaning(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32; 2]) -> Option<Contact> {
     let distance = dot(gap, normal);
-    if !(distance <= reach && normal != Vec3::ZERO) {
+    if !(distance <= reach) || is_zero(normal) {
         return None;
     }
-    let slack = Segment { radius: distance, ..Segment::new(center, center) }.slack(size);
+    let slack = Segment::slack_within(largest(center), distance, size);
     Some(Contact { point: minus(center, gap), normal, distance, slack, velocity: Vec3::ZERO, material: None })
 }
 

@@ -79,7 +79,7 @@ pub trait Collider: Sync {
     /// short way, to the same bits. By default anything, unless the path may not touch it at all. Chips without an
     /// operating system do not ask.
     fn facing(&self, bounds: &Aabb) -> Facing {
-        if self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
+        if cfg!(target_os = "none") || self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
     }
 
     /// It as many things, of which those that are near a place are found at once. By default it is one. Chips without an operating

@@ -1,7 +1,7 @@
 //! An infinite plane.
 
 use super::ball::leaning;
-use super::{Aabb, Affine, Collider, Contact, Face, Hit, Mapped, Segment, Spot, Surface, earlier};
+use super::{Aabb, Affine, Collider, Contact, Face, Hit, Mapped, Segment, Spot, Surface};
 use crate::math::{clamp, dot, largest, max, minus, plus, scaled, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -44,7 +44,7 @@ impl Collider for Plane {
         // A ball smaller than rounding is a point. The normal is brought to unit length only for who meets it.
         // Chips are spared the code for who does not.
         let is_point = !cfg!(target_os = "none") && !(segment.radius > segment.slack(largest(self.point)));
-        if is_point && crossing(self.normal, side(segment.from), side(segment.to)).is_none() {
+        if is_point && passage(side(segment.from), side(segment.to)).is_none() {
             return None;
         }
         self.face().first_hit(segment)
@@ -57,10 +57,9 @@ impl Collider for Plane {
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let (middle, half) = (scaled(plus(bounds.min, bounds.max), 0.5), scaled(minus(bounds.max, bounds.min), 0.5));
         let distance = dot(self.normal, minus(middle, self.point)).abs();
-        let room = plus(plus(bounds.min.abs(), bounds.max.abs()), self.point.abs());
-        let room = scaled(room, 8.0 * f32::EPSILON);
+        let room = 8.0 * f32::EPSILON * (largest(bounds.min) + largest(bounds.max) + largest(self.point));
         // The distance of an endless box is no number.
-        !(distance > dot(self.normal.abs(), plus(half, room)))
+        !(distance > dot(self.normal.abs(), plus(half, Vec3::splat(room))))
     }
 
     #[cfg(not(target_os = "none"))]
@@ -95,10 +94,16 @@ impl Collider for Face {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(self.size());
-        let center = passed(self, segment, slack);
+        let center = passed(self, segment);
         // A ball smaller than rounding is a point.
-        let hit = if segment.radius > slack { earlier(touched(self, segment, slack), center) } else { center };
-        hit.map(|hit| Hit { material: self.material(), ..hit })
+        let ball = if segment.radius > slack { touched(self, segment) } else { None };
+        let Passage { time, is_from_below } = match (ball, center) {
+            (Some(ball), Some(center)) if !(center.time < ball.time) => ball,
+            (ball, center) => center.or(ball)?,
+        };
+        let [.., unit] = self.vectors();
+        let normal = if is_from_below { -unit } else { unit };
+        Some(Hit { material: self.material(), ..Hit::new(time, normal, slack) })
     }
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
@@ -117,37 +122,46 @@ impl Collider for Face {
     }
 }
 
+/// When a path meets a face, and whether it comes from where the normal does not point to.
+#[derive(Clone, Copy)]
+struct Passage {
+    time: f32,
+    is_from_below: bool,
+}
+
 /// When a ball first touches a face. One that overlaps it touches at once if it moves nearer, else never.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn touched(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
+fn touched(face: &Face, segment: &Segment) -> Option<Passage> {
     let [point, _, unit] = face.vectors();
-    let start = dot(unit, minus(segment.from, point));
-    let normal = if start < 0.0 { -unit } else { unit };
-    let (room, closing) = (start.abs() - segment.radius, -dot(normal, segment.step()));
+    let (start, rise) = (dot(unit, minus(segment.from, point)), dot(unit, segment.step()));
+    let is_from_below = start < 0.0;
+    let (room, closing) = (start.abs() - segment.radius, if is_from_below { rise } else { -rise });
     let time = max(room, 0.0) / closing;
-    (closing > 0.0 && time <= 1.0).then(|| Hit::new(time, normal, slack))
+    (closing > 0.0 && time <= 1.0).then_some(Passage { time, is_from_below })
 }
 
-/// Where a path's centre meets a face, and the normal on the side that it comes from.
+/// When a path's centre meets a face.
 #[cfg_attr(not(target_os = "none"), inline(always))]
-fn passed(face: &Face, segment: &Segment, slack: f32) -> Option<Hit> {
-    let [point, normal, unit] = face.vectors();
+fn passed(face: &Face, segment: &Segment) -> Option<Passage> {
+    let [point, normal, _] = face.vectors();
     // Which side, and when, does not depend on the normal's length.
     let side = |x: Vec3| dot(normal, minus(x, point));
-    crossing(unit, side(segment.from), side(segment.to)).map(|(time, normal)| Hit::new(time, normal, slack))
+    passage(side(segment.from), side(segment.to))
 }
 
-/// When a path with signed distances `before` and `after` to a plane meets it, and the normal on the side it comes
-/// from. A point on the plane is on the side its normal points to: it can leave that way freely, and lie there.
+/// When a path with signed distances `before` and `after` to a plane meets it. A point on the plane is on the side its normal points to:
+/// it can leave that way freely, and lie there.
 #[inline]
-pub(super) fn crossing(normal: Vec3, before: f32, after: f32) -> Option<(f32, Vec3)> {
+fn passage(before: f32, after: f32) -> Option<Passage> {
+    let is_from_below = before < 0.0;
+    let passes = if is_from_below { after >= 0.0 } else { after <= 0.0 && before > after };
     // The share is no number where distances are not finite, and clamps to zero.
     let time = clamp(before / (before - after), 0.0, 1.0);
-    if before >= 0.0 && after <= 0.0 && before > after {
-        Some((time, normal))
-    } else if before < 0.0 && after >= 0.0 {
-        Some((time, -normal))
-    } else {
-        None
-    }
+    passes.then_some(Passage { time, is_from_below })
+}
+
+/// The same, and the normal on the side that the path comes from.
+#[inline]
+pub(super) fn crossing(normal: Vec3, before: f32, after: f32) -> Option<(f32, Vec3)> {
+    passage(before, after).map(|Passage { time, is_from_below }| (time, if is_from_below { -normal } else { normal }))
 }

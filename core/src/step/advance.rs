@@ -6,11 +6,12 @@ use crate::constrain::{Moved, SHIFTED, Substep};
 use crate::force::Steady;
 use crate::index::ListMemory;
 use crate::integrate::{Drift, Dynamics, Field};
-use crate::math::along;
+use crate::math::{along, copied};
 use crate::memory::{Past, Shares};
 use crate::observe::Observer;
 use crate::reap::PendingDeath;
 use crate::report::Report;
+use crate::rows::BLOCKS;
 use crate::scene::Scene;
 use crate::time::Time;
 use core::ops::Range;
@@ -32,12 +33,11 @@ impl Tile<'_> {
         if let Some(leap) = scene.leap().filter(|_| self.old == self.position.len()) {
             return self.leap(leap, report);
         }
-        let Self { old, ref layout, ref attributes, .. } = *self;
+        let Self { old, layout, ref attributes, .. } = *self;
         let len = self.position.len();
-        let Shares { start, marks, step: lasting, mut scratch, lists } = layout.shares(self.work);
+        let Shares { mut start, marks, step: lasting, mut scratch, lists } = layout.shares(self.work);
         if scene.needs_start() {
-            start[0][..len].copy_from_slice(self.position);
-            start[1][..len].copy_from_slice(self.velocity);
+            keep([&*self.position, &*self.velocity], &mut start);
         }
         if old < len {
             let (words, memory, lasting) = scratch.moving();
@@ -45,7 +45,7 @@ impl Tile<'_> {
             let mut field = scene.field(attributes, custom, old, (words, lasting), None, observer);
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
-            report.effort.found(&field.finder.effort);
+            report.effort.found(&field.finder.finding);
         }
         let mut moved = Moved {
             colliders: scene.colliders,
@@ -79,10 +79,8 @@ impl Tile<'_> {
         for (row, death) in self.pending_death.iter().enumerate() {
             let is_bound = row < self.old && marks.get(row).is_some_and(|mark| mark & SHIFTED != 0);
             if *death != PendingDeath::Lives && !is_bound {
-                // As numbers: to a chip a copy of vectors that might overlap would be code of its own.
-                let ([x, y, z], [u, v, w]) = (x[row].to_array(), v[row].to_array());
-                self.position[row] = Vec3::new(x, y, z);
-                self.velocity[row] = Vec3::new(u, v, w);
+                self.position[row] = copied(x[row]);
+                self.velocity[row] = copied(v[row]);
             }
         }
     }
@@ -103,6 +101,18 @@ impl Tile<'_> {
 fn first<T>(column: &mut [T], len: usize) -> &mut [T] {
     let len = len.min(column.len());
     &mut column[..len]
+}
+
+/// Copies where all are, and how fast.
+fn keep([x, v]: [&[Vec3]; 2], [kept_x, kept_v]: &mut [&mut [Vec3]; 2]) {
+    if BLOCKS {
+        kept_x[..x.len()].copy_from_slice(x);
+        kept_v[..v.len()].copy_from_slice(v);
+    } else {
+        for ((x, v), (kept_x, kept_v)) in x.iter().zip(v).zip(kept_x.iter_mut().zip(&mut **kept_v)) {
+            (*kept_x, *kept_v) = (copied(*x), copied(*v));
+        }
+    }
 }
 
 /// Lets newborn rows fly from their births, or from the sub-step's beginning, to its end.

@@ -1,50 +1,64 @@
 //! Create: emitters emit into the step.
 
 use crate::emit::Births;
-use crate::index::{ARE_KEPT, SpatialIndex};
-use crate::memory::{Slices, Storage, Workspace};
-use crate::observe::Observer;
+use crate::force::Backdrop;
+use crate::index::ARE_KEPT;
+use crate::memory::{Layout, Slices, Storage, Workspace};
+use crate::observe::{Observer, Phase};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
 
-impl Workspace<'_> {
-    /// Lets the emitters emit, and returns how many particles there were before.
+impl<'w> Workspace<'w> {
+    /// Begins a step: lets the emitters emit, and returns how many particles there were before.
+    ///
+    /// Births are lent the workspace as it is and for good, which spares a chip a copy of it: the step goes on with another.
     #[inline(never)]
-    pub(super) fn create(
-        &mut self,
+    pub(crate) fn create(
+        &'w mut self,
         scene: &Scene<'_>,
-        end: Time,
-        report: &mut Report,
-        observer: &mut dyn Observer,
+        backdrop: &'w Backdrop<'w>,
+        layout: &'w Layout,
+        dt: Time,
+        report: &'w mut Report,
+        observer: &'w mut dyn Observer,
     ) -> usize {
+        self.tell(Phase::Begin, scene, observer);
         let (old, now) = (self.status.len, self.status.time);
-        let reach = scene.emitters.reach();
+        let (reach, end) = (scene.emitters.reach(), now + dt);
         if ARE_KEPT {
-            self.go_on_with_index(scene);
+            self.go_on_with_index(scene, layout);
         }
         if reach > 0.0 {
             let work = core::mem::take(&mut self.memory.work);
-            let (mut index, places) = self.layout(scene).crowd(work, scene.index);
+            let (mut index, places) = layout.crowd(work, scene.index);
             let places = &mut places[..old];
             places.copy_from_slice(&self.memory.position[..old]);
-            index.with(places, reach, &mut |near| self.emit(scene, near, [now, end], report, observer));
+            index.with(places, reach, &mut |near| {
+                let mut memory = self.memory.slices();
+                let workspace = &mut Workspace { memory: &mut memory, capacity: self.capacity, status: self.status };
+                let (report, observer) = (&mut *report, &mut *observer);
+                let births = &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0 };
+                scene.emitters.emit(now, end, births);
+            });
             self.memory.work = work;
         } else {
-            self.emit(scene, None, [now, end], report, observer);
+            let (workspace, near) = (self, None);
+            let births = &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0 };
+            scene.emitters.emit(now, end, births);
         }
         old
     }
 
     /// Strikes out of the index of the last step's end, if there is one, those who have died since, and gives the others their rows.
-    fn go_on_with_index(&mut self, scene: &Scene<'_>) {
+    fn go_on_with_index(&mut self, scene: &Scene<'_>, layout: &Layout) {
         if !scene.asks_around() {
             // This scene's step works in the memory of the index.
             self.status.is_indexed = false;
             return;
         }
-        let (len, layout) = (self.len(), self.layout(scene));
-        let Slices { work, position, slot, row_of, .. } = &mut self.memory;
+        let len = self.len();
+        let Slices { work, position, slot, row_of, .. } = &mut *self.memory;
         let (mut index, names) = layout.crowd(work, scene.index);
         let row_of = |name: u32| {
             let row = *row_of.get(name as usize)?;
@@ -52,24 +66,5 @@ impl Workspace<'_> {
         };
         index.begin(scene.reach(), &mut self.status.is_indexed);
         index.follow(&position[..len], bytemuck::cast_slice(names), &row_of);
-    }
-
-    /// The same with those who were there before in an index, if anybody asks.
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn emit(
-        &mut self,
-        scene: &Scene<'_>,
-        near: Option<&dyn SpatialIndex>,
-        [now, end]: [Time; 2],
-        report: &mut Report,
-        observer: &mut dyn Observer,
-    ) {
-        let (old, capacity, layout, backdrop) = (self.len(), self.capacity, &self.layout(scene), &scene.backdrop());
-        let workspace = Workspace { memory: self.memory.slices(), capacity, status: &mut *self.status };
-        scene.emitters.emit(
-            now,
-            end,
-            &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0 },
-        );
     }
 }

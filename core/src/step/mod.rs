@@ -13,44 +13,50 @@ mod write;
 use crate::collide::Passage;
 use crate::constrain::Substep;
 use crate::index::Listed;
-use crate::memory::{TILED, Workspace};
+use crate::memory::{Layout, TILED, Workspace};
 use crate::observe::{Attention, Observer, Phase};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
 
 impl Workspace<'_> {
-    /// The whole of a step: create, update, collide, delete.
+    /// The whole of a step behind create, before which there were `old` particles: update, collide, delete.
     #[inline(never)]
-    pub(crate) fn step(&mut self, scene: &Scene<'_>, dt: Time, report: &mut Report, observer: &mut dyn Observer) {
+    pub(crate) fn step(
+        &mut self,
+        scene: &Scene<'_>,
+        layout: &Layout,
+        old: usize,
+        dt: Time,
+        report: &mut Report,
+        observer: &mut dyn Observer,
+    ) {
         // No step leads beyond the end of all time, whichever way it goes.
         let dt = dt.min(Time::NEVER - self.status.time);
         let span = [self.status.time, dt];
-        self.tell(Phase::Begin, scene, observer);
-        let old = self.create(scene, span[0] + dt, report, observer);
-        self.age(scene, span);
+        self.age(scene, layout, span);
         self.tell(Phase::Create, scene, observer);
         // In tiles those of one go through all sub-steps before those of the next, and who looks on would be told in that order.
         let told_alike = scene.pieces() == 1 && observer.attention() < Attention::Phases;
         if TILED && scene.is_local() && (told_alike || observer.attention() == Attention::Nothing) {
-            self.tile_by_tile(scene, span, old, report, observer);
+            self.tile_by_tile(scene, layout, span, old, report, observer);
         } else {
-            self.phase_by_phase(scene, span, old, report, observer);
+            self.phase_by_phase(scene, layout, span, old, report, observer);
         }
         let has_custom = scene.custom.count() > 0;
         if has_custom {
-            self.let_forces_write(scene, span, report);
+            self.let_forces_write(scene, layout, span, report);
         }
         let len = self.len();
         scene.index.wrap(&mut self.memory.position[..len]);
         let before = report.died.total();
-        self.reap(scene, report, observer);
+        self.reap(scene, layout, report, observer);
         if report.died.total() > before || report.born + report.hits + report.contacts + report.broken > 0 {
             self.status.hint = Time::ZERO;
         }
         self.tell(Phase::Delete, scene, observer);
         if has_custom {
-            self.let_write(scene, observer);
+            self.let_write(scene, layout, observer);
         }
     }
 
@@ -59,13 +65,14 @@ impl Workspace<'_> {
     fn phase_by_phase(
         &mut self,
         scene: &Scene<'_>,
+        layout: &Layout,
         span: [Time; 2],
         old: usize,
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
         for substep in scene.parts(span) {
-            self.advance(scene, substep, old, report, observer);
+            self.advance(scene, layout, substep, old, report, observer);
             self.status.time = substep.during[1];
             self.tell(Phase::Move, scene, observer);
             let springs = scene.springs.code().filter(|_| substep.is_last());
@@ -73,13 +80,13 @@ impl Workspace<'_> {
                 self.tell(Phase::Snap, scene, observer);
             }
             if scene.is_swept() {
-                self.sweep(scene, substep, old, report, observer);
+                self.sweep(scene, layout, substep, old, report, observer);
             }
             self.tell(Phase::Collide, scene, observer);
         }
         // The steps that were made of this one: sub-steps, and those that a method chose.
         let steps = u64::from(scene.pieces()).max(report.effort.accepted);
-        report.caps.stalled += self.judge(scene, span, old, span[1].seconds() / steps as f32);
+        report.caps.stalled += self.judge(scene, layout, span, old, span[1].seconds() / steps as f32);
     }
 
     /// Holds all rows against scenery, sinks and each other at the end of a sub-step.
@@ -89,14 +96,14 @@ impl Workspace<'_> {
     fn sweep(
         &mut self,
         scene: &Scene<'_>,
+        layout: &Layout,
         substep: Substep,
         old: usize,
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
         let ([now, end], met) = (substep.during, report.hits + report.contacts);
-        let (rows, capacity) = (0..self.len(), self.capacity());
-        let tile = &mut self.tile(scene, [now, end - now], old, rows, capacity);
+        let tile = &mut self.tile(scene, layout, [now, end - now], old);
         scene.meetings.follow(Passage { tile, paths: scene.paths, index: scene.index, report: &mut *report, observer });
         if report.hits + report.contacts > met {
             self.status.hint = Time::ZERO;
@@ -116,18 +123,20 @@ impl Workspace<'_> {
     fn tile_by_tile(
         &mut self,
         scene: &Scene<'_>,
+        layout: &Layout,
         span: [Time; 2],
         old: usize,
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
         let h = span[1].seconds() / scene.pieces() as f32;
-        let capacity = self.capacity().min(scene.tile_rows());
+        let (layout, len) = (&layout.of_tiles(scene.tile_rows()), self.len());
         // Tiles work in the memory of lists and of the index as well.
         (self.status.listed, self.status.is_indexed) = (Listed::NONE, false);
-        for rows in [0..old, old..self.len()] {
-            let mut tile = self.tile(scene, span, old, rows, capacity);
-            tile.layout = tile.layout.without_crowd();
+        let mut all = self.tile(scene, layout, span, old);
+        let work = core::mem::take(&mut all.work);
+        for rows in [0..old, old..len] {
+            let mut tile = all.part(rows, work);
             #[cfg(feature = "rayon")]
             if observer.attention() == Attention::Nothing && rayon::current_thread_index().is_some() {
                 *report += tile.pass_side_by_side(scene, h);

@@ -1,7 +1,7 @@
 //! The system as a step finds it: what a scene begins with is put in, who has died is taken out.
 
 use crate::force::{SpringList, State};
-use crate::memory::{Layout, Slices, Storage, Workspace};
+use crate::memory::{Attribute, Layout, Slices, Storage, Workspace};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::scene::Scene;
@@ -9,36 +9,42 @@ use crate::time::Time;
 
 impl Workspace<'_> {
     /// Where the memory that a scene's step asks for lies.
-    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn layout(&self, scene: &Scene<'_>) -> Layout {
         Layout::of(scene.plan(), self.capacity)
     }
 
     #[inline(never)]
-    pub(crate) fn start(&mut self, scene: &Scene<'_>) {
+    pub(crate) fn start(&mut self, scene: &Scene<'_>, layout: &Layout) {
         self.memory.emitter_states.fill(Default::default());
         self.status.emitters = scene.emitters.count();
         self.status.is_reaped = !scene.reapers.is_empty();
-        self.status.kept = scene.plan().kept();
+        self.status.kept = layout.kept_words();
         self.memory.kept.fill(0);
-        let mut report = Report::default();
         for particle in scene.start {
-            match self.put(particle, Time::ZERO) {
-                Ok(_) => report.initial += 1,
-                Err(Full) => report.refused = report.refused.saturating_add(1),
+            let given = self.put(particle, Time::ZERO);
+            let totals = &mut self.status.totals;
+            match given {
+                Ok(_) => totals.initial += 1,
+                Err(Full) => totals.refused = totals.refused.saturating_add(1),
             }
         }
         self.status.start = self.status.taken;
-        let layout = self.layout(scene);
-        self.give_custom(scene.custom, &layout, 0);
+        self.give_custom(scene.custom, layout, 0);
         self.memory.last_spring.own().fill(0);
         // Entries beyond the lists count in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);
         if let Some(code) = scene.springs.code() {
             let (last, incident) = (self.memory.last_spring.own(), &mut *self.memory.incident);
-            report.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
+            self.status.totals.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
         }
-        self.status.totals = report;
+    }
+
+    /// Tells whether a step can be made in the memory that there is.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn fits(&self, scene: &Scene<'_>, layout: &Layout) -> bool {
+        let Slices { emitter_states, incident, work, kept, .. } = &self.memory;
+        let [emitters, springs] = [scene.emitters.count(), scene.springs.list().len()];
+        emitters <= emitter_states.len() && springs <= incident.len() / 2 && layout.fits(work.len(), kept.len())
     }
 
     /// An attribute that the memory holds for all alike, where the scene changes it or sorts by it.
@@ -54,7 +60,11 @@ impl Workspace<'_> {
     /// The same, or one in which a particle that the scene begins with or bears differs from what all have. It is put in the first row to
     /// find out, where nobody lives yet.
     pub(crate) fn differs(&mut self, scene: &Scene<'_>) -> Option<&'static str> {
-        let mut differs = self.lacks(scene);
+        let lacks = self.lacks(scene);
+        if lacks.is_some() {
+            return lacks;
+        }
+        let mut differs = None;
         let has_room = self.capacity() > 0;
         let mut ask = |particle: &Particle| {
             if has_room && differs.is_none() {
@@ -63,7 +73,7 @@ impl Workspace<'_> {
         };
         scene.start.iter().for_each(&mut ask);
         scene.emitters.extremes(&mut ask);
-        differs
+        differs.map(Attribute::name)
     }
 
     /// The particles as forces see them.

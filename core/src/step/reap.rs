@@ -1,7 +1,7 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
 use crate::index::ARE_KEPT;
-use crate::memory::{TILED, Workspace};
+use crate::memory::{Layout, TILED, Workspace};
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
 use crate::reap::{CHUNK, Cause, FEW, Judged, PendingDeath, ReaperCode};
@@ -12,9 +12,15 @@ use crate::time::Time;
 impl Workspace<'_> {
     /// Removes those whom the step has ended by now.
     #[inline(never)]
-    pub(super) fn reap(&mut self, scene: &Scene<'_>, report: &mut Report, observer: &mut dyn Observer) {
+    pub(super) fn reap(
+        &mut self,
+        scene: &Scene<'_>,
+        layout: &Layout,
+        report: &mut Report,
+        observer: &mut dyn Observer,
+    ) {
         if let Some(code) = scene.reapers.code().filter(|_| !scene.reapers.is_empty()) {
-            self.judge_all(scene, code);
+            self.judge_all(scene, layout, code);
         }
         let before = report.died.lifetime;
         // From the back, so that the row that fills a gap has been looked at already.
@@ -35,10 +41,9 @@ impl Workspace<'_> {
 
     /// Lets the scene's reapers choose.
     #[inline(never)]
-    fn judge_all(&mut self, scene: &Scene<'_>, code: ReaperCode) {
-        let (time, len, capacity) = (self.status.time, self.len(), self.capacity());
-        let (layout, mut is_indexed) = (self.layout(scene), self.status.is_indexed);
-        let tile = self.tile(scene, [time, Time::ZERO], len, 0..len, capacity);
+    fn judge_all(&mut self, scene: &Scene<'_>, layout: &Layout, code: ReaperCode) {
+        let (time, len, mut is_indexed) = (self.status.time, self.len(), self.status.is_indexed);
+        let tile = self.tile(scene, layout, [time, Time::ZERO], len);
         let state = tile.attributes.lives.moved(time, tile.position, tile.velocity);
         let (mut index, places) = layout.crowd(tile.work, scene.index);
         let count = len.min(places.len());

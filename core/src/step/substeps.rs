@@ -6,7 +6,7 @@ use crate::force::{Attributes, Finder};
 use crate::index::{Lasting, ListMemory, Listed, StateIndex};
 use crate::integrate::{Field, Motion, Work};
 use crate::observe::Observer;
-use crate::report::Effort;
+use crate::report::Finding;
 use crate::scene::Scene;
 use crate::time::Time;
 
@@ -33,9 +33,9 @@ impl Scene<'_> {
         lists: Option<ListMemory<'f>>,
         observer: &'f mut dyn Observer,
     ) -> Field<'f> {
-        let (needs, effort) = (self.forces.needs(), Effort::NONE);
+        let (needs, finding) = (self.forces.needs(), Finding::default());
         let index = StateIndex::new(self.index, near, lasting);
-        let finder = Finder { attributes, custom, needs, tree, index, lists, first, effort };
+        let finder = Finder { attributes, custom, needs, tree, index, lists, first, finding };
         let springs = self.springs.code().map(|code| code.force);
         let linearising = self.integrator.linearising();
         Field { forces: self.forces, springs, steady: self.steady(), finder, observer, linearising }
@@ -75,7 +75,7 @@ impl Moved<'_> {
             effort: &mut self.report.effort,
         };
         self.integrator.advance(motion, from, to - from, &mut field);
-        let effort = field.finder.effort;
-        self.report.effort.found(&effort);
+        let finding = field.finder.finding;
+        self.report.effort.found(&finding);
     }
 }

@@ -82,17 +82,17 @@ impl Workspace<'_> {
     pub(super) fn advance(
         &mut self,
         scene: &Scene<'_>,
+        layout: &Layout,
         substep: Substep,
         old: usize,
         report: &mut Report,
         observer: &mut dyn Observer,
     ) {
-        let (rows, capacity) = (0..self.len(), self.capacity());
         let Status { mut hint, mut listed, changes, .. } = *self.status;
         let kept = core::mem::take(&mut self.memory.kept);
         let carried = Carried { kept: &mut *kept, hint: &mut hint, listed: &mut listed, changes };
         let span = [substep.during[0], Time::ZERO];
-        self.tile(scene, span, old, rows, capacity).advance(scene, substep, carried, report, observer);
+        self.tile(scene, layout, span, old).advance(scene, substep, carried, report, observer);
         self.memory.kept = kept;
         self.status.listed = listed;
         self.status.hint = hint;
@@ -100,65 +100,61 @@ impl Workspace<'_> {
 
     /// Judges all rows at once; parts of a step take `h` \[s\].
     #[inline(never)]
-    pub(super) fn judge(&mut self, scene: &Scene<'_>, span: [Time; 2], old: usize, h: f32) -> u64 {
-        let (rows, capacity) = (0..self.len(), self.capacity());
-        self.tile(scene, span, old, rows, capacity).judge(h)
+    pub(super) fn judge(&mut self, scene: &Scene<'_>, layout: &Layout, span: [Time; 2], old: usize, h: f32) -> u64 {
+        self.tile(scene, layout, span, old).judge(h)
     }
 
-    /// Rows in a step that begins with `old` of all. Memory is laid out as for `capacity` rows.
+    /// All rows in a step that begins with `old` of them.
     pub(crate) fn tile<'s>(
         &'s mut self,
         scene: &'s Scene<'s>,
+        layout: &'s Layout,
         [now, dt]: [Time; 2],
         old: usize,
-        rows: Range<usize>,
-        capacity: usize,
     ) -> Tile<'s> {
-        let (whole, m) = (self.capacity(), &mut self.memory);
+        let (whole, len, m) = (self.capacity, self.status.len, &mut self.memory);
         let springs = Springs {
             springs: scene.springs.list(),
             start: self.status.start,
-            serial: m.serial,
+            serial: &m.serial[..len],
             row_of: m.row_of,
             last_spring: &m.last_spring,
             incident: m.incident,
         };
-        let (radius, mass, drag, charge) = (&*m.radius, &*m.mass, &*m.drag, &*m.charge);
-        let (born, dies, slot, key) = (&*m.born, &*m.dies, &*m.slot, &*m.key);
-        let (color, material, materials) = (&*m.color, &*m.material, scene.materials);
-        let custom = CustomColumns::kept(scene.custom, m.kept, whole, whole);
         let lives = State {
-            radius,
-            mass,
-            drag,
-            charge,
-            born,
-            dies,
-            slot,
-            key,
-            color,
-            material,
-            materials,
+            radius: &m.radius[..len],
+            mass: &m.mass[..len],
+            drag: &m.drag[..len],
+            charge: &m.charge[..len],
+            born: &m.born[..len],
+            dies: &m.dies[..len],
+            slot: &m.slot[..len],
+            key: &m.key[..len],
+            color: &m.color[..len],
+            material: &m.material[..len],
+            materials: scene.materials,
             springs,
-            custom,
+            custom: CustomColumns::kept(scene.custom, m.kept, whole, len),
             near: Neighbours::among(&[]).in_room(scene.index.room()),
             ..State::EMPTY
         };
-        let (inverse_mass, elasticity) = (&*m.inverse_mass, &*m.elasticity);
-        let are_alike = self.status.inertias.are_alike();
-        let attributes = Attributes { lives, inverse_mass, elasticity, are_alike };
         Tile {
             obstacles: scene.obstacles(),
             now,
             dt,
-            first: rows.start,
-            old: old.clamp(rows.start, rows.end) - rows.start,
-            position: &mut m.position[rows.clone()],
-            velocity: &mut m.velocity[rows.clone()],
-            pending_death: &mut m.pending_death[rows.clone()],
-            attributes: attributes.rows(rows),
+            first: 0,
+            old,
+            position: &mut m.position[..len],
+            velocity: &mut m.velocity[..len],
+            pending_death: &mut m.pending_death[..len],
+            attributes: Attributes {
+                lives,
+                inverse_mass: &m.inverse_mass[..len],
+                elasticity: &m.elasticity[..len],
+                are_alike: self.status.inertias.are_alike(),
+            },
             work: m.work,
-            layout: Layout::of(scene.plan(), capacity),
+            layout,
             may_end: !TILED || self.status.next_end() <= now + dt,
             reached: None,
         }
@@ -167,7 +163,7 @@ impl Workspace<'_> {
 
 impl<'a> Tile<'a> {
     /// Some of the rows, with memory to work with.
-    fn part<'s>(&'s mut self, rows: Range<usize>, work: &'s mut [Vec3]) -> Tile<'s> {
+    pub(super) fn part<'s>(&'s mut self, rows: Range<usize>, work: &'s mut [Vec3]) -> Tile<'s> {
         Tile {
             obstacles: self.obstacles,
             now: self.now,

@@ -3,7 +3,7 @@
 use crate::collide::Tile;
 use crate::custom::CustomColumnsMut;
 use crate::force::{State, Written};
-use crate::memory::Workspace;
+use crate::memory::{Layout, Workspace};
 use crate::observe::Observer;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -12,12 +12,16 @@ use crate::time::Time;
 impl Workspace<'_> {
     /// Lets forces write, at a step's end.
     #[inline(never)]
-    pub(super) fn let_forces_write(&mut self, scene: &Scene<'_>, [now, dt]: [Time; 2], report: &mut Report) {
+    pub(super) fn let_forces_write(
+        &mut self,
+        scene: &Scene<'_>,
+        layout: &Layout,
+        [now, dt]: [Time; 2],
+        report: &mut Report,
+    ) {
         let Some(code) = scene.forces.needs().write else { return };
-        let (len, capacity) = (self.len(), self.capacity());
-        let kept = core::mem::take(&mut self.memory.kept);
-        let Tile { attributes, position, velocity, work, layout, .. } =
-            self.tile(scene, [now, dt], len, 0..len, capacity);
+        let (len, kept) = (self.len(), core::mem::take(&mut self.memory.kept));
+        let Tile { attributes, position, velocity, work, .. } = self.tile(scene, layout, [now, dt], len);
         let (ends, end, effort, index) = ([&*position, &*velocity], now + dt, &mut report.effort, scene.index);
         let (needs, attributes, kept_of) = (scene.forces.needs(), &attributes, &mut *kept);
         let write = &mut |state: &State<'_>, custom: &mut CustomColumnsMut<'_>| {
@@ -29,10 +33,10 @@ impl Workspace<'_> {
 
     /// Lets whoever looks on write.
     #[inline(never)]
-    pub(super) fn let_write(&mut self, scene: &Scene<'_>, observer: &mut dyn Observer) {
+    pub(super) fn let_write(&mut self, scene: &Scene<'_>, layout: &Layout, observer: &mut dyn Observer) {
         let (len, capacity) = (self.len(), self.capacity());
         let kept = core::mem::take(&mut self.memory.kept);
-        let values = self.layout(scene).kept(kept).0;
+        let values = layout.kept(kept).0;
         observer.write(&self.state(scene), &mut CustomColumnsMut::new(scene.custom, values, capacity, len));
         self.memory.kept = kept;
     }

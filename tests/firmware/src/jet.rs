@@ -1,7 +1,7 @@
 //! A fountain over the ground and nothing else, as the smallest of programs has it: all that it is is known when it is built.
 
 use pointmass::shape::{Disc, Plane};
-use pointmass::{Alike, Common, Drag, Gravity, Jet, Particle, Paths, Scene, Storage, System, Time, Varied, Vec3};
+use pointmass::{Alike, Common, Drag, Gravity, Jet, Particle, Paths, Scene, System, Time, Varied, Vec3};
 
 /// Drops at once.
 const DROPS: usize = 64;
@@ -40,12 +40,12 @@ const EXPECTED: u32 = 672_178_608;
 
 /// Runs ten seconds of it and tells whether all that was born is accounted for, nobody is below the ground, and all are where they are to be.
 pub(super) fn run(memory: &mut Memory) -> Result<(), u32> {
-    let mut system = System::with(memory.slices());
+    let mut system = System::with(memory);
     let mut right = system.start(&SCENE, 1).is_ok();
     for frame in 1..=300 {
         system.step(&SCENE, Time::frame(frame, 30) - system.time());
     }
-    let (totals, drops) = (system.totals(), system.memory().position.iter().take(system.len()));
+    let (totals, drops) = (system.totals(), system.particles().position.iter());
     right &= totals.born > 340 && totals.hits > 100 && totals.refused == 0;
     right &= totals.born == totals.died.total() + system.len() as u64;
     right &= drops.clone().all(|x| x.y >= 0.0);

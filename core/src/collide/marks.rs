@@ -1,0 +1,23 @@
+//! Straight paths heed what constraints have done to a row.
+
+use super::path::Path;
+use crate::constrain::{CARRIED, SHIFTED, TOUCHING};
+use crate::shape::Collider;
+
+/// The function that heeds what constraints have done to a row: a program without constraints does not carry it about.
+#[derive(Clone, Copy)]
+pub(crate) struct MarkCode(pub(super) Heed);
+
+type Heed = for<'w> fn(u32, &mut Path, &'w dyn Collider, f32) -> (&'w dyn Collider, f32);
+
+impl MarkCode {
+    pub(crate) const ALL: Self = Self(heed);
+}
+
+/// What a row marked so may meet, and as a ball of which radius; what the marks do is to be read at `TileSweep::follow_past`.
+fn heed<'w>(mark: u32, path: &mut Path, walls: &'w dyn Collider, radius: f32) -> (&'w dyn Collider, f32) {
+    if mark & SHIFTED != 0 {
+        *path = path.straightened();
+    }
+    (if mark & CARRIED != 0 { &() } else { walls }, if mark & TOUCHING != 0 { 0.5 * radius } else { radius })
+}
