@@ -1,7 +1,7 @@
 //! The project's own scenes: every one is sound, runs, and counts nothing that it should not.
 
 use pointmass::scene::{Files, Model, SceneFile, read_scn, schema};
-use pointmass::{Columns, Heap, Storage, System, Time};
+use pointmass::{Columns, Heap, Storage, System, Time, Vec3};
 use pointmass_cli::load::Disk;
 use std::path::{Path, PathBuf};
 
