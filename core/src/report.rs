@@ -132,6 +132,9 @@ pub struct Caps {
     /// Solutions of shells in whose memory there was no room for graphs, as they have hinges that are not edges of two of their triangles, or have them
     /// twice: such take many times the iterations. No part of the system's hash.
     pub graphs: u64,
+    /// Solutions of shells after which edges were still shortened in the last of 64 passes: some may be left longer than their material lets them.
+    /// No part of the system's hash.
+    pub edges: u64,
     /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
     pub insufficient_memory: u64,
 }
@@ -161,7 +164,7 @@ macro_rules! add_fields {
 }
 add_fields! {
     Died { lifetime sink density chance other nonfinite }
-    Caps { bounces chords springs contacts stalled graphs insufficient_memory }
+    Caps { bounces chords springs contacts stalled graphs edges insufficient_memory }
     Effort { evaluations lists streamed all_pairs accepted rejected solves iterations capped }
 }
 
@@ -220,7 +223,16 @@ impl Report {
         contacts: 0,
         broken: 0,
         effort: Effort::NONE,
-        caps: Caps { bounces: 0, chords: 0, springs: 0, contacts: 0, stalled: 0, graphs: 0, insufficient_memory: 0 },
+        caps: Caps {
+            bounces: 0,
+            chords: 0,
+            springs: 0,
+            contacts: 0,
+            stalled: 0,
+            graphs: 0,
+            edges: 0,
+            insufficient_memory: 0,
+        },
     };
 
     /// Every counter of what happened that the state does not tell, in a fixed order.
@@ -228,7 +240,8 @@ impl Report {
         let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
         // The hash takes in `other` where there are any.
         let Died { lifetime, sink, density, chance, other: _, nonfinite } = died;
-        let Caps { bounces, chords, springs, contacts: near, stalled: _, graphs: _, insufficient_memory } = caps;
+        let Caps { bounces, chords, springs, contacts: near, stalled: _, graphs: _, edges: _, insufficient_memory } =
+            caps;
         [
             initial,
             born,

@@ -39,11 +39,14 @@ mod likeness;
 mod lives;
 mod looks;
 mod mesh_floors;
+mod pendulums;
+mod pieces;
 #[path = "rays/main.rs"]
 mod rays;
 mod reapers;
 mod rigid;
 mod rooms;
+mod rope_energy;
 mod ropes;
 mod rounding;
 mod sampling;

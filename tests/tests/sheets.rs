@@ -332,6 +332,24 @@ fn a_free_sheet_keeps_its_momenta_for_a_minute() {
     keeps_its_momenta(3600, &[(6, false, 1.0, 0.0), (9, true, 1.0, 0.0)]);
 }
 
+/// Edges that turn so far in one sub-step that 64 passes do not shorten all of them are counted; what waves quietly has none.
+#[test]
+fn edges_that_are_left_too_long_are_counted() {
+    let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [24, 24] };
+    let mut counted = vec![];
+    for speed in [0.1, 30.0, 100.0, 300.0, 1e3, 1e4] {
+        let mut random = Random::new(1);
+        let mut start = particles(&sheet, 0.2);
+        start.iter_mut().for_each(|p| p.velocity = random.vector(speed));
+        let shell = shell(&sheet, even(1e4, 1e-6, 0.0));
+        let scene = Scene { start: &start, constraints: &shell, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        run(&mut system, &scene, 1.0 / 60.0, 20);
+        counted.push(system.totals().caps.edges);
+    }
+    assert!(counted[0] == 0 && counted.iter().any(|&some| some > 0), "{counted:?}");
+}
+
 /// The angle of a sheet between both its outer edges, folded about its middle.
 fn opening(x: &[Vec3], sheet: &Sheet) -> f32 {
     let [a, b, c] = [0, sheet.cells[0] / 2, sheet.cells[0]].map(|u| x[sheet.number(u, 1) as usize]);

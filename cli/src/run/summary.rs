@@ -114,7 +114,7 @@ impl Summary {
         push_counts(&mut rows, "hits", &[("", *hits)]);
         push_counts(&mut rows, "contacts", &[("", *contacts)]);
         push_counts(&mut rows, "broken", &[("springs", *broken)]);
-        let Caps { bounces, chords, springs, contacts, stalled, graphs, insufficient_memory } = *caps;
+        let Caps { bounces, chords, springs, contacts, stalled, graphs, edges, insufficient_memory } = *caps;
         let caps = [
             ("paths with too many bounces", bounces),
             ("paths with too many chords", chords),
@@ -122,6 +122,7 @@ impl Summary {
             ("contacts without room", contacts),
             ("steps of particles lost to rounding", stalled),
             ("solutions of shells without graphs", graphs),
+            ("solutions of shells that left edges too long", edges),
             ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);

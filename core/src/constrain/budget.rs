@@ -1,6 +1,9 @@
 //! The energy of what nothing holds: a sub-step in which it is solved gives it none.
 
+use super::Bodies;
 use super::turn::{Turn, keeping_by, nearest, outer, solve_thin};
+use super::whole::{Group, Whole, turn_on};
+use crate::index::between;
 use crate::math::{dot, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
@@ -8,9 +11,8 @@ use glam::{Mat3, Vec3};
 const HALVINGS: u32 = 6;
 /// The least share of what is no motion of a rigid body that is left without that.
 const LEAST: f32 = 0.5;
-/// Sums that go on side by side, so that rounding does not grow with the number of particles.
-const SUMS: usize = 8;
-
+/// What of the energy of turning is rounding, as a share of it.
+const EVEN: f32 = 1e-6;
 /// How many times what there is a budget is at the most.
 const SLACK: f32 = 2.0;
 
@@ -49,171 +51,137 @@ impl Budget<'_> {
     }
 }
 
-/// Particles that nothing holds, by their place in a list.
-pub(super) struct Free<'m> {
-    /// Inverse masses; zero for who is not there \[1/kg\].
-    pub(super) weight: &'m [f32],
-    /// Where they are, and how fast they go.
-    pub(super) place: &'m mut [Vec3],
-    pub(super) velocity: &'m mut [Vec3],
-    /// A column to work with.
-    pub(super) goal: &'m mut [Vec3],
+/// Particles that nothing holds, in these rows.
+pub(super) struct Free<'f, 'b> {
+    pub(super) bodies: &'f mut Bodies<'b>,
+    pub(super) rows: &'f [u32],
+    /// Where each would be as part of a rigid body, from where a whole is told from \[m\].
+    pub(super) goal: &'f mut [Vec3],
 }
 
-/// How some particles move as a whole.
-#[derive(Clone, Copy)]
-struct Whole {
-    middle: Vec3,
-    drift: Vec3,
-    omega: Vec3,
-    /// Their angular momentum about the middle, and the sum of m r rᵀ.
-    spin: Vec3,
-    spread: Mat3,
-    /// The energy of turning, of all motion besides, and what both have together: nothing but where all are near one line \[J\].
-    turning: f32,
-    rest: f32,
-    both: f32,
-}
-
-impl Whole {
-    fn velocity(&self, place: Vec3) -> Vec3 {
-        self.drift + self.omega.cross(place - self.middle)
-    }
-
-    /// The energy of motion beside that of the middle, where so much is left of what is no motion of a rigid body \[J\].
-    fn energy(&self, share: f32) -> f32 {
-        self.turning + share * (self.both + share * self.rest)
-    }
-
-    /// How much of that may be left where there is so much energy for it, and turning: the larger root.
-    fn share(&self, left: f32) -> f32 {
-        let half = 0.5 * self.both;
-        let share = (sqrt(max(half * half + self.rest * left, 0.0)) - half) / self.rest;
-        if share >= 0.0 { min(share, 1.0) } else { 1.0 }
-    }
-
-    /// The same where rounding has taken nothing of another's momenta.
-    fn with_momenta_of(self, other: &Self) -> Self {
-        Self { drift: other.drift, omega: solve_thin(self.spread, other.spin), ..self }
-    }
-}
-
-impl Free<'_> {
-    /// Visits those who are there: place in the list, mass, where and how fast.
-    fn each(&self, mut visit: impl FnMut(usize, f32, Vec3, Vec3)) {
-        let all = self.weight.iter().zip(&*self.place).zip(&*self.velocity);
-        for (number, ((&weight, &x), &v)) in all.enumerate() {
-            if weight > 0.0 {
-                visit(number, 1.0 / weight, x, v);
-            }
-        }
-    }
-
-    fn whole(&self) -> Whole {
-        let mut first = None;
-        let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
-        self.each(|_, m, x, v| {
-            let (origin, slide) = *first.get_or_insert((x, v));
-            mass += m;
-            middle += (x - origin) * m;
-            drift += (v - slide) * m;
-        });
-        let (origin, slide) = first.unwrap_or_default();
-        let (middle, drift) = (origin + middle / mass, slide + drift / mass);
-        let (mut spin, mut spread) = (Vec3::ZERO, Mat3::ZERO);
-        self.each(|_, m, x, v| {
-            let arm = x - middle;
-            spin += arm.cross(v - drift) * m;
-            spread += outer(arm * m, arm);
-        });
-        let mut whole =
-            Whole { middle, drift, omega: solve_thin(spread, spin), spin, spread, turning: 0.0, rest: 0.0, both: 0.0 };
-        let mut sums = [[0.0; SUMS]; 3];
-        self.each(|number, m, x, v| {
-            let turning = whole.omega.cross(x - middle);
-            let rest = v - drift - turning;
-            for (sums, [a, b]) in sums.iter_mut().zip([[turning; 2], [rest; 2], [turning * 2.0, rest]]) {
-                sums[number % SUMS] += 0.5 * m * dot(a, b);
-            }
-        });
-        [whole.turning, whole.rest, whole.both] = sums.map(|sums| sums.iter().sum());
-        whole
-    }
-
-    /// The energy of their motion, beside that of their middle \[J\].
-    pub(super) fn moving(&self) -> f32 {
-        self.whole().energy(1.0)
+impl Free<'_, '_> {
+    fn group(&self) -> Group<'_> {
+        Group::of(self.bodies, self.rows)
     }
 
     /// Where they would be if they went through a sub-step as a rigid body, from where they were: by the rotation that keeps their angular momentum, as
     /// with [`ShapeMatching`](super::ShapeMatching).
-    fn aim(&mut self, h: f32, whole: Whole, begin: impl Fn(usize) -> Vec3) -> Turn {
-        let (mut mass, mut rest, mut first) = (0.0, Vec3::ZERO, None);
-        self.each(|number, m, _, _| {
-            let origin = *first.get_or_insert(begin(number));
-            mass += m;
-            rest += (begin(number) - origin) * m;
-        });
-        let rest = first.unwrap_or_default() + rest / mass;
+    fn aim(&mut self, whole: &Whole) -> Option<Turn> {
+        let h = self.bodies.substep.seconds();
+        let begun = Group::begun(self.bodies, self.rows);
+        let (_, rest, origin) = begun.middle()?;
         let (mut from, mut to, mut torque) = (Mat3::ZERO, Mat3::ZERO, Vec3::ZERO);
-        self.each(|number, m, x, v| {
-            let (q, x) = ((begin(number) - rest) * m, x - whole.middle);
-            let y = x - (v - whole.drift) * h;
+        for (was, now) in begun.from(origin).zip(self.group().from(whole.origin)) {
+            let (q, x) = ((was.way - rest) * now.mass, now.way - whole.middle);
+            let y = x - (now.velocity - whole.drift) * h;
             from += outer(y, q);
             to += outer(x, q);
-            torque += y.cross(x) * m;
-        });
+            torque += y.cross(x) * now.mass;
+        }
         let turn =
             keeping_by(solve_thin, Turn::NONE, (from, torque), None).unwrap_or_else(|| nearest(Turn::NONE, to, None));
         let rotation = turn.matrix();
-        for (number, goal) in self.goal.iter_mut().enumerate().filter(|&(number, _)| self.weight[number] > 0.0) {
-            *goal = whole.middle + rotation * (begin(number) - rest);
+        for was in begun.from(origin) {
+            if let Some(goal) = self.goal.get_mut(was.number) {
+                *goal = whole.middle + rotation * (was.way - rest);
+            }
         }
-        turn
+        Some(turn)
+    }
+
+    /// The energy that they have at their goals, on the straight way to these and as turning by the angular momentum of a whole \[J\].
+    fn at_goals(&self, whole: &Whole) -> [f32; 2] {
+        let (h, mut straight, mut spread) = (self.bodies.substep.seconds(), 0.0, Mat3::ZERO);
+        for now in self.group().from(whole.origin) {
+            let Some(&goal) = self.goal.get(now.number) else { continue };
+            let (arm, fast) = (goal - whole.middle, now.velocity - whole.drift + (goal - now.way) / h);
+            straight += 0.5 * now.mass * dot(fast, fast);
+            spread += outer(arm * now.mass, arm);
+        }
+        [straight, whole.turning_of(spread)]
     }
 
     /// Leaves such a share of their ways from where they would be as a rigid body.
-    fn stiffen(&mut self, share: f32, h: f32) {
-        for ((place, velocity), &goal) in self.place.iter_mut().zip(&mut *self.velocity).zip(&*self.goal) {
-            let to = goal + (*place - goal) * share;
-            *velocity += (to - *place) * (1.0 / h);
-            *place = to;
+    fn stiffen(&mut self, origin: Vec3, share: f32) {
+        let room = self.bodies.near.room();
+        for (&row, &goal) in self.rows.iter().zip(&*self.goal) {
+            let Some(&place) = self.bodies.position.get(row as usize) else { continue };
+            let by = (goal - between(room, origin, place)) * (1.0 - share);
+            if by.is_finite() {
+                self.bodies.shift(row as usize, by);
+            }
         }
     }
 
+    /// Leaves such a share of what is no motion of a rigid body, and the momenta that a whole has.
+    fn slow(&mut self, whole: &Whole, share: f32, momenta: &Whole) {
+        let (omega, kept) = (whole.omega(), whole.with_momenta_of(momenta));
+        let (turning, room) = (kept.omega(), self.bodies.near.room());
+        for row in self.rows.iter().map(|&row| row as usize) {
+            let Some(&place) = self.bodies.position.get(row) else { continue };
+            let arm = between(room, whole.origin, place) - whole.middle;
+            let beside = self.bodies.velocity[row] - whole.drift - omega.cross(arm);
+            let to = kept.drift + turning.cross(arm) + beside * share;
+            if to.is_finite() {
+                self.bodies.velocity[row] = to;
+            }
+        }
+        turn_on(self.bodies, self.rows, momenta);
+    }
+
+    /// Takes out of their velocities what they have more than `most` \[J\] on account of them: as much as is too much of what is no motion of a rigid
+    /// body, so that both momenta stay, and what is rigid of them. They lose of that as well where that alone is more, as what comes nearer to its
+    /// middle turns faster.
+    pub(super) fn slow_down(&mut self, most: f32) {
+        let Some(whole) = self.group().whole() else { return };
+        let energy = self.group().energy(&whole);
+        let share = energy.share(max(most - energy.turning, 0.0));
+        let slowed = if energy.turning > most * (1.0 + EVEN) { sqrt(most / energy.turning) } else { 1.0 };
+        self.slow(&whole, share, &whole.turning_slower(slowed));
+    }
+
     /// Takes out of how they deform what they have more than `most` \[J\] on that account: as much as is too much of what is no motion of a rigid body;
-    /// where that would be most of it, of the ways as well on which they deform in a sub-step of `h` \[s\]. Both momenta stay, and as rigid bodies they
+    /// where that would be most of it, of the ways as well on which they deform in the sub-step. Both momenta stay, and as rigid bodies they
     /// have no more than they began with. `stored` tells the energy of strain where they are, and where they have been brought nearer to where a rigid
     /// body would be, how that has turned. That is told at the end as well.
     pub(super) fn hold_back(
         &mut self,
-        h: f32,
         most: f32,
-        begin: impl Fn(usize) -> Vec3,
         mut stored: impl FnMut(&[Vec3], Option<Turn>) -> f32,
     ) -> Option<Turn> {
-        let before = self.whole();
-        let (mut whole, mut left) = (before, most - stored(self.place, None) - before.turning);
+        let before = self.group().whole()?;
+        let (mut whole, mut energy) = (before, self.group().energy(&before));
+        let mut left = most - stored(self.bodies.position, None) - energy.turning;
         let mut turned = None;
-        if !(left >= 0.0 && whole.share(left) >= LEAST) {
-            turned = Some(self.aim(h, before, begin));
-            let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
-            for _ in 0..HALVINGS {
-                let next = 0.5 * (least + far);
-                self.stiffen(next / now, h);
-                now = next;
-                let fits = stored(self.place, turned) + self.whole().energy(1.0) <= most;
-                *if fits { &mut least } else { &mut far } = now;
+        if !(left >= 0.0 && energy.share(left) >= LEAST) {
+            let aim = self.aim(&before);
+            let [straight, turning] = self.at_goals(&before);
+            // As a rigid body it has what it began with, but for rounding; what the straight way shows beyond turning, velocities alone can give back.
+            let rigid = stored(self.bodies.before[0], Some(Turn::NONE)) + turning;
+            let shown = max(most, rigid) + max(straight - turning, 0.0);
+            if !(self.group().moving() + stored(self.bodies.position, None) <= shown) {
+                turned = aim;
+                let fits = |free: &Self| free.group().moving() + stored(free.bodies.position, aim) <= shown;
+                self.halve(before.origin, fits);
             }
-            self.stiffen(least / now, h);
-            whole = self.whole();
-            left = most - stored(self.place, turned) - whole.turning;
+            whole = self.group().whole()?;
+            energy = self.group().energy(&whole);
+            let turning = self.group().energy(&whole.with_momenta_of(&before)).turning;
+            left = most - stored(self.bodies.position, turned) - turning;
         }
-        let share = whole.share(max(left, 0.0));
-        let kept = whole.with_momenta_of(&before);
-        for (&place, velocity) in self.place.iter().zip(&mut *self.velocity) {
-            *velocity = kept.velocity(place) + (*velocity - whole.velocity(place)) * share;
-        }
+        self.slow(&whole, energy.share(max(left, 0.0)), &before);
         turned
+    }
+
+    /// Leaves as much of their ways from their goals as fits, to a share of all of them.
+    fn halve(&mut self, origin: Vec3, mut fits: impl FnMut(&Self) -> bool) {
+        let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let next = 0.5 * (least + far);
+            self.stiffen(origin, next / now);
+            now = next;
+            *if fits(self) { &mut least } else { &mut far } = now;
+        }
+        self.stiffen(origin, least / now);
     }
 }

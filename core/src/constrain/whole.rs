@@ -2,57 +2,166 @@
 
 use super::Bodies;
 use super::turn::{outer, solve_thin};
-use crate::math::{dot, largest, length};
+use crate::index::{Room, between};
+use crate::math::{dot, largest, length, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
 /// Words that a debt is kept in.
 pub(super) const WORDS: usize = 3;
 /// How many times what rounding of each place and velocity makes of an angular momentum may be lost by rounding.
 const ROUNDINGS: f32 = 8.0;
+/// Sums that go on side by side, so that rounding does not grow with the number of particles.
+const SUMS: usize = 8;
+
+/// Particles that nothing holds, by their rows: who has none is not there.
+#[derive(Clone, Copy)]
+pub(super) struct Group<'a> {
+    rows: &'a [u32],
+    mass: &'a [f32],
+    place: &'a [Vec3],
+    velocity: &'a [Vec3],
+    room: Option<&'a Room>,
+}
+
+/// One of them.
+pub(super) struct Member {
+    /// Its place in the list, and its row.
+    pub(super) number: usize,
+    pub(super) row: usize,
+    pub(super) mass: f32,
+    /// The way to it from where a whole is told from \[m\].
+    pub(super) way: Vec3,
+    pub(super) velocity: Vec3,
+}
+
+impl<'a> Group<'a> {
+    /// They as they are.
+    pub(super) fn of(bodies: &'a Bodies<'_>, rows: &'a [u32]) -> Self {
+        Self { rows, mass: bodies.mass, place: bodies.position, velocity: bodies.velocity, room: bodies.near.room() }
+    }
+
+    /// They where they were as the sub-step began, with the velocities that they have.
+    pub(super) fn begun(bodies: &'a Bodies<'_>, rows: &'a [u32]) -> Self {
+        Self { place: bodies.before[0], ..Self::of(bodies, rows) }
+    }
+
+    /// Visits those who are there, by the ways from a place, the shortest in a room.
+    pub(super) fn from(self, origin: Vec3) -> impl Iterator<Item = Member> + Clone + 'a {
+        self.rows.iter().enumerate().filter_map(move |(number, &row)| {
+            let row = row as usize;
+            let way = between(self.room, origin, *self.place.get(row)?);
+            Some(Member { number, row, mass: self.mass[row], way, velocity: self.velocity[row] })
+        })
+    }
+
+    /// The row of the first who is there.
+    fn first(self) -> Option<usize> {
+        self.rows.iter().map(|&row| row as usize).find(|&row| row < self.place.len())
+    }
+
+    /// The mass of all, and where their middle is from the first of them, and where that is.
+    pub(super) fn middle(self) -> Option<(f32, Vec3, Vec3)> {
+        let origin = self.place[self.first()?];
+        let (mut mass, mut middle) = (0.0, Vec3::ZERO);
+        for member in self.from(origin) {
+            mass += member.mass;
+            middle += member.way * member.mass;
+        }
+        Some((mass, middle / mass, origin))
+    }
+
+    /// How they move as a whole; none, if nobody is there.
+    pub(super) fn whole(self) -> Option<Whole> {
+        let ((mass, middle, origin), slide) = (self.middle()?, self.velocity[self.first()?]);
+        let drift: Vec3 = self.from(origin).map(|member| (member.velocity - slide) * member.mass).sum();
+        let drift = slide + drift / mass;
+        let (mut spin, mut spread, mut coarse) = (Vec3::ZERO, Mat3::ZERO, 0.0);
+        for member in self.from(origin) {
+            let (arm, v) = (member.way - middle, member.velocity);
+            spin += arm.cross(v - drift) * member.mass;
+            spread += outer(arm * member.mass, arm);
+            let far = largest(self.place[member.row]);
+            coarse += member.mass * (far * length(v - drift) + length(arm) * largest(v));
+        }
+        Some(Whole { origin, middle, drift, spin, rounding: ROUNDINGS * f32::EPSILON * coarse, spread })
+    }
+
+    /// The energy of their motion, beside that of their middle.
+    pub(super) fn energy(self, whole: &Whole) -> Energy {
+        let (mut sums, omega) = ([[0.0; SUMS]; 3], whole.omega());
+        for Member { number, mass, way, velocity, .. } in self.from(whole.origin) {
+            let turning = omega.cross(way - whole.middle);
+            let rest = velocity - whole.drift - turning;
+            for (sums, [a, b]) in sums.iter_mut().zip([[turning; 2], [rest; 2], [turning * 2.0, rest]]) {
+                sums[number % SUMS] += 0.5 * mass * dot(a, b);
+            }
+        }
+        let [turning, rest, both] = sums.map(|sums| sums.iter().sum());
+        Energy { turning, rest, both }
+    }
+
+    /// All of that \[J\].
+    pub(super) fn moving(self) -> f32 {
+        self.whole().map_or(0.0, |whole| self.energy(&whole).with(1.0))
+    }
+}
 
 /// The motion of some particles as a whole.
 #[derive(Clone, Copy)]
 pub(super) struct Whole {
-    /// The row from which places are told, and where the middle of all masses is from there \[m\].
-    first: usize,
-    middle: Vec3,
+    /// Where places are told from, and where the middle of all masses is from there \[m\].
+    pub(super) origin: Vec3,
+    pub(super) middle: Vec3,
     /// The velocity of the middle \[m/s\].
     pub(super) drift: Vec3,
     /// The angular momentum about the middle \[kg m²/s\], how much of it may be rounding, and the sum of m r rᵀ \[kg m²\].
-    pub(super) spin: Vec3,
+    spin: Vec3,
     rounding: f32,
     spread: Mat3,
 }
 
 impl Whole {
-    /// Of those in some rows, of whom there is one at least, told along the shortest way through the sides of a room.
-    pub(super) fn of(bodies: &Bodies<'_>, rows: impl Iterator<Item = usize> + Clone) -> Option<Self> {
-        let first = rows.clone().next()?;
-        let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
-        for row in rows.clone() {
-            mass += bodies.mass[row];
-            middle += bodies.between(first, row) * bodies.mass[row];
-            drift += (bodies.velocity[row] - bodies.velocity[first]) * bodies.mass[row];
-        }
-        let (middle, drift) = (middle / mass, bodies.velocity[first] + drift / mass);
-        let (mut spin, mut spread, mut coarse) = (Vec3::ZERO, Mat3::ZERO, 0.0);
-        for row in rows {
-            let (arm, v) = (bodies.between(first, row) - middle, bodies.velocity[row]);
-            spin += arm.cross(v - drift) * bodies.mass[row];
-            spread += outer(arm * bodies.mass[row], arm);
-            coarse += bodies.mass[row] * (largest(bodies.position[row]) * length(v - drift) + length(arm) * largest(v));
-        }
-        Some(Self { first, middle, drift, spin, rounding: ROUNDINGS * f32::EPSILON * coarse, spread })
-    }
-
     /// How all of it would turn as a rigid body \[rad/s\].
     pub(super) fn omega(&self) -> Vec3 {
         solve_thin(self.spread, self.spin)
     }
 
-    /// Where somebody is from the middle \[m\].
-    pub(super) fn arm(&self, bodies: &Bodies<'_>, row: usize) -> Vec3 {
-        bodies.between(self.first, row) - self.middle
+    /// The energy of turning as a rigid body of another shape, by the same angular momentum \[J\].
+    pub(super) fn turning_of(&self, spread: Mat3) -> f32 {
+        0.5 * dot(solve_thin(spread, self.spin), self.spin)
+    }
+
+    /// The same where rounding has taken nothing of another's momenta.
+    pub(super) fn with_momenta_of(self, other: &Self) -> Self {
+        Self { drift: other.drift, spin: other.spin, ..self }
+    }
+
+    /// The same with such a share of its angular momentum.
+    pub(super) fn turning_slower(self, share: f32) -> Self {
+        Self { spin: self.spin * share, ..self }
+    }
+}
+
+/// The energy of a motion, beside that of the middle: that of turning, of all besides, and what both have together, which is nothing but where all are
+/// near one line \[J\].
+#[derive(Clone, Copy)]
+pub(super) struct Energy {
+    pub(super) turning: f32,
+    rest: f32,
+    both: f32,
+}
+
+impl Energy {
+    /// All of it, where such a share is left of what is no motion of a rigid body \[J\].
+    pub(super) fn with(self, share: f32) -> f32 {
+        self.turning + share * (self.both + share * self.rest)
+    }
+
+    /// The share that may be left where there is so much energy for it, and turning: the larger root.
+    pub(super) fn share(self, left: f32) -> f32 {
+        let half = 0.5 * self.both;
+        let share = (sqrt(max(half * half + self.rest * left, 0.0)) - half) / self.rest;
+        if share >= 0.0 { min(share, 1.0) } else { 1.0 }
     }
 }
 
@@ -76,27 +185,37 @@ impl Owed<'_> {
         self.0.fill(0);
     }
 
-    /// Gives back to those in some rows what they lack of the angular momentum that they had before something kept it but for rounding, by turning as
-    /// a whole. What is more than rounding is gone.
-    pub(super) fn give_back(
-        &mut self,
-        bodies: &mut Bodies<'_>,
-        rows: impl Iterator<Item = usize> + Clone,
-        before: Option<Whole>,
-    ) {
-        let (Some(before), Some(now)) = (before, Whole::of(bodies, rows.clone())) else { return self.forget() };
+    /// Gives back to those in some rows what they lack of the angular momentum that they had before something should have kept it, by turning as a
+    /// whole. Of what is more than rounding nothing is owed after that.
+    pub(super) fn give_back(&mut self, bodies: &mut Bodies<'_>, rows: &[u32], before: Option<Whole>) {
+        let (Some(before), Some(now)) = (before, Group::of(bodies, rows).whole()) else { return self.forget() };
         let spin = before.spin + self.all();
         let (lack, most) = (spin - now.spin, now.rounding + before.rounding);
         if !(dot(lack, lack) <= most * most) {
+            turn_on(bodies, rows, &before);
             return self.forget();
         }
         let omega = solve_thin(now.spread, lack);
-        for row in rows.clone() {
-            let by = omega.cross(now.arm(bodies, row));
-            if by.is_finite() {
-                bodies.velocity[row] += by;
-            }
+        turn(bodies, rows, &now, |arm| omega.cross(arm));
+        self.keep(Group::of(bodies, rows).whole().map_or(Vec3::ZERO, |after| spin - after.spin));
+    }
+}
+
+/// Turns those in some rows by what they lack of another's angular momentum.
+pub(super) fn turn_on(bodies: &mut Bodies<'_>, rows: &[u32], other: &Whole) {
+    let Some(now) = Group::of(bodies, rows).whole() else { return };
+    let omega = solve_thin(now.spread, other.spin - now.spin);
+    turn(bodies, rows, &now, |arm| omega.cross(arm));
+}
+
+/// Adds to velocities what is told of each by its way from the middle.
+fn turn(bodies: &mut Bodies<'_>, rows: &[u32], whole: &Whole, faster: impl Fn(Vec3) -> Vec3) {
+    let room = bodies.near.room();
+    for row in rows.iter().map(|&row| row as usize) {
+        let Some(&place) = bodies.position.get(row) else { continue };
+        let by = faster(between(room, whole.origin, place) - whole.middle);
+        if by.is_finite() {
+            bodies.velocity[row] += by;
         }
-        self.keep(Whole::of(bodies, rows).map_or(Vec3::ZERO, |after| spin - after.spin));
     }
 }

@@ -1,17 +1,13 @@
 //! The links of a rope in a sub-step, and the direct solution for what they pull.
 
 use super::super::Bodies;
-use super::super::whole::Whole;
-use crate::math::{length, max, min, sqrt};
+use crate::math::{length, max, sqrt};
 use crate::memory::take;
 use glam::Vec3;
 
 /// What a pivot is at the least for each link, a share of the first end's weight: chains that are stretched straight between two fixed ends
 /// leave the system singular.
 const RIDGE: f32 = 1e-6;
-
-/// The share of a kinetic energy below which what is beside the rigid motion is rounding.
-const ROUNDING: f32 = 1e-4;
 
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
@@ -46,12 +42,6 @@ pub(super) struct Links<'m> {
     pub(super) way: &'m mut [Vec3],
     /// Where the method has moved each particle.
     pub(super) aim: &'m mut [Vec3],
-}
-
-/// How a rope moves as a whole, and twice the kinetic energy beside that of its middle \[J\].
-pub(super) struct Motion {
-    pub(super) whole: Whole,
-    pub(super) vigour: f32,
 }
 
 /// A link as it lies.
@@ -288,47 +278,6 @@ impl<'m> Links<'m> {
                 bodies.velocity[row] = drift + (bodies.velocity[row] - drift) * share;
             }
         }
-    }
-
-    /// Takes an energy \[J\] out of how all move against a rigid motion with the same momenta, as far as there is any of that, which leaves momenta and
-    /// lengths alone. Tells how much it was.
-    pub(super) fn spend(&self, bodies: &mut Bodies<'_>, energy: f32) -> f32 {
-        let Some(whole) = Whole::of(bodies, self.living(bodies.len())) else { return 0.0 };
-        let (omega, rows) = (whole.omega(), || self.living(bodies.len()));
-        let beside =
-            |bodies: &Bodies<'_>, row: usize| bodies.velocity[row] - whole.drift - omega.cross(whole.arm(bodies, row));
-        let twice: f32 = rows().map(|row| beside(bodies, row).length_squared() * bodies.mass[row]).sum();
-        let spent = min(2.0 * energy, 0.5 * twice);
-        if !(spent > 0.0 && twice > ROUNDING * self.vigour(bodies)) {
-            return 0.0;
-        }
-        let share = 1.0 - sqrt(1.0 - spent / twice);
-        for row in rows() {
-            let by = beside(bodies, row) * share;
-            if by.is_finite() {
-                bodies.velocity[row] -= by;
-            }
-        }
-        0.5 * spent
-    }
-
-    /// The rows of those who are there.
-    pub(super) fn living(&self, len: usize) -> impl Iterator<Item = usize> + Clone {
-        self.rows.iter().map(|&row| row as usize).filter(move |&row| row < len)
-    }
-
-    /// How it moves; none, if something holds it.
-    pub(super) fn motion(&self, bodies: &Bodies<'_>) -> Option<Motion> {
-        if !self.is_free(bodies) {
-            return None;
-        }
-        let whole = Whole::of(bodies, self.living(bodies.len()))?;
-        Some(Motion { whole, vigour: self.vigour(bodies) })
-    }
-
-    /// Tells whether nobody is fixed, and none has died.
-    fn is_free(&self, bodies: &Bodies<'_>) -> bool {
-        self.rows.iter().all(|&row| bodies.inverse_mass.get(row as usize).is_some_and(|&weight| weight > 0.0))
     }
 
     /// Takes back what links push.

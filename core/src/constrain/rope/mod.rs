@@ -1,13 +1,15 @@
 //! Chains of links that are solved as one: ropes, strings, necklaces.
 
+mod bounded;
 mod links;
 
-use super::whole::{self, Owed};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::index::between;
 use crate::math::{clamp, floor, largest, length, max, sqrt};
+use crate::memory::take;
+use bounded::{Bounds, Form};
 use glam::Vec3;
-use links::{Links, Motion, NOBODY, put};
+use links::{Links, NOBODY, put};
 
 /// Links between particles, each to the next, all solved at once: C = |x₁ − x₂| − length of every link.
 ///
@@ -20,14 +22,16 @@ use links::{Links, Motion, NOBODY, put};
 ///
 /// A damping β takes from the speed at which a link stretches what a force β times that speed does, by an implicit step at the
 /// sub-step's end. Rigid links keep nothing of that speed: with `Verlet` that is RATTLE (Andersen, J. Comput. Phys. 52, 1983).
-/// What that gives of energy in one sub-step it takes in another; of a rigid rope that nobody holds it takes what goes beyond at once, from how it
-/// moves against a rigid motion with the same momenta, so that it never gains any.
+/// What that gives of energy in one sub-step it takes in another; of a rope that nobody holds it takes what goes beyond at once, from how it
+/// moves against a rigid motion with the same momenta, and from the ways of soft links too, so that it never gains any, nor does what is left of it
+/// in parts.
 ///
 /// Linear momentum is kept to rounding; so is angular momentum, since links act along the directions that they had when the sub-step began,
 /// as long as none of them turns by more than 60° in a sub-step. Where one does (the end of a whip), or where links are so light for what pulls at
 /// them that they would swing faster than sub-steps show (a heavy bob), the sub-step is gone through in paces along the directions that links then
-/// have, which takes energy and angular momentum out of the motion, never puts any in. A rope that does not come near its lengths even then
-/// keeps the form that it had as the sub-step began, if that was nearer, and is counted as capped in [`Effort`](crate::Effort).
+/// have, which takes energy and angular momentum out of the motion, never puts any in; a rope that nobody holds is given the latter back. A rope
+/// that does not come near its lengths even then keeps the form that it had as the sub-step began, if that was nearer, and is counted as capped in
+/// [`Effort`](crate::Effort).
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
@@ -86,10 +90,8 @@ const LAST_ROUNDS: u32 = 24;
 const STIFF: f32 = 2.0;
 /// How far a link may be off after all rounds, a share of its length: what is left is rounding.
 const NEARLY: f32 = 1e-4;
-/// Words that each particle takes.
+/// Words that the links take for each particle.
 const WORDS: usize = 14;
-/// Words kept: whose they are, the energy that it has given so far \[J\], and what rounding owes it.
-const KEPT: usize = 2 + whole::WORDS;
 
 impl<P, L> Rope<P, L> {
     /// A chain of rigid links.
@@ -131,17 +133,26 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
     /// How long a link is to be.
     fn length(&self, link: usize) -> f32 {
-        let lengths = self.lengths.as_ref();
-        lengths.get(link).or(lengths.last()).copied().unwrap_or(0.0)
+        self.form().length(link)
     }
 
-    /// Its particles and the memory for its links, with nothing known of these.
-    fn links_of<'m>(&self, bodies: &Bodies<'_>, scratch: &'m mut [u32]) -> Links<'m> {
-        let links = Links::new(scratch, self.particles.as_ref().len(), self.links());
+    /// What its energy depends on.
+    fn form(&self) -> Form<'_> {
+        let (particles, lengths) = (self.particles.as_ref().len(), self.lengths.as_ref());
+        let Self { compliance, tether, .. } = *self;
+        Form { particles, lengths, compliance, tether, closed: self.links() == particles }
+    }
+
+    /// Its particles and the memory for its links, with nothing known of these, and what solving it must not change.
+    fn links_of<'m>(&'m self, bodies: &Bodies<'_>, share: &'m mut Share<'_>) -> (Links<'m>, Option<Bounds<'m>>) {
+        let (mut rest, count) = (&mut *share.scratch, self.particles.as_ref().len());
+        let links = Links::new(take(&mut rest, WORDS * count), count, self.links());
         for (row, &number) in links.rows.iter_mut().zip(self.particles.as_ref()) {
             *row = bodies.row_of_start(number).map_or(NOBODY, |row| row as u32);
         }
-        links
+        let kept = share.kept.fixed.get_mut(1..).unwrap_or_default();
+        let bounds = Bounds::of(self.form(), bodies, links.rows, kept, rest);
+        (links, bounds)
     }
 
     /// Brings all links to their lengths, in a few rounds. Tells whether they have come near.
@@ -282,9 +293,14 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         })
     }
 
-    /// Takes out of the places what lengths show of the method's own way beyond where velocities lead. Soft links answer forces by what they
-    /// do in a whole sub-step, as a method of first order shows it; what hangs still would show speed with others.
+    /// Takes out of the places the method's own way beyond where velocities lead: of all, if somebody is fixed, else what lengths show of it. Soft
+    /// links answer forces by what they do in a whole sub-step, along the directions of its beginning, as a method of first order shows it: with others what
+    /// hangs still would show speed, and what swings would be driven.
     fn catch_up(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
+        let living = || links.rows.iter().map(|&row| row as usize).filter(|&row| row != NOBODY as usize);
+        if living().any(|row| !(bodies.inverse_mass[row] > 0.0)) {
+            return living().for_each(|row| bodies.catch_up(row));
+        }
         let h = bodies.substep.seconds();
         links.reach = 0.0;
         for link in 0..links.count {
@@ -299,35 +315,6 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         if links.reach > 0.0 && links.solve(bodies, 0.0) {
             links.act(bodies, &mut |bodies, row, by| bodies.position[row] += by);
         }
-        links.pull.fill(0.0);
-        links.normal.fill(Vec3::ZERO);
-    }
-
-    /// Gives a rope that nothing holds back what rounding has taken of its angular momentum since it moved so, and counts the energy that rigid links have
-    /// given. Links that turn give it in one sub-step and take it in another: if it is to be settled, none beyond what they took.
-    fn account(
-        &self,
-        bodies: &mut Bodies<'_>,
-        links: &Links<'_>,
-        begun: Option<Motion>,
-        kept: &mut [u32],
-        is_settled: bool,
-    ) {
-        let [_, given, owed @ ..] = kept else { return };
-        let mut owed = Owed(owed);
-        let Some(Motion { whole, vigour }) = begun else {
-            *given = 0;
-            return owed.forget();
-        };
-        owed.give_back(bodies, links.living(bodies.len()), Some(whole));
-        if self.compliance > 0.0 {
-            return;
-        }
-        let mut sum = f32::from_bits(*given) + 0.5 * (links.vigour(bodies) - vigour);
-        if is_settled && sum > 0.0 {
-            sum -= links.spend(bodies, sum);
-        }
-        *given = if sum.is_finite() { sum.to_bits() } else { 0 };
     }
 
     /// The rounding of a link's length, from where its ends are.
@@ -338,9 +325,11 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
 impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
     fn demand(&self) -> Demand {
-        let words = WORDS.saturating_mul(self.particles.as_ref().len());
+        let particles = self.particles.as_ref().len();
         let fixed = |fixed| Words { per_row: 0, fixed };
-        Demand { kept: fixed(KEPT), scratch: fixed(words), ..Demand::NONE }
+        // Whose they are is one.
+        let kept = bounded::kept(particles).saturating_add(1);
+        Demand { kept: fixed(kept), scratch: fixed((WORDS + bounded::WORDS).saturating_mul(particles)), ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
@@ -356,12 +345,15 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(h > 0.0) {
             return;
         }
-        let mut links = self.links_of(bodies, share.scratch);
         let soft = self.compliance / (h * h);
         if soft > 0.0 {
+            let (mut links, _) = self.links_of(bodies, share);
             self.catch_up(bodies, &mut links);
         }
-        let begun = links.motion(bodies);
+        let (mut links, mut bounds) = self.links_of(bodies, share);
+        if let Some(bounds) = &mut bounds {
+            bounds.limit(bodies);
+        }
         links.aim_at(bodies);
         if !self.meet(bodies, &mut links, soft, Way::First) || self.is_stiff(bodies, &links) {
             let before = links.vigour(bodies);
@@ -371,7 +363,9 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if self.tether {
             links.let_go(bodies, &mut |bodies, row, by| bodies.shift(row, by));
         }
-        self.account(bodies, &links, begun, share.kept.fixed, false);
+        if let Some(bounds) = &mut bounds {
+            bounds.keep_within(bodies);
+        }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -380,8 +374,10 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(soft < f32::INFINITY) {
             return;
         }
-        let mut links = self.links_of(bodies, share.scratch);
-        let begun = links.motion(bodies);
+        let (mut links, mut bounds) = self.links_of(bodies, share);
+        if let Some(bounds) = &mut bounds {
+            bounds.limit_settled(bodies);
+        }
         let rounds = if self.tether { ROUNDS } else { 1 };
         let turn = |bodies: &mut Bodies<'_>, row: usize, by: Vec3| bodies.velocity[row] += by;
         for _ in 0..rounds {
@@ -408,7 +404,9 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if self.tether {
             links.let_go(bodies, &mut { turn });
         }
-        self.account(bodies, &links, begun, share.kept.fixed, true);
+        if let Some(bounds) = &mut bounds {
+            bounds.keep_settled(bodies);
+        }
     }
 }
 

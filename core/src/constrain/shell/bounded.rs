@@ -1,107 +1,134 @@
-//! The energy of a shell that nothing holds.
+//! The momenta and the energy of the pieces of a shell that nothing holds.
 
 use super::fold::{Fold, RestFold, curve};
 use super::membrane::{Cell, Strain};
-use super::solver::{Solver, Vectors};
+use super::pieces::{Piece, Roll};
+use super::plate::Shape;
+use super::solver::{NOBODY, Solver, Vectors};
 use super::step::Step;
 use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
 use crate::constrain::budget::{Budget, Free};
+use crate::constrain::turn::{outer, turn_of};
 use crate::constrain::walls::Wall;
+use crate::constrain::whole::Group;
 use crate::math::{largest, max};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// Sums that go on side by side.
 const SUMS: usize = 8;
 
 impl Solver<'_> {
-    /// Tells whether nobody is fixed, and nothing in the way.
-    pub(super) fn is_free(&self) -> bool {
-        let Vectors { rows, weight, .. } = &self.vectors;
-        let mut living = rows.iter().zip(&**weight).filter(|&(&row, _)| row != super::solver::NOBODY);
-        living.all(|(_, &weight)| weight > 0.0) && !self.walls.iter().any(Wall::is_met)
-    }
-
-    /// Moves all by their shifts; if nothing holds them, no farther than the energy that they have takes them.
-    pub(super) fn act_within(&mut self, bodies: &mut Bodies<'_>, mut budget: Budget<'_>) {
-        if !self.is_free() {
-            budget.forget();
-            return self.act(bodies);
-        }
-        let h = self.step.h;
-        self.show(bodies.before[0], bodies.velocity);
-        let most = budget.most(self.energy());
-        self.show(bodies.position, bodies.velocity);
-        let Vectors { shift, p, q, .. } = &mut self.vectors;
-        for ((x, v), &by) in p.iter_mut().zip(&mut **q).zip(&**shift) {
-            *x += by;
-            *v += by * (1.0 / h);
-        }
-        let mut now = self.energy();
-        let allowed = if now > most { most + self.rounding() } else { most };
-        if now > allowed {
-            let (mut free, mut sheet, rows) = self.parts();
-            free.hold_back(
-                h,
-                allowed,
-                |number| bodies.before[0][rows[number] as usize],
-                |places, _| sheet.stored(places),
-            );
-            self.place(bodies);
-            now = self.energy();
-        } else {
-            self.act(bodies);
-        }
-        budget.keep(now, most);
-    }
-
-    /// Takes the places and velocities of all for the first directions and what comes of these, which nobody needs any more.
-    fn show(&mut self, places: &[Vec3], velocities: &[Vec3]) {
-        let Vectors { rows, p, q, .. } = &mut self.vectors;
-        for ((x, v), &row) in p.iter_mut().zip(&mut **q).zip(&**rows) {
-            let at = |column: &[Vec3]| column.get(row as usize).copied().unwrap_or(Vec3::ZERO);
-            (*x, *v) = (at(places), at(velocities));
-        }
-    }
-
-    /// Leaves all where those columns say.
-    fn place(&self, bodies: &mut Bodies<'_>) {
-        let Vectors { rows, weight, p, q, .. } = &self.vectors;
-        for (((&row, &weight), &x), &v) in rows.iter().zip(&**weight).zip(&**p).zip(&**q) {
-            if weight > 0.0 && x.is_finite() && v.is_finite() {
-                let row = row as usize;
-                bodies.shift(row, x - bodies.position[row]);
-                (bodies.position[row], bodies.velocity[row]) = (x, v);
+    /// Moves all by their shifts; of pieces that nothing holds so that their momenta stay, and no farther than the energy that they have takes them.
+    pub(super) fn act_within(&mut self, bodies: &mut Bodies<'_>, roll: &mut Roll<'_>, work: &mut [u32]) {
+        let shape = Shape { triangles: self.triangles, cells: self.cells, hinges: self.hinges, bends: self.bends };
+        let all = 0..self.vectors.rows.len();
+        let is_fixed = |i: usize| self.vectors.rows[i] != NOBODY && self.vectors.weight[i] == 0.0;
+        let is_hung = roll.is_one() && all.clone().any(is_fixed);
+        let Some(pieces) = (if is_hung { None } else { roll.sorted(self.vectors.rows, &shape, work) }) else {
+            roll.forget();
+            return self.act(bodies, all);
+        };
+        for piece in pieces.each() {
+            let members = || piece.members.iter().map(|&number| number as usize);
+            if self.is_free(members()) {
+                self.keep_momenta(bodies, &piece);
+                self.act_freely(bodies, &piece, roll.budget(&piece));
+            } else {
+                roll.budget(&piece).forget();
+                self.act(bodies, members());
             }
         }
     }
 
-    /// The energy of strain and of motion beside that of the middle, where those columns say \[J\].
-    fn energy(&mut self) -> f32 {
-        let (free, mut sheet, _) = self.parts();
-        free.moving() + sheet.stored(free.place)
+    /// Tells whether none of them is fixed, and nothing in their way.
+    fn is_free(&self, mut members: impl Iterator<Item = usize>) -> bool {
+        let Vectors { rows, weight, .. } = &self.vectors;
+        members.all(|i| (rows[i] == NOBODY || weight[i] > 0.0) && !self.walls.get(i).is_some_and(Wall::is_met))
     }
 
-    /// The energy of strain that rounding of places may show where those columns say \[J\].
-    fn rounding(&self) -> f32 {
-        let there = self.vectors.p.iter().zip(&*self.vectors.weight).filter(|&(_, &weight)| weight > 0.0);
-        let off = f32::EPSILON * there.map(|(&place, _)| largest(place)).fold(0.0, max);
-        let ([warp, weft], shear) = (self.params.stretch, self.params.shear);
+    /// Moves some.
+    fn act(&self, bodies: &mut Bodies<'_>, members: impl Iterator<Item = usize>) {
+        let Vectors { rows, weight, shift, .. } = &self.vectors;
+        for i in members.filter(|&i| weight[i] > 0.0 && shift[i].is_finite()) {
+            bodies.shift(rows[i] as usize, shift[i]);
+        }
+    }
+
+    /// Takes from the shifts of a piece what they would change of its momenta: Σ m Δx and Σ m (x − v h) × Δx are none then.
+    fn keep_momenta(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>) {
+        let Vectors { weight, shift, .. } = &mut self.vectors;
+        let Some(&origin) = piece.rows.first() else { return };
+        let (h, origin) = (bodies.substep.seconds(), origin as usize);
+        let place = |row: usize| {
+            bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
+        };
+        let all = || piece.members.iter().zip(piece.rows).map(|(&number, &row)| (number as usize, row as usize));
+        let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        for (number, row) in all() {
+            mass += 1.0 / weight[number];
+            middle += place(row) / weight[number];
+            drift += shift[number] / weight[number];
+        }
+        let (middle, drift) = (middle / mass, drift / mass);
+        let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+        for (number, row) in all() {
+            let arm = place(row) - middle;
+            torque += arm.cross(shift[number] - drift) / weight[number];
+            spread += outer(arm / weight[number], arm);
+        }
+        let turn = turn_of(spread, torque);
+        for (number, row) in all() {
+            let by = drift + turn.cross(place(row) - middle);
+            shift[number] -= if by.is_finite() { by } else { Vec3::ZERO };
+        }
+    }
+
+    /// Moves a piece that nothing holds, no farther than the energy that it has takes it.
+    fn act_freely(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>, mut budget: Budget<'_>) {
+        let begun = Group::begun(bodies, piece.rows).moving() + self.stored(piece).within(bodies.before[0]);
+        let most = budget.most(begun);
+        self.act(bodies, piece.members.iter().map(|&number| number as usize));
+        let mut now = self.energy(bodies, piece);
+        if now > most {
+            // Strain that rounding may show is no too much: it would be taken of the motion time and again.
+            let rounding = self.rounding(bodies, piece);
+            let (mut stored, goal) = self.stored_with_column(piece);
+            let mut free = Free { bodies, rows: piece.rows, goal };
+            let _ = free.hold_back(most, |places, _| max(stored.within(places) - rounding, 0.0));
+            now = self.energy(bodies, piece);
+        }
+        budget.keep(now, most);
+    }
+
+    /// The energy of a piece, of motion beside that of its middle and of strain \[J\].
+    fn energy(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> f32 {
+        Group::of(bodies, piece.rows).moving() + self.stored(piece).within(bodies.position)
+    }
+
+    /// The energy of strain that rounding of places may show \[J\].
+    fn rounding(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> f32 {
+        let far = piece.rows.iter().map(|&row| largest(bodies.position[row as usize])).fold(0.0, max);
+        let (off, ([warp, weft], shear)) = (f32::EPSILON * far, (self.params.stretch, self.params.shear));
         let strained = |cell: &Cell| cell.area * cell.inverse.iter().map(|by| by * by).sum::<f32>();
-        let sum: f32 = self.cells.iter().map(strained).sum();
+        let sum: f32 = piece.triangles.iter().map(|&triangle| strained(&self.cells[triangle as usize])).sum();
         let sum = 0.5 * (warp + weft + shear) * sum * (off * off);
         if sum.is_finite() { sum } else { 0.0 }
     }
 
-    fn parts(&mut self) -> (Free<'_>, Stored<'_>, &[u32]) {
+    fn stored<'s>(&'s mut self, piece: &Piece<'s>) -> Stored<'s> {
+        self.stored_with_column(piece).0
+    }
+
+    /// What a piece is strained by, and a column that the solution needs no more.
+    fn stored_with_column<'s>(&'s mut self, piece: &Piece<'s>) -> (Stored<'s>, &'s mut [Vec3]) {
         let Self { params, triangles, cells, ref mut strains, hinges, bends, .. } = *self;
-        let Vectors { rows, weight, p, q, r, .. } = &mut self.vectors;
-        let free = Free { weight, place: p, velocity: q, goal: r };
-        (free, Stored { params, triangles, cells, strains, hinges, bends, weight }, rows)
+        let Vectors { rows, r, .. } = &mut self.vectors;
+        (Stored { params, triangles, cells, strains, hinges, bends, rows, piece: *piece }, r)
     }
 }
 
-/// What a shell is strained by.
+/// What a piece is strained by.
 struct Stored<'s> {
     params: &'s ShellParams,
     triangles: &'s [[u32; 3]],
@@ -109,36 +136,50 @@ struct Stored<'s> {
     strains: &'s mut [Strain],
     hinges: &'s [Hinge],
     bends: &'s [RestFold],
-    weight: &'s [f32],
+    rows: &'s [u32],
+    piece: Piece<'s>,
 }
 
 impl Stored<'_> {
     /// The energy of strain where all are in these places \[J\].
-    fn stored(&mut self, places: &[Vec3]) -> f32 {
-        let mut sums = [0.0; SUMS];
-        for (number, ((&corners, cell), strain)) in
-            self.triangles.iter().zip(self.cells).zip(&mut *self.strains).enumerate()
-        {
-            strain.curvature = [0.0; 3];
-            if let Some([a, b, c]) = at(places, self.weight, corners) {
-                sums[number % SUMS] += cell.energy(self.params, [b - a, c - a]);
-            }
+    fn within(&mut self, places: &[Vec3]) -> f32 {
+        let stretched = self.stretched(places);
+        if !(self.params.bending > 0.0) {
+            return stretched;
         }
-        if self.params.bending > 0.0 {
-            self.curve(places);
-            for (number, (cell, strain)) in self.cells.iter().zip(&*self.strains).enumerate() {
-                let [a, b, c] = strain.curvature;
-                sums[number % SUMS] += 0.5 * self.params.bending * cell.area * (a * a + b * b + c * c);
+        let mut sums = [0.0; SUMS];
+        self.curve(places);
+        for (number, triangle) in self.triangles_of().enumerate() {
+            let ([a, b, c], area) = (self.strains[triangle].curvature, self.cells[triangle].area);
+            sums[number % SUMS] += 0.5 * self.params.bending * area * (a * a + b * b + c * c);
+        }
+        stretched + sums.iter().sum::<f32>()
+    }
+
+    /// The part of it that is in the plane of triangles \[J\].
+    fn stretched(&self, places: &[Vec3]) -> f32 {
+        let mut sums = [0.0; SUMS];
+        for (number, triangle) in self.triangles_of().enumerate() {
+            if let Some([a, b, c]) = at(places, self.rows, self.triangles[triangle]) {
+                sums[number % SUMS] += self.cells[triangle].energy(self.params, [b - a, c - a]);
             }
         }
         sums.iter().sum()
     }
 
+    fn triangles_of(&self) -> impl Iterator<Item = usize> + use<'_> {
+        self.piece.triangles.iter().map(|&triangle| triangle as usize)
+    }
+
     /// Adds to each triangle's curvature what its folds make of it.
     fn curve(&mut self, places: &[Vec3]) {
         let still = Step { h: 1.0, lag: 0.0, rate: 1.0 };
-        for (hinge, bend) in self.hinges.iter().zip(self.bends) {
-            if let Some([a, b, c, d]) = at(places, self.weight, hinge.corners()) {
+        for &triangle in self.piece.triangles {
+            self.strains[triangle as usize].curvature = [0.0; 3];
+        }
+        for hinge in self.piece.hinges.iter().map(|&hinge| hinge as usize) {
+            let (hinge, bend) = (&self.hinges[hinge], &self.bends[hinge]);
+            if let Some([a, b, c, d]) = at(places, self.rows, hinge.corners()) {
                 let (_, open) = Fold::of(bend, &still, [[b - a, c - a, d - a]; 3]);
                 curve(self.strains, hinge, bend, open);
             }
@@ -147,7 +188,7 @@ impl Stored<'_> {
 }
 
 /// The places of some corners, if all are there.
-fn at<const N: usize>(places: &[Vec3], weight: &[f32], corners: [u32; N]) -> Option<[Vec3; N]> {
-    let all_there = corners.iter().all(|&corner| weight.get(corner as usize).is_some_and(|&weight| weight > 0.0));
-    all_there.then(|| corners.map(|corner| places[corner as usize]))
+fn at<const N: usize>(places: &[Vec3], rows: &[u32], corners: [u32; N]) -> Option<[Vec3; N]> {
+    let found = corners.map(|corner| rows.get(corner as usize).and_then(|&row| places.get(row as usize)));
+    found.iter().all(Option::is_some).then(|| found.map(|place| place.copied().unwrap_or_default()))
 }

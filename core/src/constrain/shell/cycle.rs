@@ -5,7 +5,7 @@ use super::folded::{Invert, Sum};
 use super::mesh::{Graph, LEVELS, Room};
 use super::plate::Plate;
 use super::strips;
-use super::sweep::{self, BLOCK, Level, Quad, invert};
+use super::sweep::{self, BLOCK, Level, invert};
 use super::words::structs;
 use crate::constrain::walls::Wall;
 use crate::lanes;
@@ -137,43 +137,6 @@ impl<'m> Levels<'m> {
             },
         );
         lanes::run(Back { finest, next: others.first().map(|next| &*next.x), further: FURTHER, z });
-    }
-
-    /// Takes from shifts what each piece that hangs together, and by nothing that is fixed, would go as a whole: Σ m Δx. Of those who are there, masses
-    /// are given: infinite ones of what is fixed.
-    pub(super) fn rid_of_drift(&mut self, masses: impl Iterator<Item = Option<f32>>, shift: &mut [Vec3]) {
-        let Self { finest, others, count } = self;
-        let others = &mut others[..*count];
-        let Some(first) = others.first_mut() else { return };
-        first.r.fill([0.0; 4]);
-        for ((mass, &shift), &into) in masses.zip(&*shift).zip(finest.into) {
-            let Some(mass) = mass else { continue };
-            let Vec3 { x, y, z } = if mass < f32::INFINITY { shift * mass } else { Vec3::ZERO };
-            first.gather(into, [x, y, z, mass]);
-        }
-        for i in 1..others.len() {
-            let (this, next) = others.split_at_mut(i);
-            let (Some(this), Some(next)) = (this.last(), next.first_mut()) else { return };
-            next.r.fill([0.0; 4]);
-            for (&sum, &into) in this.r.iter().zip(this.graph.into) {
-                next.gather(into, sum);
-            }
-        }
-        if let Some(last) = others.last_mut() {
-            last.share_out();
-        }
-        for i in (1..others.len()).rev() {
-            let (this, next) = others.split_at_mut(i);
-            let (Some(this), Some(next)) = (this.last_mut(), next.first()) else { return };
-            for (drift, &into) in this.r.iter_mut().zip(this.graph.into) {
-                *drift = next.r.get(into as usize).copied().unwrap_or_default();
-            }
-        }
-        let Some(first) = others.first() else { return };
-        for (shift, &into) in shift.iter_mut().zip(finest.into) {
-            let [x, y, z, _]: Quad = first.r.get(into as usize).copied().unwrap_or_default();
-            *shift -= Vec3::new(x, y, z);
-        }
     }
 }
 

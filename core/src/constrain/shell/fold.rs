@@ -104,6 +104,12 @@ impl RestFold {
         if sound { this } else { none }
     }
 
+    /// Tells whether it does anything.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(super) fn acts(&self) -> bool {
+        self.curvature[0] != [0.0; 3]
+    }
+
     /// The square of the curvature for each radian on a side \[1/m²\].
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(super) fn steep(&self, side: usize) -> f32 {
@@ -154,8 +160,7 @@ impl Fold {
         let open = turn(angle - bend.angle);
         let open = if step.lag > 0.0 { step.felt(open, open - turn(angle - fold_angle(before))) } else { open };
         let open = open * acting;
-        let acts = bend.curvature[0] != [0.0; 3];
-        if acts && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
+        if bend.acts() && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
     }
 
     #[cfg_attr(not(target_os = "none"), inline(always))]

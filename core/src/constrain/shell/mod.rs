@@ -13,6 +13,7 @@ mod membrane;
 mod mesh;
 mod params;
 mod parts;
+mod pieces;
 mod plate;
 mod resist;
 mod solver;
@@ -24,7 +25,6 @@ mod words;
 
 pub use params::ShellParams;
 
-use super::budget::{self, Budget};
 #[cfg(feature = "alloc")]
 use super::declared::{Declared, twice};
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
@@ -36,6 +36,7 @@ use fold::{Fold, RestFold};
 use glam::Vec3;
 use membrane::{Cell, Strain};
 use mesh::{Graph, Room};
+use pieces::Roll;
 use plate::{Plate, Shape};
 use solver::Solver;
 use step::Step;
@@ -66,8 +67,9 @@ use words::structs;
 /// long are shortened. The sweep at the step's end is left to those whose way may have passed through something.
 ///
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
-/// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. A shell that nothing holds or
-/// presses gains no energy, of motion and strain together, however long its sub-steps: what would be too much is taken from how it deforms.
+/// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. What nothing holds
+/// gains no energy, of motion and strain together, however long its sub-steps: what would be too much is taken from how it deforms. That
+/// holds for each piece that hangs together by triangles and folds, from the beginning or when it has been torn: none takes what another has.
 /// Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.
 ///
 /// ```
@@ -158,8 +160,8 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let graphs = take(&mut rest, room.words());
         let links = take(&mut rest, finest::pattern(&room, triangles));
         let plate = take(&mut rest, plate::words(&room));
-        let budget = take(&mut rest, budget::WORDS);
-        Rest { cells, bends, graphs, links, plate, budget, last: structs(take(&mut rest, 3 * room.rows[0])) }
+        let roll = take(&mut rest, pieces::KEPT.saturating_mul(self.counts()[0]));
+        Rest { cells, bends, graphs, links, plate, roll, last: structs(take(&mut rest, 3 * room.rows[0])) }
     }
 
     fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [RestFold]) -> Shape<'s> {
@@ -208,15 +210,15 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 }
 
-/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, the energy that it may have, and where it
-/// went last.
+/// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, its pieces, and where it went
+/// last.
 struct Rest<'m> {
     cells: &'m mut [Cell],
     bends: &'m mut [RestFold],
     graphs: &'m mut [u32],
     links: &'m mut [u32],
     plate: &'m mut [u32],
-    budget: &'m mut [u32],
+    roll: &'m mut [u32],
     last: &'m mut [Vec3],
 }
 
@@ -231,7 +233,9 @@ where
         let sum = |parts: &[usize]| parts.iter().copied().fold(0, usize::saturating_add);
         let room = Room::of(self.counts());
         let kept = sum(&[
-            1 + budget::WORDS + room.words(),
+            1,
+            pieces::KEPT.saturating_mul(particles),
+            room.words(),
             finest::pattern(&room, triangles),
             plate::words(&room),
             3 * room.rows[0],
@@ -243,7 +247,8 @@ where
             hinges.saturating_mul(WORK[1]),
             particles.saturating_mul(WORK[2]),
         ]);
-        let work = work.saturating_add(cycle::words(&room)).max(plate::scratch(&room, self.counts()));
+        let solving = cycle::words(&room).max(pieces::words(self.counts()));
+        let work = work.saturating_add(solving).max(plate::scratch(&room, self.counts()));
         let words = |fixed| Words { per_row: 0, fixed };
         let step = particles.saturating_mul(walls::WORDS);
         Demand { kept: words(kept), step: words(step), scratch: words(work), ..Demand::NONE }
@@ -267,16 +272,18 @@ where
         }
         let [particles, triangles, hinges] = self.counts();
         let room = Room::of(self.counts());
-        let Rest { cells, bends, graphs, links, plate, budget, last } = self.rest(share.kept.fixed);
+        let Rest { cells, bends, graphs, links, plate, roll, last } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = structs(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = structs(take(&mut rest, hinges.saturating_mul(WORK[1])));
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
         let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
+        let vectors = solver::Vectors::of(bodies, self.particles.as_ref(), vectors);
+        let mut roll = Roll::of(roll, particles);
+        roll.update(vectors.rows, &self.shape(cells, bends));
+        roll.catch_up(bodies, &vectors, rest);
         let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
         bodies.report.caps.graphs += u64::from(mesh::asked(self.counts()) && levels.is_empty());
-        let vectors = solver::Vectors::of(bodies, self.particles.as_ref(), vectors);
-        vectors.catch_up(bodies);
         let walls = walls::of(share.step, particles);
         walls::gather(walls, self.particles.as_ref(), bodies);
         let mut solver = Solver {
@@ -299,8 +306,7 @@ where
         solver.assemble(&mut levels);
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);
-        solver.keep_spin(bodies);
-        solver.act_within(bodies, Budget(budget));
+        solver.act_within(bodies, &mut roll, rest);
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -8,14 +8,13 @@ use super::step::Step;
 use super::words::structs;
 use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
-use crate::constrain::turn::turn_of;
 use crate::constrain::walls::{self, Wall};
 use crate::lanes;
 use crate::math::{max, sqrt};
 use crate::memory::take;
 use crate::report::Report;
 use crate::rows::add_scaled;
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 
 /// Iterations at the most.
 const ITERATIONS: u32 = 400;
@@ -46,7 +45,7 @@ pub(super) struct Vectors<'m> {
     pub(super) p: &'m mut [Vec3],
     pub(super) q: &'m mut [Vec3],
     /// How far walls have moved them before anything is solved \[m\].
-    met: &'m mut [Vec3],
+    pub(super) met: &'m mut [Vec3],
     /// Who is pressed by a wall, and how many that are.
     pressing: &'m mut [u32],
     pressed: usize,
@@ -73,14 +72,6 @@ impl<'m> Vectors<'m> {
         r.fill(Vec3::ZERO);
         met.fill(Vec3::ZERO);
         Self { rows, weight, shift, r, p, q, met, pressing, pressed: 0 }
-    }
-
-    /// Lets the particles go on to where their velocities lead, if some are fixed.
-    pub(super) fn catch_up(&self, bodies: &mut Bodies<'_>) {
-        let living = || self.rows.iter().zip(&*self.weight).filter(|&(&row, _)| row != NOBODY);
-        if living().any(|(_, &weight)| weight == 0.0) {
-            living().for_each(|(&row, _)| bodies.catch_up(row as usize));
-        }
     }
 
     /// The rows of some particles, if all are there.
@@ -127,7 +118,7 @@ impl<'m> Vectors<'m> {
 /// began with.
 ///
 /// However early the search for it ends, no momentum comes of it: preconditioned by masses, its directions are sums of forces within the shell, and
-/// of what a cycle through coarser graphs leaves each piece is rid.
+/// of what a cycle through coarser graphs leaves each piece that nothing holds is rid.
 pub(super) struct Solver<'m> {
     pub(super) params: &'m ShellParams,
     pub(super) step: Step,
@@ -236,11 +227,6 @@ impl Solver<'_> {
         }
         if self.vectors.pressed == 0 {
             self.part(bodies);
-            let Vectors { rows, weight, shift, .. } = &mut self.vectors;
-            levels.rid_of_drift(
-                rows.iter().zip(&**weight).map(|(&row, &weight)| (row != NOBODY).then(|| 1.0 / weight)),
-                shift,
-            );
         }
         let Vectors { weight, shift, .. } = &mut self.vectors;
         walls::finish(self.walls, bodies, weight, shift);
@@ -323,49 +309,5 @@ impl Solver<'_> {
         let kind = usize::from(by_masses);
         let residual = if enough[kind] > 0.0 { sqrt(left / enough[kind]) * residual[kind] } else { 0.0 };
         report.effort.solved(iterations, residual, !solved(left, most));
-    }
-
-    /// Turns a free shell as a whole by what its shifts would change of the angular momentum: Σ m (x − v h) × Δx is none then.
-    pub(super) fn keep_spin(&mut self, bodies: &Bodies<'_>) {
-        let Vectors { rows, weight, shift, .. } = &mut self.vectors;
-        let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
-        let all = || rows.iter().zip(&**weight).map(living);
-        let Some((origin, _)) = all().flatten().next() else { return };
-        if all().flatten().any(|(_, weight)| weight == 0.0) || self.walls.iter().any(Wall::is_met) {
-            return;
-        }
-        let h = bodies.substep.seconds();
-        let place = |row: usize| {
-            bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
-        };
-        let (mut mass, mut middle) = (0.0, Vec3::ZERO);
-        for (row, weight) in all().flatten() {
-            mass += 1.0 / weight;
-            middle += place(row) / weight;
-        }
-        let middle = middle / mass;
-        let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
-        for (of, &shift) in all().zip(&**shift) {
-            let Some((row, weight)) = of else { continue };
-            let arm = place(row) - middle;
-            torque += arm.cross(shift) / weight;
-            let [x, y, z] = arm.to_array().map(|along| arm * (along / weight));
-            spread += Mat3::from_cols(x, y, z);
-        }
-        let turn = turn_of(spread, torque);
-        for (of, shift) in all().zip(&mut **shift) {
-            let Some((row, _)) = of else { continue };
-            *shift -= turn.cross(place(row) - middle);
-        }
-    }
-
-    /// Moves all.
-    pub(super) fn act(&self, bodies: &mut Bodies<'_>) {
-        let Vectors { rows, weight, shift, .. } = &self.vectors;
-        for ((&row, &weight), &shift) in rows.iter().zip(&**weight).zip(&**shift) {
-            if weight > 0.0 && shift.is_finite() {
-                bodies.shift(row as usize, shift);
-            }
-        }
     }
 }

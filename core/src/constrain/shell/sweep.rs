@@ -25,29 +25,6 @@ pub(super) struct Level<'m> {
 }
 
 impl Level<'_> {
-    /// Adds to the momentum and the mass of a row.
-    pub(super) fn gather(&mut self, row: u32, sum: Quad) {
-        if let Some(to) = self.r.get_mut(row as usize) {
-            to.iter_mut().zip(sum).for_each(|(to, sum)| *to += sum);
-        }
-    }
-
-    /// Makes of sums and masses how far each piece has gone: of each row, or of all, if some are linked still.
-    pub(super) fn share_out(&mut self) {
-        if !self.graph.links.is_empty() {
-            let mut all = [0.0; 4];
-            for sum in &*self.r {
-                all.iter_mut().zip(sum).for_each(|(all, sum)| *all += sum);
-            }
-            self.r.fill(all);
-        }
-        for sum in &mut *self.r {
-            let [x, y, z, mass] = *sum;
-            let drift = Vec3::new(x, y, z) / mass;
-            *sum = if drift.is_finite() { [drift.x, drift.y, drift.z, 0.0] } else { [0.0; 4] };
-        }
-    }
-
     /// Sums up blocks for the next graph.
     #[inline(always)]
     pub(super) fn sum_into(&self, coarse: &mut Level<'_>) {

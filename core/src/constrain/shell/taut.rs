@@ -16,7 +16,7 @@ const SLACK: f32 = 1e-3;
 impl Solver<'_> {
     /// Shortens, by equal and opposite shifts, the edges that have turned so far that what is solved along the directions of the sub-step's
     /// beginning leaves them longer than they are at rest and than it means them to be.
-    pub(super) fn tighten(&mut self, bodies: &Bodies<'_>) {
+    pub(super) fn tighten(&mut self, bodies: &mut Bodies<'_>) {
         let Vectors { shift, p, .. } = &mut self.vectors;
         p.copy_from_slice(shift);
         self.vectors.stamps().fill(0);
@@ -29,6 +29,7 @@ impl Solver<'_> {
             let stamps = bytemuck::cast_slice_mut::<_, u32>(q);
             walls::keep(self.walls, bodies, shift, |number| stamps[number] = (pass + 1) * eights);
         }
+        bodies.report.caps.edges += 1;
     }
 
     /// Shortens the edges of a triangle, and stamps who goes with it; tells whether it had to.

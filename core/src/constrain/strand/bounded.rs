@@ -6,13 +6,12 @@ use super::params::StrandParams;
 use crate::constrain::Bodies;
 use crate::constrain::budget::{self, Budget, Free};
 use crate::constrain::turn::Turn;
-use crate::constrain::whole::{self, Owed, Whole};
+use crate::constrain::whole::{self, Group, Owed, Whole};
 use crate::math::{dot, length, min};
-use crate::memory::take;
 use glam::Vec3;
 
 /// Words to work with, for each point.
-pub(super) const WORDS: usize = 10;
+pub(super) const WORDS: usize = 3;
 /// Words for the frames of before, for each point.
 pub(super) const FRAMES: usize = 4;
 
@@ -33,7 +32,7 @@ impl<'m> Purse<'m> {
         Some(Self { budget: Budget(budget), owed: Owed(owed) })
     }
 
-    /// Forgets it: something holds the strand.
+    /// Forgets it: something holds the strand, or it is in parts.
     pub(super) fn forget(&mut self) {
         self.budget.forget();
         self.owed.forget();
@@ -67,15 +66,10 @@ pub(super) struct Course<'m> {
 impl Bounded<'_> {
     /// What solving it must not change.
     pub(super) fn limits(&self, bodies: &Bodies<'_>, course: Course<'_>, purse: &Purse<'_>) -> Limits {
-        let Course { joints, before, work } = course;
+        let Course { joints, before, .. } = course;
         before.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
-        let free = self.free([bodies.before[0], bodies.velocity], bodies, work);
-        let most = purse.budget.most(free.moving() + self.stored(joints, None, free.place));
-        Limits { most, whole: Whole::of(bodies, self.living()) }
-    }
-
-    fn living(&self) -> impl Iterator<Item = usize> + Clone {
-        self.rows.iter().map(|&row| row as usize)
+        let begun = Group::begun(bodies, self.rows).moving() + self.stored(joints, None, bodies.before[0]);
+        Limits { most: purse.budget.most(begun), whole: Group::of(bodies, self.rows).whole() }
     }
 
     /// Gives it back what rounding has taken, takes out of it what is too much, and keeps what there is.
@@ -86,42 +80,30 @@ impl Bounded<'_> {
         course: Course<'_>,
         purse: &mut Purse<'_>,
     ) {
-        purse.owed.give_back(bodies, self.living(), limits.whole);
-        let most = limits.most;
-        let Course { joints, before, work } = course;
-        let mut free = self.free([bodies.position, bodies.velocity], bodies, work);
-        let mut now = free.moving() + self.stored(joints, None, free.place);
+        purse.owed.give_back(bodies, self.rows, limits.whole);
+        let (most, Course { joints, before, work }) = (limits.most, course);
+        let energy = |bodies: &Bodies<'_>, joints: &[Joint]| {
+            Group::of(bodies, self.rows).moving() + self.stored(joints, None, bodies.position)
+        };
+        let mut now = energy(bodies, joints);
         if now > most {
-            let (rows, places) = (self.rows, bodies.before[0]);
-            let begin = |number: usize| places[rows[number] as usize];
             let frames = |turned: Option<Turn>| turned.map(|turned| (turned, &*before));
-            let turned =
-                free.hold_back(self.h, most, begin, |places, turned| self.stored(joints, frames(turned), places));
-            for ((&row, &x), &v) in self.rows.iter().zip(&*free.place).zip(&*free.velocity) {
-                if x.is_finite() && v.is_finite() {
-                    let row = row as usize;
-                    bodies.shift(row, x - bodies.position[row]);
-                    (bodies.position[row], bodies.velocity[row]) = (x, v);
-                }
+            let goal: &mut [Vec3] = bytemuck::cast_slice_mut(&mut work[..WORDS * self.rows.len()]);
+            let mut free = Free { bodies, rows: self.rows, goal };
+            let turned = free.hold_back(most, |places, turned| self.stored(joints, frames(turned), places));
+            for number in 0..self.rows.len() - 1 {
+                let way = self.way(number, bodies.position);
+                joints[number].turn = frame(joints, frames(turned), number, way).0;
             }
-            for (number, ends) in free.place.windows(2).enumerate() {
-                joints[number].turn = frame(joints, frames(turned), number, ends[1] - ends[0]).0;
-            }
-            now = free.moving() + self.stored(joints, None, free.place);
+            now = energy(bodies, joints);
         }
         purse.budget.keep(now, most);
     }
 
-    fn free<'w>(&self, columns: [&[Vec3]; 2], bodies: &Bodies<'_>, work: &'w mut [u32]) -> Free<'w> {
-        let (mut rest, count) = (work, self.rows.len());
-        let weight: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, count));
-        let [place, velocity, goal] = [(); 3].map(|()| bytemuck::cast_slice_mut(take(&mut rest, 3 * count)));
-        for (number, &row) in self.rows.iter().enumerate() {
-            let row = row as usize;
-            weight[number] = bodies.inverse_mass[row];
-            (place[number], velocity[number]) = (columns[0][row], columns[1][row]);
-        }
-        Free { weight, place, velocity, goal }
+    /// The way from a point to the next.
+    fn way(&self, number: usize, places: &[Vec3]) -> Vec3 {
+        let [from, to] = [number, number + 1].map(|point| places[self.rows[point] as usize]);
+        to - from
     }
 
     /// The energy of strain where its points are in these places \[J\]. What is stiffer than it takes to be brought to its shape in a
@@ -130,8 +112,8 @@ impl Bounded<'_> {
         let StrandParams { stretch, bending: [first, second], twisting, .. } = *self.params;
         let (mut sum, mut last) = (0.0, None);
         let shown = 0.5 * self.mass / (self.h * self.h);
-        for (number, (ends, joint)) in places.windows(2).zip(joints).enumerate() {
-            let way = ends[1] - ends[0];
+        for (number, joint) in joints.iter().enumerate().take(self.rows.len() - 1) {
+            let way = self.way(number, places);
             let stiff = stretch.map_or(f32::INFINITY, |stretch| stretch / joint.length);
             let stiff = min(stiff, shown);
             let long = length(way) - joint.length;

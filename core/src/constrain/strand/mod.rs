@@ -37,8 +37,9 @@ use piece::{EQUATIONS, Piece, Step, Writer, act};
 /// share of 1e-6 E I h²/(m l³) in a sub-step h, less than 0.01 % for hair of 1 cm; longer edges and shorter sub-steps lessen it. The
 /// system has a narrow band and is solved directly, so that the time that it takes grows with the number of points alone; several
 /// strands are solved eight at once. Forces act along the directions of the sub-step's beginning, and both momenta of a strand that
-/// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps: what would be too much is taken from how it deforms. What swings so fast that a sub-step does not resolve it fades: a motion of angular frequency ω
-/// by (ω h)²/2 in a sub-step h.
+/// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps: what would be too much is taken from how it
+/// deforms, where the strain of what is stiffer than it takes to be brought to its shape in a sub-step counts for no more than that. What swings
+/// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
 /// cannot turn about itself there; a single one is a hinge. Where a particle has died the strand is in two. Edges whose ends are in one place
@@ -209,9 +210,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let mut piece = self.piece(bodies, strand, from, rows_of);
                 from = piece.first + piece.count;
                 let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
-                let whole = piece.count == strand[1] - strand[0] && rows_of[..piece.count].iter().all(is_free);
-                piece.free = whole.then_some(number);
-                if let Some(mut purse) = Purse::of(purses, number).filter(|_| !whole) {
+                piece.is_free = rows_of[..piece.count].iter().all(is_free);
+                piece.whole = (piece.count == strand[1] - strand[0]).then_some(number);
+                if let Some(mut purse) = Purse::of(purses, number).filter(|_| !piece.is_free || piece.whole.is_none()) {
                     purse.forget();
                 }
                 if piece.count > 1 {
@@ -254,7 +255,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 rows.iter().for_each(|&row| bodies.catch_up(row as usize));
             }
             masses[lane] = mean_mass(bodies, rows);
-            limits[lane] = piece.purse(purses).map(|purse| {
+            limits[lane] = piece.purse(purses, &mut [0; PURSE]).map(|purse| {
                 let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
                 bounded(rows, masses[lane]).limits(bodies, course, &purse)
             });
@@ -266,7 +267,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let joints = &mut joints[piece.first..][..piece.count];
             let is_solved = act(&band, lane, bodies, rows, joints, masses[lane]);
             bodies.report.effort.solved(1, 0.0, !is_solved);
-            if let (Some(limits), Some(mut purse)) = (limits[lane], piece.purse(purses)) {
+            if let (Some(limits), Some(mut purse)) = (limits[lane], piece.purse(purses, &mut [0; PURSE])) {
                 let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
                 bounded(rows, masses[lane]).keep_within(limits, bodies, course, &mut purse);
             }

@@ -39,14 +39,22 @@ pub(super) struct Piece {
     pub(super) count: usize,
     /// True if its first and its last edge do not turn about themselves.
     pub(super) held: [bool; 2],
-    /// The number of its strand, if it is the whole of that and nothing holds it.
-    pub(super) free: Option<usize>,
+    /// The number of its strand, if it is the whole of that.
+    pub(super) whole: Option<usize>,
+    /// True if nothing holds it.
+    pub(super) is_free: bool,
 }
 
 impl Piece {
-    /// What is kept of its strand, if nothing holds it.
-    pub(super) fn purse<'m>(&self, purses: &'m mut [u32]) -> Option<Purse<'m>> {
-        Purse::of(purses, self.free?)
+    /// What is kept of its strand, if nothing holds it: of a part of one nothing is kept, which has words of its own while it is solved.
+    pub(super) fn purse<'m>(&self, purses: &'m mut [u32], own: &'m mut [u32]) -> Option<Purse<'m>> {
+        if !self.is_free {
+            return None;
+        }
+        match self.whole {
+            Some(number) => Purse::of(purses, number),
+            None => Purse::of(own, 0),
+        }
     }
 }
 

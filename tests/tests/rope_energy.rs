@@ -1,0 +1,198 @@
+//! Ropes that nothing holds gain no energy, soft or rigid, whole or in parts.
+
+use pointmass::{Id, Measures, Method, Particle, Rope, Scene, Time, Vec3};
+use pointmass_tests::{Random, f64s, gap, often, started};
+
+/// A rope as it begins: as it lies it is at rest.
+struct Flying {
+    start: Vec<Particle>,
+    rope: Rope<Vec<u32>, Vec<f32>>,
+    middle: Vec3,
+}
+
+/// What a rope is like.
+#[derive(Clone, Copy, Debug)]
+struct Like {
+    links: usize,
+    compliance: f32,
+    closed: bool,
+    tether: bool,
+    /// How far masses are from their mean, as a share of that.
+    uneven: f32,
+    /// How far from the origin it is \[m\].
+    far: f32,
+}
+
+fn flying(like: Like, random: &mut Random) -> Flying {
+    let Like { links, compliance, closed, tether, uneven, far } = like;
+    let count = if closed { links } else { links + 1 };
+    let part = |i: usize| {
+        let angle = core::f32::consts::TAU * i as f32 / count as f32;
+        let round = Vec3::new(angle.cos(), angle.sin(), 0.3 * random.unit()) * (0.016 * count as f32);
+        let position = if closed { round } else { Vec3::new(0.1 * i as f32, 0.02 * random.unit(), 0.0) };
+        let velocity = Vec3::Z.cross(position) * 2.0 + random.vector(0.3);
+        Particle { position, velocity, mass: 0.1 * random.between(1.0 - uneven, 1.0 + uneven), ..Particle::REST }
+    };
+    let mut start: Vec<Particle> = (0..count).map(part).collect();
+    let mass: f32 = start.iter().map(|p| p.mass).sum();
+    let mean = |of: fn(&Particle) -> Vec3| start.iter().map(|p| of(p) * p.mass).sum::<Vec3>() / mass;
+    let (x, v, middle) = (mean(|p| p.position), mean(|p| p.velocity), Vec3::new(far, -0.5 * far, 0.3 * far));
+    start.iter_mut().for_each(|p| (p.position, p.velocity) = (p.position - x + middle, p.velocity - v));
+    let between = |i: usize| (start[(i + 1) % count].position - start[i].position).length();
+    let lengths: Vec<f32> = (0..links).map(between).collect();
+    let rope = Rope { compliance, closed, tether, ..Rope::rigid((0..count as u32).collect(), lengths) };
+    Flying { start, rope, middle }
+}
+
+impl Flying {
+    /// The energy that its links are strained by, those between particles that are there \[J\].
+    fn strained(&self, place: impl Fn(usize) -> Option<[f64; 3]>) -> f64 {
+        let Rope { compliance, tether, ref lengths, .. } = self.rope;
+        let one = |(i, &length): (usize, &f32)| {
+            let (a, b) = (place(i)?, place((i + 1) % self.start.len())?);
+            let off = gap(a, b) - f64::from(length);
+            let off = if tether { off.max(0.0) } else { off };
+            Some(0.5 * off * off / f64::from(compliance))
+        };
+        if compliance > 0.0 { lengths.iter().enumerate().filter_map(one).sum() } else { 0.0 }
+    }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The angular momentum of some about where their middle is.
+fn spin(start: &[Particle], x: &[Vec3], v: &[Vec3]) -> [f64; 3] {
+    let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
+    let mean = |of: &[Vec3]| {
+        [0, 1, 2].map(|k| start.iter().zip(of).map(|(p, of)| f64::from(p.mass) * f64::from(of[k])).sum::<f64>() / mass)
+    };
+    let ([middle, drift], mut sum) = ([mean(x), mean(v)], [0.0; 3]);
+    for ((p, &x), &v) in start.iter().zip(x).zip(v) {
+        let minus = |a: Vec3, b: [f64; 3]| [0, 1, 2].map(|k| f64::from(a[k]) - b[k]);
+        let own = cross(minus(x, middle), minus(v, drift));
+        (0..3).for_each(|k| sum[k] += f64::from(p.mass) * own[k]);
+    }
+    sum
+}
+
+fn gains_nothing(frames: u64, all: &[usize]) {
+    let (mut random, mut failures) = (Random::new(5), vec![]);
+    let mut methods =
+        [Method::Symplectic, Method::Verlet, Method::Rk4, Method::Midpoint, Method::Euler].into_iter().cycle();
+    let forms = [
+        (false, false, 0.5, 0.0),
+        (true, false, 0.9, 0.0),
+        (false, true, 0.5, 30.0),
+        (true, true, 0.0, 0.0),
+        (false, false, 0.9, 100.0),
+    ];
+    for &links in all {
+        for (closed, tether, uneven, far) in forms.into_iter().filter(|form| links > 2 || !form.0) {
+            for compliance in [0.0, 1e-7, 1e-5, 1e-3, 1e-1] {
+                for substeps in [1, 2, 5, 10, 20, 50] {
+                    let like = Like { links, compliance, closed, tether, uneven, far };
+                    let flying = flying(like, &mut random);
+                    let method = methods.next().expect("there is always a next one");
+                    let (start, constraints) = (&flying.start, &flying.rope);
+                    let scene = Scene { start, constraints, substeps, integrator: method.integrator(), ..Scene::EMPTY };
+                    let mut system = started(&scene, start.len(), 0);
+                    let begun = Measures::of(&system, &scene).energy.kinetic;
+                    let (x, v): (Vec<_>, Vec<_>) = start.iter().map(|p| (p.position, p.velocity)).unzip();
+                    let (turned, mut grown) = (spin(start, &x, &v), 0f64);
+                    for frame in 1..=frames {
+                        system.step_to(&scene, Time::frame(frame, 60));
+                        let x = system.particles().position;
+                        let strained = flying.strained(|i| Some(f64s(x[i])));
+                        grown = grown.max((Measures::of(&system, &scene).energy.kinetic + strained) / begun - 1.0);
+                    }
+                    let (x, v) = (system.particles().position, system.particles().velocity);
+                    let lost = gap(turned, spin(start, x, v)) / gap(turned, [0.0; 3]);
+                    // Sub-steps round places, which strains soft links and turns what is short; far away they are coarse.
+                    let all = (frames as f64 * f64::from(substeps)).sqrt();
+                    let coarse = f64::from(f32::EPSILON * flying.middle.length());
+                    let shown = if compliance > 0.0 {
+                        2.0 * coarse * coarse / f64::from(compliance) * links as f64 / begun
+                    } else {
+                        0.0
+                    };
+                    let fine = 4.0 * f64::from(f32::EPSILON) * all;
+                    let grows = fine + 20.0 * coarse * all / (0.1 * links as f64) + shown;
+                    // A place that a method rounds by up to half of that is off its way by as much across the velocity it has, and so Σ m v × the
+                    // rounding is lost; that has one sense for as long as velocities stay, for some hundreds of sub-steps, whose root is 20.
+                    let way: f64 = start.iter().map(|p| f64::from(p.mass * p.velocity.length())).sum();
+                    let turns = fine + 0.5 * 20.0 * coarse * all * way / gap(turned, [0.0; 3]) + shown;
+                    let most = [1e-5 + grows, 1e-4 + turns];
+                    if !(grown < most[0] && lost < most[1]) {
+                        failures.push(format!(
+                            "{method} {like:?} in {substeps}: {grown:.1e}, {lost:.1e} of {:.1e}, {:.1e}",
+                            most[0], most[1]
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
+}
+
+/// Whatever their compliance, in any sub-steps, open or closed, near or far.
+#[test]
+fn free_ropes_gain_no_energy() {
+    gains_nothing(often(240) as u64, &[1, 3, 12]);
+}
+
+/// What is left of a rope of which some have died gains none either: of a ring, and of an open one.
+#[test]
+fn parts_of_a_rope_gain_no_energy() {
+    let mut random = Random::new(6);
+    for (closed, dead) in [(true, &[5usize][..]), (true, &[3, 9]), (false, &[4]), (false, &[0, 7])] {
+        for compliance in [0.0, 1e-6, 1e-3] {
+            for (substeps, method) in
+                [(1, Method::Symplectic), (2, Method::Verlet), (5, Method::Rk4), (20, Method::Euler)]
+            {
+                let like = Like { links: 14, compliance, closed, tether: false, uneven: 0.5, far: 0.0 };
+                let mut flying = flying(like, &mut random);
+                dead.iter().for_each(|&i| flying.start[i].lifetime = 0.1);
+                let (start, constraints) = (&flying.start, &flying.rope);
+                let scene = Scene { start, constraints, substeps, integrator: method.integrator(), ..Scene::EMPTY };
+                let mut system = started(&scene, start.len(), 0);
+                let ids: Vec<Id> = (0..start.len()).filter_map(|row| system.id(row)).collect();
+                let mut begun = None;
+                for frame in 1..=often(300).max(60) as u64 {
+                    system.step_to(&scene, Time::frame(frame, 60));
+                    let there = system.particles();
+                    // The energy of each part beside that of its middle.
+                    let row = |i: usize| system.row(ids[i]);
+                    let count = start.len();
+                    let first = if closed { dead[0] + 1 } else { 0 };
+                    let (mut parts, mut part) = (vec![], vec![]);
+                    for i in (first..first + count).map(|i| i % count) {
+                        match row(i) {
+                            Some(row) => part.push(row),
+                            None => parts.push(core::mem::take(&mut part)),
+                        }
+                    }
+                    parts.push(part);
+                    let moving: f64 =
+                        parts.iter().map(|part| beside_the_middle(part, there.mass, there.velocity)).sum();
+                    let strained = flying.strained(|i| row(i).map(|row| f64s(there.position[row])));
+                    let now = moving + strained;
+                    assert!(frame < 8 || there.position.len() == count - dead.len());
+                    if there.position.len() < count {
+                        let grown = now / *begun.get_or_insert(now) - 1.0;
+                        assert!(grown < 2e-5, "{like:?} without {dead:?} in {substeps}, {frame}: {grown:.1e}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn beside_the_middle(rows: &[usize], mass: &[f32], velocity: &[Vec3]) -> f64 {
+    let all = || rows.iter().map(|&row| (f64::from(mass[row]), f64s(velocity[row])));
+    let sum: f64 = all().map(|(m, _)| m).sum();
+    let drift = [0, 1, 2].map(|k| all().map(|(m, v)| m * v[k]).sum::<f64>() / sum);
+    all().map(|(m, v)| 0.5 * m * gap(v, drift).powi(2)).sum()
+}
