@@ -162,7 +162,7 @@ fn every_scene_survives_a_round_trip_through_json() {
 fn watch(name: &str, seconds: f64, mut look: impl FnMut(Columns<'_>, f64)) {
     let path = folder().join(name).with_extension("json");
     let file = read(&path);
-    let model = Model::load(&file, name, &mut Disk).unwrap_or_else(|error| panic!("{error}"));
+    let model = Model::load(&file, &path.to_string_lossy(), &mut Disk).unwrap_or_else(|error| panic!("{error}"));
     let mut system = System::with(Heap::new(model.size(file.run.capacity as usize)));
     system.start(&model.scene(), file.run.seed).expect("it fits");
     for step in 1..=(seconds / file.run.dt) as u64 {
