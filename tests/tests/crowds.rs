@@ -224,3 +224,24 @@ fn an_index_is_not_taken_for_another() {
     };
     assert_eq!(run(true), run(false));
 }
+
+/// Where there is room for nobody, nobody is born, and nothing goes wrong.
+#[test]
+fn without_room_all_births_are_refused() {
+    let emitters = sources();
+    let sink = Sphere { center: Vec3::splat(0.5), radius: 0.1 };
+    let scene = Scene {
+        emitters: &emitters,
+        forces: &THICK,
+        reapers: &DENSE,
+        colliders: &BOX,
+        sinks: &sink,
+        substeps: 2,
+        ..Scene::EMPTY
+    };
+    let mut system = System::with(Heap::new(scene.size_for(0)));
+    system.start(&scene, 5).expect("it fits");
+    let report = system.step(&scene, Time::frame(1, 60));
+    assert_eq!((report.born, system.len()), (0, 0));
+    assert!(report.refused > 0);
+}

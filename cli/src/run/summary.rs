@@ -122,7 +122,7 @@ impl Summary {
             ("contacts without room", contacts),
             ("steps of particles lost to rounding", stalled),
             ("solutions of shells without graphs", graphs),
-            ("solutions of shells that left edges too long", edges),
+            ("solutions of shells that may have left edges too long", edges),
             ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);

@@ -338,7 +338,8 @@ impl Layout {
     /// The memory of a sub-step's beginning.
     pub(crate) fn past<'m>(&self, work: &'m [Vec3]) -> Past<'m> {
         let pair = if self.plan.start { self.capacity } else { 0 };
-        let work = if ARE_KEPT { &work[self.lasting_index()..] } else { work };
+        // Where there is room for nobody, there is none for the index either.
+        let work = if ARE_KEPT { work.get(self.lasting_index()..).unwrap_or_default() } else { work };
         let (start, rest) = work.split_at(2 * pair);
         let marks = if self.plan.constrained { &bytemuck::cast_slice(rest)[..self.capacity] } else { &[] };
         Past { start: start.split_at(pair).into(), marks }

@@ -39,7 +39,7 @@ use piece::{EQUATIONS, Piece, Step, Writer, act};
 /// strands are solved eight at once. Forces act along the directions of the sub-step's beginning, and both momenta of a strand that
 /// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps: what would be too much is taken from how it
 /// deforms, where the strain of what is stiffer than it takes to be brought to its shape in a sub-step counts for no more than that. What swings
-/// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h.
+/// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. In a periodic room a free strand has to be shorter than half a side.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
 /// cannot turn about itself there; a single one is a hinge. Where a particle has died the strand is in two. Edges whose ends are in one place
