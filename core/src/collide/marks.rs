@@ -14,7 +14,7 @@ impl MarkCode {
     pub(crate) const ALL: Self = Self(heed);
 }
 
-/// What a row marked so may meet, and as a ball of which radius; what the marks do is to be read at `TileSweep::follow_past`.
+/// The scenery that a row marked so may meet, and the radius of the ball that it is then; what the marks do is to be read at `TileSweep::follow_past`.
 fn heed<'w>(mark: u32, path: &mut Path, walls: &'w dyn Collider, radius: f32) -> (&'w dyn Collider, f32) {
     if mark & SHIFTED != 0 {
         *path = path.straightened();

@@ -11,7 +11,7 @@ use glam::{Mat3, Vec3};
 const HALVINGS: u32 = 6;
 /// The least share of what is no motion of a rigid body that is left without that.
 const LEAST: f32 = 0.5;
-/// What of the energy of turning is rounding, as a share of it.
+/// The share of the energy of turning that may be rounding.
 const EVEN: f32 = 1e-6;
 /// How many times what there is a budget is at the most.
 const SLACK: f32 = 2.0;

@@ -28,7 +28,7 @@ pub(super) fn names_twice(particles: &[u32]) -> bool {
     sorted.windows(2).any(|pair| pair[0] == pair[1])
 }
 
-/// What is wrong with a list of particles that names one twice.
+/// The fault of a list of particles that names one twice.
 pub(super) fn twice(particles: &[u32]) -> Option<(&'static str, &'static str)> {
     names_twice(particles).then_some(("particles", "must not name a particle twice"))
 }

@@ -16,7 +16,7 @@ const PART: usize = 1 + budget::WORDS;
 /// Sums that go on side by side.
 const SUMS: usize = 8;
 
-/// What the energy of a rope depends on.
+/// The form of a rope at rest, on which its energy depends.
 #[derive(Clone, Copy)]
 pub(super) struct Form<'m> {
     /// The number of its particles.
@@ -36,7 +36,7 @@ pub(super) fn kept(particles: usize) -> usize {
     particles.saturating_mul(PART).saturating_add(whole::WORDS)
 }
 
-/// What solving a rope must not change, if nothing holds it, or a part of it that is left where particles have died.
+/// The bounds that solving a rope keeps to, if nothing holds it, or a part of it that is left where particles have died.
 pub(super) struct Bounds<'m> {
     form: Form<'m>,
     /// The rows of all particles, and the number of the first of these: where a closed rope is broken, the one behind the gap.
@@ -153,7 +153,7 @@ impl<'m> Bounds<'m> {
         }
     }
 
-    /// What a part may have, of which nothing is known yet where it was another as that was noted.
+    /// The energy that a part may have, of which nothing is known yet where it was another part as that was noted.
     fn budget(&mut self, part: Part<'_>) -> Budget<'_> {
         let number = part.first % self.form.particles;
         let Some([count, budget @ ..]) = self.purses.as_chunks_mut::<PART>().0.get_mut(number) else {

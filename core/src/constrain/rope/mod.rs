@@ -22,7 +22,7 @@ use links::{Links, NOBODY, put};
 ///
 /// A damping β takes from the speed at which a link stretches what a force β times that speed does, by an implicit step at the
 /// sub-step's end. Rigid links keep nothing of that speed: with `Verlet` that is RATTLE (Andersen, J. Comput. Phys. 52, 1983).
-/// What that gives of energy in one sub-step it takes in another; of a rope that nobody holds it takes what goes beyond at once, from how it
+/// The energy that this gives in one sub-step it takes in another; of a rope that nobody holds it takes what goes beyond at once, from how it
 /// moves against a rigid motion with the same momenta, and from the ways of soft links too, so that it never gains any, nor does what is left of it
 /// in parts.
 ///
@@ -136,7 +136,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         self.form().length(link)
     }
 
-    /// What its energy depends on.
+    /// Its form at rest, on which its energy depends.
     fn form(&self) -> Form<'_> {
         let (particles, lengths) = (self.particles.as_ref().len(), self.lengths.as_ref());
         let Self { compliance, tether, .. } = *self;
