@@ -1,5 +1,6 @@
 //! A surface that gives birth to particles.
 
+use super::vary::Aim;
 use super::{Births, Emit, Spread, Varied};
 use crate::math::{along, divide, scaled, unit};
 use crate::motion::Script;
@@ -162,7 +163,8 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
             self.emit_bursts(burst, [first, last], births, number);
         }
         if first < last {
-            births.bring(number, self.rate, [first, last], |births, at| self.bear(births, number, at));
+            let aim = self.spread.aim();
+            births.bring(number, self.rate, [first, last], |births, at| self.bear(births, number, at, aim));
         }
     }
 }
@@ -228,7 +230,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         }
         // The first burst that is not before `from`, if there is more than one.
         let (_, past) = divide(u128::from(from.ticks().saturating_sub(first)), every.max(1));
-        let mut ticks = first;
+        let (mut ticks, aim) = (first, self.spread.aim());
         if first < from.ticks() && every > 0 {
             ticks = if past == 0 { from.ticks() } else { from.ticks().saturating_add(every - past) };
         }
@@ -243,7 +245,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
                     births.refuse(number, u64::from(burst.count - given));
                     break;
                 }
-                fits = self.bear(births, number, at);
+                fits = self.bear(births, number, at, aim);
             }
             if every == 0 {
                 return;
@@ -259,12 +261,12 @@ impl<S: Surface, M: Script> Emitter<S, M> {
     }
 
     /// One birth, if it comes to one. False if it was refused: so will those be that are like it.
-    fn bear(&self, births: &mut Births<'_>, number: usize, at: Time) -> bool {
+    fn bear(&self, births: &mut Births<'_>, number: usize, at: Time, aim: Aim) -> bool {
         let Some(WhereSparse { radius, fewest }) = self.where_sparse else {
-            return births.give(number, at, |stream| self.newborn(stream, at)).is_ok();
+            return births.give(number, at, |stream| self.newborn(stream, at, aim)).is_ok();
         };
         births.offer(number, at, |stream, births| {
-            let newborn = self.newborn(stream, at);
+            let newborn = self.newborn(stream, at, aim);
             (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
         });
         true
@@ -302,13 +304,13 @@ impl<S: Surface, M: Script> Emitter<S, M> {
     }
 
     /// A newborn. Each property draws from a place of its own, so that a change of one leaves the others alone.
-    fn newborn(&self, random: Stream, at: Time) -> Particle {
+    fn newborn(&self, random: Stream, at: Time, aim: Aim) -> Particle {
         let [[u, v], [w, p], [q, speed], [bounce, life]] = random.units_of([0, 1, 2, 4]);
         let inside = if self.inside { self.place_inside(random) } else { None };
         let spot = inside.unwrap_or_else(|| self.shape.sample([u, v, w]));
         let axis = self.direction.map_or(spot.normal, unit);
         let (spot, axis, along_with) = self.carried(spot.point, axis, at);
-        let direction = self.spread.direction(axis, [p, q]);
+        let direction = aim.direction(axis, [p, q]);
         Particle {
             position: along(spot, self.velocity, at.seconds()),
             velocity: along(scaled(along_with, self.inherit), direction, self.speed.pick(speed)),

@@ -53,17 +53,46 @@ impl Varied {
 impl Spread {
     /// The direction about the unit vector `axis` that two numbers uniform in [0, 1) pick.
     #[must_use]
-    pub fn direction(self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
+    pub fn direction(self, axis: Vec3, numbers: [f32; 2]) -> Vec3 {
+        self.aim().direction(axis, numbers)
+    }
+
+    /// The same for whoever picks many.
+    pub(super) fn aim(self) -> Aim {
+        match self {
+            Self::Uniform(0.0) | Self::Lecture(0.0) => Aim::Straight,
+            Self::Uniform(cutoff) => Aim::Uniform { half: sin_cos(0.5 * cutoff).0 },
+            Self::Lecture(cutoff) => Aim::Lecture { sin: sin_cos(cutoff).0 },
+        }
+    }
+}
+
+/// A spread, with what all its directions have in common.
+#[derive(Clone, Copy)]
+pub(super) enum Aim {
+    Straight,
+    /// Uniform in solid angle within a cutoff; the sine of half of it.
+    Uniform {
+        half: f32,
+    },
+    /// The lecture's, with the sine of its cutoff.
+    Lecture {
+        sin: f32,
+    },
+}
+
+impl Aim {
+    /// As [`Spread::direction`] has it.
+    pub(super) fn direction(self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
         let (sin, cos) = match self {
-            Self::Uniform(0.0) | Self::Lecture(0.0) => return axis,
-            Self::Uniform(cutoff) => {
+            Self::Straight => return axis,
+            Self::Uniform { half } => {
                 // 1 − cos c = 2 sin²(c/2) keeps the digits of small angles.
-                let (half, _) = sin_cos(0.5 * cutoff);
                 let drop = u * 2.0 * half * half;
                 (sqrt(max(drop * (2.0 - drop), 0.0)), 1.0 - drop)
             }
-            Self::Lecture(cutoff) => {
-                let sin = u * sin_cos(cutoff).0;
+            Self::Lecture { sin } => {
+                let sin = u * sin;
                 (sin, sqrt(max(1.0 - sin * sin, 0.0)))
             }
         };

@@ -132,8 +132,12 @@ impl Plan {
 
     /// The words of an index that lasts from one who asks to the next.
     fn lasting_index(&self) -> Words {
-        let of_all = Words { fixed: index_words(), ..Words::columns(self.index) };
-        if ARE_KEPT && self.crowd { of_all } else { Words::NONE }
+        if ARE_KEPT && self.crowd { self.index_of_all() } else { Words::NONE }
+    }
+
+    /// The words of an index of all, and of its record.
+    fn index_of_all(&self) -> Words {
+        Words { fixed: index_words(), ..Words::columns(self.index) }
     }
 
     /// Marks, and words that constraints keep through the step, for so many particles.
@@ -303,8 +307,8 @@ impl Layout {
         work: &'m mut [Vec3],
         choice: &'m dyn IndexChoice,
     ) -> (StateIndex<'m>, &'m mut [Vec3]) {
-        let index = Words { fixed: index_words(), ..Words::columns(self.plan.index) };
-        let (index, places) = work.split_at_mut((index.of(self.capacity) / 3).min(work.len()));
+        let index = self.plan.index_of_all().of(self.capacity) / 3;
+        let (index, places) = work.split_at_mut(index.min(work.len()));
         let words: &mut [u32] = bytemuck::cast_slice_mut(index);
         let (passing, lasting): (&mut [u32], _) =
             if ARE_KEPT { (&mut [], Lasting::of(words)) } else { (words, Lasting::none()) };

@@ -19,7 +19,8 @@ pub enum Cause {
 }
 
 /// The fate of a particle at the end of the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, bytemuck::NoUninit)]
+#[repr(u8)]
 pub enum PendingDeath {
     /// It lives on.
     #[default]

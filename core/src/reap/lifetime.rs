@@ -1,9 +1,12 @@
 //! Death of age.
 
-use super::{CHUNK, Cause, FEW, Verdicts};
+use super::{Cause, Verdicts};
 use crate::lanes::widest;
 use crate::rows::BLOCKS;
 use crate::time::Time;
+
+/// Rows that are looked at together.
+const FEW: usize = 16;
 
 /// The last instant at which anybody dies.
 const BEFORE_NEVER: Time = Time::from_ticks(Time::NEVER.ticks() - 1);
@@ -15,21 +18,16 @@ pub(crate) fn end_old(dies: &[Time], now: Time, verdicts: &mut Verdicts<'_>) {
         return end_due(0, dies, last, verdicts);
     }
     let next = last + Time::from_ticks(1);
-    let mut end_few = |first: usize, dies: &[Time]| {
-        for (few, dies) in dies.chunks(FEW).enumerate().filter(|(_, dies)| may_end(dies, next)) {
-            end_due(first + FEW * few, dies, last, verdicts);
-        }
-    };
     widest(
         #[inline(always)]
         || {
-            let (chunks, rest) = dies.as_chunks::<CHUNK>();
+            let (chunks, rest) = dies.as_chunks::<FEW>();
             for (nth, dies) in chunks.iter().enumerate() {
                 if may_end(dies, next) {
-                    end_few(CHUNK * nth, dies);
+                    end_due(FEW * nth, dies, last, verdicts);
                 }
             }
-            end_few(dies.len() - rest.len(), rest);
+            end_due(dies.len() - rest.len(), rest, last, verdicts);
         },
     );
 }
@@ -47,7 +45,7 @@ fn end_due(first: usize, dies: &[Time], last: Time, verdicts: &mut Verdicts<'_>)
 /// Tells whether any of these instants may have come before `next`. The difference to that has the highest bit where it is below zero,
 /// or where what dies later than in 68 years does: that has the bit itself.
 #[inline(always)]
-fn may_end(dies: &[Time], next: Time) -> bool {
+fn may_end(dies: &[Time; FEW], next: Time) -> bool {
     let next = next.ticks();
     let came = |any: u64, dies: &Time| any | (dies.ticks().wrapping_sub(next) & !dies.ticks());
     let is_late = next >> 63 != 0;

@@ -24,9 +24,8 @@ use glam::Vec3;
 pub(crate) use lifetime::end_old;
 pub(crate) use nonfinite::end_lost;
 
-/// Rows that are looked at together, and those of them that are looked at closer where some of all may matter.
+/// Rows that are looked at together.
 pub(crate) const CHUNK: usize = 64;
-pub(crate) const FEW: usize = 16;
 
 /// A rule by which particles die.
 ///

@@ -1,10 +1,11 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
 use crate::index::ARE_KEPT;
+use crate::lanes::widest;
 use crate::memory::{Layout, TILED, Workspace};
 use crate::observe::{LifeEvent, Observer};
 use crate::particles::Id;
-use crate::reap::{CHUNK, Cause, FEW, Judged, PendingDeath, ReaperCode};
+use crate::reap::{CHUNK, Cause, Judged, PendingDeath, ReaperCode};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
@@ -25,7 +26,10 @@ impl Workspace<'_> {
         let before = report.died.lifetime;
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
-        while let Some((row, cause)) = last_doomed(&self.memory.pending_death[..end]) {
+        while let Some((row, cause)) = widest(
+            #[inline(always)]
+            || last_doomed(&self.memory.pending_death[..end]),
+        ) {
             report.died.count(cause);
             let m = &self.memory;
             let id = Id { slot: m.slot[row], serial: m.serial[row] };
@@ -60,18 +64,55 @@ impl Workspace<'_> {
     }
 }
 
-/// The last row that has to go. Hardly any has, so whole chunks are passed over, and in one that has such a row a few at a time.
+/// The last row that has to go. Hardly any has, so whole chunks are passed over, and in one that has such a row words of eight.
+#[inline(always)]
 fn last_doomed(pending_deaths: &[PendingDeath]) -> Option<(usize, Cause)> {
-    let upto = if TILED { upto_doomed::<FEW>(upto_doomed::<CHUNK>(pending_deaths)?)? } else { pending_deaths };
-    let row = upto.iter().rposition(|&pending_death| pending_death != PendingDeath::Lives)?;
-    Some((row, upto[row].cause()?))
+    let row = match TILED {
+        true => last_set(bytemuck::cast_slice(pending_deaths)),
+        false => pending_deaths.iter().rposition(|&pending_death| pending_death != PendingDeath::Lives),
+    }?;
+    Some((row, pending_deaths[row].cause()?))
 }
 
-/// The rows up to the last chunk of so many, counted from the end, in which somebody has to go.
+/// The last byte that is not zero.
 #[inline(always)]
-fn upto_doomed<const ROWS: usize>(pending_deaths: &[PendingDeath]) -> Option<&[PendingDeath]> {
-    let (rest, chunks) = pending_deaths.as_rchunks::<ROWS>();
-    let doomed = chunks.iter().rposition(|chunk| chunk.iter().fold(0, |any, &death| any | death as u8) != 0);
-    let ahead = doomed.map_or(0, |chunk| ROWS * (chunk + 1));
-    if doomed.is_none() && rest.is_empty() { None } else { Some(&pending_deaths[..rest.len() + ahead]) }
+fn last_set(bytes: &[u8]) -> Option<usize> {
+    let (_, chunks) = bytes.as_rchunks::<CHUNK>();
+    let mut upto = bytes.len();
+    for chunk in chunks.iter().rev() {
+        if chunk.iter().fold(0, |any, byte| any | byte) != 0 {
+            break;
+        }
+        upto -= CHUNK;
+    }
+    let (rest, words) = bytes[..upto].as_rchunks();
+    for (nth, word) in words.iter().enumerate().rev() {
+        let word = u64::from_le_bytes(*word);
+        if word != 0 {
+            return Some(rest.len() + size_of::<u64>() * nth + word.ilog2() as usize / 8);
+        }
+    }
+    rest.iter().rposition(|&byte| byte != 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_byte_that_is_set_is_found() {
+        let mut bytes = [0; 200];
+        for len in [0, 1, 7, 8, 9, 63, 64, 65, 72, 127, 128, 200] {
+            assert_eq!(last_set(&bytes[..len]), None);
+        }
+        for last in 0..bytes.len() {
+            bytes[last] = 1 << (last % 8);
+            // Whatever comes before does not count, and what is set may be anywhere before the end.
+            bytes[last / 2] = 1;
+            for len in last + 1..=bytes.len() {
+                assert_eq!(last_set(&bytes[..len]), Some(last), "of {len}");
+            }
+            (bytes[last], bytes[last / 2]) = (0, 0);
+        }
+    }
 }
