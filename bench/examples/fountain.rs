@@ -7,10 +7,9 @@
 //! difference of two runs of unlike many STEPS.
 
 use pointmass::rng::Stream;
-use pointmass::shape::{Cuboid, Disc, Mesh, Plane, Scenery, Shape, Sphere, Surface};
-use pointmass::{Drag, Emitter, Gravity, Heap, Scene, Spread, Symplectic, System, Varied, Vec3};
-use pointmass_bench::{Bare, FRAME, cloud, started};
-use std::time::Instant;
+use pointmass::shape::{Cuboid, Mesh, Plane, Scenery, Shape, Sphere, Surface};
+use pointmass::{Drag, Gravity, Heap, Scene, Symplectic, System, Vec3};
+use pointmass_bench::{Bare, FRAME, cloud, high_jet, started, timed};
 
 /// Steps before the first round, after which as many die as are born.
 const FILLING: usize = 360;
@@ -18,7 +17,7 @@ const FILLING: usize = 360;
 fn main() {
     let argument = |i: usize, default: usize| std::env::args().nth(i).and_then(|x| x.parse().ok()).unwrap_or(default);
     let (particles, steps, rounds) = (argument(1, 100_000), argument(2, 20), argument(3, 16));
-    let (forces, emitter) = ((Gravity::EARTH, Drag {}), nozzle(particles as f32));
+    let (forces, emitter) = ((Gravity::EARTH, Drag {}), high_jet(particles as f32));
     let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let scene =
         Scene { emitters: &emitter, forces: &forces, colliders: &ground, integrator: &Symplectic, ..Scene::EMPTY };
@@ -101,24 +100,4 @@ fn falling(particles: usize, steps: usize, rounds: usize) {
     }
     let [ours, least] = [ours, least].map(|all| all / particles as f64);
     println!("falling {ours:.2} ns, bare loop {least:.2} ns, {:.1} times", ours / least);
-}
-
-/// About so many drops in the air at once.
-fn nozzle(particles: f32) -> Emitter<Shape<Mesh<'static>>> {
-    let disc = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
-    Emitter {
-        speed: Varied { mean: 10.0, half_width: 1.0 },
-        spread: Spread::Uniform(0.3),
-        drag: Varied::exactly(0.2),
-        elasticity: Varied::exactly(0.5),
-        lifetime: Varied { mean: 4.0, half_width: 1.0 },
-        ..Emitter::new(disc, particles / 4.0)
-    }
-}
-
-/// Nanoseconds that one call takes, of so many.
-fn timed(calls: usize, mut call: impl FnMut()) -> f64 {
-    let start = Instant::now();
-    (0..calls).for_each(|_| call());
-    start.elapsed().as_nanos() as f64 / calls as f64
 }

@@ -1,24 +1,20 @@
 //! Forces between neighbours beside a mere search for all pairs, in turns:
-//! `cargo run --release -p pointmass-bench --example neighbours -- [PARTICLES] [STEPS] [ROUNDS] [THREADS]`.
+//! `cargo run --release -p pointmass-bench --example neighbours -- [PARTICLES] [STEPS] [ROUNDS] [THREADS] [WAY]`.
 //!
-//! Soft balls in a box, each with some 30 neighbours within reach, that move by a hundredth of the reach in a step. Prints the
+//! Soft balls in a box, each with some 30 neighbours within reach, that go a hundredth of the reach in a step, or the share WAY. Prints the
 //! least mean time of a step with lists that last, with neighbours looked up anew in each, and of building a grid and visiting
 //! all pairs in it once.
 
-use pointmass::force::{PowerLaw, Weight};
 use pointmass::index::{SpatialIndex, Structure};
-use pointmass::{Heap, Particle, Radial, Scene, Size, Symplectic, System, Time};
-use pointmass_bench::cloud;
-use std::time::Instant;
-
-const REACH: f32 = 0.1;
-const STEP: Time = Time::from_ticks(1 << 24);
+use pointmass::{Heap, Scene, Size, Symplectic, System};
+use pointmass_bench::neighbours::{REACH, STEP, WAY, balls, repulsion};
+use pointmass_bench::timed;
 
 fn main() {
     let argument = |i: usize, default: usize| std::env::args().nth(i).and_then(|x| x.parse().ok()).unwrap_or(default);
     let (particles, steps, rounds, threads) = (argument(1, 100_000), argument(2, 100), argument(3, 5), argument(4, 1));
-    let start = balls(particles);
-    let force = Radial(PowerLaw { strength: -1e-3, exponent: 2, softening: 0.05, reach: REACH, weight: Weight::Mass });
+    let way = std::env::args().nth(5).and_then(|x| x.parse().ok()).unwrap_or(WAY);
+    let (start, force) = (balls(particles, way), repulsion());
     let scene =
         Scene { start: &start, forces: &force, integrator: &Symplectic, index: &Structure::Grid, ..Scene::EMPTY };
     let systems = [scene.columns_with_lists(), scene.columns()].map(|columns| {
@@ -60,24 +56,4 @@ fn main() {
         streamed_ms / pairs_ms
     );
     assert_eq!(listed.hash(), streamed.hash(), "the same bits");
-}
-
-/// As many as have 30 neighbours each, at random places in a cube, at about 0.13 m/s: a hundredth of the reach in a step.
-fn balls(count: usize) -> Vec<Particle> {
-    let volume = count as f64 * 4.0 / 3.0 * std::f64::consts::PI * f64::from(REACH).powi(3) / 30.0;
-    let side = volume.cbrt() as f32;
-    let way = std::env::args().nth(5).and_then(|x| x.parse().ok()).unwrap_or(0.01);
-    let speed = way * REACH / STEP.seconds();
-    let mut places = cloud(count as u32);
-    for Particle { position, velocity, .. } in &mut places {
-        (*position, *velocity) = (*position * (0.5 * side), *velocity * speed);
-    }
-    places
-}
-
-/// Nanoseconds that one call takes, of so many.
-fn timed(calls: usize, mut call: impl FnMut()) -> f64 {
-    let start = Instant::now();
-    (0..calls).for_each(|_| call());
-    start.elapsed().as_nanos() as f64 / calls as f64
 }

@@ -2,10 +2,12 @@
 
 pub mod dice;
 pub mod drop;
+pub mod neighbours;
 
 use pointmass::rng::Stream;
 use pointmass::shape::{Disc, Mesh, Shape};
 use pointmass::{Emitter, Heap, Particle, Scene, Spread, System, Time, Varied, Vec3};
+use std::time::Instant;
 
 /// `n` particles of 1 kg with drag 0.1 kg/s, spread over a cube of 2 m with speeds up to 1 m/s.
 #[must_use]
@@ -42,6 +44,26 @@ pub fn jet(n: f32) -> Emitter<Shape<Mesh<'static>>> {
         lifetime: Varied::exactly(2.0),
         ..Emitter::new(nozzle, n / 2.0)
     }
+}
+
+/// The same that leave at 10 m/s and live for 3 to 5 s, long enough to bounce off the ground and lie on it: about `n` at once.
+#[must_use]
+pub fn high_jet(n: f32) -> Emitter<Shape<Mesh<'static>>> {
+    Emitter {
+        speed: Varied { mean: 10.0, half_width: 1.0 },
+        drag: Varied::exactly(0.2),
+        elasticity: Varied::exactly(0.5),
+        lifetime: Varied { mean: 4.0, half_width: 1.0 },
+        rate: n / 4.0,
+        ..jet(n)
+    }
+}
+
+/// Nanoseconds that one call takes, of so many.
+pub fn timed(calls: usize, mut call: impl FnMut()) -> f64 {
+    let start = Instant::now();
+    (0..calls).for_each(|_| call());
+    start.elapsed().as_nanos() as f64 / calls as f64
 }
 
 /// A sixtieth of a second.

@@ -17,8 +17,8 @@ use crate::custom::CustomColumnsMut;
 use crate::force::{Backdrop, State};
 use crate::index::{Neighbours, SpatialIndex};
 use crate::math::{divide, max};
-use crate::memory::{Layout, Storage, Workspace};
-use crate::observe::{LifeEvent, Observer};
+use crate::memory::{Layout, Storage, TILED, Workspace};
+use crate::observe::{Attention, LifeEvent, Observer};
 use crate::particles::{Full, Particle, Start};
 use crate::report::Report;
 use crate::rng::Stream;
@@ -215,8 +215,11 @@ impl Births<'_> {
         };
         self.workspace.give_custom(self.backdrop.custom, self.layout, self.workspace.len() - 1);
         self.report.born += 1;
-        let Start { position: place, velocity, born: time, .. } = *start;
-        self.observer.born(&LifeEvent { id, place, velocity, time });
+        // Chips are spared the question instead of the answer.
+        if !TILED || self.observer.attention() > Attention::Nothing {
+            let Start { position: place, velocity, born: time, .. } = *start;
+            self.observer.born(&LifeEvent { id, place, velocity, time });
+        }
         Ok(())
     }
 

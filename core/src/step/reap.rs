@@ -3,7 +3,7 @@
 use crate::index::ARE_KEPT;
 use crate::lanes::widest;
 use crate::memory::{Layout, TILED, Workspace};
-use crate::observe::{LifeEvent, Observer};
+use crate::observe::{Attention, LifeEvent, Observer};
 use crate::particles::Id;
 use crate::reap::{CHUNK, Cause, Judged, PendingDeath, ReaperCode};
 use crate::report::Report;
@@ -24,6 +24,8 @@ impl Workspace<'_> {
             self.judge_all(scene, layout, code);
         }
         let before = report.died.lifetime;
+        // Chips are spared the question instead of the answer.
+        let is_heard = !TILED || observer.attention() > Attention::Nothing;
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
         while let Some((row, cause)) = widest(
@@ -31,9 +33,11 @@ impl Workspace<'_> {
             || last_doomed(&self.memory.pending_death[..end]),
         ) {
             report.died.count(cause);
-            let m = &self.memory;
-            let id = Id { slot: m.slot[row], serial: m.serial[row] };
-            observer.died(&LifeEvent { id, place: m.position[row], velocity: m.velocity[row], time }, cause);
+            if is_heard {
+                let m = &self.memory;
+                let id = Id { slot: m.slot[row], serial: m.serial[row] };
+                observer.died(&LifeEvent { id, place: m.position[row], velocity: m.velocity[row], time }, cause);
+            }
             self.remove(row, scene.springs, report);
             end = row;
         }
