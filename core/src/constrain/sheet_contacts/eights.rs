@@ -113,21 +113,24 @@ pub(super) fn apart<F: Eight>(kind: Kind, [b, c, d]: &Seen<F>, direction: Vector
 /// How far they are apart along an axis, on the same side at both ends (as [`super::pair::are_apart`]).
 #[inline(always)]
 pub(super) fn gap_of_boxes<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
-    let gaps = |of: &Seen<F>, axis: usize| {
-        let [b, c, d] = [of[0].0[axis], of[1].0[axis], of[2].0[axis]];
-        let a = b.all(0.0);
-        match kind {
-            Kind::PointTriangle => (a - max(max(b, c), d), min(min(b, c), d) - a),
-            Kind::EdgeEdge => (min(a, b) - max(c, d), min(c, d) - max(a, b)),
-        }
-    };
     let mut most = ends[0][0].0[0].all(f32::NEG_INFINITY);
     for axis in 0..3 {
-        let (above, below) = gaps(&ends[0], axis);
-        let (still_above, still_below) = gaps(&ends[1], axis);
+        let (above, below) = gaps(kind, &ends[0], axis);
+        let (still_above, still_below) = gaps(kind, &ends[1], axis);
         most = max(max(min(above, still_above), min(below, still_below)), most);
     }
     most
+}
+
+/// How far the first is above the second along an axis, and below it.
+#[inline(always)]
+fn gaps<F: Eight>(kind: Kind, of: &Seen<F>, axis: usize) -> (F, F) {
+    let [b, c, d] = [of[0].0[axis], of[1].0[axis], of[2].0[axis]];
+    let a = b.all(0.0);
+    match kind {
+        Kind::PointTriangle => (a - max(max(b, c), d), min(min(b, c), d) - a),
+        Kind::EdgeEdge => (min(a, b) - max(c, d), min(c, d) - max(a, b)),
+    }
 }
 
 /// The square of how far they stay apart along the way between their middles, some times over, and the square of that way.
@@ -146,10 +149,12 @@ pub(super) fn gap_of_middles<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> [F; 2
 #[inline(always)]
 pub(super) fn fastest<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
     let [b, c, d] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1], ends[1][2] - ends[0][2]];
-    let square = |way: Vectors<F>| way.dot(way);
     match kind {
-        Kind::PointTriangle => max(max(square(b), square(c)), square(d)),
-        Kind::EdgeEdge => max(max(square(c), square(d)), max(square(b - c), square(b - d))),
+        Kind::PointTriangle => max(max(b.dot(b), c.dot(c)), d.dot(d)),
+        Kind::EdgeEdge => {
+            let (e, f) = (b - c, b - d);
+            max(max(c.dot(c), d.dot(d)), max(e.dot(e), f.dot(f)))
+        }
     }
 }
 

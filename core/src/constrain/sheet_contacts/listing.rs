@@ -14,6 +14,7 @@ use glam::Vec3;
 /// Lists pairs as long as there is room.
 pub(super) struct Listing<'m, 'r> {
     rest: &'m Rest<'r>,
+    uniform: Option<f32>,
     ways: Ways<'m>,
     /// How much farther than they are looked for two are listed \[m\].
     more: f32,
@@ -26,7 +27,16 @@ pub(super) struct Listing<'m, 'r> {
 
 impl<'m, 'r> Listing<'m, 'r> {
     pub(super) fn of(rest: &'m Rest<'r>, ways: Ways<'m>, more: f32, pairs: &'m mut [Listed]) -> Self {
-        Self { rest, ways, more, pairs, count: 0, waiting: Waiting::none(), close: Waiting::none() }
+        Self {
+            rest,
+            uniform: rest.uniform(),
+            ways,
+            more,
+            pairs,
+            count: 0,
+            waiting: Waiting::none(),
+            close: Waiting::none(),
+        }
     }
 
     /// Lists two, unless they are farther from each other than they are looked for, and so much more, on the expected ways.
@@ -65,8 +75,9 @@ impl<'m, 'r> Listing<'m, 'r> {
     /// Of eight, leaves those that boxes or middles keep apart.
     fn sift(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
-        let Self { rest, ways, more, .. } = *self;
-        let Some((close, wanted)) = lanes::run(Sift(Expected { rest, ways, more, kind, waiting: &waiting })) else {
+        let Self { rest, uniform, ways, more, .. } = *self;
+        let Some((close, wanted)) = lanes::run(Sift(Expected { rest, uniform, ways, more, kind, waiting: &waiting }))
+        else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, _)| self.one(pair, corners));
             return;
         };
@@ -80,8 +91,9 @@ impl<'m, 'r> Listing<'m, 'r> {
     /// Of eight, lists those that nothing keeps apart.
     fn list(&mut self, kind: Kind) {
         let waiting = self.close[kind as usize];
-        let Self { rest, ways, more, .. } = *self;
-        let Some((near, apart)) = lanes::run(Near(Expected { rest, ways, more, kind, waiting: &waiting })) else {
+        let Self { rest, uniform, ways, more, .. } = *self;
+        let Some((near, apart)) = lanes::run(Near(Expected { rest, uniform, ways, more, kind, waiting: &waiting }))
+        else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, _)| self.one(pair, corners));
             return;
         };
@@ -121,6 +133,7 @@ fn least(kind: Kind, ends: &[[Vec3; 4]; 2], at: usize) -> f32 {
 /// Eight pairs of a kind on the ways that are expected.
 struct Expected<'a, 'r> {
     rest: &'a Rest<'r>,
+    uniform: Option<f32>,
     ways: Ways<'a>,
     more: f32,
     kind: Kind,
@@ -146,13 +159,13 @@ impl Kernel for Sift<'_, '_> {
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
         let ends = self.0.ends(like)?;
-        let Expected { rest, more, kind, waiting: Waiting { corners, .. }, .. } = self.0;
+        let Expected { rest, uniform, more, kind, waiting: Waiting { corners, .. }, .. } = self.0;
         let (boxes, [middle, way]) = (gap_of_boxes(kind, &ends), gap_of_middles(kind, &ends));
         let left = |wanted: F| {
             let reach = far(wanted, rest, more);
             lanes::not(boxes.simd_gt(reach) | middle.simd_gt(reach * reach * way))
         };
-        let [thickness, alike] = thickness(like, rest, kind, corners);
+        let [thickness, alike] = thickness(like, rest, uniform, kind, corners);
         let some = left(thickness);
         if !some.any() {
             return Some((0, [0.0; LANES]));
@@ -186,9 +199,18 @@ fn far<F: Eight>(wanted: F, rest: &Rest<'_>, more: f32) -> F {
     (wanted + wanted.all(2.0 * rest.facts.budget)) * wanted.all(1.0 + MARGIN) + wanted.all(more)
 }
 
-/// How far apart eight are kept unless they are of one sheet, and a mask of those that are.
+/// How far apart eight are kept unless they are of one sheet, and a mask of those that are; half that far at each, where all are alike.
 #[inline(always)]
-pub(super) fn thickness<F: Eight>(like: F, rest: &Rest<'_>, kind: Kind, corners: &[[u32; 4]; LANES]) -> [F; 2] {
+pub(super) fn thickness<F: Eight>(
+    like: F,
+    rest: &Rest<'_>,
+    uniform: Option<f32>,
+    kind: Kind,
+    corners: &[[u32; 4]; LANES],
+) -> [F; 2] {
+    if let Some(half) = uniform {
+        return [like.all(half + half), like.all(f32::from_bits(u32::MAX))];
+    }
     let (mut thickness, mut alike) = ([0.0; LANES], [0.0; LANES]);
     for (lane, &corners) in corners.iter().enumerate() {
         thickness[lane] = rest.thickness(kind, corners);

@@ -3,7 +3,7 @@
 use super::super::{Bodies, Demand, Words};
 use super::contact::{Contact, Surface};
 use super::near::{self, Near};
-use super::rest::{KEPT, LEARNING};
+use super::rest::{Edge, KEPT, LEARNING};
 use super::tree::{self, Tree};
 use crate::memory::{take, take_vectors};
 use glam::Vec3;
@@ -21,6 +21,7 @@ pub(super) const NOBODY: u32 = u32::MAX;
 pub(super) struct Counts {
     pub(super) contacts: u32,
     pub(super) surfaces: u32,
+    pub(super) edges: u32,
 }
 
 /// The words that last through a step, by places in the list of particles.
@@ -35,6 +36,8 @@ pub(super) struct Kept<'m> {
     pub(super) clear: &'m mut [f32],
     /// 1 if its way through the sub-step may pass through the scenery, plus 2 if a face is listed near it in the sub-step.
     pub(super) followed: &'m mut [u32],
+    /// The edges of all triangles.
+    pub(super) edges: &'m mut [Edge],
     pub(super) contacts: &'m mut [Contact],
     pub(super) surfaces: &'m mut [Surface],
     /// The lists of who may come near whom; none where too little memory is lent for that.
@@ -79,7 +82,8 @@ pub(super) fn demand([particles, triangles]: [usize; 2]) -> Demand {
     let contacts = each(contacts, words::<Contact>());
     let surfaces = each(surfaces, words::<Surface>());
     let kept = sum([KEPT[0], each(particles, KEPT[1]), each(triangles, KEPT[2])]);
-    let lasting = words::<Counts>().saturating_add(each(particles, 7));
+    let edges = each(triangles, 3 * words::<Edge>());
+    let lasting = sum([words::<Counts>(), each(particles, 7), edges]).fixed;
     let step = sum([lasting.saturating_add(near::words(particles)), contacts, surfaces]);
     let learning = sum([0, each(particles, LEARNING[0]), each(triangles, LEARNING[1])]);
     let working = sum([each(particles, 19), contacts, tree::words([particles, triangles])]);
@@ -88,7 +92,7 @@ pub(super) fn demand([particles, triangles]: [usize; 2]) -> Demand {
 
 impl<'m> Kept<'m> {
     /// None: the memory is too small.
-    pub(super) fn of(step: &'m mut [u32], particles: usize) -> Option<Self> {
+    pub(super) fn of(step: &'m mut [u32], [particles, triangles]: [usize; 2]) -> Option<Self> {
         let mut rest = step;
         let counts = bytemuck::cast_slice_mut(take(&mut rest, words::<Counts>())).first_mut()?;
         let rows = take(&mut rest, particles);
@@ -96,16 +100,17 @@ impl<'m> Kept<'m> {
         let pushed = take_vectors(&mut rest, particles);
         let clear = bytemuck::cast_slice_mut(take(&mut rest, particles));
         let followed = take(&mut rest, particles);
+        let edges = bytemuck::try_cast_slice_mut(take(&mut rest, 3 * triangles * words::<Edge>())).ok()?;
         let [contacts, surfaces] = room(particles);
         let contacts = bytemuck::try_cast_slice_mut(take(&mut rest, contacts * words::<Contact>())).ok()?;
         let surfaces = bytemuck::try_cast_slice_mut(take(&mut rest, surfaces * words::<Surface>())).ok()?;
         let near = Near::of(rest, particles);
-        Some(Self { counts, rows, weight, pushed, clear, followed, contacts, surfaces, near })
+        Some(Self { counts, rows, weight, pushed, clear, followed, edges, contacts, surfaces, near })
     }
 
     /// The contacts of now with each other, and those with scenery.
     pub(super) fn lists(&mut self) -> (&mut [Contact], &mut [Surface]) {
-        let Counts { contacts, surfaces } = *self.counts;
+        let Counts { contacts, surfaces, .. } = *self.counts;
         (&mut self.contacts[..contacts as usize], &mut self.surfaces[..surfaces as usize])
     }
 }

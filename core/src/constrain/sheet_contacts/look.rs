@@ -21,6 +21,8 @@ const RECOVERY: f32 = 0.2;
 /// Looks at pairs, and lists what comes of them.
 pub(super) struct Look<'m, 'r> {
     pub(super) rest: &'m Rest<'r>,
+    /// The half thickness at all, if they are alike.
+    pub(super) uniform: Option<f32>,
     pub(super) from: &'m [Vec3],
     pub(super) now: &'m [Vec3],
     /// How far each may be pushed from where it is.
@@ -58,8 +60,8 @@ impl Look<'_, '_> {
 
     fn eight(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
-        let Self { rest, from, now, .. } = *self;
-        let Some(found) = lanes::run(Together { rest, from, now, kind, waiting: &waiting }) else {
+        let Self { rest, uniform, from, now, .. } = *self;
+        let Some(found) = lanes::run(Together { rest, uniform, from, now, kind, waiting: &waiting }) else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, wanted)| self.one(pair, corners, wanted));
             return;
         };
@@ -131,6 +133,7 @@ impl Look<'_, '_> {
 /// Eight pairs of a kind in a sub-step.
 struct Together<'a, 'r> {
     rest: &'a Rest<'r>,
+    uniform: Option<f32>,
     from: &'a [Vec3],
     now: &'a [Vec3],
     kind: Kind,
@@ -156,7 +159,7 @@ impl Kernel for Together<'_, '_> {
     /// As [`Meeting::of`], as far as that goes without following the ways.
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let (Self { rest, from, now, kind, .. }, Waiting { corners, wanted, .. }) = (&self, self.waiting);
+        let (Self { rest, uniform, from, now, kind, .. }, Waiting { corners, wanted, .. }) = (&self, self.waiting);
         let (kind, budget) = (*kind, rest.facts.budget);
         let reach = |wanted: F| wanted + like.all(2.0 * budget);
         let ends = [seen(like, from, corners)?, seen(like, now, corners)?];
@@ -168,7 +171,7 @@ impl Kernel for Together<'_, '_> {
             let least = reach * like.all(1.0 + MARGIN);
             lanes::not(boxes.simd_gt(reach) | (follows & far.simd_gt(least * least * way)))
         };
-        let [thickness, alike] = thickness(like, rest, kind, corners);
+        let [thickness, alike] = thickness(like, rest, *uniform, kind, corners);
         let mut some = left(reach(thickness));
         if !some.any() {
             return Some(Found::default());

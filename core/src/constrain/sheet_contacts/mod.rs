@@ -1,5 +1,7 @@
 //! Sheets of triangles that are kept apart from each other, from themselves and from the scenery.
 
+mod blocks;
+mod bounds;
 mod closest;
 mod contact;
 mod eights;
@@ -147,8 +149,7 @@ where
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let [particles, _] = self.counts();
-        let Some(mut kept) = Kept::of(share.step, particles) else { return };
+        let Some(mut kept) = Kept::of(share.step, self.counts()) else { return };
         let Some(rest) = Rest::of(share.kept.fixed, self.counts()).filter(Rest::is_known) else { return };
         let Some(mut work) = Work::of(share.scratch, self.counts()) else { return };
         if bodies.substep.seconds() > 0.0 {
@@ -158,9 +159,8 @@ where
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let [particles, _] = self.counts();
         let Some(rest) = Rest::of(share.kept.fixed, self.counts()).filter(Rest::is_known) else { return };
-        let Some(mut kept) = Kept::of(share.step, particles).filter(|_| !rest.faces.is_empty()) else { return };
+        let Some(mut kept) = Kept::of(share.step, self.counts()).filter(|_| !rest.faces.is_empty()) else { return };
         if bodies.substep.seconds() > 0.0 {
             settle::settle(&mut kept, bodies);
         }

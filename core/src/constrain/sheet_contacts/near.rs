@@ -1,6 +1,6 @@
 //! Lists of who may come near whom in the sub-steps to come, for as long as all go on about as they do.
 //!
-//! Everyone is expected to go on as in the sub-step in which they are made. Two are listed unless some direction keeps them apart by more
+//! Everyone is expected to go on by a mean of how it goes in the sub-step in which they are made and how fast it came. Two are listed unless some direction keeps them apart by more
 //! than they are looked for and two skins, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than a skin, as seen
 //! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
@@ -49,7 +49,7 @@ pub(super) struct Near<'m> {
 }
 
 /// The least and the most that anyone may leave the expected way by, as multiples of how far one may be pushed between searches.
-const SKINS: [f32; 2] = [0.25, 1.0];
+const SKINS: [f32; 2] = [0.5, 2.0];
 
 /// How far anyone may leave the expected way: no farther, if it can be, than leaves neighbours in the sheets out of the lists while these are as
 /// they are at rest, as most triangles' least heights tell.

@@ -3,7 +3,6 @@
 
 use super::closest::{Closest, Kind};
 use super::rest::{Face, Rest};
-use super::tree::{Bounds, Tree};
 use crate::math::{high, length, low, min};
 use glam::Vec3;
 
@@ -45,47 +44,14 @@ impl Pair {
         }
     }
 
-    /// Visits the corners of one triangle with the other, and the edges of one with those of the other, as far as they are their own,
-    /// have no corner in common, and the boxes around them overlap.
-    #[inline(always)]
-    pub(super) fn all(faces: &[Face], [i, j]: [usize; 2], tree: &Tree<'_>, mut visit: impl FnMut(Self, [u32; 4])) {
-        let [one, other] = [&faces[i], &faces[j]];
-        let (ways, [first, second]) = (tree.corners(), [tree.face(i), tree.face(j)]);
-        Self::points((i, one), (j, other), ways, second, &mut visit);
-        Self::points((j, other), (i, one), ways, first, &mut visit);
-        let around = |[p, q]: [u32; 2]| ways[p as usize].and(&ways[q as usize]);
-        for k in (0..3).filter(|&k| one.owns_edge(k)) {
-            let [p, q] = one.edge(k);
-            let edge = around([p, q]);
-            if !edge.overlaps(second) {
-                continue;
-            }
-            for l in (0..3).filter(|&l| other.owns_edge(l)) {
-                let [r, s] = other.edge(l);
-                let strangers = p != r && p != s && q != r && q != s;
-                if strangers && edge.overlaps(&around([r, s])) {
-                    visit(Self { first: (4 * i + k) as u32, second: (4 * j + l) as u32 }, [p, q, r, s]);
-                }
-            }
-        }
+    /// A triangle's corner and another triangle.
+    pub(super) fn of_point([i, corner]: [usize; 2], j: usize) -> Self {
+        Self { first: (4 * i + corner) as u32, second: 4 * j as u32 + WHOLE }
     }
 
-    /// Visits the corners of one triangle that come near the other.
-    #[inline(always)]
-    fn points(
-        (i, of): (usize, &Face),
-        (j, with): (usize, &Face),
-        ways: &[Bounds],
-        around: &Bounds,
-        visit: &mut impl FnMut(Self, [u32; 4]),
-    ) {
-        let [p, q, r] = with.corners;
-        for k in (0..3).filter(|&k| of.owns_corner(k)) {
-            let corner = of.corners[k];
-            if corner != p && corner != q && corner != r && ways[corner as usize].overlaps(around) {
-                visit(Self { first: (4 * i + k) as u32, second: 4 * j as u32 + WHOLE }, [corner, p, q, r]);
-            }
-        }
+    /// An edge of one triangle and one of another.
+    pub(super) fn of_edges([i, k]: [usize; 2], [j, l]: [usize; 2]) -> Self {
+        Self { first: (4 * i + k) as u32, second: (4 * j + l) as u32 }
     }
 }
 

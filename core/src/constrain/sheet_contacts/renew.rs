@@ -1,13 +1,13 @@
 //! Making lists of who may come near whom, and telling for how long they are good.
 
 use super::super::{Bodies, Substep};
+use super::bounds::ROUNDING;
 use super::closest::{FARTHEST, MARGIN};
 use super::listing::Listing;
 use super::lists::{Kept, Work};
 use super::near::{Facts, Near};
-use super::pair::Pair;
 use super::rest::{Face, Rest};
-use super::tree::{ROUNDING, Ways};
+use super::tree::Ways;
 use crate::math::{dot, largest, length, max, sqrt};
 use glam::Vec3;
 
@@ -65,11 +65,20 @@ impl Near<'_> {
     }
 
     /// Makes lists for the sub-steps to come: for fewer of them, if there is no room for more. Tells whether there is.
-    fn make(&mut self, rest: &Rest<'_>, work: &mut Work<'_>, substep: Substep, drift: Vec3) -> bool {
+    ///
+    /// What contacts hold goes on by its `velocity` as the sub-step began, and what nothing holds as it goes in the sub-step: everyone is expected
+    /// halfway between.
+    fn make(
+        &mut self,
+        rest: &Rest<'_>,
+        work: &mut Work<'_>,
+        (substep, drift): (Substep, Vec3),
+        velocity: impl Fn(usize) -> Vec3,
+    ) -> bool {
         let (mut way, mut count) = (0.0, 0.0);
         for (i, (base, going)) in self.base.iter_mut().zip(&mut *self.going).enumerate() {
             *base = work.from[i];
-            *going = work.now[i] - work.from[i];
+            *going = 0.5 * (work.now[i] - work.from[i] + velocity(i) * substep.seconds());
             if going.is_finite() {
                 way += length(*going - drift);
                 count += 1.0;
@@ -100,9 +109,7 @@ impl Near<'_> {
         let half = |face: &Face| (rest.widest(face) + rest.facts.budget) * (1.0 + MARGIN) + skin;
         work.tree.fit(rest.faces, ways, half);
         let mut listing = Listing::of(rest, ways, 2.0 * skin, self.pairs);
-        work.tree.pairs(true, |i, j| {
-            Pair::all(rest.faces, [i, j], &work.tree, |pair, corners| listing.add(pair, corners));
-        });
+        work.tree.pairs(rest.faces, true, |pair, corners| listing.add(pair, corners));
         listing.finish()
     }
 }
@@ -117,12 +124,14 @@ pub(super) fn ready(
     drift: Vec3,
 ) -> Option<usize> {
     let substep = bodies.substep;
-    let near = kept.near.as_mut().filter(|near| near.facts.full == 0)?;
+    let Kept { near, rows, .. } = kept;
+    let near = near.as_mut().filter(|near| near.facts.full == 0)?;
     match near.follow(rest, work, substep, drift) {
         Some(astray) if astray * ASTRAY <= rest.faces.len() => return Some(astray),
         _ => {}
     }
-    if !near.make(rest, work, substep, drift) {
+    let velocity = |i: usize| bodies.before[1].get(rows[i] as usize).copied().unwrap_or(Vec3::ZERO);
+    if !near.make(rest, work, (substep, drift), velocity) {
         return None;
     }
     bodies.report.effort.lists += 1;

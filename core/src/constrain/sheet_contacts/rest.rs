@@ -33,6 +33,15 @@ impl Face {
     }
 }
 
+/// An edge of a sheet.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct Edge {
+    pub(super) ends: [u32; 2],
+    /// The square of its length at rest \[m²\].
+    pub(super) least: f32,
+}
+
 /// Facts about all of them.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -72,6 +81,13 @@ impl<'m> Rest<'m> {
         let sheet = take(&mut rest, particles);
         let faces = bytemuck::cast_slice_mut(rest.get_mut(..triangles * KEPT[2])?);
         Some(Self { facts, places, half, sheet, faces })
+    }
+
+    /// The half thickness at all particles, if they are of one sheet, and it is the same at all.
+    pub(super) fn uniform(&self) -> Option<f32> {
+        let (&half, &sheet) = (self.half.first()?, self.sheet.first()?);
+        let alike = self.half.iter().all(|&other| other == half) && self.sheet.iter().all(|&other| other == sheet);
+        alike.then_some(half)
     }
 
     /// Tells whether it has been learnt.

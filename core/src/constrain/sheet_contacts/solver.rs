@@ -19,8 +19,11 @@ const SWEEPS: u32 = 4;
 /// less than half its distance to all that it is not part of (Chen et al., "Offset Geometric Contact", SIGGRAPH 2025, section 3.3).
 pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) {
     kept.counts.contacts = 0;
-    if let Some(near) = kept.near.as_mut().filter(|_| bodies.substep.number == 0) {
-        near.forget(rest);
+    if bodies.substep.number == 0 {
+        taut::list(rest, kept);
+        if let Some(near) = &mut kept.near {
+            near.forget(rest);
+        }
     }
     scenery::gather(rest, kept, work, bodies);
     let h = bodies.substep.seconds();
@@ -34,7 +37,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
         work.searched.copy_from_slice(work.now);
         let before = torque;
         for _ in 0..SWEEPS {
-            torque += taut::hold(rest, kept, work);
+            torque += taut::hold(kept, work);
             torque += sweep(kept, work, h);
             torque += rub(kept, work, h);
         }
