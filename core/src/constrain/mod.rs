@@ -12,7 +12,6 @@ mod contacts;
 #[cfg(feature = "alloc")]
 mod declared;
 mod distance;
-mod inertia;
 #[cfg(feature = "alloc")]
 mod kind;
 mod moved;
