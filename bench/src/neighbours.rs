@@ -6,7 +6,7 @@ use pointmass::{Particle, Radial, Time};
 
 /// How far they feel each other \[m\].
 pub const REACH: f32 = 0.1;
-/// The time in which they go their way.
+/// The length of a step.
 pub const STEP: Time = Time::from_ticks(1 << 24);
 /// The share of the reach that they go in a step by themselves.
 pub const WAY: f32 = 0.01;

@@ -181,7 +181,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 /// The parts of a step that an observer wants to know of: each of these is more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Attention {
-    /// Nothing at all; phases may be told all the same.
+    /// Nothing at all; some of it may be told all the same.
     Nothing,
     /// The events of particles; phases may be told all the same.
     Events,

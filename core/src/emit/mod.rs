@@ -215,7 +215,7 @@ impl Births<'_> {
         };
         self.workspace.give_custom(self.backdrop.custom, self.layout, self.workspace.len() - 1);
         self.report.born += 1;
-        // Chips are spared the question instead of the answer.
+        // Hosts fill in no event that nobody reads; on chips, asking takes more code than telling.
         if !TILED || self.observer.attention() > Attention::Nothing {
             let Start { position: place, velocity, born: time, .. } = *start;
             self.observer.born(&LifeEvent { id, place, velocity, time });

@@ -5,7 +5,7 @@ use crate::lanes::widest;
 use crate::rows::BLOCKS;
 use crate::time::Time;
 
-/// Rows that are looked at together.
+/// Instants that are looked at together: four registers, and few enough to go through where somebody of them dies.
 const FEW: usize = 16;
 
 /// The last instant at which anybody dies.

@@ -24,7 +24,7 @@ use glam::Vec3;
 pub(crate) use lifetime::end_old;
 pub(crate) use nonfinite::end_lost;
 
-/// Rows that are looked at together.
+/// Rows whose fates are passed over together: two registers of bytes.
 pub(crate) const CHUNK: usize = 64;
 
 /// A rule by which particles die.

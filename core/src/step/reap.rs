@@ -24,7 +24,7 @@ impl Workspace<'_> {
             self.judge_all(scene, layout, code);
         }
         let before = report.died.lifetime;
-        // Chips are spared the question instead of the answer.
+        // Hosts fill in no event that nobody reads; on chips, asking takes more code than telling.
         let is_heard = !TILED || observer.attention() > Attention::Nothing;
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());

@@ -7,6 +7,7 @@ use crate::lanes::{Eight, LANES};
 /// Boxes of a block, and where the triangles' begin, behind as many edges as they can have.
 const BOXES: usize = 2 * LANES;
 const TRIANGLES: usize = BOXES - BLOCK;
+const _: () = assert!(3 * BLOCK <= TRIANGLES);
 
 /// The features of a block of triangles, each of which has a number: four times that of its triangle in the block, and which corner or edge it is.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
