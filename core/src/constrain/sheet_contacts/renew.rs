@@ -66,8 +66,8 @@ impl Near<'_> {
 
     /// Makes lists for the sub-steps to come: for fewer of them, if there is no room for more. Tells whether there is.
     ///
-    /// What contacts hold goes on by its `velocity` as the sub-step began, and what nothing holds as it goes in the sub-step: everyone is expected
-    /// halfway between.
+    /// Everyone is expected halfway between two ways: that by its `velocity` as the sub-step began, on which contacts keep what they hold, and that which
+    /// it goes in the sub-step, as what nothing holds goes on.
     fn make(
         &mut self,
         rest: &Rest<'_>,

@@ -22,7 +22,7 @@ pub(super) struct Tree<'m> {
     corners: &'m mut [Bounds],
     reach: &'m mut [f32],
     nodes: &'m mut [Bounds],
-    /// What is in the boxes of blocks.
+    /// Boxes of the features of each block.
     inside: &'m mut [Block],
     /// How far each triangle has left the way that is expected of it \[m\]: infinitely far, if it is to be visited with all others.
     strays: &'m mut [f32],
