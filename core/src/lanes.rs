@@ -5,6 +5,8 @@
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod avx2;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+mod avx512;
 mod eight;
 mod hits;
 #[cfg(any(test, target_os = "none"))]
@@ -17,12 +19,12 @@ mod thrice;
 mod vectors;
 mod width;
 
-pub(crate) use eight::{Eight, Kernel, max, min, negated, not};
+pub(crate) use eight::{BroadKernel, Eight, Kernel, Lanes, max, min, negated, not};
 pub(crate) use hits::{COUNTS, HITS};
 #[cfg(any(test, target_os = "none"))]
 pub(crate) use one::One;
 pub(crate) use row::{Row, load, mask_of, saved};
-pub(crate) use run::{run, run_abreast, run_at_length, widest};
+pub(crate) use run::{run, run_abreast, run_at_length, run_broad, widest};
 pub(crate) use sums::{Pull, dot, splat, sqrt, total, turned};
 pub(crate) use vectors::{Vectors, gathered};
-pub(crate) use width::{ABREAST, LANES, NOWHERE};
+pub(crate) use width::{ABREAST, LANES, NOWHERE, PARTS};

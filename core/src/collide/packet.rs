@@ -1,4 +1,4 @@
-//! Eight paths past one flat face, side by side: of those who lie on it, and of those who bounce off it a few times.
+//! Paths past one flat face, eight or sixteen side by side: of those who lie on it, and of those who bounce off it a few times.
 //!
 //! Every number is made as `Sweep` makes it, in the same order, and so has the same bits. Whoever needs more than this is left
 //! to that: more hits in a step than are found here, a place that is not free.
@@ -10,7 +10,7 @@ mod things;
 mod walls;
 
 use super::sweep::{LAIN, RESTING};
-use crate::lanes::{Eight, LANES, Vectors, mask_of, max, negated, not};
+use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, negated, not};
 use crate::shape::Face;
 use crate::time::Time;
 use glam::Vec3;
@@ -20,7 +20,7 @@ use paths::Cubics;
 pub(super) use paths::{CLOSE, Paths};
 pub(super) use things::Things;
 
-/// Properties of eight particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
+/// Properties of particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
 pub(super) struct Riders<F, const POINTS: bool> {
     /// Those that are not held where they are, on paths all of whose numbers are finite.
     pub(super) are_free: F,
@@ -71,7 +71,7 @@ impl<F> Flight<F> {
     }
 }
 
-impl<F: Eight> Outcome<F> {
+impl<F: Lanes> Outcome<F> {
     /// The outcome for those who are `settled` on their paths, after so many hits, and for those who are `left`.
     #[inline(always)]
     fn of(paths: &Paths<F>, settled: F, left: u32, hits: u32) -> Self {
@@ -80,7 +80,7 @@ impl<F: Eight> Outcome<F> {
     }
 }
 
-impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
+impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
     /// Those of who are `present` who lie on a face: along it, from their own places, for a step.
     #[inline(always)]
     pub(super) fn lie(&self, paths: &Paths<F>, face: &Face, present: u32) -> Outcome<F> {
@@ -207,7 +207,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         let mut meetings = onward.first_meetings::<POINTS>(&cubics, walls, self.radius, clear);
         let mut hit = meetings.hits.are & clear;
         clear = clear & not(meetings.unclear);
-        let (mut left, mut hits, mut rounds) = ([step.ticks() as i32; LANES], [0; ROUNDS], 1);
+        let (mut left, mut hits, mut rounds) = ([[step.ticks() as i32; LANES]; PARTS], [0; ROUNDS], 1);
         let mut astray = clear & not(clear);
         for hits in &mut hits {
             hit = hit & clear;
@@ -239,18 +239,24 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
         meetings: &Meetings<F>,
         walls: &impl Walls<F>,
         dt: f32,
-        left: &mut [i32; LANES],
+        left: &mut [[i32; LANES]; PARTS],
     ) -> (Paths<F>, F) {
         let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
         // As `Path` has it: numbers of ticks and what is rounded of them are the same in 32 bits.
-        let mut rest = s.to_array();
-        for (left, rest) in left.iter_mut().zip(&mut rest) {
-            *left -= ((*left as f32 * *rest) as i32).max(0).min(*left);
-            *rest = *left as f32;
-        }
-        let rest = like.of(rest) / all(Time::SECOND.ticks() as f32);
+        let [rest] = like.of_parts(
+            #[inline(always)]
+            |like, nth| {
+                let mut rest = s.part(nth).to_array();
+                for (left, rest) in left[nth].iter_mut().zip(&mut rest) {
+                    *left -= ((*left as f32 * *rest) as i32).max(0).min(*left);
+                    *rest = *left as f32;
+                }
+                [like.of(rest)]
+            },
+        );
+        let rest = rest / all(Time::SECOND.ticks() as f32);
         let leads = self.swing.then(|| Leads::of(cubics, paths.time, s, normal));
         let mean = paths.acceleration();
         let acceleration = leads.map_or(mean, |leads| leads.onward(mean));
@@ -335,7 +341,7 @@ impl<F: Eight, const POINTS: bool> Riders<F, POINTS> {
     }
 }
 
-impl<F: Eight> Riders<F, true> {
+impl<F: Lanes> Riders<F, true> {
     /// Those of who are `present` who lie on a face or a solid, or bounce off them. Whose solid is not `alone` may hit nothing else but the
     /// face.
     #[inline(always)]
@@ -368,7 +374,7 @@ impl<F: Eight> Riders<F, true> {
 
 /// Speeds after a way along which they gain `work` \[m²/s²\], a share of the square of it.
 #[inline(always)]
-fn slowed<F: Eight>(speed: F, work: F) -> F {
+fn slowed<F: Lanes>(speed: F, work: F) -> F {
     let gain = work.all(2.0) * work;
     let square = speed * speed + gain;
     (speed + gain / (speed + square.sqrt())) & square.simd_gt(work.all(0.0))

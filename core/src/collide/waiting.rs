@@ -1,6 +1,6 @@
 //! Rows that wait until there are enough of them to go side by side.
 
-use crate::lanes::{Eight, HITS, LANES, Vectors};
+use crate::lanes::{Eight, HITS, LANES, Lanes, PARTS, Vectors};
 use glam::Vec3;
 
 /// Rows in the order in which they are met, with some places.
@@ -12,21 +12,44 @@ pub(super) struct List<const PLACES: usize> {
 /// Where a row was and how fast when the step began, each with some number behind it.
 pub(super) type Start = [[f32; 4]; 2];
 
-/// Rows that wait until there are eight, with where they were.
+/// Rows that wait until there are so many, eight by eight, with where they were.
 pub(super) struct Queue {
-    rows: [u32; LANES],
-    starts: [Start; LANES],
+    rows: [[u32; LANES]; PARTS],
+    starts: [[Start; LANES]; PARTS],
     len: usize,
 }
 
-/// Rows that go together, the first of them in place of those that are missing, and how many they are.
+/// Rows that go together, the first of them in place of those that are missing, and how many they are. Where only eight go together, these
+/// are the first eight.
 #[derive(Clone, Copy)]
 pub(super) struct Packet<'q> {
-    pub(super) rows: &'q [u32; LANES],
+    pub(super) rows: [&'q [u32; LANES]; PARTS],
     pub(super) len: usize,
 }
 
-impl Packet<'_> {
+/// Rows that have waited, and where they were; the first of them is in place of those that are missing.
+#[derive(Clone, Copy)]
+pub(super) struct Waited<'q> {
+    pub(super) rows: &'q [[u32; LANES]; PARTS],
+    pub(super) starts: &'q [[Start; LANES]; PARTS],
+    pub(super) len: usize,
+}
+
+impl<'q> Packet<'q> {
+    /// So many rows, eight by eight, as packets of what registers like `F` hold, each with the number of its first eight.
+    #[inline(always)]
+    pub(super) fn all<F: Lanes>(eights: &'q [[u32; LANES]], len: usize) -> impl Iterator<Item = (usize, Self)> {
+        eights.chunks(F::PARTS).enumerate().map_while(
+            #[inline(always)]
+            move |(nth, eights)| {
+                let first = F::PARTS * nth;
+                let left = len.checked_sub(LANES * first).filter(|&left| left > 0)?;
+                let rows = [eights.first()?, eights.last()?];
+                Some((first, Self { rows, len: left.min(LANES * eights.len()) }))
+            },
+        )
+    }
+
     /// A bit for each that is not missing.
     pub(super) fn present(&self) -> u32 {
         (1 << self.len) - 1
@@ -63,8 +86,8 @@ impl<const PLACES: usize> List<PLACES> {
         self.len = len;
     }
 
-    /// All of them, eight by eight, who are not listed any longer, and how many there are of the last eight: the first of these is in place
-    /// of those that are missing.
+    /// All of them, eight by eight, who are not listed any longer, and how many they are: of the last eight, the first is in place of those
+    /// that are missing.
     pub(super) fn take_eights(&mut self) -> (&[[u32; LANES]], usize) {
         let len = core::mem::take(&mut self.len);
         let (eights, _) = self.rows.as_chunks_mut();
@@ -74,33 +97,34 @@ impl<const PLACES: usize> List<PLACES> {
             let first = rows[0];
             rows[last.min(LANES)..].fill(first);
         }
-        (eights, last)
+        (eights, len)
     }
 }
 
 impl Queue {
     #[inline(always)]
     pub(super) fn empty() -> Self {
-        Self { rows: [0; LANES], starts: [[[0.0; 4]; 2]; LANES], len: 0 }
+        Self { rows: [[0; LANES]; PARTS], starts: [[[[0.0; 4]; 2]; LANES]; PARTS], len: 0 }
     }
 
-    /// Puts a row in that was there, so fast. Says whether there are eight then, who have to go before another comes.
+    /// Puts a row in that was there, so fast. Says whether all places are taken then, who have to go before another comes.
     #[inline(always)]
     pub(super) fn push(&mut self, row: u32, [x, v]: [Vec3; 2]) -> bool {
-        let place = self.len % LANES;
-        self.rows[place] = row;
-        self.starts[place] = [[x.x, x.y, x.z, 0.0], [v.x, v.y, v.z, 0.0]];
+        let place = self.len % (PARTS * LANES);
+        self.rows.as_flattened_mut()[place] = row;
+        self.starts.as_flattened_mut()[place] = [[x.x, x.y, x.z, 0.0], [v.x, v.y, v.z, 0.0]];
         self.len = place + 1;
-        self.len == LANES
+        self.len == PARTS * LANES
     }
 
-    /// Those who wait, who do not wait any longer.
-    pub(super) fn take(&mut self) -> Option<(Packet<'_>, &[Start; LANES])> {
+    /// Those who wait, who do not wait any longer, and how many they are.
+    pub(super) fn take(&mut self) -> Option<Waited<'_>> {
         let len = core::mem::take(&mut self.len);
-        let first = (self.rows[0], self.starts[0]);
-        self.rows[len..].fill(first.0);
-        self.starts[len..].fill(first.1);
-        (len > 0).then_some((Packet { rows: &self.rows, len }, &self.starts))
+        let (rows, starts) = (self.rows.as_flattened_mut(), self.starts.as_flattened_mut());
+        let first = (rows[0], starts[0]);
+        rows[len..].fill(first.0);
+        starts[len..].fill(first.1);
+        (len > 0).then_some(Waited { rows: &self.rows, starts: &self.starts, len })
     }
 }
 

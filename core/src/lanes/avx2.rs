@@ -1,6 +1,6 @@
 //! Eight numbers in one register of an x86-64 that has them.
 
-use super::{COUNTS, Eight, HITS, LANES};
+use super::{COUNTS, Eight, HITS, LANES, Lanes};
 use core::arch::x86_64::{__m256, __m256i, _mm256_permutevar8x32_ps, _mm256_shuffle_ps};
 use core::arch::x86_64::{_mm256_unpackhi_ps, _mm256_unpacklo_ps};
 use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
@@ -49,12 +49,22 @@ fn halves(avx2: Avx2, rows: __m256) -> [[f32; 4]; 2] {
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Wide(f32x8<Avx2>);
+pub(crate) struct Wide(f32x8<Avx2>);
 
 impl Wide {
     #[inline(always)]
     pub(super) fn zero(avx2: Avx2) -> Self {
         Self(f32x8::splat(avx2, 0.0))
+    }
+
+    #[inline(always)]
+    pub(super) fn of_register(avx2: Avx2, register: __m256) -> Self {
+        Self(register.simd_into(avx2))
+    }
+
+    #[inline(always)]
+    pub(super) fn register(self) -> __m256 {
+        self.0.into()
     }
 
     #[inline(always)]
@@ -99,18 +109,20 @@ macro_rules! bits {
 }
 bits!(BitAnd bitand BitOr bitor BitXor bitxor);
 
-impl Eight for Wide {
+impl Lanes for Wide {
+    type Part = Self;
+    const PARTS: usize = 1;
     #[inline(always)]
-    fn of(self, lanes: [f32; LANES]) -> Self {
-        Self(f32x8::from_slice(self.0.token(), &lanes))
+    fn of_parts<const N: usize>(self, mut part: impl FnMut(Self, usize) -> [Self; N]) -> [Self; N] {
+        part(self, 0)
+    }
+    #[inline(always)]
+    fn part(self, _: usize) -> Self {
+        self
     }
     #[inline(always)]
     fn all(self, x: f32) -> Self {
         Self(f32x8::splat(self.0.token(), x))
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f32; LANES] {
-        self.0.into()
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -162,6 +174,21 @@ impl Eight for Wide {
         Self(self.0.min(other.0))
     }
     #[inline(always)]
+    fn to_bitmask(self) -> u32 {
+        self.mask().to_bitmask() as u32
+    }
+}
+
+impl Eight for Wide {
+    #[inline(always)]
+    fn of(self, lanes: [f32; LANES]) -> Self {
+        Self(f32x8::from_slice(self.0.token(), &lanes))
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; LANES] {
+        self.0.into()
+    }
+    #[inline(always)]
     fn thrice(self) -> [Self; 3] {
         let avx2 = self.0.token();
         let order = [[0, 0, 0, 1, 1, 1, 2, 2], [2, 3, 3, 3, 4, 4, 4, 5], [5, 5, 6, 6, 6, 7, 7, 7]];
@@ -203,9 +230,5 @@ impl Eight for Wide {
         let columns =
             [Self(x.simd_into(avx2)), Self(y.simd_into(avx2)), Self(z.simd_into(avx2)), Self(w.simd_into(avx2))];
         (columns, usize::from(COUNTS[hits]))
-    }
-    #[inline(always)]
-    fn to_bitmask(self) -> u32 {
-        self.mask().to_bitmask() as u32
     }
 }

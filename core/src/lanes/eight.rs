@@ -1,4 +1,4 @@
-//! Eight numbers or vectors side by side, in whatever registers the machine turns out to have.
+//! Numbers or vectors side by side, eight or twice as many, in whatever registers the machine turns out to have.
 //!
 //! They go through the same operations in the same order, each correctly rounded, and so the same bits. A kernel is compiled
 //! for each kind of registers; functions that it calls have to be spread over it for that.
@@ -7,8 +7,8 @@ use super::LANES;
 use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
 use wide::f32x4;
 
-/// Eight numbers side by side. A mask has all bits of a lane set, or none.
-pub(crate) trait Eight:
+/// Numbers side by side: eight, or twice as many. A mask has all bits of a lane set, or none.
+pub(crate) trait Lanes:
     Copy
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -18,11 +18,15 @@ pub(crate) trait Eight:
     + BitOr<Output = Self>
     + BitXor<Output = Self>
 {
-    /// These, in registers as those that `self` is in.
-    fn of(self, lanes: [f32; LANES]) -> Self;
+    /// The eights that they consist of, and the number of these.
+    type Part: Eight;
+    const PARTS: usize;
+    /// Columns whose eights are made one after the other.
+    fn of_parts<const N: usize>(self, part: impl FnMut(Self::Part, usize) -> [Self::Part; N]) -> [Self; N];
+    /// One of the eights.
+    fn part(self, nth: usize) -> Self::Part;
     /// One number in all of them.
     fn all(self, x: f32) -> Self;
-    fn to_array(self) -> [f32; LANES];
     fn abs(self) -> Self;
     /// Correctly rounded.
     fn sqrt(self) -> Self;
@@ -45,6 +49,32 @@ pub(crate) trait Eight:
     fn lesser(self, other: Self) -> Self {
         self.simd_lt(other).select(self, other)
     }
+    /// The largest of numbers none of which is below zero; anything, where one is no number.
+    #[inline(always)]
+    fn largest_lane(self) -> f32 {
+        let mut largest = self.part(0);
+        for nth in 1..Self::PARTS {
+            largest = largest.most(self.part(nth));
+        }
+        let [a, b, c, d, e, f, g, h] = largest.to_array();
+        let most = crate::math::max;
+        most(most(most(a, e), most(b, f)), most(most(c, g), most(d, h)))
+    }
+    /// A bit for each lane of this mask.
+    fn to_bitmask(self) -> u32;
+
+    /// Tells whether this mask holds for any.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.to_bitmask() != 0
+    }
+}
+
+/// Eight numbers side by side.
+pub(crate) trait Eight: Lanes<Part = Self> {
+    /// These, in registers as those that `self` is in.
+    fn of(self, lanes: [f32; LANES]) -> Self;
+    fn to_array(self) -> [f32; LANES];
     /// Each three times, one after the other.
     #[inline(always)]
     fn thrice(self) -> [Self; 3] {
@@ -91,21 +121,6 @@ pub(crate) trait Eight:
         }
         (x.quads_of(rows), len)
     }
-    /// The largest of numbers none of which is below zero; anything, where one is no number.
-    #[inline(always)]
-    fn largest_lane(self) -> f32 {
-        let [a, b, c, d, e, f, g, h] = self.to_array();
-        let most = crate::math::max;
-        most(most(most(a, e), most(b, f)), most(most(c, g), most(d, h)))
-    }
-    /// A bit for each lane of this mask.
-    fn to_bitmask(self) -> u32;
-
-    /// Tells whether this mask holds for any.
-    #[inline(always)]
-    fn any(self) -> bool {
-        self.to_bitmask() != 0
-    }
 }
 
 /// Arithmetic that registers of any kind can do.
@@ -115,43 +130,51 @@ pub(crate) trait Kernel {
     fn run<F: Eight>(self, like: F) -> Self::Output;
 }
 
+/// The same that twice as many numbers can go through at once where registers hold them.
+pub(crate) trait BroadKernel {
+    type Output;
+    fn run<F: Lanes>(self, like: F) -> Self::Output;
+}
+
 /// The larger of two numbers, as [`crate::math::max`] has it.
 #[inline(always)]
-pub(crate) fn max<F: Eight>(a: F, b: F) -> F {
+pub(crate) fn max<F: Lanes>(a: F, b: F) -> F {
     a.greater(b)
 }
 
 /// The smaller of two numbers, as [`crate::math::min`] has it.
 #[inline(always)]
-pub(crate) fn min<F: Eight>(a: F, b: F) -> F {
+pub(crate) fn min<F: Lanes>(a: F, b: F) -> F {
     a.lesser(b)
 }
 
 /// Numbers with their signs turned round, those of zeros as well.
 #[inline(always)]
-pub(crate) fn negated<F: Eight>(x: F) -> F {
+pub(crate) fn negated<F: Lanes>(x: F) -> F {
     x ^ x.all(-0.0)
 }
 
 /// Lanes for which a mask does not hold.
 #[inline(always)]
-pub(crate) fn not<F: Eight>(mask: F) -> F {
+pub(crate) fn not<F: Lanes>(mask: F) -> F {
     mask ^ mask.all(f32::from_bits(u32::MAX))
 }
 
 /// As many as the target has for sure: two registers, or four numbers and four, or eight.
-impl Eight for wide::f32x8 {
+impl Lanes for wide::f32x8 {
+    type Part = Self;
+    const PARTS: usize = 1;
     #[inline(always)]
-    fn of(self, lanes: [f32; LANES]) -> Self {
-        Self::new(lanes)
+    fn of_parts<const N: usize>(self, mut part: impl FnMut(Self, usize) -> [Self; N]) -> [Self; N] {
+        part(self, 0)
+    }
+    #[inline(always)]
+    fn part(self, _: usize) -> Self {
+        self
     }
     #[inline(always)]
     fn all(self, x: f32) -> Self {
         Self::splat(x)
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f32; LANES] {
-        Self::to_array(self)
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -193,21 +216,32 @@ impl Eight for wide::f32x8 {
     fn most(self, other: Self) -> Self {
         self.fast_max(other)
     }
-    #[cfg(target_feature = "simd128")]
-    #[inline(always)]
-    fn thrice(self) -> [Self; 3] {
-        super::thrice::thrice(self)
-    }
     #[inline(always)]
     fn to_bitmask(self) -> u32 {
         Self::to_bitmask(self)
     }
 }
 
+impl Eight for wide::f32x8 {
+    #[inline(always)]
+    fn of(self, lanes: [f32; LANES]) -> Self {
+        Self::new(lanes)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; LANES] {
+        Self::to_array(self)
+    }
+    #[cfg(target_feature = "simd128")]
+    #[inline(always)]
+    fn thrice(self) -> [Self; 3] {
+        super::thrice::thrice(self)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{One, run};
+    use crate::lanes::{One, PARTS, run, run_broad};
 
     /// Everything that can be done with two times eight numbers.
     #[derive(Clone, Copy)]
@@ -281,6 +315,68 @@ mod tests {
             assert_eq!(one.1, other.1);
             for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
                 assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {lanes:?}: {a} {b}");
+            }
+        }
+    }
+
+    /// What can be done with any number of numbers, with two times sixteen.
+    #[derive(Clone, Copy, Debug)]
+    struct Twice([[[f32; LANES]; 2]; PARTS]);
+
+    impl BroadKernel for Twice {
+        type Output = [([[f32; LANES]; 19], u32, f32); PARTS];
+        #[inline(always)]
+        fn run<F: Lanes>(self, like: F) -> Self::Output {
+            let mut done = [([[0.0; LANES]; 19], 0, 0.0); PARTS];
+            for first in (0..PARTS).step_by(F::PARTS) {
+                let [a, b] = like.of_parts(|like, nth| self.0[first + nth].map(|lanes| like.of(lanes)));
+                let mask = a.simd_lt(b);
+                let made = [
+                    a + b,
+                    a - b,
+                    a * b,
+                    a / b,
+                    a & b,
+                    a | b,
+                    a ^ b,
+                    a.abs(),
+                    a.sqrt(),
+                    not(mask).select(a, b),
+                    max(a, b),
+                    min(a, b),
+                    like.all(1.0) & (a.simd_eq(b) | a.simd_le(b)),
+                    like.all(1.0) & (a.simd_gt(b) ^ a.simd_ge(b)),
+                    mask & a.least(b),
+                    mask & a.most(b),
+                    crate::lanes::mask_of(like, mask.to_bitmask()) ^ mask,
+                    negated(b),
+                    like,
+                ];
+                let largest = (like.all(2.0) & mask).largest_lane();
+                for (nth, (parts, bits, most)) in done[first..][..F::PARTS].iter_mut().enumerate() {
+                    *parts = made.map(|lanes| lanes.part(nth).to_array());
+                    (*bits, *most) = (mask.to_bitmask() >> (LANES * nth) & 255, largest);
+                }
+            }
+            done
+        }
+    }
+
+    #[test]
+    fn twice_as_many_at_once_give_the_same_bits() {
+        let numbers = [0.0, -0.0, 1.5, -2.25, 1e-40, f32::MAX, f32::INFINITY, f32::NAN, -1e30, 0.1, 3.0];
+        for i in 0..121 {
+            let lanes =
+                |part: usize, k: usize| core::array::from_fn(|lane| numbers[(i / [1, 11][k] + lane + 3 * part) % 11]);
+            let twice = Twice(core::array::from_fn(|part| [lanes(part, 0), lanes(part, 1)]));
+            let (at_once, apart) = (run_broad(twice), BroadKernel::run(twice, wide::f32x8::ZERO));
+            let largest = apart.iter().fold(0.0, |most, part| crate::math::max(most, part.2));
+            for (one, other) in at_once.iter().zip(&apart) {
+                assert!(one.2 == other.2 || one.2 == largest);
+                assert_eq!(one.1, other.1);
+                for (nth, (a, b)) in one.0.iter().flatten().zip(other.0.iter().flatten()).enumerate() {
+                    assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{nth} of {twice:?}: {a} {b}");
+                }
             }
         }
     }

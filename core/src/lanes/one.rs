@@ -1,7 +1,7 @@
 //! A number by itself among kernels for eight: for chips without vectors, where seven lanes that stand for nothing would cost as much as one
 //! that does.
 
-use super::{Eight, LANES};
+use super::{Eight, LANES, Lanes};
 use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
 
 /// The first of eight lanes; nobody asks for the others.
@@ -38,15 +38,17 @@ macro_rules! bits {
 }
 bits!(BitAnd bitand BitOr bitor BitXor bitxor);
 
-impl Eight for One {
-    fn of(self, lanes: [f32; LANES]) -> Self {
-        Self(lanes[0])
+impl Lanes for One {
+    type Part = Self;
+    const PARTS: usize = 1;
+    fn of_parts<const N: usize>(self, mut part: impl FnMut(Self, usize) -> [Self; N]) -> [Self; N] {
+        part(self, 0)
+    }
+    fn part(self, _: usize) -> Self {
+        self
     }
     fn all(self, x: f32) -> Self {
         Self(x)
-    }
-    fn to_array(self) -> [f32; LANES] {
-        [self.0; LANES]
     }
     fn abs(self) -> Self {
         Self(self.0.abs())
@@ -78,6 +80,18 @@ impl Eight for One {
     fn most(self, other: Self) -> Self {
         Self(if self.0 > other.0 { self.0 } else { other.0 })
     }
+    fn to_bitmask(self) -> u32 {
+        u32::from(self.0.to_bits() != 0)
+    }
+}
+
+impl Eight for One {
+    fn of(self, lanes: [f32; LANES]) -> Self {
+        Self(lanes[0])
+    }
+    fn to_array(self) -> [f32; LANES] {
+        [self.0; LANES]
+    }
     fn quads_of(self, rows: [[f32; 4]; LANES]) -> [Self; 4] {
         rows[0].map(Self)
     }
@@ -86,8 +100,5 @@ impl Eight for One {
     }
     fn rows_of([x, y, z, w]: [Self; 4]) -> [[f32; 4]; LANES] {
         [[x.0, y.0, z.0, w.0]; LANES]
-    }
-    fn to_bitmask(self) -> u32 {
-        u32::from(self.0.to_bits() != 0)
     }
 }

@@ -1,6 +1,6 @@
 //! Numbers side by side in memory: as many as go side by side at all.
 
-use super::{ABREAST, Eight, LANES, Vectors};
+use super::{ABREAST, Eight, LANES, Lanes, Vectors};
 
 /// A number of each.
 pub(crate) type Row = [f32; ABREAST];
@@ -23,12 +23,18 @@ pub(crate) fn saved<F: Eight>(lanes: F) -> Row {
 
 /// A mask of the lanes whose bits are set.
 #[inline(always)]
-pub(crate) fn mask_of<F: Eight>(like: F, bits: u32) -> F {
-    let mut lanes = [0.0; LANES];
-    for (lane, x) in lanes.iter_mut().enumerate() {
-        *x = f32::from_bits(0u32.wrapping_sub(bits >> lane & 1));
-    }
-    like.of(lanes)
+pub(crate) fn mask_of<F: Lanes>(like: F, bits: u32) -> F {
+    let [mask] = like.of_parts(
+        #[inline(always)]
+        |like, nth| {
+            let (mut lanes, bits) = ([0.0; LANES], bits >> (LANES * nth));
+            for (lane, x) in lanes.iter_mut().enumerate() {
+                *x = f32::from_bits(0u32.wrapping_sub(bits >> lane & 1));
+            }
+            [like.of(lanes)]
+        },
+    );
+    mask
 }
 
 impl<F: Eight> Vectors<F> {

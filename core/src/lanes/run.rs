@@ -1,8 +1,8 @@
 //! Kernels in the registers of the machine that a program finds itself on.
 
-use super::Kernel;
 #[cfg(target_os = "none")]
 use super::One;
+use super::{BroadKernel, Kernel};
 
 /// Runs a kernel in the widest registers that it is compiled for.
 #[inline(always)]
@@ -30,6 +30,30 @@ pub(crate) fn run_at_length<K: Kernel>(kernel: K) -> K::Output {
         );
     }
     run(kernel)
+}
+
+/// Runs a kernel on as many numbers at once as registers hold.
+#[inline(always)]
+pub(crate) fn run_broad<K: BroadKernel>(kernel: K) -> K::Output {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    match (fearless_simd::Level::new().as_avx512(), fearless_simd::Level::new().as_avx2()) {
+        (Some(avx512), Some(avx2)) => {
+            return fearless_simd::Simd::vectorize(
+                avx512,
+                #[inline(always)]
+                || kernel.run(super::avx512::Broad::zero(avx512, avx2)),
+            );
+        }
+        (None, Some(avx2)) => {
+            return fearless_simd::Simd::vectorize(
+                avx2,
+                #[inline(always)]
+                || kernel.run(super::avx2::Wide::zero(avx2)),
+            );
+        }
+        _ => {}
+    }
+    kernel.run(wide::f32x8::ZERO)
 }
 
 /// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.

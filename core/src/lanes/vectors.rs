@@ -1,34 +1,24 @@
-//! Eight vectors side by side.
+//! Vectors side by side, as many as numbers are.
 
-use super::{Eight, LANES, max, negated};
+use super::{Eight, LANES, Lanes, max, negated};
 use glam::Vec3;
 
-/// Eight vectors side by side. Sums and products are taken in glam's order.
+/// Vectors side by side. Sums and products are taken in glam's order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vectors<F>(pub(crate) [F; 3]);
 
-impl<F: Eight> Vectors<F> {
+impl<F: Lanes> Vectors<F> {
+    /// One of the eights.
+    #[inline(always)]
+    pub(crate) fn part(self, nth: usize) -> Vectors<F::Part> {
+        let [x, y, z] = self.0;
+        Vectors([x.part(nth), y.part(nth), z.part(nth)])
+    }
+
     /// One in every lane, as many as there are of others.
     #[inline(always)]
     pub(crate) fn splat(like: F, v: Vec3) -> Self {
         Self([like.all(v.x), like.all(v.y), like.all(v.z)])
-    }
-
-    /// Those of eight rows before the `last`, which are read with what the rows behind them begin with.
-    #[inline(always)]
-    pub(crate) fn gather(like: F, column: &[Vec3], last: usize, rows: &[usize; LANES]) -> Self {
-        let (column, next) = (&column[..last], &column[1..][..last]);
-        let mut vectors = [[0.0; 4]; LANES];
-        for (vector, &row) in vectors.iter_mut().zip(rows) {
-            *vector = [column[row].x, column[row].y, column[row].z, next[row].x];
-        }
-        Self(like.columns_of(vectors))
-    }
-
-    /// One after the other, each with some number behind it.
-    #[inline(always)]
-    pub(crate) fn rows(self) -> [[f32; 4]; LANES] {
-        F::vectors_of(self.0)
     }
 
     #[inline(always)]
@@ -86,6 +76,25 @@ impl<F: Eight> Vectors<F> {
     }
 }
 
+impl<F: Eight> Vectors<F> {
+    /// Those of eight rows before the `last`, which are read with what the rows behind them begin with.
+    #[inline(always)]
+    pub(crate) fn gather(like: F, column: &[Vec3], last: usize, rows: &[usize; LANES]) -> Self {
+        let (column, next) = (&column[..last], &column[1..][..last]);
+        let mut vectors = [[0.0; 4]; LANES];
+        for (vector, &row) in vectors.iter_mut().zip(rows) {
+            *vector = [column[row].x, column[row].y, column[row].z, next[row].x];
+        }
+        Self(like.columns_of(vectors))
+    }
+
+    /// One after the other, each with some number behind it.
+    #[inline(always)]
+    pub(crate) fn rows(self) -> [[f32; 4]; LANES] {
+        F::vectors_of(self.0)
+    }
+}
+
 /// The vectors of corners; none, if one is missing or the last.
 #[inline(always)]
 pub(crate) fn gathered<F: Eight, const N: usize>(
@@ -114,7 +123,7 @@ pub(crate) fn gathered<F: Eight, const N: usize>(
     Some(all)
 }
 
-impl<F: Eight> core::ops::Add for Vectors<F> {
+impl<F: Lanes> core::ops::Add for Vectors<F> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -123,7 +132,7 @@ impl<F: Eight> core::ops::Add for Vectors<F> {
     }
 }
 
-impl<F: Eight> core::ops::Sub for Vectors<F> {
+impl<F: Lanes> core::ops::Sub for Vectors<F> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -132,7 +141,7 @@ impl<F: Eight> core::ops::Sub for Vectors<F> {
     }
 }
 
-impl<F: Eight> core::ops::Mul<F> for Vectors<F> {
+impl<F: Lanes> core::ops::Mul<F> for Vectors<F> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: F) -> Self {
@@ -141,7 +150,7 @@ impl<F: Eight> core::ops::Mul<F> for Vectors<F> {
     }
 }
 
-impl<F: Eight> core::ops::Div<F> for Vectors<F> {
+impl<F: Lanes> core::ops::Div<F> for Vectors<F> {
     type Output = Self;
     #[inline(always)]
     fn div(self, divisor: F) -> Self {
@@ -150,7 +159,7 @@ impl<F: Eight> core::ops::Div<F> for Vectors<F> {
     }
 }
 
-impl<F: Eight> core::ops::Neg for Vectors<F> {
+impl<F: Lanes> core::ops::Neg for Vectors<F> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {

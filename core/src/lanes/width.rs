@@ -3,6 +3,9 @@
 /// The number of lanes.
 pub(crate) const LANES: usize = 8;
 
+/// How many eights go side by side where registers hold more than one: these many at the most.
+pub(crate) const PARTS: usize = 2;
+
 /// Where a lane that stands for nothing is put, without weight: so far that whatever is divided by its distance is zero,
 /// and so near that its square is a number.
 pub(crate) const NOWHERE: f32 = 1e19;

@@ -1,9 +1,9 @@
-//! Where eight paths side by side meet walls.
+//! Where paths side by side meet walls.
 
 use super::paths::{Cubics, Paths};
 use crate::collide::path::MAX_CHORDS;
 use crate::collide::sweep::MAX_LOOKS;
-use crate::lanes::{Eight, Vectors, max, min, negated, not};
+use crate::lanes::{Lanes, Vectors, max, min, negated, not};
 use crate::shape::Face;
 use glam::Vec3;
 
@@ -28,8 +28,8 @@ pub(super) struct Meetings<F> {
     pub(super) chord_from: Vectors<F>,
 }
 
-/// Walls that eight particles meet, all the same ones or each its own.
-pub(super) trait Walls<F: Eight> {
+/// Walls that particles meet, all the same ones or each its own.
+pub(super) trait Walls<F: Lanes> {
     /// The flat face that they are, if they are no more than that.
     fn face(&self) -> Option<&Face> {
         None
@@ -59,7 +59,7 @@ pub(super) struct Segments<F> {
     pub(super) to: Vectors<F>,
 }
 
-impl<F: Eight> Segments<F> {
+impl<F: Lanes> Segments<F> {
     #[inline(always)]
     pub(super) fn at(&self, time: F) -> Vectors<F> {
         self.from + (self.to - self.from) * time
@@ -98,13 +98,13 @@ impl<F: Eight> Segments<F> {
 
 /// Those whose centers come from one height to another past a plane: from above, and from below.
 #[inline(always)]
-fn crossed<F: Eight>(before: F, after: F) -> [F; 2] {
+fn crossed<F: Lanes>(before: F, after: F) -> [F; 2] {
     let zero = before.all(0.0);
     let falls = before.simd_ge(zero) & after.simd_le(zero) & before.simd_gt(after);
     [falls, before.simd_lt(zero) & after.simd_ge(zero)]
 }
 
-impl<F: Eight> Hits<F> {
+impl<F: Lanes> Hits<F> {
     /// Takes some from others.
     #[inline(always)]
     pub(super) fn take(&mut self, mask: F, others: Self) {
@@ -116,7 +116,7 @@ impl<F: Eight> Hits<F> {
     }
 }
 
-impl<F: Eight> Meetings<F> {
+impl<F: Lanes> Meetings<F> {
     fn none(place: Vectors<F>, unclear: F) -> Self {
         let (like, zero) = (unclear, unclear.all(0.0));
         let normal = Vectors::splat(like, Vec3::ZERO);
@@ -164,7 +164,7 @@ impl<F: Eight> Meetings<F> {
     }
 }
 
-impl<F: Eight> Paths<F> {
+impl<F: Lanes> Paths<F> {
     /// Where those who are asked for first meet walls.
     #[inline(always)]
     pub(super) fn first_meetings<const POINTS: bool>(
@@ -188,7 +188,7 @@ impl<F: Eight> Paths<F> {
         let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
         let [point, normal, _] = face.vectors();
         let (point, normal) = (Vectors::splat(asked, point), Vectors::splat(asked, normal));
-        let most = chords.to_array().into_iter().fold(1.0, crate::math::max);
+        let most = crate::math::max(chords.largest_lane(), 1.0);
         let (mut before, mut are, mut begun) = (normal.dot(self.x0 - point), zero, zero);
         for i in 0..(most as u8).min(MAX_CHORDS as u8) {
             let [begins, ends] = [all(f32::from(i)), all(f32::from(i + 1))];
@@ -231,7 +231,7 @@ impl<F: Eight> Paths<F> {
         let unclear = chords.simd_gt(all(MAX_CHORDS as f32));
         let mut found = Meetings::none(self.x0, unclear);
         let mut end = all(0.0);
-        let (mut from, most) = (self.x0, chords.to_array().into_iter().fold(1.0, crate::math::max));
+        let (mut from, most) = (self.x0, crate::math::max(chords.largest_lane(), 1.0));
         for i in 0..(most as u8).min(MAX_CHORDS as u8) {
             let (begun, ends) = (all(f32::from(i)), all(f32::from(i + 1)));
             let share = ends / chords;
@@ -257,7 +257,7 @@ impl<F: Eight> Paths<F> {
     }
 }
 
-impl<F: Eight> Cubics<F> {
+impl<F: Lanes> Cubics<F> {
     /// When they cross the planes that touch the surface at places where they are hit, between two instants, from the side of the
     /// normal to the other.
     #[inline(always)]

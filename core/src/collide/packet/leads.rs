@@ -1,9 +1,9 @@
-//! By how much methods lead eight particles beyond parabolas along a face, as `Lead` has it.
+//! By how much methods lead particles beyond parabolas along a face, as `Lead` has it.
 
 use super::paths::Cubics;
-use crate::lanes::{Eight, Vectors, not};
+use crate::lanes::{Lanes, Vectors, not};
 
-/// That of eight paths.
+/// That of paths side by side.
 #[derive(Clone, Copy)]
 pub(super) struct Leads<F> {
     /// Those that are led at all.
@@ -12,7 +12,7 @@ pub(super) struct Leads<F> {
     acceleration: Vectors<F>,
 }
 
-impl<F: Eight> Leads<F> {
+impl<F: Lanes> Leads<F> {
     /// Those of paths that take so long and meet a face after fractions of their times.
     #[inline(always)]
     pub(super) fn of(cubics: &Cubics<F>, time: F, s: F, normal: Vectors<F>) -> Self {

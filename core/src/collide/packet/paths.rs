@@ -1,13 +1,13 @@
-//! Paths of eight particles side by side, and the polynomials that they are.
+//! Paths of particles side by side, and the polynomials that they are.
 
 use crate::collide::path::CHORD_ERROR;
-use crate::lanes::{Eight, Vectors, max, not};
+use crate::lanes::{Lanes, Vectors, max, not};
 
 /// How far from the origin places may be together with a hundred times as far as anybody gets in a step \[m\]: their rounding, and
 /// eight times that of the ways, are 20 µm then.
 pub(in crate::collide) const CLOSE: f32 = 200.0;
 
-/// Eight cubics, as `Path`.
+/// Cubics side by side, as `Path`.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Paths<F> {
     pub(in crate::collide) x0: Vectors<F>,
@@ -27,7 +27,7 @@ pub(super) struct Cubics<F> {
     pub(super) excess: Vectors<F>,
 }
 
-impl<F: Eight> Paths<F> {
+impl<F: Lanes> Paths<F> {
     /// The first of two where a mask says so, else the second.
     #[inline(always)]
     pub(super) fn select(mask: F, a: Self, b: Self) -> Self {
@@ -96,7 +96,7 @@ impl<F: Eight> Paths<F> {
     }
 }
 
-impl<F: Eight> Cubics<F> {
+impl<F: Lanes> Cubics<F> {
     #[inline(always)]
     pub(super) fn at(&self, s: F) -> Vectors<F> {
         let [c1, c2, c3] = self.coefficients;

@@ -1,10 +1,10 @@
-//! A flat face and one solid before each of eight points.
+//! A flat face and one solid before each of some points.
 //!
 //! Every number is made as the solid makes it by itself, in the same order, and so has the same bits.
 
 use super::hits::{Hits, Seats, Segments, Walls};
 use super::walls::slack;
-use crate::lanes::{Eight, LANES, Vectors, mask_of, max, min, negated, not};
+use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, min, negated, not};
 use crate::shape::{Aabb, Face, Solid};
 
 /// Solids, one before each point: all of them spheres, or all of them `BOXES`.
@@ -21,20 +21,14 @@ pub(in crate::collide) struct Things<F, const BOXES: bool> {
     size: F,
 }
 
-impl<F: Eight, const BOXES: bool> Things<F, BOXES> {
+impl<F: Lanes, const BOXES: bool> Things<F, BOXES> {
     #[inline(always)]
-    pub(in crate::collide) fn of(like: F, solids: &[Solid; LANES], after: u32, face: Option<Face>) -> Self {
-        let (mut min, mut max, mut center) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES], [[0.0; 4]; LANES]);
-        for (i, solid) in solids.iter().enumerate() {
-            let Aabb { min: low, max: high } = solid.bounds();
-            let (middle, radius) = solid.ball();
-            min[i] = [low.x, low.y, low.z, radius];
-            max[i] = [high.x, high.y, high.z, solid.reach()];
-            center[i] = [middle.x, middle.y, middle.z, 0.0];
-        }
-        let ([x, y, z, radius], [u, v, w, size]) = (like.quads_of(min), like.quads_of(max));
-        let center = Vectors(like.columns_of(center));
-        let after = mask_of(like, after);
+    pub(in crate::collide) fn of(like: F, solids: [&[Solid; LANES]; PARTS], after: u32, face: Option<Face>) -> Self {
+        let [x, y, z, radius, u, v, w, size, center_x, center_y, center_z] = like.of_parts(
+            #[inline(always)]
+            |like, nth| columns(like, solids[nth]),
+        );
+        let (center, after) = (Vectors([center_x, center_y, center_z]), mask_of(like, after));
         Self { face, after, min: Vectors([x, y, z]), max: Vectors([u, v, w]), center, radius, size }
     }
 
@@ -172,6 +166,23 @@ impl<F: Eight, const BOXES: bool> Things<F, BOXES> {
     }
 }
 
+/// The lower corners of eight solids' boxes and the radii of balls in their place, the upper corners and how far each reaches from the
+/// origin, and the centers.
+#[inline(always)]
+fn columns<F: Eight>(like: F, solids: &[Solid; LANES]) -> [F; 11] {
+    let (mut min, mut max, mut center) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES], [[0.0; 4]; LANES]);
+    for (i, solid) in solids.iter().enumerate() {
+        let Aabb { min: low, max: high } = solid.bounds();
+        let (middle, radius) = solid.ball();
+        min[i] = [low.x, low.y, low.z, radius];
+        max[i] = [high.x, high.y, high.z, solid.reach()];
+        center[i] = [middle.x, middle.y, middle.z, 0.0];
+    }
+    let ([x, y, z, radius], [u, v, w, size]) = (like.quads_of(min), like.quads_of(max));
+    let [a, b, c] = like.columns_of(center);
+    [x, y, z, radius, u, v, w, size, a, b, c]
+}
+
 /// The parts of lines inside solids.
 struct Span<F> {
     are: F,
@@ -187,7 +198,7 @@ fn axes<F>(of: impl Fn(usize) -> F) -> [F; 3] {
 }
 
 #[inline(always)]
-fn low<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+fn low<F: Lanes>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
     Vectors(axes(
         #[inline(always)]
         |axis| min(a.0[axis], b.0[axis]),
@@ -195,14 +206,14 @@ fn low<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
 }
 
 #[inline(always)]
-fn high<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+fn high<F: Lanes>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
     Vectors(axes(
         #[inline(always)]
         |axis| max(a.0[axis], b.0[axis]),
     ))
 }
 
-impl<F: Eight, const BOXES: bool> Walls<F> for Things<F, BOXES> {
+impl<F: Lanes, const BOXES: bool> Walls<F> for Things<F, BOXES> {
     #[inline(always)]
     fn first_hits<const POINTS: bool>(&self, piece: &Segments<F>, radius: F) -> Hits<F> {
         let things = self.hits(piece);

@@ -1,10 +1,10 @@
-//! A flat face before eight paths side by side.
+//! A flat face before paths side by side.
 
 use super::hits::{Hits, Seats, Segments, Walls};
-use crate::lanes::{Eight, Vectors};
+use crate::lanes::{Lanes, Vectors};
 use crate::shape::Face;
 
-impl<F: Eight> Walls<F> for Face {
+impl<F: Lanes> Walls<F> for Face {
     #[inline(always)]
     fn face(&self) -> Option<&Face> {
         Some(self)
@@ -29,6 +29,6 @@ impl<F: Eight> Walls<F> for Face {
 
 /// Bounds on the rounding of distances between places and surfaces of such extents.
 #[inline(always)]
-pub(super) fn slack<F: Eight>(place: Vectors<F>, distance: F, size: F) -> F {
+pub(super) fn slack<F: Lanes>(place: Vectors<F>, distance: F, size: F) -> F {
     size.all(4.0 * f32::EPSILON) * (place.largest() + distance + size)
 }

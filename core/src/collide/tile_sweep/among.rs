@@ -7,8 +7,8 @@ use super::{Bits, TileSweep, Waiting, words};
 use crate::collide::near::{BLOCK, Near};
 use crate::collide::sweep::surroundings;
 use crate::collide::tile::Tile;
-use crate::collide::waiting::{Packet, ones};
-use crate::lanes::{LANES, run, widest};
+use crate::collide::waiting::ones;
+use crate::lanes::{LANES, run, run_broad, widest};
 use crate::math::{largest, max};
 use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, Solid};
 use core::ops::Range;
@@ -98,7 +98,7 @@ impl TileSweep<'_, '_> {
         past_face
     }
 
-    /// Follows those of a block's rows from the first on that are asked about and may be near things, at once or when there are eight of
+    /// Follows those of a block's rows from the first on that are asked about and may be near things, at once or when there are enough of
     /// them, and says which these are.
     fn seek(&mut self, first: usize, asked: &Bits, among: &mut Among<'_>, room: Room, asking: &mut Asking) -> Bits {
         let last = self.tile.position.len() - 1;
@@ -125,11 +125,10 @@ impl TileSweep<'_, '_> {
     #[inline(never)]
     fn seek_for(&mut self, asking: &mut Asking, first: usize, among: &mut Among<'_>, room: Room, gone: &mut Bits) {
         let Asking { list, sought } = asking;
-        let (eights, last) = list.take_eights();
+        let (eights, len) = list.take_eights();
         run(Seek { of: self, rows: eights, face: among.face, clearance: among.clearance, room, sought });
         for (nth, (rows, sought)) in eights.iter().zip(sought).enumerate() {
-            let len = if nth + 1 == eights.len() { last } else { LANES };
-            let are_there = Packet { rows, len }.present();
+            let are_there = if len < LANES * (nth + 1) { (1 << (len % LANES)) - 1 } else { u32::MAX };
             for i in ones(sought.near & are_there) {
                 let row = rows[i % LANES] as usize;
                 if self.go_near(row, sought, i % LANES, among) {
@@ -177,9 +176,9 @@ impl TileSweep<'_, '_> {
     #[inline(never)]
     fn past_things<const BOXES: bool>(&mut self, among: &mut Among<'_>) {
         let Some((len, pairs)) = among.pairs[usize::from(BOXES)].take() else { return };
-        let unsettled = run(PastThings::<BOXES> { of: self, len, pairs: &pairs, face: among.face });
+        let unsettled = run_broad(PastThings::<BOXES> { of: self, len, pairs: &pairs, face: among.face });
         for i in ones(unsettled.left | unsettled.others) {
-            let row = pairs.rows[i % LANES] as usize;
+            let row = pairs.rows.as_flattened()[i] as usize;
             if !self.go_between(row, among) {
                 self.follow(row);
             }

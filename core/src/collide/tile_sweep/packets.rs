@@ -3,29 +3,29 @@
 use super::TileSweep;
 use crate::collide::packet::{CLOSE, Outcome, Paths, Riders};
 use crate::collide::tile::Tile;
-use crate::collide::waiting::{Packet, Queue, Start, ones, side_by_side};
-use crate::lanes::{Eight, Kernel, LANES, Vectors, not, run_at_length};
+use crate::collide::waiting::{Packet, Queue, Start, Waited, ones, side_by_side};
+use crate::lanes::{BroadKernel, Eight, LANES, Lanes, PARTS, Vectors, not, run_broad};
 use crate::material::on_surface;
 use crate::math::max;
 use crate::shape::Face;
+use core::ops::Range;
 use glam::Vec3;
 
-/// A bit for each row of a packet.
+/// A bit for each of eight rows.
 const ALL: u32 = (1 << LANES) - 1;
 
-/// Rows, eight by eight, that may lie on a face; of the last eight so many are present.
+/// Rows, eight by eight, that may lie on a face, and how many they are.
 struct Lie<'t, 's, 'a, const POINTS: bool> {
     of: &'t mut TileSweep<'s, 'a>,
     eights: &'t [[u32; LANES]],
-    last: usize,
+    len: usize,
     face: &'t Face,
 }
 
 /// Rows that may bounce off a face, and where they were.
 struct Bounce<'t, 's, 'a, const POINTS: bool> {
     of: &'t mut TileSweep<'s, 'a>,
-    packet: Packet<'t>,
-    starts: &'t [Start; LANES],
+    waited: Waited<'t>,
     face: &'t Face,
 }
 
@@ -48,62 +48,74 @@ pub(super) struct Unsettled {
     pub(super) others: u32,
 }
 
-impl<const POINTS: bool> Kernel for Lie<'_, '_, '_, POINTS> {
-    /// The number of packets that have gone, and the unsettled rows of the last: packets behind it wait for these.
-    type Output = (usize, Unsettled);
+impl Unsettled {
+    /// Counts in those of a packet that begins with one of the eights.
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> (usize, Unsettled) {
-        let Self { of, eights, last, face } = self;
+    pub(super) fn add(&mut self, packet: Self, nth: usize) {
+        self.left |= packet.left << (LANES * nth);
+        self.others |= packet.others << (LANES * nth);
+    }
+}
+
+impl<const POINTS: bool> BroadKernel for Lie<'_, '_, '_, POINTS> {
+    /// The eights of the packet that has gone last, and its unsettled rows: packets behind it wait for these.
+    type Output = (Range<usize>, Unsettled);
+    #[inline(always)]
+    fn run<F: Lanes>(self, like: F) -> (Range<usize>, Unsettled) {
+        let Self { of, eights, len, face } = self;
         let (first, terms) = (of.first, of.terms());
-        let (mut farthest, mut gone) = (like.all(0.0), (eights.len(), Unsettled::default()));
-        for (nth, rows) in eights.iter().enumerate() {
-            let packet = Packet { rows, len: if nth + 1 == eights.len() { last } else { LANES } };
-            let (riders, paths) = of.packet::<F, true, POINTS>(like, rows, first, None, terms, face.material());
+        let (mut farthest, mut last) = (like.all(0.0), (0..eights.len(), Unsettled::default()));
+        for (nth, packet) in Packet::all::<F>(eights, len) {
+            let (riders, paths) = of.packet::<F, true, POINTS>(like, &packet, first, None, terms, face.material());
             let outcome = riders.lie(&paths, face, packet.present());
             farthest = outcome.farthest.most(farthest);
             let unsettled = of.settle(&packet, first, &outcome);
             if unsettled.left | unsettled.others != 0 {
-                gone = (nth + 1, unsettled);
+                last = (nth..eights.len().min(nth + F::PARTS), unsettled);
                 break;
             }
         }
         of.reach(farthest.largest_lane());
-        gone
+        last
     }
 }
 
-impl<const POINTS: bool> Kernel for Bounce<'_, '_, '_, POINTS> {
+impl<const POINTS: bool> BroadKernel for Bounce<'_, '_, '_, POINTS> {
     type Output = Unsettled;
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Unsettled {
-        let Self { of, packet, starts, face } = self;
-        let (riders, paths) =
-            of.packet::<F, false, POINTS>(like, packet.rows, 0, Some(starts), of.terms(), face.material());
+    fn run<F: Lanes>(self, like: F) -> Unsettled {
+        let Self { of, waited: Waited { rows, starts, len }, face } = self;
+        let (terms, mut unsettled) = (of.terms(), Unsettled::default());
         let Tile { dt, ref obstacles, .. } = *of.tile;
-        let outcome = riders.bounce(&paths, face, packet.present(), dt, obstacles.max_bounces);
-        of.reach(outcome.farthest.largest_lane());
-        of.settle(&packet, 0, &outcome)
+        let max_bounces = obstacles.max_bounces;
+        for (nth, packet) in Packet::all::<F>(rows, len) {
+            let starts = Some([&starts[nth], &starts[nth + F::PARTS - 1]]);
+            let (riders, paths) = of.packet::<F, false, POINTS>(like, &packet, 0, starts, terms, face.material());
+            let outcome = riders.bounce(&paths, face, packet.present(), dt, max_bounces);
+            of.reach(outcome.farthest.largest_lane());
+            unsettled.add(of.settle(&packet, 0, &outcome), nth);
+        }
+        unsettled
     }
 }
 
 impl TileSweep<'_, '_> {
-    /// Lets those who lie on the face do so, eight by eight and so many in the end; the others bounce.
-    pub(super) fn lie(&mut self, mut eights: &[[u32; LANES]], last: usize, face: &Face, bouncing: &mut Queue) {
+    /// Lets those who lie on the face do so, so many of them, eight by eight; the others bounce.
+    pub(super) fn lie(&mut self, mut eights: &[[u32; LANES]], mut len: usize, face: &Face, bouncing: &mut Queue) {
         while !eights.is_empty() {
-            let (gone, Unsettled { left, others }) = match self.are_points {
-                true => run_at_length(Lie::<true> { of: self, eights, last, face }),
-                false => run_at_length(Lie::<false> { of: self, eights, last, face }),
+            let (last, Unsettled { left, others }) = match self.are_points {
+                true => run_broad(Lie::<true> { of: self, eights, len, face }),
+                false => run_broad(Lie::<false> { of: self, eights, len, face }),
             };
-            let (those, rest) = eights.split_at(gone);
-            if let Some(rows) = those.last() {
-                ones(left).for_each(|lane| self.follow(rows[lane % LANES] as usize));
-                ones(others).for_each(|lane| self.wait(rows[lane % LANES], face, bouncing));
-            }
-            eights = rest;
+            let (gone, rest) = eights.split_at(last.end);
+            let rows = gone[last.start..].as_flattened();
+            ones(left).for_each(|lane| self.follow(rows[lane] as usize));
+            ones(others).for_each(|lane| self.wait(rows[lane], face, bouncing));
+            (eights, len) = (rest, len.saturating_sub(LANES * gone.len()));
         }
     }
 
-    /// Lets a row wait to bounce off the face, until there are eight.
+    /// Lets a row wait to bounce off the face, until there are enough.
     #[inline(always)]
     pub(super) fn wait(&mut self, row: u32, face: &Face, bouncing: &mut Queue) {
         if bouncing.push(row, self.start_of(row as usize)) {
@@ -114,15 +126,16 @@ impl TileSweep<'_, '_> {
     /// Lets those bounce off the face who wait, if they do so a few times.
     #[inline(never)]
     pub(super) fn bounce(&mut self, face: &Face, bouncing: &mut Queue) {
-        let Some((packet, starts)) = bouncing.take() else { return };
+        let Some(waited) = bouncing.take() else { return };
         let unsettled = match self.are_points {
-            true => run_at_length(Bounce::<true> { of: self, packet, starts, face }),
-            false => run_at_length(Bounce::<false> { of: self, packet, starts, face }),
+            true => run_broad(Bounce::<true> { of: self, waited, face }),
+            false => run_broad(Bounce::<false> { of: self, waited, face }),
         };
-        for lane in ones(unsettled.left).map(|lane| lane % LANES) {
+        let (rows, starts) = (waited.rows.as_flattened(), waited.starts.as_flattened());
+        for lane in ones(unsettled.left) {
             let [[x, y, z, _], [u, v, w, _]] = starts[lane];
             let start = Some([Vec3::new(x, y, z), Vec3::new(u, v, w)]);
-            self.follow_from(packet.rows[lane] as usize, start, self.tile.obstacles.colliders, self.known());
+            self.follow_from(rows[lane] as usize, start, self.tile.obstacles.colliders, self.known());
         }
     }
 
@@ -136,23 +149,26 @@ impl TileSweep<'_, '_> {
 
     /// Puts rows where they have come to, none of which is before the `first`, and says which are left.
     #[inline(always)]
-    pub(super) fn settle<F: Eight>(&mut self, packet: &Packet<'_>, first: usize, outcome: &Outcome<F>) -> Unsettled {
+    pub(super) fn settle<F: Lanes>(&mut self, packet: &Packet<'_>, first: usize, outcome: &Outcome<F>) -> Unsettled {
         let present = packet.present();
         self.report.hits += u64::from(outcome.hits);
         let (position, velocity) = (&mut self.tile.position[first..], &mut self.tile.velocity[first..]);
         let velocity = &mut velocity[..position.len()];
-        let [places, velocities] = outcome.ends.map(Vectors::rows);
-        let rows = places_from(first, packet.rows);
-        let lanes = rows.iter().zip(&places).zip(&velocities);
-        if outcome.settled == ALL {
-            for ((row, place), speed) in lanes {
-                put(position, velocity, *row, [place, speed]);
-            }
-        } else {
-            for (i, ((row, place), speed)) in lanes.enumerate() {
-                // Who is missing is the first over again.
-                if outcome.settled >> i & 1 != 0 {
+        for (nth, rows) in packet.rows.iter().enumerate().take(F::PARTS) {
+            let [x, v] = outcome.ends;
+            let (places, velocities) = (x.part(nth).rows(), v.part(nth).rows());
+            let (rows, settled) = (places_from(first, rows), outcome.settled >> (LANES * nth) & ALL);
+            let lanes = rows.iter().zip(&places).zip(&velocities);
+            if settled == ALL {
+                for ((row, place), speed) in lanes {
                     put(position, velocity, *row, [place, speed]);
+                }
+            } else {
+                for (i, ((row, place), speed)) in lanes.enumerate() {
+                    // Who is missing is the first over again.
+                    if settled >> i & 1 != 0 {
+                        put(position, velocity, *row, [place, speed]);
+                    }
                 }
             }
         }
@@ -171,15 +187,41 @@ impl TileSweep<'_, '_> {
     /// Rows side by side, none of which is before the `first`, nor the tile's last; of some it is known where they started. Of those who may
     /// lie on a face, only what that takes is read.
     #[inline(always)]
-    pub(super) fn packet<F: Eight, const LIES: bool, const POINTS: bool>(
+    pub(super) fn packet<F: Lanes, const LIES: bool, const POINTS: bool>(
+        &self,
+        like: F,
+        packet: &Packet<'_>,
+        first: usize,
+        starts: Option<[&[Start; LANES]; PARTS]>,
+        terms: Terms,
+        material: Option<u16>,
+    ) -> (Riders<F, POINTS>, Paths<F>) {
+        // Eight by eight, so that no more rows are at hand than there are registers.
+        let read = like.of_parts(
+            #[inline(always)]
+            |like, nth| {
+                let (rows, starts) = (packet.rows[nth], starts.map(|starts| starts[nth]));
+                self.read::<F::Part, LIES, POINTS>(like, rows, first, starts, terms, material)
+            },
+        );
+        let [a, b, c, d, e, f, g, h, i, j, k, l, are_free, radius, elasticity, at_rest, kinetic] = read;
+        let [x0, v0, x1, v1] = [Vectors([a, b, c]), Vectors([d, e, f]), Vectors([g, h, i]), Vectors([j, k, l])];
+        let Terms { are_close, swing, time, .. } = terms;
+        let riders = Riders { are_free, are_close, swing, radius, elasticity, at_rest, kinetic };
+        (riders, Paths { x0, v0, x1, v1, time: like.all(time) })
+    }
+
+    /// The same of eight: places and velocities at both ends, and properties in the order of [`Riders`].
+    #[inline(always)]
+    fn read<F: Eight, const LIES: bool, const POINTS: bool>(
         &self,
         like: F,
         rows: &[u32; LANES],
         first: usize,
         starts: Option<&[Start; LANES]>,
-        Terms { time, are_close, have_leapt, swing }: Terms,
+        Terms { time, have_leapt, .. }: Terms,
         material: Option<u16>,
-    ) -> (Riders<F, POINTS>, Paths<F>) {
+    ) -> [F; 17] {
         let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
         let (at, last) = (&places_from(first, rows), position.len() - 1 - first);
         let column = |column: &[f32]| {
@@ -197,9 +239,9 @@ impl TileSweep<'_, '_> {
         };
         let v1 = Vectors::gather(like, &velocity[first..], last, at);
         let x1 = if LIES && have_leapt { x0 } else { Vectors::gather(like, &position[first..], last, at) };
-        let paths = Paths { x0, v0, x1, v1, time: like.all(time) };
         let mut are_free = like.all(f32::from_bits(u32::MAX));
         if !(LIES && have_leapt) {
+            let paths = Paths { x0, v0, x1, v1, time: like.all(time) };
             are_free = paths.are_finite() & not(like.of(column(m.inverse_mass)).simd_eq(like.all(0.0)));
         }
         let (mut elasticity, mut at_rest, mut kinetic) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -209,16 +251,10 @@ impl TileSweep<'_, '_> {
         if self.has_materials {
             [elasticity, at_rest, kinetic] = self.mixed(rows, material, &elasticity);
         }
-        let riders = Riders {
-            are_free,
-            are_close,
-            swing,
-            radius: if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) },
-            elasticity: like.of(elasticity),
-            at_rest: like.of(at_rest),
-            kinetic: like.of(kinetic),
-        };
-        (riders, paths)
+        let radius = if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) };
+        let (Vectors([a, b, c]), Vectors([d, e, f]), Vectors([g, h, i]), Vectors([j, k, l])) = (x0, v0, x1, v1);
+        let [elasticity, at_rest, kinetic] = [like.of(elasticity), like.of(at_rest), like.of(kinetic)];
+        [a, b, c, d, e, f, g, h, i, j, k, l, are_free, radius, elasticity, at_rest, kinetic]
     }
 
     /// The elasticities of rows on a surface, and the coefficients of friction at rest and in motion.
