@@ -4,6 +4,7 @@
 //! Threefry-2x32-20 (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011), which passes BigCrush and
 //! needs nothing but 32-bit additions, rotations and exclusive ors.
 
+use crate::lanes::widest;
 use core::num::Wrapping;
 use core::ops::{Add, BitXor};
 use wide::u32x4;
@@ -46,8 +47,64 @@ impl Stream {
             return places.map(|place| self.units(place));
         }
         let turned = |words: u32x4, turn| (words << turn) | (words >> (u32::BITS - turn));
-        let [x, y] = rounds(self.key, [u32x4::new(places), u32x4::ZERO], u32x4::splat, turned).map(u32x4::to_array);
+        let key = self.key.map(u32x4::splat);
+        let [x, y] = rounds(key, [u32x4::new(places), u32x4::ZERO], u32x4::splat, turned).map(u32x4::to_array);
         core::array::from_fn(|i| [unit(x[i]), unit(y[i])])
+    }
+
+    /// The streams of eight births of an emitter from the `serial`-th on, each with the same four pairs of numbers, side by side: one takes as
+    /// long as eight, as each round waits for the one before.
+    pub(crate) fn eight(seed: u64, emitter: u32, serial: u32, places: [u32; 4]) -> [(Self, [[f32; 2]; 4]); 8] {
+        widest(
+            #[inline(always)]
+            || {
+                let (mut streams, mut serials) = ([(Self { key: [0; 2] }, [[0.0; 2]; 4]); 8], Eight([serial; 8]));
+                (0..).zip(&mut serials.0).for_each(|(nth, serial)| *serial = serial.wrapping_add(nth));
+                let seed = [Eight([seed as u32; 8]), Eight([(seed >> 32) as u32; 8])];
+                let keys = rounds(seed, [Eight([emitter; 8]), serials], |word| Eight([word; 8]), Eight::turned);
+                for ((stream, _), (first, second)) in streams.iter_mut().zip(keys[0].0.iter().zip(&keys[1].0)) {
+                    stream.key = [*first, *second];
+                }
+                for (nth, place) in places.into_iter().enumerate() {
+                    let counter = [Eight([place; 8]), Eight([0; 8])];
+                    let [x, y] = rounds(keys, counter, |word| Eight([word; 8]), Eight::turned);
+                    for ((_, pairs), (x, y)) in streams.iter_mut().zip(x.0.iter().zip(&y.0)) {
+                        pairs[nth] = [unit(*x), unit(*y)];
+                    }
+                }
+                streams
+            },
+        )
+    }
+}
+
+/// Words side by side, in whatever registers there are.
+#[derive(Clone, Copy)]
+struct Eight([u32; 8]);
+
+impl Eight {
+    #[inline(always)]
+    fn turned(mut self, turn: u32) -> Self {
+        self.0.iter_mut().for_each(|word| *word = word.rotate_left(turn));
+        self
+    }
+}
+
+impl Add for Eight {
+    type Output = Self;
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        self.0.iter_mut().zip(other.0).for_each(|(word, other)| *word = word.wrapping_add(other));
+        self
+    }
+}
+
+impl BitXor for Eight {
+    type Output = Self;
+    #[inline(always)]
+    fn bitxor(mut self, other: Self) -> Self {
+        self.0.iter_mut().zip(other.0).for_each(|(word, other)| *word ^= other);
+        self
     }
 }
 
@@ -69,42 +126,46 @@ fn unit(word: u32) -> f32 {
 #[must_use]
 pub fn threefry(key: [u32; 2], counter: [u32; 2]) -> [u32; 2] {
     let turned = |Wrapping(word): Wrapping<u32>, turn| Wrapping(word.rotate_left(turn));
-    rounds(key, counter.map(Wrapping), Wrapping, turned).map(|Wrapping(word)| word)
+    rounds(key.map(Wrapping), counter.map(Wrapping), Wrapping, turned).map(|Wrapping(word)| word)
 }
 
 /// The same of words, or of several side by side: `all` is one in each place, `turned` rotates them to the left.
 #[inline(always)]
 fn rounds<T: Copy + Add<Output = T> + BitXor<Output = T>>(
-    key: [u32; 2],
+    key: [T; 2],
     [x, y]: [T; 2],
     all: impl Fn(u32) -> T,
     turned: impl Fn(T, u32) -> T,
 ) -> [T; 2] {
-    const ROTATIONS: [[u32; 4]; 2] = [[13, 15, 26, 6], [17, 29, 16, 24]];
-    let mut keys = [key[0], key[1], key[0] ^ key[1] ^ 0x1BD1_1BDA];
-    let (mut x, mut y) = (x + all(keys[0]), y + all(keys[1]));
-    let mut four = |turns: [u32; 4], group: u32| {
-        for turn in turns {
-            x = x + y;
-            y = turned(y, turn) ^ x;
-        }
-        // In turn, without a remainder: the smallest chips divide in software.
-        keys = [keys[1], keys[2], keys[0]];
-        x = x + all(keys[0]);
-        y = y + all(keys[1].wrapping_add(group + 1));
-    };
-    let [even, odd] = ROTATIONS;
+    let mut state = ([x + key[0], y + key[1]], [key[0], key[1], key[0] ^ key[1] ^ all(0x1BD1_1BDA)]);
     if cfg!(target_os = "none") {
-        (0..5).for_each(|group| four(ROTATIONS[group as usize % 2], group));
+        (0..5).for_each(|group| state = four(state, group, &all, &turned));
     } else {
         // Written out, so that vectors turn by constants, which takes half the instructions.
-        four(even, 0);
-        four(odd, 1);
-        four(even, 2);
-        four(odd, 3);
-        four(even, 4);
+        state = four(state, 0, &all, &turned);
+        state = four(state, 1, &all, &turned);
+        state = four(state, 2, &all, &turned);
+        state = four(state, 3, &all, &turned);
+        state = four(state, 4, &all, &turned);
     }
-    [x, y]
+    state.0
+}
+
+/// Four rounds on two words, and what is put in behind them of three keys, which take turns.
+#[inline(always)]
+fn four<T: Copy + Add<Output = T> + BitXor<Output = T>>(
+    ([mut x, mut y], [a, b, c]): ([T; 2], [T; 3]),
+    group: u32,
+    all: &impl Fn(u32) -> T,
+    turned: &impl Fn(T, u32) -> T,
+) -> ([T; 2], [T; 3]) {
+    const ROTATIONS: [[u32; 4]; 2] = [[13, 15, 26, 6], [17, 29, 16, 24]];
+    for turn in ROTATIONS[group as usize % 2] {
+        x = x + y;
+        y = turned(y, turn) ^ x;
+    }
+    // In turn, without a remainder: the smallest chips divide in software.
+    ([x + b, y + (c + all(group + 1))], [b, c, a])
 }
 
 #[cfg(test)]
@@ -129,6 +190,11 @@ mod tests {
         for serial in 0..100 {
             let (stream, places) = (Stream::new(11, 2, serial), [0, serial, 7, u32::MAX - serial]);
             assert_eq!(stream.units_of(places), places.map(|place| stream.units(place)));
+            let (seed, serial) = (1 << 40 | 11, serial.wrapping_sub(5));
+            for (ahead, (drawn, pairs)) in (0..).zip(Stream::eight(seed, 2, serial, places)) {
+                let stream = Stream::new(seed, 2, serial.wrapping_add(ahead));
+                assert_eq!((drawn.key, pairs), (stream.key, stream.units_of(places)));
+            }
         }
     }
 

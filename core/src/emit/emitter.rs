@@ -1,7 +1,7 @@
 //! A surface that gives birth to particles.
 
 use super::vary::Aim;
-use super::{Births, Emit, Spread, Varied};
+use super::{Births, Drawn, Emit, PLACES, Spread, Varied};
 use crate::math::{along, divide, scaled, unit};
 use crate::motion::Script;
 use crate::particles::{Color, Particle, WHITE};
@@ -263,10 +263,10 @@ impl<S: Surface, M: Script> Emitter<S, M> {
     /// One birth, if it comes to one. False if it was refused: so will those be that are like it.
     fn bear(&self, births: &mut Births<'_>, number: usize, at: Time, aim: Aim) -> bool {
         let Some(WhereSparse { radius, fewest }) = self.where_sparse else {
-            return births.give(number, at, |stream| self.newborn(stream, at, aim)).is_ok();
+            return births.give_drawn(number, at, |drawn| self.newborn(drawn, at, aim)).is_ok();
         };
         births.offer(number, at, |stream, births| {
-            let newborn = self.newborn(stream, at, aim);
+            let newborn = self.newborn((stream, stream.units_of(PLACES)), at, aim);
             (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
         });
         true
@@ -304,8 +304,8 @@ impl<S: Surface, M: Script> Emitter<S, M> {
     }
 
     /// A newborn. Each property draws from a place of its own, so that a change of one leaves the others alone.
-    fn newborn(&self, random: Stream, at: Time, aim: Aim) -> Particle {
-        let [[u, v], [w, p], [q, speed], [bounce, life]] = random.units_of([0, 1, 2, 4]);
+    fn newborn(&self, (random, pairs): Drawn, at: Time, aim: Aim) -> Particle {
+        let [[u, v], [w, p], [q, speed], [bounce, life]] = pairs;
         let inside = if self.inside { self.place_inside(random) } else { None };
         let spot = inside.unwrap_or_else(|| self.shape.sample([u, v, w]));
         let axis = self.direction.map_or(spot.normal, unit);

@@ -3,7 +3,6 @@
 use super::{Births, Emit, Spread, Varied};
 use crate::math::{along, plus};
 use crate::particles::{Particle, Start};
-use crate::rng::Stream;
 use crate::shape::Surface;
 use crate::time::Time;
 use glam::Vec3;
@@ -61,15 +60,14 @@ impl<S: Surface + Sync> Emit for Jet<S> {
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
         births.bring(number, self.rate, [from, to], |births, at| {
-            births.give_like(number, at, &self.newborn, |random| self.start(random, at)).is_ok()
+            births.give_like(number, at, &self.newborn, |(_, pairs)| self.start(pairs, at)).is_ok()
         });
     }
 }
 
 impl<S: Surface> Jet<S> {
     /// How a newborn begins: each property draws from the place that it has in an `Emitter`, whose sums of what is nothing here make zeros positive.
-    fn start(&self, random: Stream, born: Time) -> Start {
-        let [[u, v], [w, p], [q, speed], [_, life]] = random.units_of([0, 1, 2, 4]);
+    fn start(&self, [[u, v], [w, p], [q, speed], [_, life]]: [[f32; 2]; 4], born: Time) -> Start {
         let spot = self.shape.sample([u, v, w]);
         let direction = Spread::Uniform(self.angle).direction(spot.normal, [p, q]);
         let velocity = along(Vec3::ZERO, direction, self.speed.pick(speed));

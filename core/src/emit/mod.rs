@@ -98,6 +98,32 @@ pub struct Births<'a> {
     /// When the step ends.
     pub(crate) end: Time,
     pub(crate) number: usize,
+    pub(crate) ahead: Ahead,
+}
+
+/// Places of the pairs of numbers that births of emitters draw in any case.
+const PLACES: [u32; 4] = [0, 1, 2, 4];
+
+/// Births that are drawn at once, where there are vectors.
+const AT_ONCE: usize = if cfg!(target_os = "none") { 0 } else { 8 };
+
+/// The random numbers of a birth, with the pairs at [`PLACES`].
+type Drawn = (Stream, [[f32; 2]; 4]);
+
+/// The random numbers of an emitter's next births, from one on.
+#[derive(Default)]
+pub(crate) struct Ahead {
+    number: usize,
+    serial: u32,
+    drawn: Option<[Drawn; AT_ONCE]>,
+}
+
+impl Ahead {
+    /// Those of a birth, if they have been drawn.
+    fn of(&self, number: usize, serial: u32) -> Option<Drawn> {
+        let drawn = self.drawn.as_ref().filter(|_| number == self.number)?;
+        drawn.get(serial.wrapping_sub(self.serial) as usize).copied()
+    }
 }
 
 impl Births<'_> {
@@ -151,7 +177,8 @@ impl Births<'_> {
     /// # Errors
     /// If there is no room, which is counted. It has used up its random numbers all the same.
     pub fn give(&mut self, number: usize, at: Time, make: impl FnOnce(Stream) -> Particle) -> Result<(), Full> {
-        let stream = self.next_with_room(number, at)?;
+        let serial = self.count_off_with_room(number, at)?;
+        let stream = Stream::new(self.workspace.seed(), number as u32, serial);
         let particle = make(stream);
         self.bear(stream, &particle, &Start::of(&particle, at))
     }
@@ -163,10 +190,17 @@ impl Births<'_> {
         number: usize,
         at: Time,
         like: &Particle,
-        make: impl FnOnce(Stream) -> Start,
+        make: impl FnOnce(Drawn) -> Start,
     ) -> Result<(), Full> {
-        let stream = self.next_with_room(number, at)?;
-        self.bear(stream, like, &make(stream))
+        let drawn = self.draw(number, at)?;
+        self.bear(drawn.0, like, &make(drawn))
+    }
+
+    /// The same of one that draws pairs of numbers in any case.
+    fn give_drawn(&mut self, number: usize, at: Time, make: impl FnOnce(Drawn) -> Particle) -> Result<(), Full> {
+        let drawn = self.draw(number, at)?;
+        let particle = make(drawn);
+        self.bear(drawn.0, &particle, &Start::of(&particle, at))
     }
 
     /// A birth of emitter `number` that may come to nothing: `make` sees who is there. What finds no room is counted.
@@ -181,6 +215,9 @@ impl Births<'_> {
     fn bring(&mut self, number: usize, rate: f32, [from, to]: [Time; 2], bear: impl Fn(&mut Self, Time) -> bool) {
         let mut due = self.due(number, rate, from, to);
         while !self.is_full() {
+            if due.left() > 1 {
+                self.look_ahead(number);
+            }
             let Some(at) = due.next() else { return };
             if !bear(self, at) {
                 break;
@@ -189,22 +226,48 @@ impl Births<'_> {
         self.refuse(number, due.left());
     }
 
-    /// The random numbers of an emitter's next birth.
-    fn next(&mut self, number: usize) -> Option<Stream> {
+    /// Draws the random numbers of an emitter's next births, unless those of the next have been drawn.
+    #[inline]
+    fn look_ahead(&mut self, number: usize) {
+        let state = self.workspace.memory.emitter_states.get(number);
+        let Some(serial) = state.map(|state| state.serial).filter(|_| AT_ONCE > 0) else { return };
+        if self.ahead.of(number, serial).is_none() {
+            let drawn = Stream::eight(self.workspace.seed(), number as u32, serial, PLACES);
+            self.ahead = Ahead { number, serial, drawn: drawn.first_chunk().copied() };
+        }
+    }
+
+    /// The serial number of an emitter's next birth.
+    fn count_off(&mut self, number: usize) -> Option<u32> {
         let state = self.workspace.memory.emitter_states.get_mut(number)?;
         let serial = state.serial;
         state.serial = serial.wrapping_add(1);
+        Some(serial)
+    }
+
+    /// The random numbers of an emitter's next birth.
+    fn next(&mut self, number: usize) -> Option<Stream> {
+        let serial = self.count_off(number)?;
         Some(Stream::new(self.workspace.seed(), number as u32, serial))
     }
 
-    /// The same, if there is room for it; else that is counted.
-    fn next_with_room(&mut self, number: usize, at: Time) -> Result<Stream, Full> {
-        let stream = self.next(number).ok_or(Full)?;
+    /// The serial number of an emitter's next birth, if there is room for it; else that is counted.
+    fn count_off_with_room(&mut self, number: usize, at: Time) -> Result<u32, Full> {
+        let serial = self.count_off(number).ok_or(Full)?;
         if self.workspace.is_full() {
             self.miss(at);
             return Err(Full);
         }
-        Ok(stream)
+        Ok(serial)
+    }
+
+    /// The same with the random numbers of that birth.
+    fn draw(&mut self, number: usize, at: Time) -> Result<Drawn, Full> {
+        let serial = self.count_off_with_room(number, at)?;
+        Ok(self.ahead.of(number, serial).unwrap_or_else(|| {
+            let stream = Stream::new(self.workspace.seed(), number as u32, serial);
+            (stream, stream.units_of(PLACES))
+        }))
     }
 
     /// Puts a newborn in, or counts that it finds no room.

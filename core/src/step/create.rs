@@ -1,6 +1,6 @@
 //! Create: emitters emit into the step.
 
-use crate::emit::Births;
+use crate::emit::{Ahead, Births};
 use crate::force::Backdrop;
 use crate::index::ARE_KEPT;
 use crate::memory::{Layout, Slices, Storage, Workspace};
@@ -38,13 +38,17 @@ impl<'w> Workspace<'w> {
                 let mut memory = self.memory.slices();
                 let workspace = &mut Workspace { memory: &mut memory, capacity: self.capacity, status: self.status };
                 let (report, observer) = (&mut *report, &mut *observer);
-                let births = &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0 };
+                let ahead = Ahead::default();
+                let births =
+                    &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0, ahead };
                 scene.emitters.emit(now, end, births);
             });
             self.memory.work = work;
         } else {
             let (workspace, near) = (self, None);
-            let births = &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0 };
+            let ahead = Ahead::default();
+            let births =
+                &mut Births { workspace, layout, backdrop, report, observer, near, old, end, number: 0, ahead };
             scene.emitters.emit(now, end, births);
         }
         old
