@@ -67,9 +67,8 @@ impl Free<'_, '_> {
     }
 
     /// Where they would be if they went through a sub-step as a rigid body, from where they were: by the rotation that keeps their angular momentum, as
-    /// with [`ShapeMatching`](super::ShapeMatching). Where they turn so far that this would take more than `most` \[J\], they do not turn, which takes no
-    /// more than they began with. Tells how they turn, and the energy of that.
-    fn aim(&mut self, whole: &Whole, most: f32) -> Option<(Turn, f32)> {
+    /// with [`ShapeMatching`](super::ShapeMatching). Tells how they turn, and the energy of that \[J\].
+    fn aim(&mut self, whole: &Whole) -> Option<(Turn, f32)> {
         let h = self.bodies.substep.seconds();
         let begun = Group::begun(self.bodies, self.rows);
         let (_, rest, origin) = begun.middle()?;
@@ -83,9 +82,7 @@ impl Free<'_, '_> {
         }
         let turn =
             keeping_by(solve_thin, Turn::NONE, (from, torque), None).unwrap_or_else(|| nearest(Turn::NONE, to, None));
-        let form = begun.whole()?;
-        let turning = whole.turning_as(&form.turned(turn));
-        let (turn, turning) = if turning <= most { (turn, turning) } else { (Turn::NONE, whole.turning_as(&form)) };
+        let turning = whole.turning_as(&begun.whole()?.turned(turn));
         let rotation = turn.matrix();
         for was in begun.from(origin) {
             if let Some(goal) = self.goal.get_mut(was.number) {
@@ -118,10 +115,14 @@ impl Free<'_, '_> {
         }
     }
 
-    /// Leaves such a share of what is no motion of a rigid body, and the momenta that a whole has.
-    fn slow(&mut self, whole: &Whole, share: f32, momenta: &Whole) {
+    /// Gives them the momenta that a whole has, as far as turning by these takes no more than `most` \[J\], and leaves as much of what is no motion of a
+    /// rigid body as there is energy for then.
+    fn slow(&mut self, momenta: &Whole, most: f32) {
+        let Some(whole) = self.group().whole() else { return };
         let (omega, kept) = (whole.omega(), whole.with_momenta_of(momenta));
-        let (turning, room) = (kept.omega(), self.bodies.near.room());
+        let (turning, energy) = kept.turning_within(most);
+        let share = self.group().energy(&whole).share(max(most - energy, 0.0));
+        let room = self.bodies.near.room();
         for row in self.rows.iter().map(|&row| row as usize) {
             let Some(&place) = self.bodies.position.get(row) else { continue };
             let arm = between(room, whole.origin, place) - whole.middle;
@@ -131,15 +132,17 @@ impl Free<'_, '_> {
                 self.bodies.velocity[row] = to;
             }
         }
-        turn_on(self.bodies, self.rows, momenta);
+        if turning == kept.omega() {
+            turn_on(self.bodies, self.rows, momenta);
+        }
     }
 
     /// Takes out of their velocities what they have more than `most` \[J\] on account of them: as much as is too much of what is no motion of a rigid
     /// body, so that both momenta stay, and what is rigid of them.
     pub(super) fn slow_down(&mut self, most: f32) {
-        let Some(whole) = self.group().whole() else { return };
-        let energy = self.group().energy(&whole);
-        self.slow(&whole, energy.share(max(most - energy.turning, 0.0)), &self.due(whole));
+        if let Some(whole) = self.group().whole() {
+            self.slow(&self.due(whole), most);
+        }
     }
 
     /// The momenta that those who move so are to have.
@@ -154,13 +157,10 @@ impl Free<'_, '_> {
         if before.turning_as(&before) <= most * (1.0 + EVEN) {
             return;
         }
-        if self.aim(&before, most).is_some() {
+        if self.aim(&before).is_some() {
             self.stiffen(before.origin, 0.0);
         }
-        let Some(whole) = self.group().whole() else { return };
-        let left = most - before.turning_as(&whole);
-        let share = self.group().energy(&whole).share(max(left, 0.0));
-        self.slow(&whole, share, &before);
+        self.slow(&before, most);
     }
 
     /// Takes out of how they deform what they have more than `most` \[J\] on that account: as much as is too much of what is no motion of a rigid body;
@@ -172,14 +172,14 @@ impl Free<'_, '_> {
         most: f32,
         mut stored: impl FnMut(&[Vec3], Option<Turn>) -> f32,
     ) -> Option<Turn> {
-        let mut whole = self.group().whole()?;
-        let (before, mut energy) = (self.due(whole), self.group().energy(&whole));
-        let mut left = most - stored(self.bodies.position, None) - before.turning_as(&whole);
+        let whole = self.group().whole()?;
+        let (before, energy) = (self.due(whole), self.group().energy(&whole));
+        let left = most - stored(self.bodies.position, None) - before.turning_as(&whole);
         let mut turned = None;
         if !(left >= 0.0 && energy.share(left) >= LEAST) {
             // As a rigid body it has what it began with, but for rounding; what the straight way shows beyond turning, velocities alone can give back.
             let strained = stored(self.bodies.before[0], Some(Turn::NONE));
-            let (aim, turning) = self.aim(&before, most - strained)?;
+            let (aim, turning) = self.aim(&before)?;
             let most_still = max(most, strained + turning);
             let shown = most_still + max(self.straight(&before) - turning, 0.0);
             let mut fits = |free: &Self, aim: Option<Turn>| {
@@ -192,11 +192,8 @@ impl Free<'_, '_> {
                 turned = Some(aim);
                 self.halve(before.origin, |free| fits(free, turned));
             }
-            whole = self.group().whole()?;
-            energy = self.group().energy(&whole);
-            left = most - stored(self.bodies.position, turned) - before.turning_as(&whole);
         }
-        self.slow(&whole, energy.share(max(left, 0.0)), &before);
+        self.slow(&before, max(most - stored(self.bodies.position, turned), 0.0));
         turned
     }
 

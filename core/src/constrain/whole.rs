@@ -1,8 +1,8 @@
 //! How particles that nothing holds move as a whole, and what rounding takes of that.
 
-use super::Bodies;
 use super::inertia::Inertia;
 use super::turn::Turn;
+use super::{Bodies, SHIFTED};
 use crate::index::{Room, between};
 use crate::math::{dot, largest, max, min, sqrt};
 use glam::Vec3;
@@ -13,6 +13,8 @@ pub(super) const WORDS: usize = 3;
 const SUMS: usize = 8;
 /// How many roundings of their places particles have to be off a line to be told from one.
 const COARSE: f32 = 8.0 * f32::EPSILON;
+/// By how many roundings of velocities changes may differ that are alike.
+const ALIKE: f32 = 2.0 * f32::EPSILON;
 
 /// Particles that nothing holds, by their rows: who has none is not there.
 #[derive(Clone, Copy)]
@@ -84,8 +86,20 @@ impl<'a> Group<'a> {
         let places = self.rows.iter().filter_map(|&row| self.place.get(row as usize));
         let coarse = COARSE * places.map(|&place| largest(place)).fold(0.0, max);
         let arms = self.from(origin).map(|member| (member.mass, member.way - middle));
-        let inertia = Inertia::of(arms, longest, mass * (coarse * coarse));
+        let inertia = Inertia::of(arms, longest, coarse);
         Some(Whole { origin, middle, drift, spin, inertia })
+    }
+
+    /// Tells whether their velocities have changed all alike, to rounding, since they were these: nothing has turned them.
+    pub(super) fn goes_on(self, before: &[Vec3]) -> bool {
+        let speeds =
+            || self.rows.iter().filter_map(|&row| Some([self.velocity[row as usize], *before.get(row as usize)?]));
+        let Some([first, was]) = speeds().next() else { return false };
+        let sizes = |[now, was]: [Vec3; 2]| largest(now) + largest(was);
+        speeds().all(|[now, then]| {
+            let rounding = ALIKE * (sizes([now, then]) + sizes([first, was]));
+            largest((now - then) - (first - was)) <= rounding
+        })
     }
 
     /// The energy of their motion, beside that of their middle.
@@ -124,7 +138,12 @@ pub(super) struct Whole {
 impl Whole {
     /// How all of it would turn as a rigid body \[rad/s\].
     pub(super) fn omega(&self) -> Vec3 {
-        self.inertia.turning(self.spin)
+        self.turning_within(f32::INFINITY).0
+    }
+
+    /// The same with no more energy than `most`, and that energy \[J\].
+    pub(super) fn turning_within(&self, most: f32) -> (Vec3, f32) {
+        self.inertia.turning(self.spin, most)
     }
 
     /// The energy of turning as a rigid body of another's shape, by the same angular momentum \[J\]: the least that there is with that.
@@ -186,6 +205,21 @@ impl Owed<'_> {
         self.0.fill(0);
     }
 
+    /// Turns those in some rows who lie on a line so that it lies across what they had before and are owed, where rounding has turned it out of that.
+    pub(super) fn lay_across(&self, bodies: &mut Bodies<'_>, rows: &[u32], before: &Whole) {
+        let Some(now) = Group::of(bodies, rows).whole() else { return };
+        let Some(by) = now.inertia.aslant(before.spin + self.all()) else { return };
+        let room = bodies.near.room();
+        for row in rows.iter().map(|&row| row as usize) {
+            let Some(&place) = bodies.position.get(row) else { continue };
+            let by = by.cross(between(room, now.origin, place) - now.middle);
+            if by.is_finite() {
+                bodies.position[row] += by;
+                bodies.marks[row] |= SHIFTED;
+            }
+        }
+    }
+
     /// Gives back to those in some rows what they lack of the angular momentum that they had before something should have kept it, by turning as a
     /// whole. Tells what momenta they are due.
     pub(super) fn give_back(&self, bodies: &mut Bodies<'_>, rows: &[u32], before: Option<Whole>) -> Option<Whole> {
@@ -205,7 +239,7 @@ impl Owed<'_> {
 /// Turns those in some rows by what they lack of another's angular momentum.
 pub(super) fn turn_on(bodies: &mut Bodies<'_>, rows: &[u32], other: &Whole) {
     let Some(now) = Group::of(bodies, rows).whole() else { return };
-    let omega = now.inertia.turning(other.spin - now.spin);
+    let (omega, _) = now.inertia.turning(other.spin - now.spin, f32::INFINITY);
     turn(bodies, rows, &now, |arm| omega.cross(arm));
 }
 

@@ -85,11 +85,7 @@ impl<'m> Bounds<'m> {
         let rows: &'m [u32] = own;
         let is_free = rows.iter().all(|&row| bodies.inverse_mass.get(row as usize).is_some_and(|&weight| weight > 0.0));
         let whole = if is_free { Group::of(bodies, rows).whole() } else { None };
-        let mut this = Self { form, rows, first, most, goal, whole, owed: Owed(owed), purses };
-        if whole.is_none() {
-            this.owed.forget();
-        }
-        Some(this)
+        Some(Self { form, rows, first, most, goal, whole, owed: Owed(owed), purses })
     }
 
     /// The parts in which it is, of two particles or more, by the places of their first.
@@ -104,10 +100,9 @@ impl<'m> Bounds<'m> {
     }
 
     /// Finds how much its parts may have when they have been solved, from where they were as the sub-step began; and what angular momentum all of it had
-    /// then, if nothing has acted on it since: what rounding of the way has taken far from the origin is given back as well.
+    /// then, if nothing has turned it since: what rounding of the way has taken far from the origin is given back as well.
     pub(super) fn limit(&mut self, bodies: &Bodies<'_>) {
-        let goes_on = |&row: &u32| bodies.velocity.get(row as usize) == bodies.before[1].get(row as usize);
-        if self.whole.is_some() && self.rows.iter().all(goes_on) {
+        if self.whole.is_some() && Group::of(bodies, self.rows).goes_on(bodies.before[1]) {
             self.whole = Group::begun(bodies, self.rows).whole();
         }
         for (place, part) in self.parts().filter(|(_, part)| part.is_free(bodies)) {
@@ -119,7 +114,8 @@ impl<'m> Bounds<'m> {
     /// Gives it back what rounding has taken, and takes out of its parts what they have too much. What rigid links give, settling may take, but for what
     /// their form alone makes too much.
     pub(super) fn keep_within(&mut self, bodies: &mut Bodies<'_>) {
-        let take = if self.form.compliance > 0.0 { Form::hold_back } else { Form::hold_form };
+        let take: Taking<'m> =
+            if self.form.compliance > 0.0 { Form::hold_back } else { |_, mut free, _, most| free.hold_form(most) };
         self.giving_back(bodies, |this, bodies, due| this.keep(bodies, due, take));
     }
 
@@ -137,13 +133,16 @@ impl<'m> Bounds<'m> {
     pub(super) fn keep_settled(&mut self, bodies: &mut Bodies<'_>) {
         self.giving_back(bodies, |this, bodies, due| {
             if this.form.compliance == 0.0 {
-                this.keep(bodies, due, Form::slow_down);
+                this.keep(bodies, due, |_, mut free, _, most| free.slow_down(most));
             }
         });
     }
 
     /// Gives a rope the angular momentum back that it has lost, and owes it what is missing when something more has been done.
     fn giving_back(&mut self, bodies: &mut Bodies<'_>, then: impl FnOnce(&mut Self, &mut Bodies<'_>, Option<Whole>)) {
+        if let Some(whole) = &self.whole {
+            self.owed.lay_across(bodies, self.rows, whole);
+        }
         let due = self.owed.give_back(bodies, self.rows, self.whole);
         then(self, bodies, due);
         self.owed.note(bodies, self.rows, due);
@@ -198,16 +197,6 @@ impl Form<'_> {
     fn hold_back(self, mut free: Free<'_, '_>, part: Part<'_>, most: f32) {
         let (room, rounding) = (free.bodies.near.room().copied(), self.rounding_of(free.bodies, part));
         let _ = free.hold_back(most, |places, _| max(self.strained(room.as_ref(), part, places) - rounding, 0.0));
-    }
-
-    /// Keeps the form of a part of rigid links, if they turn in that where they are by more than `most` \[J\].
-    fn hold_form(self, mut free: Free<'_, '_>, _: Part<'_>, most: f32) {
-        free.hold_form(most);
-    }
-
-    /// Takes what is more than `most` \[J\] out of how a part moves beside a rigid motion.
-    fn slow_down(self, mut free: Free<'_, '_>, _: Part<'_>, most: f32) {
-        free.slow_down(most);
     }
 
     /// The energy of motion, beside that of the middle, and of strain \[J\].
