@@ -117,9 +117,9 @@ fn coarse(like: Like, flying: &Flying, sum: u64) -> [f64; 2] {
         if compliance > 0.0 { 2.0 * coarse * coarse / f64::from(compliance) * links as f64 / begun } else { 0.0 };
     // What is straight to so many roundings is a line to the engine, which carries nothing about itself.
     let line = 20.0 * coarse / (0.1 * links as f64);
-    // A soft link that has all the energy that it may have, and is rounded shorter, turns slower for a while: by what roundings have come to, Σ m v × that.
-    let slower = 10.0 * coarse * (sum as f64).sqrt() * way / gap(spin(&flying.start, &x, &v), [0.0; 3]);
-    [line + shown, if links == 1 && compliance > 0.0 { slower } else { line } + shown]
+    // Soft links that have all the energy that they may have, and are rounded shorter, turn slower for a while: by what roundings have come to, Σ m v × that.
+    let slower = 2.0 * coarse * (sum as f64).sqrt() * way / gap(spin(&flying.start, &x, &v), [0.0; 3]);
+    [line + shown, if compliance > 0.0 { slower } else { line } + shown]
 }
 
 fn gains_nothing(frames: u64, all: &[usize]) {

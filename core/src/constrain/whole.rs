@@ -185,7 +185,8 @@ impl Energy {
     }
 }
 
-/// The angular momentum that rounding has taken and that velocities have been too coarse to give back.
+/// The angular momentum that particles should have beyond what they have: what velocities are too coarse for, what those on a line cannot carry about it,
+/// and what they have no energy for. It is added to what they are given back when they have been solved the next time.
 pub(super) struct Owed<'m>(pub(super) &'m mut [u32]);
 
 impl Owed<'_> {
@@ -220,8 +221,8 @@ impl Owed<'_> {
         }
     }
 
-    /// Gives back to those in some rows what they lack of the angular momentum that they had before something should have kept it, by turning as a
-    /// whole. Tells what momenta they are due.
+    /// Gives back to those in some rows what they lack of the momenta that they are due, by turning as a whole: the angular momentum that they had before
+    /// they were solved, and what they were owed then. Tells what they are due.
     pub(super) fn give_back(&self, bodies: &mut Bodies<'_>, rows: &[u32], before: Option<Whole>) -> Option<Whole> {
         let before = before?;
         let due = Whole { spin: before.spin + self.all(), ..before };
@@ -229,7 +230,7 @@ impl Owed<'_> {
         Some(due)
     }
 
-    /// Owes them what they lack of what they are due: what velocities are too coarse for, and what those that lie on a line cannot carry.
+    /// Owes them what they lack of what they are due at the end.
     pub(super) fn note(&mut self, bodies: &Bodies<'_>, rows: &[u32], due: Option<Whole>) {
         let lack = due.and_then(|due| Some(due.spin - Group::of(bodies, rows).whole()?.spin));
         self.keep(lack.unwrap_or(Vec3::ZERO));
