@@ -60,8 +60,8 @@ impl Inertia {
         if omega.is_finite() && energy.is_finite() { (omega, energy) } else { (Vec3::ZERO, 0.0) }
     }
 
-    /// The least energy that they have with that \[J\], but for what may be owed to them about the line along which they are. To turn about a line takes what it takes about the
-    /// thickest thing that is no more than a line.
+    /// The least energy that they have with that \[J\], but for what may be owed to them about the line along which they are. To turn about a line takes
+    /// what it takes about the thickest thing that is no more than a line.
     pub(super) fn energy(&self, spin: Vec3) -> f32 {
         let Eliminated { pivots, left, .. } = self.eliminated(spin);
         let along = max(left.x.abs() - self.owed * length(spin), 0.0);
