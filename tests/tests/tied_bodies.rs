@@ -2,7 +2,7 @@
 
 use pointmass::constrain::{ConstraintKind, ShapeMatching, Tie, TiedRope};
 use pointmass::scene::{Model, SceneFile};
-use pointmass::{Measures, Method, Particle, Rope, Scene, Vec3};
+use pointmass::{Constraint, Measures, Method, Particle, Rope, Scene, Vec3};
 use pointmass_tests::{Random, gap, run, started};
 
 fn model(text: &str) -> Result<Model, String> {
@@ -119,6 +119,34 @@ fn ropes_between_bodies_keep_momentum() {
             assert!(lost[0] < 1e-5 * mass && lost[1] < 1e-3 * mass, "{name}: {lost:?}");
             assert!(now.energy.total() < 1.01 * before.energy.total(), "{name}: {:?} {:?}", before.energy, now.energy);
         }
+    }
+}
+
+/// A rope whose ends are tied to nothing is that rope, to the bit, and asks for the same memory; where they are tied nothing is kept of the rope.
+#[test]
+fn a_rope_that_is_tied_to_nothing_is_a_rope() {
+    let mut random = Random::new(8);
+    for (number, compliance) in [0.0, 1e-5, 1e-3].into_iter().enumerate() {
+        let link = |i: usize| Particle {
+            position: Vec3::new(0.08 * i as f32, 0.1, 0.1),
+            velocity: random.vector(2.0),
+            mass: 0.02,
+            ..Particle::REST
+        };
+        let start: Vec<Particle> = (0..9).map(link).collect();
+        let rope = Rope { compliance, ..Rope::rigid((0..9).collect::<Vec<u32>>(), vec![0.08]) };
+        let loose = TiedRope::<_, _, Vec<u32>> { rope: rope.clone(), ends: [None, None] };
+        assert_eq!(loose.demand(), rope.demand());
+        let after = |constraints: &dyn Constraint| {
+            let scene = Scene { start: &start, constraints, substeps: 1 + 2 * number as u32, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            run(&mut system, &scene, 1.0 / 60.0, 60);
+            system.hash()
+        };
+        assert_eq!(after(&loose), after(&rope));
+        let tie = Tie::rigid(0, vec![9]);
+        let kept = tie.demand().kept;
+        assert_eq!(TiedRope { rope, ends: [Some(tie), None] }.demand().kept, kept);
     }
 }
 

@@ -4,7 +4,7 @@ use super::Bodies;
 use super::turn::{Turn, keeping_by, nearest, outer, solve_thin};
 use super::whole::{Group, Whole, turn_on};
 use crate::index::between;
-use crate::math::{dot, max, min, sqrt};
+use crate::math::{dot, max, min};
 use glam::{Mat3, Vec3};
 
 /// How often the way to where it would be as a rigid body is halved.
@@ -55,6 +55,8 @@ impl Budget<'_> {
 pub(super) struct Free<'f, 'b> {
     pub(super) bodies: &'f mut Bodies<'b>,
     pub(super) rows: &'f [u32],
+    /// The momenta that they are to have, if these are not those that they have.
+    pub(super) due: Option<Whole>,
     /// Where each would be as part of a rigid body, from where a whole is told from \[m\].
     pub(super) goal: &'f mut [Vec3],
 }
@@ -65,8 +67,8 @@ impl Free<'_, '_> {
     }
 
     /// Where they would be if they went through a sub-step as a rigid body, from where they were: by the rotation that keeps their angular momentum, as
-    /// with [`ShapeMatching`](super::ShapeMatching).
-    fn aim(&mut self, whole: &Whole) -> Option<Turn> {
+    /// with [`ShapeMatching`](super::ShapeMatching). Tells how they turn, and the energy of that \[J\].
+    fn aim(&mut self, whole: &Whole) -> Option<(Turn, f32)> {
         let h = self.bodies.substep.seconds();
         let begun = Group::begun(self.bodies, self.rows);
         let (_, rest, origin) = begun.middle()?;
@@ -80,25 +82,25 @@ impl Free<'_, '_> {
         }
         let turn =
             keeping_by(solve_thin, Turn::NONE, (from, torque), None).unwrap_or_else(|| nearest(Turn::NONE, to, None));
+        let turning = whole.turning_as(&begun.whole()?.turned(turn));
         let rotation = turn.matrix();
         for was in begun.from(origin) {
             if let Some(goal) = self.goal.get_mut(was.number) {
                 *goal = whole.middle + rotation * (was.way - rest);
             }
         }
-        Some(turn)
+        Some((turn, turning))
     }
 
-    /// The energy that they have at their goals, on the straight way to these and as turning by the angular momentum of a whole \[J\].
-    fn at_goals(&self, whole: &Whole) -> [f32; 2] {
-        let (h, mut straight, mut spread) = (self.bodies.substep.seconds(), 0.0, Mat3::ZERO);
+    /// The energy that they have at their goals on the straight way to these \[J\].
+    fn straight(&self, whole: &Whole) -> f32 {
+        let (h, mut sum) = (self.bodies.substep.seconds(), 0.0);
         for now in self.group().from(whole.origin) {
             let Some(&goal) = self.goal.get(now.number) else { continue };
-            let (arm, fast) = (goal - whole.middle, now.velocity - whole.drift + (goal - now.way) / h);
-            straight += 0.5 * now.mass * dot(fast, fast);
-            spread += outer(arm * now.mass, arm);
+            let fast = now.velocity - whole.drift + (goal - now.way) / h;
+            sum += 0.5 * now.mass * dot(fast, fast);
         }
-        [straight, whole.turning_of(spread)]
+        sum
     }
 
     /// Leaves such a share of their ways from where they would be as a rigid body.
@@ -113,10 +115,14 @@ impl Free<'_, '_> {
         }
     }
 
-    /// Leaves such a share of what is no motion of a rigid body, and the momenta that a whole has.
-    fn slow(&mut self, whole: &Whole, share: f32, momenta: &Whole) {
+    /// Gives them the momenta that a whole has, as far as turning by these takes no more than `most` \[J\], and leaves as much of what is no motion of a
+    /// rigid body as there is energy for then.
+    fn slow(&mut self, momenta: &Whole, most: f32) {
+        let Some(whole) = self.group().whole() else { return };
         let (omega, kept) = (whole.omega(), whole.with_momenta_of(momenta));
-        let (turning, room) = (kept.omega(), self.bodies.near.room());
+        let (turning, energy) = kept.turning_within(most);
+        let share = self.group().energy(&whole).share(max(most - energy, 0.0));
+        let room = self.bodies.near.room();
         for row in self.rows.iter().map(|&row| row as usize) {
             let Some(&place) = self.bodies.position.get(row) else { continue };
             let arm = between(room, whole.origin, place) - whole.middle;
@@ -126,18 +132,35 @@ impl Free<'_, '_> {
                 self.bodies.velocity[row] = to;
             }
         }
-        turn_on(self.bodies, self.rows, momenta);
+        if turning == kept.omega() {
+            turn_on(self.bodies, self.rows, momenta);
+        }
     }
 
     /// Takes out of their velocities what they have more than `most` \[J\] on account of them: as much as is too much of what is no motion of a rigid
-    /// body, so that both momenta stay, and what is rigid of them. They lose of that as well where that alone is more, as what comes nearer to its
-    /// middle turns faster.
+    /// body, so that both momenta stay, and what is rigid of them.
     pub(super) fn slow_down(&mut self, most: f32) {
-        let Some(whole) = self.group().whole() else { return };
-        let energy = self.group().energy(&whole);
-        let share = energy.share(max(most - energy.turning, 0.0));
-        let slowed = if energy.turning > most * (1.0 + EVEN) { sqrt(most / energy.turning) } else { 1.0 };
-        self.slow(&whole, share, &whole.turning_slower(slowed));
+        if let Some(whole) = self.group().whole() {
+            self.slow(&self.due(whole), most);
+        }
+    }
+
+    /// The momenta that those who move so are to have.
+    fn due(&self, whole: Whole) -> Whole {
+        self.due.map_or(whole, |due| whole.with_momenta_of(&due))
+    }
+
+    /// Takes through the sub-step as a rigid body who would have more than `most` \[J\] as one where they are: what comes nearer to its middle turns
+    /// faster, and their angular momentum is to stay.
+    pub(super) fn hold_form(&mut self, most: f32) {
+        let Some(before) = self.group().whole().map(|whole| self.due(whole)) else { return };
+        if before.turning_as(&before) <= most * (1.0 + EVEN) {
+            return;
+        }
+        if self.aim(&before).is_some() {
+            self.stiffen(before.origin, 0.0);
+        }
+        self.slow(&before, most);
     }
 
     /// Takes out of how they deform what they have more than `most` \[J\] on that account: as much as is too much of what is no motion of a rigid body;
@@ -149,27 +172,28 @@ impl Free<'_, '_> {
         most: f32,
         mut stored: impl FnMut(&[Vec3], Option<Turn>) -> f32,
     ) -> Option<Turn> {
-        let before = self.group().whole()?;
-        let (mut whole, mut energy) = (before, self.group().energy(&before));
-        let mut left = most - stored(self.bodies.position, None) - energy.turning;
+        let whole = self.group().whole()?;
+        let (before, energy) = (self.due(whole), self.group().energy(&whole));
+        let left = most - stored(self.bodies.position, None) - before.turning_as(&whole);
         let mut turned = None;
         if !(left >= 0.0 && energy.share(left) >= LEAST) {
-            let aim = self.aim(&before);
-            let [straight, turning] = self.at_goals(&before);
             // As a rigid body it has what it began with, but for rounding; what the straight way shows beyond turning, velocities alone can give back.
-            let rigid = stored(self.bodies.before[0], Some(Turn::NONE)) + turning;
-            let shown = max(most, rigid) + max(straight - turning, 0.0);
-            if !(self.group().moving() + stored(self.bodies.position, None) <= shown) {
-                turned = aim;
-                let fits = |free: &Self| free.group().moving() + stored(free.bodies.position, aim) <= shown;
-                self.halve(before.origin, fits);
+            let strained = stored(self.bodies.before[0], Some(Turn::NONE));
+            let (aim, turning) = self.aim(&before)?;
+            let most_still = max(most, strained + turning);
+            let shown = most_still + max(self.straight(&before) - turning, 0.0);
+            let mut fits = |free: &Self, aim: Option<Turn>| {
+                let Some(whole) = free.group().whole() else { return true };
+                let strained = stored(free.bodies.position, aim);
+                let moving = free.group().energy(&whole).with(1.0);
+                moving + strained <= shown && before.turning_as(&whole) + strained <= most_still
+            };
+            if !fits(self, None) {
+                turned = Some(aim);
+                self.halve(before.origin, |free| fits(free, turned));
             }
-            whole = self.group().whole()?;
-            energy = self.group().energy(&whole);
-            let turning = self.group().energy(&whole.with_momenta_of(&before)).turning;
-            left = most - stored(self.bodies.position, turned) - turning;
         }
-        self.slow(&whole, energy.share(max(left, 0.0)), &before);
+        self.slow(&before, max(most - stored(self.bodies.position, turned), 0.0));
         turned
     }
 

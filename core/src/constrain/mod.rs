@@ -12,6 +12,7 @@ mod contacts;
 #[cfg(feature = "alloc")]
 mod declared;
 mod distance;
+mod inertia;
 #[cfg(feature = "alloc")]
 mod kind;
 mod moved;

@@ -1,17 +1,20 @@
 //! How particles that nothing holds move as a whole, and what rounding takes of that.
 
-use super::Bodies;
-use super::turn::{outer, solve_thin};
+use super::inertia::Inertia;
+use super::turn::Turn;
+use super::{Bodies, SHIFTED};
 use crate::index::{Room, between};
-use crate::math::{dot, largest, length, max, min, sqrt};
-use glam::{Mat3, Vec3};
+use crate::math::{dot, largest, max, min, sqrt};
+use glam::Vec3;
 
 /// Words that a debt is kept in.
 pub(super) const WORDS: usize = 3;
-/// How many times what rounding of each place and velocity makes of an angular momentum may be lost by rounding.
-const ROUNDINGS: f32 = 8.0;
 /// Sums that go on side by side, so that rounding does not grow with the number of particles.
 const SUMS: usize = 8;
+/// How many roundings of their places particles have to be off a line to be told from one.
+const COARSE: f32 = 8.0 * f32::EPSILON;
+/// By how many roundings of velocities changes may differ that are alike.
+const ALIKE: f32 = 2.0 * f32::EPSILON;
 
 /// Particles that nothing holds, by their rows: who has none is not there.
 #[derive(Clone, Copy)]
@@ -25,9 +28,8 @@ pub(super) struct Group<'a> {
 
 /// One of them.
 pub(super) struct Member {
-    /// Its place in the list, and its row.
+    /// Its place in the list.
     pub(super) number: usize,
-    pub(super) row: usize,
     pub(super) mass: f32,
     /// The way to it from where a whole is told from \[m\].
     pub(super) way: Vec3,
@@ -50,7 +52,7 @@ impl<'a> Group<'a> {
         self.rows.iter().enumerate().filter_map(move |(number, &row)| {
             let row = row as usize;
             let way = between(self.room, origin, *self.place.get(row)?);
-            Some(Member { number, row, mass: self.mass[row], way, velocity: self.velocity[row] })
+            Some(Member { number, mass: self.mass[row], way, velocity: self.velocity[row] })
         })
     }
 
@@ -75,15 +77,29 @@ impl<'a> Group<'a> {
         let ((mass, middle, origin), slide) = (self.middle()?, self.velocity[self.first()?]);
         let drift: Vec3 = self.from(origin).map(|member| (member.velocity - slide) * member.mass).sum();
         let drift = slide + drift / mass;
-        let (mut spin, mut spread, mut coarse) = (Vec3::ZERO, Mat3::ZERO, 0.0);
+        let (mut spin, mut longest) = (Vec3::ZERO, Vec3::ZERO);
         for member in self.from(origin) {
-            let (arm, v) = (member.way - middle, member.velocity);
-            spin += arm.cross(v - drift) * member.mass;
-            spread += outer(arm * member.mass, arm);
-            let far = largest(self.place[member.row]);
-            coarse += member.mass * (far * length(v - drift) + length(arm) * largest(v));
+            let arm = member.way - middle;
+            spin += arm.cross(member.velocity - drift) * member.mass;
+            longest = if dot(arm, arm) > dot(longest, longest) { arm } else { longest };
         }
-        Some(Whole { origin, middle, drift, spin, rounding: ROUNDINGS * f32::EPSILON * coarse, spread })
+        let places = self.rows.iter().filter_map(|&row| self.place.get(row as usize));
+        let coarse = COARSE * places.map(|&place| largest(place)).fold(0.0, max);
+        let arms = self.from(origin).map(|member| (member.mass, member.way - middle));
+        let inertia = Inertia::of(arms, longest, coarse);
+        Some(Whole { origin, middle, drift, spin, inertia })
+    }
+
+    /// Tells whether their velocities have changed all alike, to rounding, since they were these: nothing has turned them.
+    pub(super) fn goes_on(self, before: &[Vec3]) -> bool {
+        let speeds =
+            || self.rows.iter().filter_map(|&row| Some([self.velocity[row as usize], *before.get(row as usize)?]));
+        let Some([first, was]) = speeds().next() else { return false };
+        let sizes = |[now, was]: [Vec3; 2]| largest(now) + largest(was);
+        speeds().all(|[now, then]| {
+            let rounding = ALIKE * (sizes([now, then]) + sizes([first, was]));
+            largest((now - then) - (first - was)) <= rounding
+        })
     }
 
     /// The energy of their motion, beside that of their middle.
@@ -114,21 +130,25 @@ pub(super) struct Whole {
     pub(super) middle: Vec3,
     /// The velocity of the middle \[m/s\].
     pub(super) drift: Vec3,
-    /// The angular momentum about the middle \[kg m²/s\], how much of it may be rounding, and the sum of m r rᵀ \[kg m²\].
+    /// The angular momentum about the middle \[kg m²/s\], and how hard they are to turn about that.
     spin: Vec3,
-    rounding: f32,
-    spread: Mat3,
+    inertia: Inertia,
 }
 
 impl Whole {
     /// How all of it would turn as a rigid body \[rad/s\].
     pub(super) fn omega(&self) -> Vec3 {
-        solve_thin(self.spread, self.spin)
+        self.turning_within(f32::INFINITY).0
     }
 
-    /// The energy of turning as a rigid body of another shape, by the same angular momentum \[J\].
-    pub(super) fn turning_of(&self, spread: Mat3) -> f32 {
-        0.5 * dot(solve_thin(spread, self.spin), self.spin)
+    /// The same with no more energy than `most`, and that energy \[J\].
+    pub(super) fn turning_within(&self, most: f32) -> (Vec3, f32) {
+        self.inertia.turning(self.spin, most)
+    }
+
+    /// The energy of turning as a rigid body of another's shape, by the same angular momentum \[J\]: the least that there is with that.
+    pub(super) fn turning_as(&self, other: &Self) -> f32 {
+        other.inertia.energy(self.spin)
     }
 
     /// The same where rounding has taken nothing of another's momenta.
@@ -136,9 +156,9 @@ impl Whole {
         Self { drift: other.drift, spin: other.spin, ..self }
     }
 
-    /// The same with such a share of its angular momentum.
-    pub(super) fn turning_slower(self, share: f32) -> Self {
-        Self { spin: self.spin * share, ..self }
+    /// The same of a form that is turned so.
+    pub(super) fn turned(self, turn: Turn) -> Self {
+        Self { inertia: self.inertia.turned(turn), ..self }
     }
 }
 
@@ -165,7 +185,8 @@ impl Energy {
     }
 }
 
-/// The angular momentum that rounding has taken and that velocities have been too coarse to give back.
+/// The angular momentum that particles should have beyond what they have: what velocities are too coarse for, what those on a line cannot carry about it,
+/// and what they have no energy for. It is added to what they are given back when they have been solved the next time.
 pub(super) struct Owed<'m>(pub(super) &'m mut [u32]);
 
 impl Owed<'_> {
@@ -185,26 +206,41 @@ impl Owed<'_> {
         self.0.fill(0);
     }
 
-    /// Gives back to those in some rows what they lack of the angular momentum that they had before something should have kept it, by turning as a
-    /// whole. Of what is more than rounding nothing is owed after that.
-    pub(super) fn give_back(&mut self, bodies: &mut Bodies<'_>, rows: &[u32], before: Option<Whole>) {
-        let (Some(before), Some(now)) = (before, Group::of(bodies, rows).whole()) else { return self.forget() };
-        let spin = before.spin + self.all();
-        let (lack, most) = (spin - now.spin, now.rounding + before.rounding);
-        if !(dot(lack, lack) <= most * most) {
-            turn_on(bodies, rows, &before);
-            return self.forget();
+    /// Turns those in some rows who lie on a line so that it lies across what they had before and are owed, where rounding has turned it out of that.
+    pub(super) fn lay_across(&self, bodies: &mut Bodies<'_>, rows: &[u32], before: &Whole) {
+        let Some(now) = Group::of(bodies, rows).whole() else { return };
+        let Some(by) = now.inertia.aslant(before.spin + self.all()) else { return };
+        let room = bodies.near.room();
+        for row in rows.iter().map(|&row| row as usize) {
+            let Some(&place) = bodies.position.get(row) else { continue };
+            let by = by.cross(between(room, now.origin, place) - now.middle);
+            if by.is_finite() {
+                bodies.position[row] += by;
+                bodies.marks[row] |= SHIFTED;
+            }
         }
-        let omega = solve_thin(now.spread, lack);
-        turn(bodies, rows, &now, |arm| omega.cross(arm));
-        self.keep(Group::of(bodies, rows).whole().map_or(Vec3::ZERO, |after| spin - after.spin));
+    }
+
+    /// Gives back to those in some rows what they lack of the momenta that they are due, by turning as a whole: the angular momentum that they had before
+    /// they were solved, and what they were owed then. Tells what they are due.
+    pub(super) fn give_back(&self, bodies: &mut Bodies<'_>, rows: &[u32], before: Option<Whole>) -> Option<Whole> {
+        let before = before?;
+        let due = Whole { spin: before.spin + self.all(), ..before };
+        turn_on(bodies, rows, &due);
+        Some(due)
+    }
+
+    /// Owes them what they lack of what they are due at the end.
+    pub(super) fn note(&mut self, bodies: &Bodies<'_>, rows: &[u32], due: Option<Whole>) {
+        let lack = due.and_then(|due| Some(due.spin - Group::of(bodies, rows).whole()?.spin));
+        self.keep(lack.unwrap_or(Vec3::ZERO));
     }
 }
 
 /// Turns those in some rows by what they lack of another's angular momentum.
 pub(super) fn turn_on(bodies: &mut Bodies<'_>, rows: &[u32], other: &Whole) {
     let Some(now) = Group::of(bodies, rows).whole() else { return };
-    let omega = solve_thin(now.spread, other.spin - now.spin);
+    let (omega, _) = now.inertia.turning(other.spin - now.spin, f32::INFINITY);
     turn(bodies, rows, &now, |arm| omega.cross(arm));
 }
 

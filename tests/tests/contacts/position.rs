@@ -58,33 +58,40 @@ fn soft_balls_sink_by_their_weight_whatever_the_method() {
     }
 }
 
-/// Balls of many masses that draw each other together, with a rope and springs among them: what two do to each other is no weight.
+/// Balls of many masses that draw each other together, with a rope and springs among them: what two do to each other is no weight, nor is what is left of it
+/// in rounding, by which a rope's balls differ that go on as a rigid body.
 #[test]
 fn momentum_stays_where_forces_are_their_own() {
-    let mut random = Random::new(62);
-    for (substeps, method) in [(12, Method::Verlet), (1, Method::Rk4), (5, Method::Symplectic)] {
-        let start: Vec<Particle> = (0..27)
-            .map(|i| Particle {
-                position: Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32) * 0.22 + random.vector(0.01),
-                velocity: random.vector(0.5),
-                mass: random.magnitude(0.01, 1.0),
-                ..ball(0.0)
-            })
-            .collect();
-        let forces = MutualGravity { constant: 1.0, softening: 0.05, ..MutualGravity::NEWTON };
-        let rope = Rope::rigid([0u32, 1, 2, 5, 4], [0.22]);
-        let constraints = (&rope, Contacts::HARD);
-        let springs = [Spring::new([9, 26], 0.3, 50.0).damped(0.1)];
-        let parts = Scene { start: &start, forces: &forces, springs: &springs, ..Scene::EMPTY };
-        let scene = Scene { constraints: &constraints, substeps, integrator: method.integrator(), ..parts };
-        let mut system = started(&scene, start.len(), 1);
-        let before = Measures::of(&system, &scene).momentum;
-        run(&mut system, &scene, 1.0 / 60.0, 120);
-        let lost = gap(before, Measures::of(&system, &scene).momentum);
-        let mass: f32 = start.iter().map(|p| p.mass).sum();
-        assert!(system.totals().contacts > 100);
-        assert!(lost < 2e-5 * f64::from(mass), "{method} in {substeps}: {lost} of {mass} kg");
+    for seed in 55..70 {
+        for (substeps, method) in [(12, Method::Verlet), (1, Method::Rk4), (5, Method::Symplectic)] {
+            keeps_its_momentum(seed, substeps, method);
+        }
     }
+}
+
+fn keeps_its_momentum(seed: u64, substeps: u32, method: Method) {
+    let mut random = Random::new(seed);
+    let start: Vec<Particle> = (0..27)
+        .map(|i| Particle {
+            position: Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32) * 0.22 + random.vector(0.01),
+            velocity: random.vector(0.5),
+            mass: random.magnitude(0.01, 1.0),
+            ..ball(0.0)
+        })
+        .collect();
+    let forces = MutualGravity { constant: 1.0, softening: 0.05, ..MutualGravity::NEWTON };
+    let rope = Rope::rigid([0u32, 1, 2, 5, 4], [0.22]);
+    let constraints = (&rope, Contacts::HARD);
+    let springs = [Spring::new([9, 26], 0.3, 50.0).damped(0.1)];
+    let parts = Scene { start: &start, forces: &forces, springs: &springs, ..Scene::EMPTY };
+    let scene = Scene { constraints: &constraints, substeps, integrator: method.integrator(), ..parts };
+    let mut system = started(&scene, start.len(), 1);
+    let before = Measures::of(&system, &scene).momentum;
+    run(&mut system, &scene, 1.0 / 60.0, 120);
+    let lost = gap(before, Measures::of(&system, &scene).momentum);
+    let mass: f32 = start.iter().map(|p| p.mass).sum();
+    assert!(system.totals().contacts > 100);
+    assert!(lost < 2e-5 * f64::from(mass), "{method} in {substeps}: {lost} of {mass} kg");
 }
 
 #[test]

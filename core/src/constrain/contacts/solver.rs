@@ -14,6 +14,8 @@ use glam::Vec3;
 const SETTLING: u32 = 2;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
+/// How many roundings of its velocity each particle may have gone through.
+const ROUNDINGS: f32 = 8.0;
 
 /// Moves what overlaps apart, and lets velocities follow.
 pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
@@ -34,18 +36,20 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
 }
 
 /// By how much forces from outside have changed the velocity of all together \[m/s\]: the mean by mass, in which what two do to each other is
-/// nothing. Else contacts would take that for weight, and share it out otherwise than momentum asks for.
+/// nothing, and so is what may be rounding. Else contacts would take that for weight, and share it out otherwise than momentum asks for.
 fn driven(bodies: &Bodies<'_>) -> Vec3 {
-    let (mut sum, mut whole) = (Vec3::ZERO, 0.0);
+    let (mut sum, mut whole, mut sizes) = (Vec3::ZERO, 0.0, 0.0);
     for (row, &mass) in bodies.mass.iter().enumerate() {
-        let change = (bodies.velocity[row] - bodies.before[1][row]) * mass;
+        let [now, before] = [bodies.velocity[row], bodies.before[1][row]];
+        let change = (now - before) * mass;
         // A particle that is no longer finite must not reach the others before it is taken out.
         if bodies.inverse_mass[row] > 0.0 && change.is_finite() {
             (sum, whole) = (sum + change, whole + mass);
+            sizes += (largest(now) + largest(before)) * mass;
         }
     }
-    let mean = sum / whole;
-    if mean.is_finite() { mean } else { Vec3::ZERO }
+    let (mean, rounding) = (sum / whole, ROUNDINGS * f32::EPSILON * sizes);
+    if mean.is_finite() && largest(sum) > rounding { mean } else { Vec3::ZERO }
 }
 
 /// Answers the approach of what touches by the elasticity and the slip by friction.

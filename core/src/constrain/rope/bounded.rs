@@ -1,16 +1,16 @@
 //! The energy of ropes that nothing holds, and their angular momentum.
 
 use super::links::NOBODY;
-use crate::constrain::Bodies;
 use crate::constrain::budget::{self, Budget, Free};
 use crate::constrain::whole::{self, Group, Owed, Whole};
+use crate::constrain::{Bodies, Demand, Words};
 use crate::index::{Room, between};
 use crate::math::{largest, length, max};
 use crate::memory::take;
 use glam::Vec3;
 
 /// Words to work with for each particle.
-pub(super) const WORDS: usize = 5;
+const WORDS: usize = 5;
 /// Words kept of a part, by the number of its first particle: how many it has, and the energy that these may have.
 const PART: usize = 1 + budget::WORDS;
 /// Sums that go on side by side.
@@ -31,9 +31,11 @@ pub(super) struct Form<'m> {
     pub(super) closed: bool,
 }
 
-/// Words kept of a rope of so many particles: what rounding owes it, and of its parts.
-pub(super) fn kept(particles: usize) -> usize {
-    particles.saturating_mul(PART).saturating_add(whole::WORDS)
+/// What they ask for, for a rope of so many particles: of whom words are kept is the first of these, and then comes what rounding owes it, and of its parts.
+pub(super) fn demand(particles: usize) -> Demand {
+    let words = |fixed| Words { per_row: 0, fixed };
+    let kept = particles.saturating_mul(PART).saturating_add(1 + whole::WORDS);
+    Demand { kept: words(kept), scratch: words(WORDS.saturating_mul(particles)), ..Demand::NONE }
 }
 
 /// The bounds that solving a rope keeps to, if nothing holds it, or a part of it that is left where particles have died.
@@ -52,6 +54,9 @@ pub(super) struct Bounds<'m> {
     purses: &'m mut [u32],
 }
 
+/// How a part that has more than so much energy \[J\] gets rid of that.
+type Taking<'m> = fn(Form<'m>, Free<'_, '_>, Part<'_>, f32);
+
 /// A part of a rope: the rows of its particles, and the number of the first of these.
 #[derive(Clone, Copy)]
 struct Part<'m> {
@@ -68,7 +73,7 @@ impl<'m> Bounds<'m> {
         words: &'m mut [u32],
         work: &'m mut [u32],
     ) -> Option<Self> {
-        let (owed, purses) = words.get_mut(..kept(form.particles))?.split_at_mut(whole::WORDS);
+        let (owed, purses) = words.get_mut(1..)?.split_at_mut_checked(whole::WORDS)?;
         let (mut rest, count) = (work, rows.len());
         let own = take(&mut rest, count);
         let gap = rows.iter().position(|&row| row == NOBODY).filter(|_| form.closed);
@@ -80,11 +85,7 @@ impl<'m> Bounds<'m> {
         let rows: &'m [u32] = own;
         let is_free = rows.iter().all(|&row| bodies.inverse_mass.get(row as usize).is_some_and(|&weight| weight > 0.0));
         let whole = if is_free { Group::of(bodies, rows).whole() } else { None };
-        let mut this = Self { form, rows, first, most, goal, whole, owed: Owed(owed), purses };
-        if whole.is_none() {
-            this.owed.forget();
-        }
-        Some(this)
+        Some(Self { form, rows, first, most, goal, whole, owed: Owed(owed), purses })
     }
 
     /// The parts in which it is, of two particles or more, by the places of their first.
@@ -98,19 +99,24 @@ impl<'m> Bounds<'m> {
         parts.filter(|(_, part)| part.rows.len() > 1)
     }
 
-    /// Finds how much its parts may have when they have been solved, from where they were as the sub-step began.
+    /// Finds how much its parts may have when they have been solved, from where they were as the sub-step began; and what angular momentum all of it had
+    /// then, if nothing has turned it since: what rounding of the way has taken far from the origin is given back as well.
     pub(super) fn limit(&mut self, bodies: &Bodies<'_>) {
+        if self.whole.is_some() && Group::of(bodies, self.rows).goes_on(bodies.before[1]) {
+            self.whole = Group::begun(bodies, self.rows).whole();
+        }
         for (place, part) in self.parts().filter(|(_, part)| part.is_free(bodies)) {
             let strained = self.form.strained(bodies.near.room(), part, bodies.before[0]);
             self.most[place] = self.budget(part).most(Group::begun(bodies, part.rows).moving() + strained);
         }
     }
 
-    /// Gives it back what rounding has taken, and takes out of its parts what they have too much. What rigid links give, settling may take.
+    /// Gives it back what rounding has taken, and takes out of its parts what they have too much. What rigid links give, settling may take, but for what
+    /// their form alone makes too much.
     pub(super) fn keep_within(&mut self, bodies: &mut Bodies<'_>) {
-        self.give_back(bodies);
-        let is_soft = self.form.compliance > 0.0;
-        self.keep(bodies, is_soft);
+        let take: Taking<'m> =
+            if self.form.compliance > 0.0 { Form::hold_back } else { |_, mut free, _, most| free.hold_form(most) };
+        self.giving_back(bodies, |this, bodies, due| this.keep(bodies, due, take));
     }
 
     /// Finds how much its parts may have when their velocities have been settled, where links are rigid: soft ones settle nothing but what damping takes.
@@ -125,28 +131,33 @@ impl<'m> Bounds<'m> {
 
     /// The same as before when velocities have been settled: what rigid links have then they keep.
     pub(super) fn keep_settled(&mut self, bodies: &mut Bodies<'_>) {
-        self.give_back(bodies);
-        if self.form.compliance == 0.0 {
-            self.keep(bodies, true);
-        }
+        self.giving_back(bodies, |this, bodies, due| {
+            if this.form.compliance == 0.0 {
+                this.keep(bodies, due, |_, mut free, _, most| free.slow_down(most));
+            }
+        });
     }
 
-    fn give_back(&mut self, bodies: &mut Bodies<'_>) {
-        if self.whole.is_some() {
-            self.owed.give_back(bodies, self.rows, self.whole);
+    /// Gives a rope the angular momentum back that it has lost, and owes it what is missing when something more has been done.
+    fn giving_back(&mut self, bodies: &mut Bodies<'_>, then: impl FnOnce(&mut Self, &mut Bodies<'_>, Option<Whole>)) {
+        if let Some(whole) = &self.whole {
+            self.owed.lay_across(bodies, self.rows, whole);
         }
+        let due = self.owed.give_back(bodies, self.rows, self.whole);
+        then(self, bodies, due);
+        self.owed.note(bodies, self.rows, due);
     }
 
-    /// Notes what its parts have, from which is taken before what they may not have, if it is to be.
-    fn keep(&mut self, bodies: &mut Bodies<'_>, is_held: bool) {
+    /// Notes what its parts have, when from those that have too much it has been taken.
+    fn keep(&mut self, bodies: &mut Bodies<'_>, due: Option<Whole>, take: Taking<'m>) {
         for (place, part) in self.parts() {
             if !part.is_free(bodies) {
                 self.budget(part).forget();
                 continue;
             }
             let (most, mut now) = (self.most[place], self.form.energy(bodies, part));
-            if now > most && is_held {
-                self.form.hold_back(bodies, part, self.goal, most);
+            if now > most {
+                take(self.form, Free { bodies, rows: part.rows, due, goal: self.goal }, part, most);
                 now = self.form.energy(bodies, part);
             }
             self.budget(part).keep(now, most);
@@ -181,16 +192,11 @@ impl Form<'_> {
         self.lengths.get(link).or(self.lengths.last()).copied().unwrap_or(0.0)
     }
 
-    /// Takes out of how a part moves beside a rigid motion what is more than `most` \[J\], and of soft links the ways as well. What strain rounding may
+    /// Takes out of how a part of soft links moves beside a rigid motion what is more than `most` \[J\], and of the ways as well. What strain rounding may
     /// show there is no too much: it would be taken of the motion time and again.
-    fn hold_back(&self, bodies: &mut Bodies<'_>, part: Part<'_>, goal: &mut [Vec3], most: f32) {
-        let (room, rounding) = (bodies.near.room().copied(), self.rounding_of(bodies, part));
-        let mut free = Free { bodies, rows: part.rows, goal };
-        if self.compliance > 0.0 {
-            let _ = free.hold_back(most, |places, _| max(self.strained(room.as_ref(), part, places) - rounding, 0.0));
-        } else {
-            free.slow_down(most);
-        }
+    fn hold_back(self, mut free: Free<'_, '_>, part: Part<'_>, most: f32) {
+        let (room, rounding) = (free.bodies.near.room().copied(), self.rounding_of(free.bodies, part));
+        let _ = free.hold_back(most, |places, _| max(self.strained(room.as_ref(), part, places) - rounding, 0.0));
     }
 
     /// The energy of motion, beside that of the middle, and of strain \[J\].

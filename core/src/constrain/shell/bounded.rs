@@ -94,7 +94,7 @@ impl Solver<'_> {
             // Strain that rounding may show is no too much: it would be taken of the motion time and again.
             let rounding = self.rounding(bodies, piece);
             let (mut stored, goal) = self.stored_with_column(piece);
-            let mut free = Free { bodies, rows: piece.rows, goal };
+            let mut free = Free { bodies, rows: piece.rows, due: None, goal };
             let _ = free.hold_back(most, |places, _| max(stored.within(places) - rounding, 0.0));
             now = self.energy(bodies, piece);
         }

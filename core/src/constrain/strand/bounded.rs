@@ -80,7 +80,7 @@ impl Bounded<'_> {
         course: Course<'_>,
         purse: &mut Purse<'_>,
     ) {
-        purse.owed.give_back(bodies, self.rows, limits.whole);
+        let due = purse.owed.give_back(bodies, self.rows, limits.whole);
         let (most, Course { joints, before, work }) = (limits.most, course);
         let energy = |bodies: &Bodies<'_>, joints: &[Joint]| {
             Group::of(bodies, self.rows).moving() + self.stored(joints, None, bodies.position)
@@ -89,7 +89,7 @@ impl Bounded<'_> {
         if now > most {
             let frames = |turned: Option<Turn>| turned.map(|turned| (turned, &*before));
             let goal: &mut [Vec3] = bytemuck::cast_slice_mut(&mut work[..WORDS * self.rows.len()]);
-            let mut free = Free { bodies, rows: self.rows, goal };
+            let mut free = Free { bodies, rows: self.rows, due, goal };
             let turned = free.hold_back(most, |places, turned| self.stored(joints, frames(turned), places));
             for number in 0..self.rows.len() - 1 {
                 let way = self.way(number, bodies.position);
@@ -97,6 +97,7 @@ impl Bounded<'_> {
             }
             now = energy(bodies, joints);
         }
+        purse.owed.note(bodies, self.rows, due);
         purse.budget.keep(now, most);
     }
 

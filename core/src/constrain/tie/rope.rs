@@ -14,6 +14,7 @@ use glam::Vec3;
 /// A [`Rope`] and a [`Tie`] behind it are met one after the other, and give way under what is heavier than the rope's end. Here an end that is tied rigidly has, while the rope is
 /// solved, the mass of itself and of the body at its place, along its link: m + 1 / (d · W d). The body gets its share of what the rope does to that,
 /// with equal impulses at the place, and then the ties are met. Linear and angular momentum are kept as they are by both alone. Soft ties are met behind the rope.
+/// Without ties it is the rope alone.
 ///
 /// In each sub-step it copies the masses of all particles once or twice, beside what the rope and the ties take.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +87,25 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
         (along != Vec3::ZERO && heavier > 0.0).then_some(Load { end, row, heavier, grip, was })
     }
 
+    fn is_tied(&self) -> bool {
+        self.ends.iter().any(Option::is_some)
+    }
+
+    /// Lets the rope do something, and its ties: rigid ones before as well, since ends have to be at their places and as fast to go with them. What a soft
+    /// tie brakes it brakes once.
+    fn meet(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, rope: Phase<P, L>, tie: TiePhase<T, W>) {
+        if !self.is_tied() {
+            return rope(&self.rope, bodies, share);
+        }
+        for (_, own, place) in self.ties(share.kept.fixed).filter(|(_, own, _)| own.compliance == 0.0) {
+            let _ = tie(own, bodies, place);
+        }
+        self.with_loads(bodies, share, back, rope);
+        for (_, own, place) in self.ties(share.kept.fixed) {
+            let _ = tie(own, bodies, place);
+        }
+    }
+
     /// Lets the rope do something while its ends are as heavy as what they are tied to, of which that gets its share.
     fn with_loads(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, then: Phase<P, L>) {
         let loads = [0, 1].map(|end| self.load(bodies, end, share.kept.fixed, back));
@@ -122,6 +142,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
 /// What a rope does in a phase.
 type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>);
 
+/// What a tie does in a phase.
+type TiePhase<T, W> = fn(&Tie<T, W>, &mut Bodies<'_>, &[u32]) -> Option<()>;
+
 /// A share of which nothing is kept.
 fn share_of(scratch: &mut [u32], capacity: usize) -> Share<'_> {
     Share { kept: Kept::default(), step: &mut [], scratch, capacity }
@@ -146,8 +169,11 @@ where
     W: AsRef<[f32]> + Sync,
 {
     fn demand(&self) -> Demand {
-        let rope = self.rope.demand();
+        if !self.is_tied() {
+            return self.rope.demand();
+        }
         let masses = Words { per_row: 2, fixed: 0 };
+        let rope = self.rope.demand_held();
         let own = Demand { scratch: rope.scratch.and(masses), ..rope };
         self.ends.iter().flatten().fold(own, |sum, tie| sum.and(tie.demand()))
     }
@@ -157,6 +183,9 @@ where
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        if !self.is_tied() {
+            return self.rope.prepare(bodies, share);
+        }
         let mut parts = share.parts();
         for tie in self.ends.iter().flatten() {
             tie.prepare(bodies, &mut parts.next(tie.demand()));
@@ -165,29 +194,13 @@ where
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let h = bodies.substep.seconds();
-        if !(h > 0.0) {
-            return;
-        }
-        let rigid = |tie: &Tie<T, W>| tie.compliance == 0.0;
-        for (_, tie, place) in self.ties(share.kept.fixed).filter(|(_, tie, _)| rigid(tie)) {
-            // Ends have to be at their places to go with them.
-            let _ = tie.close(bodies, place);
-        }
-        self.with_loads(bodies, share, h, Rope::project);
-        for (_, tie, place) in self.ties(share.kept.fixed) {
-            let _ = tie.close(bodies, place);
+        if h > 0.0 {
+            self.meet(bodies, share, h, Rope::project, Tie::close);
         }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        // What a soft tie brakes it brakes once, behind the rope.
-        for (_, tie, place) in self.ties(share.kept.fixed).filter(|(_, tie, _)| tie.compliance == 0.0) {
-            let _ = tie.brake(bodies, place);
-        }
-        self.with_loads(bodies, share, 0.0, Rope::settle);
-        for (_, tie, place) in self.ties(share.kept.fixed) {
-            let _ = tie.brake(bodies, place);
-        }
+        self.meet(bodies, share, 0.0, Rope::settle, Tie::brake);
     }
 }
 
