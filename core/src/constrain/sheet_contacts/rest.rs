@@ -29,7 +29,12 @@ impl Face {
     }
 
     pub(super) fn edge(&self, i: usize) -> [u32; 2] {
-        [self.corners[i], self.corners[(i + 1) % 3]]
+        let [a, b, c] = self.corners;
+        match i {
+            0 => [a, b],
+            1 => [b, c],
+            _ => [c, a],
+        }
     }
 }
 

@@ -7,9 +7,8 @@ use super::contact::Contact;
 use super::lists::{Kept, Work};
 use super::look::{Look, SHARE};
 use super::renew::ready;
-use super::rest::{Face, Rest};
+use super::rest::Rest;
 use super::tree::Ways;
-use super::waiting::Waiting;
 use crate::material::of_two;
 use crate::math::max;
 use glam::Vec3;
@@ -21,11 +20,7 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     work.old[..known].copy_from_slice(&kept.contacts[..known]);
     let drift = drift(work);
     let astray = ready(rest, kept, work, bodies, drift);
-    let mut found = look(rest, kept, work, astray);
-    if found.lost > 0 && astray.is_some() {
-        // Which of them find room is for the order to say in which a search of all meets them.
-        found = look(rest, kept, work, None);
-    }
+    let found = look(rest, kept, work, astray);
     bodies.report.effort.streamed += u64::from(astray.is_none());
     bodies.report.caps.contacts += found.lost;
     let contacts = &mut kept.contacts[..found.count];
@@ -53,21 +48,24 @@ struct Found {
 
 /// Looks at all who may come near each other: by lists and at the triangles astray, of which there are so many, or all anew without lists.
 fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>) -> Found {
+    let found = look_at(rest, kept, work, astray, false);
+    // Which of them find room is for the order to say in which a search of all meets them one by one.
+    if found.lost > 0 { look_at(rest, kept, work, None, true) } else { found }
+}
+
+fn look_at(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>, alone: bool) -> Found {
     let budget = rest.facts.budget;
     work.room.fill(2.0 * SHARE * budget);
     let (from, now) = (&*work.from, &*work.now);
-    let (count, lost, meetings, waiting) = (0, 0, 0, Waiting::none());
-    let uniform = rest.uniform();
-    let mut look =
-        Look { rest, uniform, from, now, room: work.room, contacts: kept.contacts, count, lost, meetings, waiting };
+    let uniform = kept.counts.uniform();
+    let mut look = Look::new((rest, uniform), [from, now], work.room, kept.contacts, alone);
     if let Some(near) = kept.near.as_ref().filter(|_| astray.is_some()) {
         let all = near.pairs(rest, work.tree.strays());
         all.for_each(|listed| look.at(listed.pair, listed.pair.corners(rest.faces), listed.wanted));
         look.finish();
     }
     if astray != Some(0) {
-        let half = |face: &Face| rest.widest(face) + budget;
-        work.tree.fit(rest.faces, Ways { from, to: now }, half);
+        work.tree.fit((rest, uniform), Ways { from, to: now }, |half| half + budget);
         work.tree.pairs(rest.faces, astray.is_none(), |pair, corners| look.at(pair, corners, f32::NAN));
         look.finish();
     }
