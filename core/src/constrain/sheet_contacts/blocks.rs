@@ -195,15 +195,17 @@ mod tests {
     use alloc::vec::Vec;
     use glam::Vec3;
 
-    /// The edges and triangles of a block whose boxes overlap a box.
-    struct Near<'a>(&'a Block, usize, &'a Bounds);
+    /// The edges, from one on, and triangles of a block whose boxes overlap a box: all of them, or those that count.
+    struct Overlapping<'a>(&'a Block, usize, &'a Bounds, bool);
 
-    impl Kernel for Near<'_> {
+    impl Kernel for Overlapping<'_> {
         type Output = (Vec<usize>, Vec<usize>);
         #[inline(always)]
         fn run<F: Eight>(self, like: F) -> Self::Output {
-            let Self(block, first, bounds) = self;
-            (block.near_edges(like, first, bounds).collect(), block.near_faces(like, bounds).collect())
+            let Self(block, first, bounds, all) = self;
+            let near = block.near(like, bounds);
+            let edges = block.near_edges(like, near, all, first, bounds).collect();
+            (edges, block.near_faces(like, near, all, bounds).collect())
         }
     }
 
@@ -229,17 +231,17 @@ mod tests {
                 })
                 .collect();
             let mut block: Block = bytemuck::Zeroable::zeroed();
-            block.fit(&faces, &corners);
+            block.fit(&faces, &corners, |i| i % 2 == 0);
             let sound = |i: &usize| !Bounds::of_face(&faces[*i], &corners).is_empty();
             let own = |owns: fn(&Face, usize) -> bool| -> Vec<usize> {
                 let all = (0..faces.len()).filter(sound).flat_map(|i| [0, 1, 2].map(|k| (i, k)));
                 all.filter(|&(i, k)| owns(&faces[i], k)).map(|(i, k)| 4 * i + k).collect()
             };
             let edges = own(Face::owns_edge);
-            assert_eq!(block.edges().collect::<Vec<_>>(), edges);
+            assert!(block.edges(Near::ALL).eq(edges.iter().copied().enumerate()));
             assert_eq!(block.corners().collect::<Vec<_>>(), own(Face::owns_corner));
             let first = next(3) as usize;
-            let (near, triangles) = lanes::run(Near(&block, first, &bounds));
+            let (near, triangles) = lanes::run(Overlapping(&block, first, &bounds, true));
             let touches = |&feature: &usize| {
                 let [a, b] = faces[feature / 4].edge(feature % 4).map(|corner| corners[corner as usize]);
                 a.and(&b).overlaps(&bounds)
@@ -247,8 +249,13 @@ mod tests {
             assert_eq!(near, edges.iter().skip(first).copied().filter(touches).collect::<Vec<_>>());
             let of_faces = |i: &usize| Bounds::of_face(&faces[*i], &corners).overlaps(&bounds);
             assert_eq!(triangles, (0..faces.len()).filter(sound).filter(of_faces).collect::<Vec<_>>());
+            let counts = |all: &[usize], each: usize| -> Vec<usize> {
+                all.iter().copied().filter(|feature| feature / each % 2 == 0).collect()
+            };
+            let few = lanes::run(Overlapping(&block, first, &bounds, false));
+            assert_eq!(few, (counts(&near, 4), counts(&triangles, 1)));
             some += near.len() + triangles.len();
-            none += edges.len() - near.len().min(edges.len());
+            none += edges.len().saturating_sub(first) - near.len();
         }
         assert!(some > 100 && none > 100, "{some} {none}");
     }
