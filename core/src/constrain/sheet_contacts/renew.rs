@@ -15,7 +15,7 @@ use glam::Vec3;
 /// searches.
 const STRETCH: f32 = 16.0;
 /// One triangle of so many may be astray before lists are made anew.
-const ASTRAY: usize = 4;
+const ASTRAY: usize = 2;
 
 impl Near<'_> {
     /// How far off its expected way one is at both ends of a sub-step that comes so many after the first.
