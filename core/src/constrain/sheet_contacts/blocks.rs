@@ -231,7 +231,7 @@ mod tests {
                 })
                 .collect();
             let mut block: Block = bytemuck::Zeroable::zeroed();
-            block.fit(&faces, &corners, |i| i % 2 == 0);
+            block.fit(&faces, &corners, |i| i.is_multiple_of(2));
             let sound = |i: &usize| !Bounds::of_face(&faces[*i], &corners).is_empty();
             let own = |owns: fn(&Face, usize) -> bool| -> Vec<usize> {
                 let all = (0..faces.len()).filter(sound).flat_map(|i| [0, 1, 2].map(|k| (i, k)));
@@ -250,7 +250,7 @@ mod tests {
             let of_faces = |i: &usize| Bounds::of_face(&faces[*i], &corners).overlaps(&bounds);
             assert_eq!(triangles, (0..faces.len()).filter(sound).filter(of_faces).collect::<Vec<_>>());
             let counts = |all: &[usize], each: usize| -> Vec<usize> {
-                all.iter().copied().filter(|feature| feature / each % 2 == 0).collect()
+                all.iter().copied().filter(|feature| (feature / each).is_multiple_of(2)).collect()
             };
             let few = lanes::run(Overlapping(&block, first, &bounds, false));
             assert_eq!(few, (counts(&near, 4), counts(&triangles, 1)));
