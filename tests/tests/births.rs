@@ -3,7 +3,10 @@
 use pointmass::emit::Burst;
 use pointmass::rng::Stream;
 use pointmass::shape::{Disc, Line, Plane};
-use pointmass::{Emit, Emitter, Gravity, Jet, Meetings, Method, Particle, Scene, Spread, Time, Varied, Vec3};
+use pointmass::{
+    Attention, Cause, Emit, Emitter, Gravity, Jet, LifeEvent, Meetings, Method, Observer, Particle, Scene, Spread,
+    Time, Varied, Vec3,
+};
 use pointmass_tests::emitting::{cuts, play, varied};
 use pointmass_tests::{Form, G, KS, Random, chi_squared, f64s, gap, ks, often, point, started, turn};
 
@@ -394,5 +397,64 @@ fn a_jet_gives_the_births_of_an_emitter_of_which_no_more_is_asked() {
             (hashes, *system.totals())
         });
         assert_eq!(a, b, "{jet:?}");
+    }
+}
+
+/// Counts the births and deaths that it is told of.
+struct Registrar {
+    attention: Attention,
+    births: u64,
+    deaths: u64,
+}
+
+impl Observer for Registrar {
+    fn attention(&self) -> Attention {
+        self.attention
+    }
+    fn born(&mut self, _: &LifeEvent) {
+        self.births += 1;
+    }
+    fn died(&mut self, _: &LifeEvent, _: Cause) {
+        self.deaths += 1;
+    }
+}
+
+/// On hosts.
+#[test]
+fn only_who_listens_is_told_of_births_and_deaths_and_nothing_else_changes() {
+    for (number, &method) in Method::ALL.iter().enumerate() {
+        let substeps = [1, 3, 10][number % 3];
+        let mut fountain =
+            Emitter { speed: Varied { mean: 3.0, half_width: 1.0 }, ..Emitter::new(point(Vec3::ZERO), 300.0) };
+        fountain.lifetime = Varied { mean: 0.3, half_width: 0.2 };
+        let start = [Particle { lifetime: 0.2, ..Particle::REST }, Particle::REST];
+        let floor = Plane { point: Vec3::NEG_Y, normal: Vec3::Y };
+        let scene = Scene {
+            start: &start,
+            emitters: &fountain,
+            forces: &Gravity::EARTH,
+            colliders: &floor,
+            substeps,
+            integrator: method.integrator(),
+            ..Scene::EMPTY
+        };
+        let mut unseen = started(&scene, 400, 3);
+        (1..=40).for_each(|frame| {
+            unseen.step_to(&scene, Time::frame(frame, 60));
+        });
+        for attention in [Attention::Nothing, Attention::Events, Attention::Phases] {
+            let mut system = started(&scene, 400, 3);
+            let mut registrar = Registrar { attention, births: 0, deaths: 0 };
+            for frame in 1..=40 {
+                system.step_observed(&scene, Time::frame(frame, 60) - system.time(), &mut registrar);
+            }
+            let name = format!("{method}, {attention:?}");
+            let totals = *system.totals();
+            let (born, died) = (totals.born, totals.died.lifetime);
+            assert!(born > 100 && died > 20, "{name}: {totals:?}");
+            assert_eq!(system.hash(), unseen.hash(), "{name}");
+            let told = if attention == Attention::Nothing { [0, 0] } else { [born, died] };
+            assert_eq!([registrar.births, registrar.deaths], told, "{name}");
+        }
     }
 }

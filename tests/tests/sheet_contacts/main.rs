@@ -7,6 +7,7 @@ mod falling;
 mod friction;
 mod lists;
 mod told;
+mod torn;
 mod under_bodies;
 
 use cloths::{Cloths, G, cotton, crosses, square};

@@ -16,13 +16,30 @@ pub(super) struct Block {
     /// The lower and the upper ends of boxes, eight and eight, at the beginning and in the end, along each axis.
     low: [[[[f32; LANES]; 3]; 2]; 2],
     high: [[[[f32; LANES]; 3]; 2]; 2],
-    /// The edges that are its own, of which there are so many.
+    /// The edges that are its own.
     edges: [u8; TRIANGLES],
-    count: u32,
     /// A bit for each corner that is its own.
-    corners: u32,
+    corners: u16,
+    /// A bit for each edge, by its place in `edges`, that is of a triangle that counts: with others as well that do not.
+    marked: u16,
+    /// A bit for each triangle that is sound, and for each of these that counts.
+    faces: u8,
+    counts: u8,
+    /// The number of edges.
+    count: u8,
     /// 1 if it is as particles are now.
-    fresh: u32,
+    fresh: u8,
+}
+
+/// The edges, by their places in the block, and the triangles that are near something: a bit for each.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    pub(super) edges: u32,
+    pub(super) faces: u32,
+}
+
+impl Near {
+    pub(super) const ALL: Self = Self { edges: u32::MAX, faces: u32::MAX };
 }
 
 /// The numbers of bits.
@@ -40,31 +57,46 @@ impl Block {
         self.fresh = 0;
     }
 
-    /// Puts boxes around the ways of these triangles and their own edges, unless that is done; what is not sound has none, and no feature.
+    /// Puts boxes around the ways of these triangles and their own edges, unless that is done, and notes which triangles count; what is not sound has
+    /// none, and no feature.
     #[inline(always)]
-    pub(super) fn fit(&mut self, faces: &[Face], corners: &[Bounds]) {
+    pub(super) fn fit(&mut self, faces: &[Face], corners: &[Bounds], counts: impl Fn(usize) -> bool) {
         if self.fresh == 1 {
             return;
         }
         let none = [[[[f32::INFINITY; LANES]; 3]; 2]; 2];
         (self.low, self.high) = (none, [[[[f32::NEG_INFINITY; LANES]; 3]; 2]; 2]);
         (self.count, self.corners, self.fresh) = (0, 0, 1);
+        (self.marked, self.faces, self.counts) = (0, 0, 0);
         for (i, face) in faces.iter().take(BLOCK).enumerate() {
             let bounds = Bounds::of_face(face, corners);
             if bounds.is_empty() {
                 continue;
             }
             self.put(TRIANGLES + i, &bounds);
+            let is_marked = counts(i);
+            self.faces |= 1 << i;
+            self.counts |= u8::from(is_marked) << i;
             for k in 0..3 {
-                self.corners |= u32::from(face.owns_corner(k)) << (4 * i + k);
+                self.corners |= u16::from(face.owns_corner(k)) << (4 * i + k);
                 if face.owns_edge(k) {
                     let [a, b] = face.edge(k).map(|corner| &corners[corner as usize]);
                     self.put(self.count as usize, &a.and(b));
                     self.edges[self.count as usize] = (4 * i + k) as u8;
+                    self.marked |= u16::from(is_marked) << self.count;
                     self.count += 1;
                 }
             }
         }
+    }
+
+    /// Tells whether a triangle counts, and whether any does.
+    pub(super) fn marks(&self, i: usize) -> bool {
+        self.counts >> i & 1 != 0
+    }
+
+    pub(super) fn is_marked(&self) -> bool {
+        self.counts != 0
     }
 
     #[inline(always)]
@@ -94,31 +126,65 @@ impl Block {
         !apart.to_bitmask() & 0xff
     }
 
-    /// Its edges.
-    pub(super) fn edges(&self) -> impl Iterator<Item = usize> {
-        self.edges.iter().take(self.count as usize).map(|&feature| feature as usize)
+    /// A bit for each of its edges.
+    fn there(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// Its edges of those, each with its place.
+    pub(super) fn edges(&self, of: Near) -> impl Iterator<Item = (usize, usize)> {
+        each(of.edges & self.there()).map(|i| (i, usize::from(self.edges[i])))
     }
 
     /// Its corners.
     pub(super) fn corners(&self) -> impl Iterator<Item = usize> {
-        each(self.corners)
+        each(self.corners.into())
     }
 
-    /// Its edges, from one on, whose boxes overlap another.
+    /// The features whose boxes overlap another.
     #[inline(always)]
-    pub(super) fn near_edges<F: Eight>(&self, like: F, first: usize, bounds: &Bounds) -> impl Iterator<Item = usize> {
-        let mut near = self.overlaps(like, 0, bounds);
-        if self.count as usize > LANES {
-            near |= self.overlaps(like, 1, bounds) << LANES;
+    pub(super) fn near<F: Eight>(&self, like: F, bounds: &Bounds) -> Near {
+        let last = self.overlaps(like, 1, bounds);
+        let edges = (self.overlaps(like, 0, bounds) | last << LANES) & self.there();
+        Near { edges, faces: last >> (TRIANGLES - LANES) & u32::from(self.faces) }
+    }
+
+    /// Its edges of those, from one on, whose boxes overlap another: all of them, or of triangles that count.
+    #[inline(always)]
+    pub(super) fn near_edges<F: Eight>(
+        &self,
+        like: F,
+        of: Near,
+        all: bool,
+        first: usize,
+        bounds: &Bounds,
+    ) -> impl Iterator<Item = usize> {
+        let mut near = of.edges & self.there() & u32::MAX << first & if all { u32::MAX } else { self.marked.into() };
+        let mut found = 0;
+        if near & 0xff != 0 {
+            found = self.overlaps(like, 0, bounds);
         }
-        let there = (1_u32 << self.count) - 1;
-        each(near & there & u32::MAX << first).map(|i| self.edges[i] as usize)
+        if near >> LANES != 0 {
+            found |= self.overlaps(like, 1, bounds) << LANES;
+        }
+        near &= found;
+        each(near).map(|i| usize::from(self.edges[i]))
     }
 
-    /// Its triangles whose boxes overlap another.
+    /// Its triangles of those whose boxes overlap another: all of them, or those that count.
     #[inline(always)]
-    pub(super) fn near_faces<F: Eight>(&self, like: F, bounds: &Bounds) -> impl Iterator<Item = usize> {
-        each(self.overlaps(like, 1, bounds) >> (TRIANGLES - LANES))
+    pub(super) fn near_faces<F: Eight>(
+        &self,
+        like: F,
+        of: Near,
+        all: bool,
+        bounds: &Bounds,
+    ) -> impl Iterator<Item = usize> {
+        let mut near = of.faces & u32::from(if all { self.faces } else { self.counts });
+        if near != 0 {
+            near &= self.overlaps(like, 1, bounds) >> (TRIANGLES - LANES);
+        }
+        each(near)
     }
 }
 
@@ -129,15 +195,17 @@ mod tests {
     use alloc::vec::Vec;
     use glam::Vec3;
 
-    /// The edges and triangles of a block whose boxes overlap a box.
-    struct Near<'a>(&'a Block, usize, &'a Bounds);
+    /// The edges, from one on, and triangles of a block whose boxes overlap a box: all of them, or those that count.
+    struct Overlapping<'a>(&'a Block, usize, &'a Bounds, bool);
 
-    impl Kernel for Near<'_> {
+    impl Kernel for Overlapping<'_> {
         type Output = (Vec<usize>, Vec<usize>);
         #[inline(always)]
         fn run<F: Eight>(self, like: F) -> Self::Output {
-            let Self(block, first, bounds) = self;
-            (block.near_edges(like, first, bounds).collect(), block.near_faces(like, bounds).collect())
+            let Self(block, first, bounds, all) = self;
+            let near = block.near(like, bounds);
+            let edges = block.near_edges(like, near, all, first, bounds).collect();
+            (edges, block.near_faces(like, near, all, bounds).collect())
         }
     }
 
@@ -163,17 +231,17 @@ mod tests {
                 })
                 .collect();
             let mut block: Block = bytemuck::Zeroable::zeroed();
-            block.fit(&faces, &corners);
+            block.fit(&faces, &corners, |i| i.is_multiple_of(2));
             let sound = |i: &usize| !Bounds::of_face(&faces[*i], &corners).is_empty();
             let own = |owns: fn(&Face, usize) -> bool| -> Vec<usize> {
                 let all = (0..faces.len()).filter(sound).flat_map(|i| [0, 1, 2].map(|k| (i, k)));
                 all.filter(|&(i, k)| owns(&faces[i], k)).map(|(i, k)| 4 * i + k).collect()
             };
             let edges = own(Face::owns_edge);
-            assert_eq!(block.edges().collect::<Vec<_>>(), edges);
+            assert!(block.edges(Near::ALL).eq(edges.iter().copied().enumerate()));
             assert_eq!(block.corners().collect::<Vec<_>>(), own(Face::owns_corner));
             let first = next(3) as usize;
-            let (near, triangles) = lanes::run(Near(&block, first, &bounds));
+            let (near, triangles) = lanes::run(Overlapping(&block, first, &bounds, true));
             let touches = |&feature: &usize| {
                 let [a, b] = faces[feature / 4].edge(feature % 4).map(|corner| corners[corner as usize]);
                 a.and(&b).overlaps(&bounds)
@@ -181,8 +249,13 @@ mod tests {
             assert_eq!(near, edges.iter().skip(first).copied().filter(touches).collect::<Vec<_>>());
             let of_faces = |i: &usize| Bounds::of_face(&faces[*i], &corners).overlaps(&bounds);
             assert_eq!(triangles, (0..faces.len()).filter(sound).filter(of_faces).collect::<Vec<_>>());
+            let counts = |all: &[usize], each: usize| -> Vec<usize> {
+                all.iter().copied().filter(|feature| (feature / each).is_multiple_of(2)).collect()
+            };
+            let few = lanes::run(Overlapping(&block, first, &bounds, false));
+            assert_eq!(few, (counts(&near, 4), counts(&triangles, 1)));
             some += near.len() + triangles.len();
-            none += edges.len() - near.len().min(edges.len());
+            none += edges.len().saturating_sub(first) - near.len();
         }
         assert!(some > 100 && none > 100, "{some} {none}");
     }

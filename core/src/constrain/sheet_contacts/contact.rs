@@ -46,8 +46,10 @@ impl Contact {
     }
 
     /// The weighted sum of something of its corners: how the first differs from the second in it.
+    #[inline(always)]
     pub(super) fn between(&self, of: impl Fn(usize) -> Vec3) -> Vec3 {
-        let [a, b, c, d] = self.corners.map(|corner| of(corner as usize));
+        let [a, b, c, d] = self.corners;
+        let [a, b, c, d] = [of(a as usize), of(b as usize), of(c as usize), of(d as usize)];
         let [_, p, q, r] = self.weights;
         (b - a) * p + (c - a) * q + (d - a) * r
     }

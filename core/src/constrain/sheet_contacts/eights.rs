@@ -1,7 +1,7 @@
 //! Eight pairs of a kind side by side, by the operations of one in their order, and so the same bits.
 
 use super::closest::Kind;
-use crate::lanes::{Eight, LANES, Vectors, gathered, max, min, negated};
+use crate::lanes::{self, Eight, LANES, Vectors, gathered, max, min, negated};
 use glam::Vec3;
 
 /// The places of eight times four corners as seen from the first, which is left out.
@@ -110,9 +110,37 @@ pub(super) fn apart<F: Eight>(kind: Kind, [b, c, d]: &Seen<F>, direction: Vector
     }
 }
 
+/// What is found at first glance of how far they are apart at both ends.
+#[derive(Clone, Copy)]
+pub(super) struct Gaps<F> {
+    boxes: F,
+    middles: [F; 2],
+}
+
+impl<F: Eight> Gaps<F> {
+    #[inline(always)]
+    pub(super) fn of(kind: Kind, ends: &[Seen<F>; 2]) -> Self {
+        Self { boxes: gap_of_boxes(kind, ends), middles: gap_of_middles(kind, ends) }
+    }
+
+    /// The same where the direction between their middles does not count unless a mask says so.
+    #[inline(always)]
+    pub(super) fn masked(self, mask: F) -> Self {
+        let [far, way] = self.middles;
+        Self { middles: [far & mask, way], ..self }
+    }
+
+    /// Those that neither boxes keep farther than one reach apart nor the direction between their middles farther than another one.
+    #[inline(always)]
+    pub(super) fn left(&self, reach: F, least: F) -> F {
+        let [far, way] = self.middles;
+        lanes::not(self.boxes.simd_gt(reach) | far.simd_gt(least * least * way))
+    }
+}
+
 /// How far they are apart along an axis, on the same side at both ends (as [`super::pair::are_apart`]).
 #[inline(always)]
-pub(super) fn gap_of_boxes<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
+fn gap_of_boxes<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
     let mut most = ends[0][0].0[0].all(f32::NEG_INFINITY);
     for axis in 0..3 {
         let (above, below) = gaps(kind, &ends[0], axis);
@@ -135,7 +163,7 @@ fn gaps<F: Eight>(kind: Kind, of: &Seen<F>, axis: usize) -> (F, F) {
 
 /// The square of how far they stay apart along the way between their middles, some times over, and the square of that way.
 #[inline(always)]
-pub(super) fn gap_of_middles<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> [F; 2] {
+fn gap_of_middles<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> [F; 2] {
     let [b, c, d] = ends[0];
     let way = match kind {
         Kind::PointTriangle => -(b + c + d),
@@ -162,7 +190,7 @@ pub(super) fn fastest<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
 mod tests {
     use super::super::closest;
     use super::*;
-    use crate::lanes::{self, Kernel};
+    use crate::lanes::Kernel;
 
     struct All<'a>(Kind, &'a [Vec3], [[u32; 4]; LANES]);
 

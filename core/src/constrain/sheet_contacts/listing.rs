@@ -1,7 +1,7 @@
 //! Listing pairs that may come near each other on the ways that are expected: eight of a kind side by side.
 
 use super::closest::{self, Kind, MARGIN, parts};
-use super::eights::{Closest, Seen, apart, gap_of_boxes, gap_of_middles, seen};
+use super::eights::{Closest, Gaps, Seen, apart, seen};
 use super::near::Listed;
 use super::pair::{self, Pair, are_apart};
 use super::rest::Rest;
@@ -14,6 +14,7 @@ use glam::Vec3;
 /// Lists pairs as long as there is room.
 pub(super) struct Listing<'m, 'r> {
     rest: &'m Rest<'r>,
+    /// The half thickness at all, if they are alike.
     uniform: Option<f32>,
     ways: Ways<'m>,
     /// How much farther than they are looked for two are listed \[m\].
@@ -26,17 +27,13 @@ pub(super) struct Listing<'m, 'r> {
 }
 
 impl<'m, 'r> Listing<'m, 'r> {
-    pub(super) fn of(rest: &'m Rest<'r>, ways: Ways<'m>, more: f32, pairs: &'m mut [Listed]) -> Self {
-        Self {
-            rest,
-            uniform: rest.uniform(),
-            ways,
-            more,
-            pairs,
-            count: 0,
-            waiting: Waiting::none(),
-            close: Waiting::none(),
-        }
+    pub(super) fn of(
+        (rest, uniform): (&'m Rest<'r>, Option<f32>),
+        ways: Ways<'m>,
+        more: f32,
+        pairs: &'m mut [Listed],
+    ) -> Self {
+        Self { rest, uniform, ways, more, pairs, count: 0, waiting: Waiting::none(), close: Waiting::none() }
     }
 
     /// Lists two, unless they are farther from each other than they are looked for, and so much more, on the expected ways.
@@ -160,19 +157,17 @@ impl Kernel for Sift<'_, '_> {
     fn run<F: Eight>(self, like: F) -> Self::Output {
         let ends = self.0.ends(like)?;
         let Expected { rest, uniform, more, kind, waiting: Waiting { corners, .. }, .. } = self.0;
-        let (boxes, [middle, way]) = (gap_of_boxes(kind, &ends), gap_of_middles(kind, &ends));
-        let left = |wanted: F| {
-            let reach = far(wanted, rest, more);
-            lanes::not(boxes.simd_gt(reach) | middle.simd_gt(reach * reach * way))
-        };
+        let gaps = Gaps::of(kind, &ends);
         let [thickness, alike] = thickness(like, rest, uniform, kind, corners);
-        let some = left(thickness);
+        let reach = far(thickness, rest, more);
+        let some = gaps.left(reach, reach);
         if !some.any() {
             return Some((0, [0.0; LANES]));
         }
         let gap = Closest::of(kind, seen(like, rest.places, corners)?).gap;
         let wanted = alike.select(min(like.all(0.5) * gap.length(), thickness), thickness);
-        Some(((some & left(wanted)).to_bitmask(), wanted.to_array()))
+        let reach = far(wanted, rest, more);
+        Some(((some & gaps.left(reach, reach)).to_bitmask(), wanted.to_array()))
     }
 }
 

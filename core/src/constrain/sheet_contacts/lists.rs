@@ -3,7 +3,7 @@
 use super::super::{Bodies, Demand, Words};
 use super::contact::{Contact, Surface};
 use super::near::{self, Near};
-use super::rest::{Edge, KEPT, LEARNING};
+use super::rest::{Edge, KEPT, LEARNING, Rest};
 use super::tree::{self, Tree};
 use crate::memory::{take, take_vectors};
 use glam::Vec3;
@@ -22,6 +22,20 @@ pub(super) struct Counts {
     pub(super) contacts: u32,
     pub(super) surfaces: u32,
     pub(super) edges: u32,
+    /// Half the thickness at all particles, if they are of one sheet, and it is the same at all; else no number \[m\].
+    half: f32,
+}
+
+impl Counts {
+    /// Notes what is the same at all particles.
+    pub(super) fn compare(&mut self, rest: &Rest<'_>) {
+        self.half = rest.uniform().unwrap_or(f32::NAN);
+    }
+
+    /// The half thickness at all particles, if they are of one sheet, and it is the same at all.
+    pub(super) fn uniform(&self) -> Option<f32> {
+        Some(self.half).filter(|half| !half.is_nan())
+    }
 }
 
 /// The words that last through a step, by places in the list of particles.

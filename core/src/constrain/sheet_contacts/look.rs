@@ -2,12 +2,12 @@
 
 use super::closest::{self, FARTHEST, Kind, MARGIN, Meeting, parts};
 use super::contact::Contact;
-use super::eights::{Closest, apart, fastest, gap_of_boxes, gap_of_middles, seen};
+use super::eights::{Closest, Gaps, Seen, apart, fastest, seen};
 use super::listing::thickness;
 use super::pair::{self, Pair, are_apart, is_own};
 use super::rest::Rest;
 use super::waiting::Waiting;
-use crate::lanes::{self, ABREAST, Eight, Kernel, LANES, Vectors, min};
+use crate::lanes::{self, ABREAST, Eight, Kernel, LANES, min};
 use crate::math::{self, length};
 use glam::Vec3;
 
@@ -20,28 +20,44 @@ const RECOVERY: f32 = 0.2;
 
 /// Looks at pairs, and lists what comes of them.
 pub(super) struct Look<'m, 'r> {
-    pub(super) rest: &'m Rest<'r>,
+    rest: &'m Rest<'r>,
     /// The half thickness at all, if they are alike.
-    pub(super) uniform: Option<f32>,
-    pub(super) from: &'m [Vec3],
-    pub(super) now: &'m [Vec3],
+    uniform: Option<f32>,
+    from: &'m [Vec3],
+    now: &'m [Vec3],
     /// How far each may be pushed from where it is.
-    pub(super) room: &'m mut [f32],
-    pub(super) contacts: &'m mut [Contact],
+    room: &'m mut [f32],
+    contacts: &'m mut [Contact],
     /// The number of contacts, and of those that found no room.
     pub(super) count: usize,
     pub(super) lost: u64,
     /// The number of pairs that would pass each other.
     pub(super) meetings: u32,
     /// Those that have not been looked at yet, of each kind.
-    pub(super) waiting: [Waiting; 2],
+    waiting: [Waiting; 2],
+    /// True if each is looked at alone, in the order in which they come.
+    alone: bool,
+    /// What has come of the last eight.
+    met: Met,
 }
 
-impl Look<'_, '_> {
+impl<'m, 'r> Look<'m, 'r> {
+    pub(super) fn new(
+        (rest, uniform): (&'m Rest<'r>, Option<f32>),
+        [from, now]: [&'m [Vec3]; 2],
+        room: &'m mut [f32],
+        contacts: &'m mut [Contact],
+        alone: bool,
+    ) -> Self {
+        let (count, lost, meetings) = (0, 0, 0);
+        let waiting = Waiting::none();
+        Self { rest, uniform, from, now, room, contacts, count, lost, meetings, waiting, alone, met: Met::default() }
+    }
+
     /// Looks at two that are kept so far apart; no number: that is not known.
     pub(super) fn at(&mut self, pair: Pair, corners: [u32; 4], wanted: f32) {
         let kind = pair.kind();
-        if ABREAST < LANES {
+        if ABREAST < LANES || self.alone {
             self.one(pair, corners, wanted);
         } else if self.waiting[kind as usize].push(pair, corners, wanted) {
             self.eight(kind);
@@ -61,17 +77,18 @@ impl Look<'_, '_> {
     fn eight(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
         let Self { rest, uniform, from, now, .. } = *self;
-        let Some(found) = lanes::run(Together { rest, uniform, from, now, kind, waiting: &waiting }) else {
+        let together = Together { rest, uniform, from, now, kind, waiting: &waiting };
+        let Some([near, unsure]) = lanes::run(Meet(together, &mut self.met)) else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, wanted)| self.one(pair, corners, wanted));
             return;
         };
-        for (lane, pair, corners, _) in waiting.of_mask(found.near) {
-            let ([x, y, z, _], [weights, distance]) = (found.gap[lane], [found.weights[lane], found.distance[lane]]);
-            let closest = closest::Closest { weights, gap: Vec3::new(x, y, z) };
-            let meeting = Meeting { closest, distance: [distance[0], distance[1]], meets: false };
-            self.note(pair, corners, distance[2], meeting);
+        for (lane, pair, corners, _) in waiting.of_mask(near) {
+            let ([x, y, z, begun], weights) = (self.met.gap[lane], self.met.weights[lane]);
+            let (closest, wanted) = (closest::Closest { weights, gap: Vec3::new(x, y, z) }, self.met.wanted[lane]);
+            let meeting = Meeting { closest, distance: [begun, self.met.ended[lane]], meets: false };
+            self.note(pair, corners, wanted, meeting);
         }
-        for (_, pair, corners, wanted) in waiting.of_mask(found.unsure) {
+        for (_, pair, corners, wanted) in waiting.of_mask(unsure) {
             self.one(pair, corners, wanted);
         }
     }
@@ -140,52 +157,75 @@ struct Together<'a, 'r> {
     waiting: &'a Waiting,
 }
 
-/// What comes of them.
-#[derive(Default)]
-struct Found {
-    /// Those that come near each other without coming together, and those that have to be followed.
-    near: u32,
-    unsure: u32,
-    weights: [[f32; 4]; LANES],
-    gap: [[f32; 4]; LANES],
-    /// How far apart they are at the beginning and in the end, and are kept.
-    distance: [[f32; 4]; LANES],
+impl Together<'_, '_> {
+    /// Their corners at both ends; none, if one of them has to be looked at alone.
+    #[inline(always)]
+    fn ends<F: Eight>(&self, like: F) -> Option<[Seen<F>; 2]> {
+        let corners = &self.waiting.corners;
+        Some([seen(like, self.from, corners)?, seen(like, self.now, corners)?])
+    }
+
+    /// What is seen of them at first glance: a direction that keeps them apart counts where they are not too fast.
+    #[inline(always)]
+    fn gaps<F: Eight>(&self, like: F, ends: &[Seen<F>; 2]) -> Gaps<F> {
+        let fast = like.all(2.0 * FARTHEST * self.rest.facts.budget);
+        Gaps::of(self.kind, ends).masked(fastest(self.kind, ends).simd_le(fast * fast))
+    }
+
+    /// How far apart two may be at the most that are looked at.
+    #[inline(always)]
+    fn reach<F: Eight>(&self, wanted: F) -> F {
+        wanted + wanted.all(2.0 * self.rest.facts.budget)
+    }
+
+    /// Those that something may be found of, if they are kept so far apart.
+    #[inline(always)]
+    fn left<F: Eight>(&self, gaps: &Gaps<F>, wanted: F) -> F {
+        let reach = self.reach(wanted);
+        gaps.left(reach, reach * wanted.all(1.0 + MARGIN))
+    }
 }
 
-impl Kernel for Together<'_, '_> {
+/// What comes of those that come near each other.
+#[derive(Default)]
+struct Met {
+    weights: [[f32; 4]; LANES],
+    /// The ways between them in the end, and how far apart they are at the beginning.
+    gap: [[f32; 4]; LANES],
+    ended: [f32; LANES],
+    /// How far apart they are kept.
+    wanted: [f32; LANES],
+}
+
+/// Finds those of them that come near each other without coming together, and those that have to be followed.
+struct Meet<'a, 'r>(Together<'a, 'r>, &'a mut Met);
+
+impl Kernel for Meet<'_, '_> {
     /// None: one of them has to be looked at alone.
-    type Output = Option<Found>;
+    type Output = Option<[u32; 2]>;
 
     /// As [`Meeting::of`], as far as that goes without following the ways.
     #[inline(always)]
     fn run<F: Eight>(self, like: F) -> Self::Output {
-        let (Self { rest, uniform, from, now, kind, .. }, Waiting { corners, wanted, .. }) = (&self, self.waiting);
-        let (kind, budget) = (*kind, rest.facts.budget);
-        let reach = |wanted: F| wanted + like.all(2.0 * budget);
-        let ends = [seen(like, from, corners)?, seen(like, now, corners)?];
-        let (boxes, [far, way]) = (gap_of_boxes(kind, &ends), gap_of_middles(kind, &ends));
-        let fast = like.all(2.0 * FARTHEST * budget);
-        let follows = fastest(kind, &ends).simd_le(fast * fast);
-        // Those of whom nothing is found: a direction keeps them apart.
-        let left = |reach: F| {
-            let least = reach * like.all(1.0 + MARGIN);
-            lanes::not(boxes.simd_gt(reach) | (follows & far.simd_gt(least * least * way)))
-        };
-        let [thickness, alike] = thickness(like, rest, *uniform, kind, corners);
-        let mut some = left(reach(thickness));
+        let Self(this, met) = self;
+        let (kind, budget) = (this.kind, this.rest.facts.budget);
+        let ends = this.ends(like)?;
+        let gaps = this.gaps(like, &ends);
+        let [thickness, alike] = thickness(like, this.rest, this.uniform, kind, &this.waiting.corners);
+        let mut some = this.left(&gaps, thickness);
         if !some.any() {
-            return Some(Found::default());
+            return Some([0; 2]);
         }
-        let mut wanted = like.of(*wanted);
+        let mut wanted = like.of(this.waiting.wanted);
         if lanes::not(wanted.simd_le(thickness)).any() {
-            let gap = Closest::of(kind, seen(like, rest.places, corners)?).gap;
+            let gap = Closest::of(kind, seen(like, this.rest.places, &this.waiting.corners)?).gap;
             let half = min(like.all(0.5) * gap.length(), thickness);
             wanted = wanted.simd_le(thickness).select(wanted, alike.select(half, thickness));
         }
-        let reach = reach(wanted);
-        some = some & left(reach);
+        let reach = this.reach(wanted);
+        some = some & this.left(&gaps, wanted);
         if !some.any() {
-            return Some(Found::default());
+            return Some([0; 2]);
         }
         let first = Closest::of(kind, ends[0]);
         let begun = first.gap.length();
@@ -193,18 +233,17 @@ impl Kernel for Together<'_, '_> {
         some = some & begun.simd_gt(zero) & sound;
         some = some & lanes::not(apart(kind, &ends[1], first.gap / begun).simd_ge(reach));
         if !some.any() {
-            return Some(Found::default());
+            return Some([0; 2]);
         }
         let closest = Closest::of(kind, ends[1]);
         let ended = closest.gap.length();
         let near = min(like.all(NEAR) * lanes::max(wanted, like.all(budget)), like.all(0.5) * begun);
         let straight = ended.simd_gt(near) & apart(kind, &ends[0], closest.gap / ended).simd_gt(zero);
-        Some(Found {
-            near: (some & straight & lanes::not(ended.simd_ge(reach))).to_bitmask(),
-            unsure: (some & lanes::not(straight)).to_bitmask(),
-            weights: F::rows_of(closest.weights),
-            gap: Vectors::rows(closest.gap),
-            distance: F::rows_of([begun, ended, wanted, zero]),
-        })
+        let [x, y, z] = closest.gap.0;
+        met.weights = F::rows_of(closest.weights);
+        met.gap = F::rows_of([x, y, z, begun]);
+        (met.ended, met.wanted) = (ended.to_array(), wanted.to_array());
+        let near = some & straight & lanes::not(ended.simd_ge(reach));
+        Some([near.to_bitmask(), (some & lanes::not(straight)).to_bitmask()])
     }
 }

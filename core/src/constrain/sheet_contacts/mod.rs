@@ -139,6 +139,12 @@ where
             let (particles, triangles) = (self.particles.as_ref(), self.triangles.as_ref());
             rest.learn(particles, triangles, self.thickness.as_ref(), bodies, share.scratch);
         }
+        if rest.is_known() && rest.bury(self.particles.as_ref(), bodies, share.scratch) {
+            // Lists know of no edges and corners that have come to others.
+            if let Some(mut near) = Kept::of(share.step, self.counts()).and_then(|kept| kept.near) {
+                near.forget(&rest);
+            }
+        }
         if rest.is_known() && bodies.substep.number == 0 {
             for (&particle, &half) in self.particles.as_ref().iter().zip(&*rest.half) {
                 if let Some(row) = bodies.row_of_start(particle) {

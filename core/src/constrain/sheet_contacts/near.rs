@@ -5,7 +5,7 @@
 //! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
 //!
-//! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::pair::Look) finds nothing of.
+//! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::look::Look) finds nothing of.
 
 use super::closest::MARGIN;
 use super::pair::Pair;

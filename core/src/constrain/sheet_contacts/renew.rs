@@ -6,7 +6,7 @@ use super::closest::{FARTHEST, MARGIN};
 use super::listing::Listing;
 use super::lists::{Kept, Work};
 use super::near::{Facts, Near};
-use super::rest::{Face, Rest};
+use super::rest::Rest;
 use super::tree::Ways;
 use crate::math::{dot, largest, length, max, sqrt};
 use glam::Vec3;
@@ -15,7 +15,7 @@ use glam::Vec3;
 /// searches.
 const STRETCH: f32 = 16.0;
 /// One triangle of so many may be astray before lists are made anew.
-const ASTRAY: usize = 4;
+const ASTRAY: usize = 2;
 
 impl Near<'_> {
     /// How far off its expected way one is at both ends of a sub-step that comes so many after the first.
@@ -70,7 +70,7 @@ impl Near<'_> {
     /// it goes in the sub-step, as what nothing holds goes on.
     fn make(
         &mut self,
-        rest: &Rest<'_>,
+        rest: (&Rest<'_>, Option<f32>),
         work: &mut Work<'_>,
         (substep, drift): (Substep, Vec3),
         velocity: impl Fn(usize) -> Vec3,
@@ -85,7 +85,7 @@ impl Near<'_> {
             }
         }
         let left = substep.count - substep.number;
-        let most = (STRETCH * rest.facts.budget * count / way).clamp(1.0, left as f32) as u32;
+        let most = (STRETCH * rest.0.facts.budget * count / way).clamp(1.0, left as f32) as u32;
         let skin = self.facts.skin;
         for (horizon, skin) in [(most, skin), (1, 0.25 * skin)] {
             *self.facts = Facts { first: substep.number, horizon, pairs: 0, full: 0, skin };
@@ -99,16 +99,15 @@ impl Near<'_> {
     }
 
     /// Lists whoever may come near each other; returns how many pairs there are. None: there is no room.
-    fn fill(&mut self, rest: &Rest<'_>, work: &mut Work<'_>) -> Option<usize> {
+    fn fill(&mut self, (rest, uniform): (&Rest<'_>, Option<f32>), work: &mut Work<'_>) -> Option<usize> {
         let Facts { horizon, skin, .. } = *self.facts;
         let ahead = horizon as f32;
         for (end, (base, going)) in work.searched.iter_mut().zip(self.base.iter().zip(&*self.going)) {
             *end = *base + *going * ahead;
         }
         let ways = Ways { from: self.base, to: work.searched };
-        let half = |face: &Face| (rest.widest(face) + rest.facts.budget) * (1.0 + MARGIN) + skin;
-        work.tree.fit(rest.faces, ways, half);
-        let mut listing = Listing::of(rest, ways, 2.0 * skin, self.pairs);
+        work.tree.fit((rest, uniform), ways, |half| (half + rest.facts.budget) * (1.0 + MARGIN) + skin);
+        let mut listing = Listing::of((rest, uniform), ways, 2.0 * skin, self.pairs);
         work.tree.pairs(rest.faces, true, |pair, corners| listing.add(pair, corners));
         listing.finish()
     }
@@ -124,6 +123,7 @@ pub(super) fn ready(
     drift: Vec3,
 ) -> Option<usize> {
     let substep = bodies.substep;
+    let uniform = kept.counts.uniform();
     let Kept { near, rows, .. } = kept;
     let near = near.as_mut().filter(|near| near.facts.full == 0)?;
     match near.follow(rest, work, substep, drift) {
@@ -131,7 +131,7 @@ pub(super) fn ready(
         _ => {}
     }
     let velocity = |i: usize| bodies.before[1].get(rows[i] as usize).copied().unwrap_or(Vec3::ZERO);
-    if !near.make(rest, work, (substep, drift), velocity) {
+    if !near.make((rest, uniform), work, (substep, drift), velocity) {
         return None;
     }
     bodies.report.effort.lists += 1;

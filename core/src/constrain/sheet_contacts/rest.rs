@@ -29,7 +29,12 @@ impl Face {
     }
 
     pub(super) fn edge(&self, i: usize) -> [u32; 2] {
-        [self.corners[i], self.corners[(i + 1) % 3]]
+        let [a, b, c] = self.corners;
+        match i {
+            0 => [a, b],
+            1 => [b, c],
+            _ => [c, a],
+        }
     }
 }
 
@@ -48,7 +53,7 @@ pub(super) struct Edge {
 pub(super) struct Facts {
     /// The name of whose all that is.
     name: u32,
-    /// 1 if the rest is known.
+    /// If the rest is known, 1 and how many particles were gone when it was last said whose own corners and edges are.
     known: u32,
     /// How far particles may be pushed before it has to be looked again who is near whom \[m\].
     pub(super) budget: f32,
@@ -127,8 +132,23 @@ impl<'m> Rest<'m> {
         }
         self.part();
         self.sort();
-        let edge = self.own(scratch);
-        *self.facts = Facts { known: 1, name: self.facts.name, budget: 0.25 * min(thinnest, edge) };
+        let is_there = |i: usize| particles.get(i).is_some_and(|&number| bodies.row_of_start(number).is_some());
+        let edge = self.own(is_there, scratch);
+        let known = 1 + gone(particles, bodies);
+        *self.facts = Facts { known, name: self.facts.name, budget: 0.25 * min(thinnest, edge) };
+    }
+
+    /// Gives corners and edges of triangles whose others have died since to those that are left, so that the rims of a tear are somebody's own; tells
+    /// whether some have died.
+    pub(super) fn bury(&mut self, particles: &[u32], bodies: &Bodies<'_>, scratch: &mut [u32]) -> bool {
+        let known = 1 + gone(particles, bodies);
+        if self.facts.known == known {
+            return false;
+        }
+        self.facts.known = known;
+        let is_there = |i: usize| particles.get(i).is_some_and(|&number| bodies.row_of_start(number).is_some());
+        self.own(is_there, scratch);
+        true
     }
 
     /// Finds the sheets: what hangs together.
@@ -178,21 +198,25 @@ impl<'m> Rest<'m> {
         }
     }
 
-    /// Says whose own corners and edges are; returns the mean length of all edges.
-    fn own(&mut self, scratch: &mut [u32]) -> f32 {
+    /// Says whose own corners and edges are: of triangles all of whose corners are there, where there are any; returns the mean length of all edges.
+    fn own(&mut self, is_there: impl Fn(usize) -> bool, scratch: &mut [u32]) -> f32 {
         let Self { places, faces, .. } = self;
         let mut rest = scratch;
         let taken = take(&mut rest, places.len());
-        taken.fill(0);
+        for (i, taken) in taken.iter_mut().enumerate() {
+            *taken = if is_there(i) { FREE } else { GONE };
+        }
         let edges: &mut [[u32; 3]] = bytemuck::cast_slice_mut(take(&mut rest, 9 * faces.len()));
         for (number, face) in faces.iter_mut().enumerate() {
+            face.owns = 0;
+            let is_torn = !face.corners.iter().all(|&i| taken.get(i as usize).is_some_and(|&state| state != GONE));
             for i in 0..3 {
-                let [a, b] = face.edge(i);
+                let ([a, b], last) = (face.edge(i), if is_torn { TORN } else { 0 });
                 if let Some(edge) = edges.get_mut(3 * number + i) {
-                    *edge = [a.min(b), a.max(b), (3 * number + i) as u32];
+                    *edge = [a.min(b), a.max(b), last | (3 * number + i) as u32];
                 }
-                if let Some(taken) = taken.get_mut(a as usize).filter(|taken| **taken == 0) {
-                    *taken = 1;
+                if let Some(taken) = taken.get_mut(a as usize).filter(|taken| **taken == FREE && !is_torn) {
+                    *taken = TAKEN;
                     face.owns |= 1 << i;
                 }
             }
@@ -204,6 +228,7 @@ impl<'m> Rest<'m> {
                 continue;
             }
             last = [a, b];
+            let number = number & !TORN;
             faces[number as usize / 3].owns |= 8 << (number % 3);
             let [from, to] = last.map(|end| places.get(end as usize).copied().unwrap_or(Vec3::NAN));
             let long = length(to - from);
@@ -214,6 +239,18 @@ impl<'m> Rest<'m> {
         }
         sum / max(count, 1.0)
     }
+}
+
+/// Whether a corner is anyone's own yet, or not there.
+const FREE: u32 = 0;
+const TAKEN: u32 = 1;
+const GONE: u32 = 2;
+/// The bit that says of an edge's number that its triangle has lost a corner: so it comes after those of others.
+const TORN: u32 = 1 << 31;
+
+/// The number of particles that are not there.
+fn gone(particles: &[u32], bodies: &Bodies<'_>) -> u32 {
+    particles.iter().filter(|&&number| bodies.row_of_start(number).is_none()).count() as u32
 }
 
 /// Puts the `middle` triangles first that lie lowest along the longest side of the box around the middles of all.

@@ -7,9 +7,9 @@ use super::contact::Contact;
 use super::lists::{Kept, Work};
 use super::look::{Look, SHARE};
 use super::renew::ready;
-use super::rest::{Face, Rest};
+use super::rest::Rest;
 use super::tree::Ways;
-use super::waiting::Waiting;
+use crate::lanes::{ABREAST, LANES};
 use crate::material::of_two;
 use crate::math::max;
 use glam::Vec3;
@@ -21,11 +21,7 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     work.old[..known].copy_from_slice(&kept.contacts[..known]);
     let drift = drift(work);
     let astray = ready(rest, kept, work, bodies, drift);
-    let mut found = look(rest, kept, work, astray);
-    if found.lost > 0 && astray.is_some() {
-        // Which of them find room is for the order to say in which a search of all meets them.
-        found = look(rest, kept, work, None);
-    }
+    let found = look(rest, kept, work, astray);
     bodies.report.effort.streamed += u64::from(astray.is_none());
     bodies.report.caps.contacts += found.lost;
     let contacts = &mut kept.contacts[..found.count];
@@ -53,21 +49,26 @@ struct Found {
 
 /// Looks at all who may come near each other: by lists and at the triangles astray, of which there are so many, or all anew without lists.
 fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>) -> Found {
+    let found = look_at(rest, kept, work, astray, ABREAST < LANES);
+    // Which of them find room is for the order to say in which a search of all meets them one by one.
+    let is_said = ABREAST < LANES && astray.is_none();
+    if found.lost > 0 && !is_said { look_at(rest, kept, work, None, true) } else { found }
+}
+
+/// The same, one by one or side by side.
+fn look_at(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>, alone: bool) -> Found {
     let budget = rest.facts.budget;
     work.room.fill(2.0 * SHARE * budget);
     let (from, now) = (&*work.from, &*work.now);
-    let (count, lost, meetings, waiting) = (0, 0, 0, Waiting::none());
-    let uniform = rest.uniform();
-    let mut look =
-        Look { rest, uniform, from, now, room: work.room, contacts: kept.contacts, count, lost, meetings, waiting };
+    let uniform = kept.counts.uniform();
+    let mut look = Look::new((rest, uniform), [from, now], work.room, kept.contacts, alone);
     if let Some(near) = kept.near.as_ref().filter(|_| astray.is_some()) {
         let all = near.pairs(rest, work.tree.strays());
         all.for_each(|listed| look.at(listed.pair, listed.pair.corners(rest.faces), listed.wanted));
         look.finish();
     }
     if astray != Some(0) {
-        let half = |face: &Face| rest.widest(face) + budget;
-        work.tree.fit(rest.faces, Ways { from, to: now }, half);
+        work.tree.fit((rest, uniform), Ways { from, to: now }, |half| half + budget);
         work.tree.pairs(rest.faces, astray.is_none(), |pair, corners| look.at(pair, corners, f32::NAN));
         look.finish();
     }
@@ -147,4 +148,81 @@ fn drift(work: &Work<'_>) -> Vec3 {
     let (sum, count) =
         ways.filter(|way| way.is_finite()).fold((Vec3::ZERO, 0.0), |(sum, count), way| (sum + way, count + 1.0));
     sum / max(count, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lists;
+    use super::*;
+    use alloc::{vec, vec::Vec};
+    use bytemuck::Zeroable;
+
+    const COUNTS: [usize; 2] = [61, 48];
+
+    /// A heap of triangles of two sheets that move on a little, some of them through each other, all of whose corners and edges are their own.
+    fn heap(rest: &mut Rest<'_>, work: &mut Work<'_>, seed: u32) {
+        let mut state = seed;
+        let mut next = |most: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % most
+        };
+        let mut vector = |size: f32| Vec3::from([0; 3].map(|_| size * (next(1000) as f32 / 1000.0 - 0.5)));
+        rest.facts.budget = 0.01;
+        for i in 0..COUNTS[0] {
+            rest.places[i] = vector(10.0);
+            work.from[i] = vector(0.5);
+            work.now[i] = work.from[i] + vector(0.1);
+            (rest.half[i], rest.sheet[i]) = (0.02, (i / 30) as u32);
+        }
+        for face in &mut *rest.faces {
+            // The last particle is no corner.
+            let first = next(COUNTS[0] as u32 - 3);
+            *face = bytemuck::cast([first, first + 1, first + 2, 63]);
+        }
+    }
+
+    /// What is found where so many have room: by `look`, or one by one; as bits, contacts in their order or in that of their keys.
+    fn found(seed: u32, room: usize, alone: bool, astray: bool, sorted: bool) -> (usize, u64, u32, Vec<u32>) {
+        let demand = lists::demand(COUNTS);
+        let [mut fixed, mut step, mut scratch] =
+            [demand.kept, demand.step, demand.scratch].map(|words| vec![0u32; words.fixed]);
+        let mut rest = Rest::of(&mut fixed, COUNTS).expect("the memory is asked for");
+        let mut kept = Kept::of(&mut step, COUNTS).expect("the memory is asked for");
+        let mut work = Work::of(&mut scratch, COUNTS).expect("the memory is asked for");
+        heap(&mut rest, &mut work, seed);
+        kept.counts.compare(&rest);
+        let mut contacts = vec![Contact::zeroed(); room];
+        kept.contacts = &mut contacts;
+        let all = work.tree.mark(rest.faces, |_| f32::INFINITY);
+        let Found { count, lost, meetings } = if alone {
+            look_at(&rest, &mut kept, &mut work, None, true)
+        } else {
+            look(&rest, &mut kept, &mut work, astray.then_some(all))
+        };
+        let mut bits: Vec<u32> = work.room.iter().map(|room| room.to_bits()).collect();
+        if sorted {
+            contacts[..count].sort_by_key(Contact::key);
+        }
+        bits.extend_from_slice(bytemuck::cast_slice(&contacts[..count]));
+        (count, lost, meetings, bits)
+    }
+
+    #[test]
+    fn side_by_side_the_same_contacts_find_room_as_one_by_one() {
+        let mut unsure = 0;
+        for seed in 0..6 {
+            let (all, lost, meetings, _) = found(seed, 10_000, true, false, true);
+            assert!(all > 100 && lost == 0, "{all} {lost}");
+            unsure += meetings;
+            for room in [0, 1, 7, 8, 9, 40, all / 2, all - 1, all, all + 1] {
+                let one_by_one = found(seed, room, true, false, room >= all);
+                assert_eq!(one_by_one.0, room.min(all));
+                for astray in [false, true] {
+                    let side_by_side = found(seed, room, false, astray, room >= all);
+                    assert!(one_by_one == side_by_side, "{seed}, room for {room} of {all}, {astray}");
+                }
+            }
+        }
+        assert!(unsure > 10, "{unsure}");
+    }
 }

@@ -21,6 +21,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
     kept.counts.contacts = 0;
     if bodies.substep.number == 0 {
         taut::list(rest, kept);
+        kept.counts.compare(rest);
         if let Some(near) = &mut kept.near {
             near.forget(rest);
         }

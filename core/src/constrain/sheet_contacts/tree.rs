@@ -1,9 +1,9 @@
 //! Boxes around the ways of triangles, in a tree that their order at rest makes: what is near in the material is near in space.
 
-use super::blocks::Block;
+use super::blocks::{Block, Near};
 use super::bounds::Bounds;
 use super::pair::Pair;
-use super::rest::{BLOCK, Face};
+use super::rest::{BLOCK, Face, Rest};
 use crate::lanes::{self, Eight, Kernel};
 use crate::math::max;
 use crate::memory::take;
@@ -82,15 +82,24 @@ impl<'m> Tree<'m> {
         count
     }
 
-    /// Puts boxes around the ways of all particles, wider by what `reach` says of any of their triangles, and around those of triangles. A
-    /// triangle with a corner that is not sound is in none.
-    pub(super) fn fit(&mut self, faces: &[Face], ways: Ways<'_>, reach: impl Fn(&Face) -> f32) {
-        self.reach.fill(0.0);
-        for face in faces {
-            let reach = reach(face);
-            for corner in face.corners {
-                if let Some(far) = self.reach.get_mut(corner as usize) {
-                    *far = max(reach, *far);
+    /// Puts boxes around the ways of all particles, wider by what `reach` says of half the thickness of any of their triangles, and around those of
+    /// triangles. A triangle with a corner that is not sound is in none.
+    pub(super) fn fit(
+        &mut self,
+        (rest, uniform): (&Rest<'_>, Option<f32>),
+        ways: Ways<'_>,
+        reach: impl Fn(f32) -> f32,
+    ) {
+        let faces = &*rest.faces;
+        // Who has no triangle may have any reach.
+        self.reach.fill(uniform.map_or(0.0, &reach));
+        if uniform.is_none() {
+            for face in faces {
+                let reach = reach(rest.widest(face));
+                for corner in face.corners {
+                    if let Some(far) = self.reach.get_mut(corner as usize) {
+                        *far = max(reach, *far);
+                    }
                 }
             }
         }
@@ -108,13 +117,6 @@ impl<'m> Tree<'m> {
         for node in (1..inner.len()).rev() {
             self.nodes[node] = self.nodes[2 * node].and(&self.nodes[2 * node + 1]);
         }
-    }
-
-    /// A block, the box around it, and whether a triangle in it is marked.
-    #[inline(always)]
-    fn side(&self, block: usize) -> (&Block, &Bounds, bool) {
-        let node = self.blocks + block;
-        (&self.inside[block], &self.nodes[node], self.marks[node] != 0)
     }
 
     /// Visits every two features whose boxes overlap that have no corner in common: of all triangles, or those of which one's is marked.
@@ -173,58 +175,77 @@ impl<V: FnMut(Pair, [u32; 4])> Visit<'_, '_, V> {
         if b >= self.tree.inside.len() {
             return;
         }
-        let of = |block: usize| self.faces.chunks(BLOCK).nth(block).unwrap_or(&[]);
-        self.tree.inside[a].fit(of(a), self.tree.corners);
-        self.tree.inside[b].fit(of(b), self.tree.corners);
-        self.points(like, [a, b]);
+        self.fit(a);
+        self.fit(b);
+        let near = [self.near(like, [a, b]), self.near(like, [b, a])];
+        self.points(like, [a, b], near[1]);
         if a != b {
-            self.points(like, [b, a]);
+            self.points(like, [b, a], near[0]);
         }
-        self.edges(like, [a, b]);
+        self.edges(like, [a, b], near);
     }
 
-    /// Visits the corners of one block with the triangles of another.
+    /// What of a block is near another one, which is all that can be near any of that.
     #[inline(always)]
-    fn points<F: Eight>(&mut self, like: F, [a, b]: [usize; 2]) {
-        let Self { tree, faces, all, visit } = self;
-        let (other, around, some) = tree.side(b);
-        let is_marked = |face: usize| *all || tree.strays[face] == f32::INFINITY;
-        for feature in tree.inside[a].corners() {
-            let (i, k) = (BLOCK * a + feature / 4, feature % 4);
-            let (corner, counts) = (faces[i].corners[k], is_marked(i));
+    fn near<F: Eight>(&self, like: F, [a, b]: [usize; 2]) -> Near {
+        let Tree { inside, nodes, blocks, .. } = &*self.tree;
+        if a == b { Near::ALL } else { inside[a].near(like, &nodes[blocks + b]) }
+    }
+
+    /// Puts boxes around a block's features.
+    #[inline(always)]
+    fn fit(&mut self, block: usize) {
+        let Self { tree: Tree { inside, corners, strays, .. }, all, faces, .. } = self;
+        let first = BLOCK * block;
+        let faces = &faces[first..faces.len().min(first + BLOCK)];
+        inside[block].fit(faces, corners, |i| *all || strays[first + i] == f32::INFINITY);
+    }
+
+    /// Visits the corners of one block with those triangles of another that are near it.
+    #[inline(always)]
+    fn points<F: Eight>(&mut self, like: F, [a, b]: [usize; 2], near: Near) {
+        let Self { tree, faces, visit, .. } = self;
+        let (one, other, around) = (&tree.inside[a], &tree.inside[b], &tree.nodes[tree.blocks + b]);
+        let some = other.is_marked();
+        for feature in one.corners() {
+            let (i, k) = (feature / 4, feature % 4);
+            let corner = faces[BLOCK * a + i].corners[k];
             let bounds = &tree.corners[corner as usize];
-            if !(counts || some) || !bounds.overlaps(around) {
+            let counts = one.marks(i);
+            if !(counts || some) || near.faces == 0 || !bounds.overlaps(around) {
                 continue;
             }
-            for j in other.near_faces(like, bounds).map(|j| BLOCK * b + j) {
+            for j in other.near_faces(like, near, counts, bounds).map(|j| BLOCK * b + j) {
                 let [p, q, r] = faces[j].corners;
-                if corner != p && corner != q && corner != r && (counts || is_marked(j)) {
-                    visit(Pair::of_point([i, k], j), [corner, p, q, r]);
+                if corner != p && corner != q && corner != r {
+                    visit(Pair::of_point([BLOCK * a + i, k], j), [corner, p, q, r]);
                 }
             }
         }
     }
 
-    /// Visits the edges of one block with those of another.
+    /// Visits the edges of one block with those of another, of both those that are near the other one.
     #[inline(always)]
-    fn edges<F: Eight>(&mut self, like: F, [a, b]: [usize; 2]) {
-        let Self { tree, faces, all, visit } = self;
-        let (other, around, some) = tree.side(b);
-        let is_marked = |face: usize| *all || tree.strays[face] == f32::INFINITY;
-        for (place, feature) in tree.inside[a].edges().enumerate() {
-            let (i, k) = (BLOCK * a + feature / 4, feature % 4);
-            let ([p, q], counts) = (faces[i].edge(k), is_marked(i));
-            let bounds = tree.corners[p as usize].and(&tree.corners[q as usize]);
-            if !(counts || some) || !bounds.overlaps(around) {
+    fn edges<F: Eight>(&mut self, like: F, [a, b]: [usize; 2], [near, other_near]: [Near; 2]) {
+        let Self { tree, faces, visit, .. } = self;
+        let (one, other) = (&tree.inside[a], &tree.inside[b]);
+        let some = other.is_marked();
+        if other_near.edges == 0 {
+            return;
+        }
+        for (place, feature) in one.edges(near) {
+            let (i, k) = (feature / 4, feature % 4);
+            let ([p, q], counts) = (faces[BLOCK * a + i].edge(k), one.marks(i));
+            if !(counts || some) {
                 continue;
             }
+            let bounds = tree.corners[p as usize].and(&tree.corners[q as usize]);
             let first = if a == b { place + 1 } else { 0 };
-            for feature in other.near_edges(like, first, &bounds) {
+            for feature in other.near_edges(like, other_near, counts, first, &bounds) {
                 let (j, l) = (BLOCK * b + feature / 4, feature % 4);
                 let [r, s] = faces[j].edge(l);
-                let strangers = p != r && p != s && q != r && q != s;
-                if strangers && (counts || is_marked(j)) {
-                    visit(Pair::of_edges([i, k], [j, l]), [p, q, r, s]);
+                if p != r && p != s && q != r && q != s {
+                    visit(Pair::of_edges([BLOCK * a + i, k], [j, l]), [p, q, r, s]);
                 }
             }
         }

@@ -25,7 +25,8 @@ pub(super) struct Strain {
     pub(super) tension: f32,
     /// Its curvature, or the change of that: along warp, weft, and √2 times that between them \[1/m\].
     pub(super) curvature: [f32; 3],
-    /// The tension that its folds hold along its edges × h²: from the first corner to the second, to the third, and back \[kg\].
+    /// The tension that its folds hold along its edges × h²: from the first corner to the second, to the third, and back \[kg\]; once all
+    /// is solved, how long these edges may be at the most \[m\].
     pub(super) held: [f32; 3],
 }
 

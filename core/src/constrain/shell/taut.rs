@@ -1,7 +1,7 @@
 //! Edges of a shell that have come out longer than its linear system knows of.
 
-use super::eights::{WIDE, column, eight, gathered};
-use super::membrane::Cell;
+use super::eights::{WIDE, column, eight, eight_mut, gathered};
+use super::membrane::{Cell, Strain};
 use super::solver::{NOBODY, Solver, Vectors};
 use crate::constrain::{Bodies, walls};
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors as Side};
@@ -32,16 +32,30 @@ impl Solver<'_> {
         bodies.report.caps.edges += 1;
     }
 
+    /// Finds how long the edges of a triangle may be at the most: as they are at rest, or as what is solved means them to be; no number where
+    /// that does not say.
+    fn measure(&mut self, i: usize, bodies: &Bodies<'_>) {
+        let (Some(&corners), Some(cell), Some(strain)) =
+            (self.triangles.get(i), self.cells.get(i), self.strains.get_mut(i))
+        else {
+            return;
+        };
+        for side in 0..3 {
+            let edge = [corners[side] as usize, corners[(side + 1) % 3] as usize];
+            let meant = if cell.area > 0.0 { self.vectors.meant(edge, bodies) } else { f32::NAN };
+            strain.held[side] = if meant.is_nan() { meant } else { max(meant, cell.rest(side)) };
+        }
+    }
+
     /// Shortens the edges of a triangle, and stamps who goes with it; tells whether it had to.
     fn shorten(&mut self, i: usize, bodies: &Bodies<'_>, stamp: u32) -> bool {
-        let (Some(&corners), Some(cell)) = (self.triangles.get(i), self.cells.get(i)) else { return false };
-        if !(cell.area > 0.0) {
+        let (Some(&corners), Some(&Strain { held, .. })) = (self.triangles.get(i), self.strains.get(i)) else {
             return false;
-        }
+        };
         let mut some = false;
         for side in 0..3 {
             let edge = [corners[side] as usize, corners[(side + 1) % 3] as usize];
-            if self.shorten_edge(edge, |this| this.cells.get(i).map_or(0.0, |cell| cell.rest(side)), bodies) {
+            if self.vectors.shorten(edge, held[side], bodies) {
                 some = true;
                 let stamps = self.vectors.stamps();
                 edge.into_iter().for_each(|end| stamps[end] = stamp);
@@ -49,29 +63,33 @@ impl Solver<'_> {
         }
         some
     }
+}
 
-    fn shorten_edge(&mut self, [a, b]: [usize; 2], rest: impl Fn(&Self) -> f32, bodies: &Bodies<'_>) -> bool {
-        let Vectors { rows, weight, shift, p: solved, .. } = &self.vectors;
-        let (Some(&first), Some(&second)) = (rows.get(a), rows.get(b)) else { return false };
-        let ease = weight[a] + weight[b];
-        if first == NOBODY || second == NOBODY || !(ease > 0.0) {
-            return false;
-        }
-        let between = |of: &[Vec3]| of[second as usize] - of[first as usize];
-        let way = between(bodies.position);
-        let now = way + (shift[b] - shift[a]);
-        let before = between(bodies.before[0]);
+impl Vectors<'_> {
+    /// The rows of the ends of an edge that can be shortened.
+    fn ends(&self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
+        let [first, second] = [*self.rows.get(a)?, *self.rows.get(b)?];
+        let is_free = self.weight[a] + self.weight[b] > 0.0;
+        (first != NOBODY && second != NOBODY && is_free).then_some([first as usize, second as usize])
+    }
+
+    /// How long what is solved means an edge to be; no number, if there is none that can be shortened.
+    fn meant(&self, [a, b]: [usize; 2], bodies: &Bodies<'_>) -> f32 {
+        let Some([first, second]) = self.ends([a, b]) else { return f32::NAN };
+        let between = |of: &[Vec3]| of[second] - of[first];
+        let (way, before) = (between(bodies.position), between(bodies.before[0]));
+        length(way) + before.dot(self.p[b] - self.p[a]) / length(before)
+    }
+
+    fn shorten(&mut self, [a, b]: [usize; 2], most: f32, bodies: &Bodies<'_>) -> bool {
+        let Some([first, second]) = self.ends([a, b]) else { return false };
+        let Self { weight, shift, .. } = self;
+        let now = bodies.position[second] - bodies.position[first] + (shift[b] - shift[a]);
         let far = length(now);
-        let meant = length(way) + before.dot(solved[b] - solved[a]) / length(before);
-        if !(far > meant * (1.0 + SLACK)) {
-            return false;
-        }
-        let most = max(meant, rest(self));
         if !(far > most * (1.0 + SLACK)) {
             return false;
         }
-        let by = now * ((far - most) / (far * ease));
-        let Vectors { weight, shift, .. } = &mut self.vectors;
+        let by = now * ((far - most) / (far * (weight[a] + weight[b])));
         shift[a] += by * weight[a];
         shift[b] -= by * weight[b];
         true
@@ -91,7 +109,7 @@ impl Kernel for Tighten<'_, '_, '_, '_> {
     type Output = bool;
 
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> bool {
+    fn run<F: Eight>(mut self, like: F) -> bool {
         let (count, mut some) = (self.solver.triangles.len(), false);
         let eights = count.div_ceil(LANES) as u32;
         for (number, first) in (0..count).step_by(LANES).enumerate() {
@@ -99,10 +117,13 @@ impl Kernel for Tighten<'_, '_, '_, '_> {
             if self.before > 0 && self.stand_since(stamp - eights, first) {
                 continue;
             }
-            if !(WIDE && self.none_of_eight(like, first)) {
-                for i in first..count.min(first + LANES) {
-                    some |= self.solver.shorten(i, self.bodies, stamp);
-                }
+            let last = count.min(first + LANES);
+            if self.before == 0 && !(WIDE && self.measure_eight(like, first)) {
+                (first..last).for_each(|i| self.solver.measure(i, self.bodies));
+            }
+            let skipped = if WIDE { self.none_before(like, first) } else { 0 };
+            for i in first + skipped..last {
+                some |= self.solver.shorten(i, self.bodies, stamp);
             }
         }
         some
@@ -118,11 +139,36 @@ impl Tighten<'_, '_, '_, '_> {
         eight.as_flattened().iter().all(|&corner| stamps.get(corner as usize).is_none_or(|&last| last < stamp))
     }
 
-    /// Tells whether there are eight, all of them there, and none has an edge to be shortened: by the operations of `shorten_edge`.
+    /// The corners of eight as rows; none, if one of them is not there.
     #[inline(always)]
-    fn none_of_eight<F: Eight>(&self, like: F, first: usize) -> bool {
-        let all = self.edges(like, first);
-        let Some((cells, [now, meant])) = all else { return false };
+    fn rows(&self, corners: &[[u32; 3]; LANES]) -> Option<[[u32; 3]; LANES]> {
+        let mut rows = [[NOBODY; 3]; LANES];
+        for (row, corner) in rows.as_flattened_mut().iter_mut().zip(corners.as_flattened()) {
+            *row = *self.solver.vectors.rows.get(*corner as usize)?;
+        }
+        Some(rows)
+    }
+
+    /// Of eight, finds how long their edges may be at the most, by the operations of `measure`. Tells whether there are eight, all of them there.
+    #[inline(always)]
+    fn measure_eight<F: Eight>(&mut self, like: F, first: usize) -> bool {
+        let Some(most) = self.most(like, first) else { return false };
+        let Some(strains) = eight_mut(self.solver.strains, first) else { return false };
+        let most = most.map(Eight::to_array);
+        for (lane, strain) in strains.iter_mut().enumerate() {
+            strain.held = [most[0][lane], most[1][lane], most[2][lane]];
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn most<F: Eight>(&self, like: F, first: usize) -> Option<[F; 3]> {
+        let Solver { triangles, cells, ref vectors, .. } = *self.solver;
+        let (corners, cells) = (eight(triangles, first)?, eight(cells, first)?);
+        let rows = self.rows(corners)?;
+        let places: [Side<F>; 3] = gathered(like, self.bodies.position, &rows)?;
+        let before: [Side<F>; 3] = gathered(like, self.bodies.before[0], &rows)?;
+        let solved: [Side<F>; 3] = gathered(like, vectors.p, corners)?;
         let twice = like.all(2.0) * column!(like, cells, |cell| cell.area);
         let [a, b, c, d] = [
             column!(like, cells, |cell| cell.inverse[0]),
@@ -132,36 +178,46 @@ impl Tighten<'_, '_, '_, '_> {
         ];
         let (e, f) = ([d * twice, lanes::negated(b) * twice], [lanes::negated(c) * twice, a * twice]);
         let sides = [e, [f[0] - e[0], f[1] - e[1]], f];
-        let slack = like.all(1.0 + SLACK);
-        let mut some = like.all(0.0);
+        let (none, is_there) = (like.all(f32::NAN), twice.simd_gt(like.all(0.0)));
+        let mut most = [none; 3];
         for side in 0..3 {
-            let [x, y] = sides[side];
-            let most = lanes::max(meant[side], (x * x + y * y).sqrt());
-            some = some | (now[side].simd_gt(meant[side] * slack) & now[side].simd_gt(most * slack));
+            let ([x, y], before) = (sides[side], edge(&before, side));
+            let meant = edge(&places, side).length() + before.dot(edge(&solved, side)) / before.length();
+            let rest = (x * x + y * y).sqrt();
+            most[side] = (is_there & meant.simd_eq(meant)).select(lanes::max(meant, rest), none);
         }
-        !(some & twice.simd_gt(like.all(0.0))).any()
+        Some(most)
     }
 
-    /// How long the edges of eight are, and mean to be.
+    /// The number of those of eight that come before the first which has an edge to be shortened, by the operations of `shorten`.
     #[inline(always)]
-    fn edges<F: Eight>(&self, like: F, first: usize) -> Option<(&[Cell; LANES], [[F; 3]; 2])> {
-        let Solver { triangles, cells, ref vectors, .. } = *self.solver;
-        let (corners, cells) = (eight(triangles, first)?, eight(cells, first)?);
-        let mut rows = [[NOBODY; 3]; LANES];
-        for (row, corner) in rows.as_flattened_mut().iter_mut().zip(corners.as_flattened()) {
-            *row = *vectors.rows.get(*corner as usize)?;
-        }
-        let places: [Side<F>; 3] = gathered(like, self.bodies.position, &rows)?;
-        let before: [Side<F>; 3] = gathered(like, self.bodies.before[0], &rows)?;
-        let shift: [Side<F>; 3] = gathered(like, vectors.shift, corners)?;
-        let solved: [Side<F>; 3] = gathered(like, vectors.p, corners)?;
-        let [mut now, mut meant] = [[like.all(0.0); 3]; 2];
+    fn none_before<F: Eight>(&self, like: F, first: usize) -> usize {
+        let Some((strains, now)) = self.now(like, first) else { return 0 };
+        let most = [
+            column!(like, strains, |strain| strain.held[0]),
+            column!(like, strains, |strain| strain.held[1]),
+            column!(like, strains, |strain| strain.held[2]),
+        ];
+        let (slack, mut some) = (like.all(1.0 + SLACK), like.all(0.0));
         for side in 0..3 {
-            let (way, before) = (edge(&places, side), edge(&before, side));
-            now[side] = (way + edge(&shift, side)).length();
-            meant[side] = way.length() + before.dot(edge(&solved, side)) / before.length();
+            some = some | now[side].simd_gt(most[side] * slack);
         }
-        Some((cells, [now, meant]))
+        LANES.min(some.to_bitmask().trailing_zeros() as usize)
+    }
+
+    /// How long the edges of eight are; none, if one of them is not there.
+    #[inline(always)]
+    fn now<F: Eight>(&self, like: F, first: usize) -> Option<(&[Strain; LANES], [F; 3])> {
+        let Solver { triangles, ref strains, ref vectors, .. } = *self.solver;
+        let (corners, strains) = (eight(triangles, first)?, eight(strains, first)?);
+        let rows = self.rows(corners)?;
+        let places: [Side<F>; 3] = gathered(like, self.bodies.position, &rows)?;
+        let shift: [Side<F>; 3] = gathered(like, vectors.shift, corners)?;
+        let mut now = [like.all(0.0); 3];
+        for (side, now) in now.iter_mut().enumerate() {
+            *now = (edge(&places, side) + edge(&shift, side)).length();
+        }
+        Some((strains, now))
     }
 }
 
