@@ -203,7 +203,7 @@ fn ropes_that_are_thrown_about_gain_no_energy() {
 fn what_falls_goes_on_turning() {
     let mut random = Random::new(17);
     for (links, closed) in [(2, false), (4, false), (9, true)] {
-        for (method, substeps) in Method::ALL.into_iter().zip([1, 5, 20, 50].into_iter().cycle()) {
+        for (method, substeps) in Method::ALL.iter().zip([1, 5, 20, 50].into_iter().cycle()) {
             let like = Like { links, compliance: 0.0, closed, tether: false, uneven: 0.5, far: 30.0, fast: 1.0 };
             let flying = flying(like, &mut random);
             let (start, constraints) = (&flying.start, &flying.rope);
