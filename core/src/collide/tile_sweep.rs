@@ -181,8 +181,8 @@ impl TileSweep<'_, '_> {
     /// Lets those lie who may and are listed.
     #[inline(never)]
     fn go_listed(&mut self, Waiting { face, lying, bouncing }: &mut Waiting) {
-        let (eights, last) = lying.take_eights();
-        self.lie(eights, last, face, bouncing);
+        let (eights, len) = lying.take_eights();
+        self.lie(eights, len, face, bouncing);
     }
 
     /// Lets those go who still wait.

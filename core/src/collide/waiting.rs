@@ -20,7 +20,7 @@ pub(super) struct Queue {
 }
 
 /// Rows that go together, the first of them in place of those that are missing, and how many they are. Where only eight go together, these
-/// are the first eight.
+/// are the first eight, and the second.
 #[derive(Clone, Copy)]
 pub(super) struct Packet<'q> {
     pub(super) rows: [&'q [u32; LANES]; PARTS],

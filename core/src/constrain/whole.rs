@@ -92,8 +92,8 @@ impl<'a> Group<'a> {
 
     /// Tells whether their velocities have changed all alike, to rounding, since they were these: nothing has turned them.
     pub(super) fn goes_on(self, before: &[Vec3]) -> bool {
-        let speeds =
-            || self.rows.iter().filter_map(|&row| Some([self.velocity[row as usize], *before.get(row as usize)?]));
+        let speed = |&row: &u32| Some([*self.velocity.get(row as usize)?, *before.get(row as usize)?]);
+        let speeds = || self.rows.iter().filter_map(speed);
         let Some([first, was]) = speeds().next() else { return false };
         let sizes = |[now, was]: [Vec3; 2]| largest(now) + largest(was);
         speeds().all(|[now, then]| {

@@ -164,7 +164,8 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
         }
         if first < last {
             let aim = self.spread.aim();
-            births.bring(number, self.rate, [first, last], |births, at| self.bear(births, number, at, aim));
+            let ahead = self.where_sparse.is_none();
+            births.bring(number, self.rate, ahead, [first, last], |births, at| self.bear(births, number, at, aim));
         }
     }
 }

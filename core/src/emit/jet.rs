@@ -59,7 +59,7 @@ impl<S: Surface + Sync> Emit for Jet<S> {
 
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
         let number = births.claim();
-        births.bring(number, self.rate, [from, to], |births, at| {
+        births.bring(number, self.rate, true, [from, to], |births, at| {
             births.give_like(number, at, &self.newborn, |(_, pairs)| self.start(pairs, at)).is_ok()
         });
     }

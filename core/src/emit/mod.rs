@@ -211,11 +211,19 @@ impl Births<'_> {
         let _ = self.bear(stream, &particle, &Start::of(&particle, at));
     }
 
-    /// Lets the births happen that a rate owes in a span, as long as `bear` says that they find room; refuses the others.
-    fn bring(&mut self, number: usize, rate: f32, [from, to]: [Time; 2], bear: impl Fn(&mut Self, Time) -> bool) {
+    /// Lets the births happen that a rate owes in a span, as long as `bear` says that they find room; refuses the others. What they draw in any
+    /// case may be drawn `ahead`.
+    fn bring(
+        &mut self,
+        number: usize,
+        rate: f32,
+        ahead: bool,
+        [from, to]: [Time; 2],
+        bear: impl Fn(&mut Self, Time) -> bool,
+    ) {
         let mut due = self.due(number, rate, from, to);
         while !self.is_full() {
-            if due.left() > 1 {
+            if ahead && due.left() > 1 {
                 self.look_ahead(number);
             }
             let Some(at) = due.next() else { return };

@@ -354,7 +354,10 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         let (mut links, work) = self.links_of(bodies, share.scratch);
         if soft > 0.0 {
             self.catch_up(bodies, &mut links);
+            // Nothing is known of them any longer.
             links.pull.fill(0.0);
+            links.normal.fill(Vec3::ZERO);
+            links.change.fill(0.0);
         }
         let mut bounds = Bounds::of(self.form(), bodies, links.rows, share.kept.fixed, work);
         if let Some(bounds) = &mut bounds {

@@ -132,9 +132,8 @@ impl<'m> Rest<'m> {
         }
         self.part();
         self.sort();
-        let is_there = |i: usize| particles.get(i).is_some_and(|&number| bodies.row_of_start(number).is_some());
-        let edge = self.own(is_there, scratch);
         let known = 1 + gone(particles, bodies);
+        let edge = self.give(particles, bodies, scratch);
         *self.facts = Facts { known, name: self.facts.name, budget: 0.25 * min(thinnest, edge) };
     }
 
@@ -146,9 +145,14 @@ impl<'m> Rest<'m> {
             return false;
         }
         self.facts.known = known;
-        let is_there = |i: usize| particles.get(i).is_some_and(|&number| bodies.row_of_start(number).is_some());
-        self.own(is_there, scratch);
+        self.give(particles, bodies, scratch);
         true
+    }
+
+    /// Gives corners and edges to triangles all of whose particles are there. Returns the mean length of all edges \[m\].
+    fn give(&mut self, particles: &[u32], bodies: &Bodies<'_>, scratch: &mut [u32]) -> f32 {
+        let is_there = |i: usize| particles.get(i).is_some_and(|&number| bodies.row_of_start(number).is_some());
+        self.own(is_there, scratch)
     }
 
     /// Finds the sheets: what hangs together.
