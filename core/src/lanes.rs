@@ -24,6 +24,8 @@ pub(crate) use hits::{COUNTS, HITS};
 #[cfg(any(test, target_os = "none"))]
 pub(crate) use one::One;
 pub(crate) use row::{Row, load, mask_of, saved};
+#[cfg(test)]
+pub(crate) use run::NARROW;
 pub(crate) use run::{run, run_abreast, run_at_length, run_broad, widest};
 pub(crate) use sums::{Pull, dot, splat, sqrt, total, turned};
 pub(crate) use vectors::{Vectors, gathered};

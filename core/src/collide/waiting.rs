@@ -19,7 +19,7 @@ pub(super) struct Queue {
     len: usize,
 }
 
-/// Rows that go together, the first of them in place of those that are missing, and how many they are. Where only eight go together, these
+/// Rows that go together, others of them in place of those that are missing, and how many they are. Where only eight go together, these
 /// are the first eight, and the second.
 #[derive(Clone, Copy)]
 pub(super) struct Packet<'q> {
@@ -27,7 +27,14 @@ pub(super) struct Packet<'q> {
     pub(super) len: usize,
 }
 
-/// Rows that have waited, and where they were; the first of them is in place of those that are missing.
+/// The place of what is put in a missing one's, where there are so many: the first of the same eight, which may go without the others; if all
+/// eight are missing, the first of all, with whom they go.
+pub(super) fn in_place_of(i: usize, len: usize) -> usize {
+    let first = i / LANES * LANES;
+    if first < len { first } else { 0 }
+}
+
+/// Rows that have waited, and where they were, with others [in place of](in_place_of) those that are missing.
 #[derive(Clone, Copy)]
 pub(super) struct Waited<'q> {
     pub(super) rows: &'q [[u32; LANES]; PARTS],
@@ -121,9 +128,9 @@ impl Queue {
     pub(super) fn take(&mut self) -> Option<Waited<'_>> {
         let len = core::mem::take(&mut self.len);
         let (rows, starts) = (self.rows.as_flattened_mut(), self.starts.as_flattened_mut());
-        let first = (rows[0], starts[0]);
-        rows[len..].fill(first.0);
-        starts[len..].fill(first.1);
+        for i in len..rows.len() {
+            (rows[i], starts[i]) = (rows[in_place_of(i, len)], starts[in_place_of(i, len)]);
+        }
         (len > 0).then_some(Waited { rows: &self.rows, starts: &self.starts, len })
     }
 }

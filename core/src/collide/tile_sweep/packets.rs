@@ -165,7 +165,7 @@ impl TileSweep<'_, '_> {
                 }
             } else {
                 for (i, ((row, place), speed)) in lanes.enumerate() {
-                    // Who is missing is the first over again.
+                    // Who is missing is another over again.
                     if settled >> i & 1 != 0 {
                         put(position, velocity, *row, [place, speed]);
                     }
@@ -282,4 +282,68 @@ fn places_from(first: usize, [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [usize;
 #[inline(always)]
 fn put(position: &mut [Vec3], velocity: &mut [Vec3], row: usize, [[x, y, z, _], [u, v, w, _]]: [&[f32; 4]; 2]) {
     (position[row], velocity[row]) = (Vec3::new(*x, *y, *z), Vec3::new(*u, *v, *w));
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::lanes::NARROW;
+    use crate::observe::Observer;
+    use crate::rng::Stream;
+    use crate::shape::{Cuboid, Mesh, Plane, Scenery, Shape, Sphere, Surface};
+    use crate::{Gravity, Heap, Particle, Scene, Symplectic, System, Time};
+    use alloc::vec::Vec;
+    use glam::Vec3;
+
+    /// Wants to be told of everything, which is done one by one.
+    struct Watching;
+
+    impl Observer for Watching {}
+
+    /// Points that are thrown onto the ground, and come to lie on it.
+    fn thrown(count: u32) -> Vec<Particle> {
+        let thrown = |i| {
+            let ([x, y], [z, u], [v, w]) =
+                (Stream::new(5, 0, i).units(0), Stream::new(5, 0, i).units(1), Stream::new(5, 0, i).units(2));
+            let position = Vec3::new(2.0 * x - 1.0, 0.2 * y, 2.0 * z - 1.0);
+            Particle { position, velocity: Vec3::new(u, v, w) * 4.0 - 2.0, elasticity: 0.8 * w, ..Particle::REST }
+        };
+        (0..count).map(thrown).collect()
+    }
+
+    /// The fingerprint of some points in a scene after a second.
+    fn ends(scene: &Scene<'_>, observer: &mut dyn Observer) -> u64 {
+        let mut system = System::with(Heap::new(scene.size_for(scene.start.len())));
+        system.start(scene, 1).expect("the memory was made for the scene");
+        (0..60).for_each(|_| {
+            system.step_observed(scene, Time::frame(1, 60), observer);
+        });
+        system.hash()
+    }
+
+    /// However many there are, and so however many places of the last packet are empty.
+    #[test]
+    fn eight_and_more_at_once_do_what_each_does_alone() {
+        let ground: Shape<Mesh<'_>> = Shape::Plane(Plane { point: Vec3::ZERO, normal: Vec3::Y });
+        let things = |i: u32| {
+            let center = Vec3::new(0.5 * i as f32 - 1.0, 0.0, 0.25 * i as f32 - 0.5);
+            let chest = Shape::Box(Cuboid { min: center - 0.1, max: center + 0.1 });
+            if i.is_multiple_of(2) { chest } else { Shape::Sphere(Sphere { center, radius: 0.15 }) }
+        };
+        let all = [ground.clone()].into_iter().chain((0..5).map(things));
+        let among = Scenery::new(all.map(|thing| (thing.clone(), thing.bounds())).collect());
+        for count in [1, 7, 8, 9, 12, 15, 16, 17, 23, 25, 40, 200] {
+            let start = thrown(count);
+            let parts = Scene { start: &start, forces: &Gravity::EARTH, integrator: &Symplectic, ..Scene::EMPTY };
+            for (nth, scene) in
+                [Scene { colliders: &ground, ..parts }, Scene { colliders: &among, ..parts }].iter().enumerate()
+            {
+                let alone = ends(scene, &mut Watching);
+                let broad = ends(scene, &mut ());
+                NARROW.set(true);
+                let narrow = ends(scene, &mut ());
+                NARROW.set(false);
+                assert_eq!([broad, narrow], [alone; 2], "{count} in scene {nth}");
+            }
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::TileSweep;
 use super::packets::Unsettled;
 use crate::collide::packet::Things;
 use crate::collide::tile::Tile;
-use crate::collide::waiting::Packet;
+use crate::collide::waiting::{Packet, in_place_of};
 use crate::lanes::{BroadKernel, LANES, Lanes, PARTS};
 use crate::shape::{Face, Solid};
 use glam::Vec3;
@@ -68,16 +68,17 @@ impl Pairs {
         self.len == PARTS * LANES
     }
 
-    /// Takes all out that are there, and says how many; the first of them is in place of those that are missing.
+    /// Takes all out that are there, with others [in place of](in_place_of) those that are missing, and says how many.
     pub(super) fn take(&mut self) -> Option<(usize, Self)> {
         let len = self.len;
         let mut taken = core::mem::replace(self, Self::EMPTY);
         let (rows, solids) = (taken.rows.as_flattened_mut(), taken.solids.as_flattened_mut());
         for i in len..rows.len() {
-            (rows[i], solids[i]) = (rows[0], solids[0]);
+            let other = in_place_of(i, len);
+            (rows[i], solids[i]) = (rows[other], solids[other]);
+            taken.after |= (taken.after >> other & 1) << i;
+            taken.alone |= (taken.alone >> other & 1) << i;
         }
-        taken.after |= (taken.after & 1).wrapping_neg() << len;
-        taken.alone |= (taken.alone & 1).wrapping_neg() << len;
         (len > 0).then_some((len, taken))
     }
 }
