@@ -118,7 +118,8 @@ fn coarse(like: Like, flying: &Flying, sum: u64) -> [f64; 2] {
     // What is straight to so many roundings is a line to the engine, which carries nothing about itself.
     let line = 20.0 * coarse / (0.1 * links as f64);
     // Soft links that have all the energy that they may have, and are rounded shorter, turn slower for a while: by what roundings have come to, Σ m v × that.
-    let slower = 2.0 * coarse * (sum as f64).sqrt() * way / gap(spin(&flying.start, &x, &v), [0.0; 3]);
+    // A rounding is by half of `coarse`, and of one sense for as long as velocities stay, for some hundreds of sub-steps, whose root is 20.
+    let slower = 0.5 * 20.0 * coarse * (sum as f64).sqrt() * way / gap(spin(&flying.start, &x, &v), [0.0; 3]);
     [line + shown, if compliance > 0.0 { slower } else { line } + shown]
 }
 

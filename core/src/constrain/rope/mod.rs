@@ -36,7 +36,8 @@ use links::{Links, NOBODY, put};
 /// What nobody holds is given back what rounding of its places takes of its angular momentum about its middle, wherever it is. What is straight, to eight
 /// roundings of its coordinates, ε |x|, cannot have any about itself: until it bends it may be without a share of 2e-5 + 8 ε |x| / r of all, r being how far its
 /// ends are from its middle. Far off, rounding strains soft links by α⁻¹ (2 ε |x|)² / 2 each, which counts for nothing in its energy; and it drives them: a soft rope
-/// of a link or two that has come to all the energy it may have turns slower for a while (in 50 sub-steps by up to 1 % 30 m off, by 5 % at 100 m).
+/// that has come to all the energy it may have turns slower for a while (in 50 sub-steps by up to 1 % 30 m off, by 5 % at 100 m; one of a single link so soft
+/// that it is slack most of the time, by a third within a minute at 30 m).
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
