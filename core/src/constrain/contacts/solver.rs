@@ -14,7 +14,7 @@ use glam::Vec3;
 const SETTLING: u32 = 2;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
-/// How many roundings of its velocity each particle may have gone through. Gravity that adds less than that in a sub-step, in one of a hundredth of a
+/// The number of roundings that each particle's velocity may have gone through. Gravity that adds less than that in a sub-step, in one of a hundredth of a
 /// frame where all fall at some 850 m/s, counts for none.
 const ROUNDINGS: f32 = 8.0;
 

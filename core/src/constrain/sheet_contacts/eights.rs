@@ -110,7 +110,7 @@ pub(super) fn apart<F: Eight>(kind: Kind, [b, c, d]: &Seen<F>, direction: Vector
     }
 }
 
-/// What is found at first glance of how far they are apart at both ends.
+/// Bounds on how far they are apart at both ends, found at first glance.
 #[derive(Clone, Copy)]
 pub(super) struct Gaps<F> {
     boxes: F,

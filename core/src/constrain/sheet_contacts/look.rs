@@ -37,7 +37,7 @@ pub(super) struct Look<'m, 'r> {
     waiting: [Waiting; 2],
     /// True if each is looked at alone, in the order in which they come.
     alone: bool,
-    /// What has come of the last eight.
+    /// The outcome for the last eight.
     met: Met,
 }
 
@@ -165,7 +165,7 @@ impl Together<'_, '_> {
         Some([seen(like, self.from, corners)?, seen(like, self.now, corners)?])
     }
 
-    /// What is seen of them at first glance: a direction that keeps them apart counts where they are not too fast.
+    /// The bounds that are found at first glance: a direction that keeps them apart counts where they are not too fast.
     #[inline(always)]
     fn gaps<F: Eight>(&self, like: F, ends: &[Seen<F>; 2]) -> Gaps<F> {
         let fast = like.all(2.0 * FARTHEST * self.rest.facts.budget);
@@ -186,7 +186,7 @@ impl Together<'_, '_> {
     }
 }
 
-/// What comes of those that come near each other.
+/// The outcome for those that come near each other.
 #[derive(Default)]
 struct Met {
     weights: [[f32; 4]; LANES],

@@ -245,7 +245,7 @@ impl<'m> Rest<'m> {
     }
 }
 
-/// Whether a corner is anyone's own yet, or not there.
+/// The state of a corner: it is nobody's own yet, somebody's, or not there.
 const FREE: u32 = 0;
 const TAKEN: u32 = 1;
 const GONE: u32 = 2;

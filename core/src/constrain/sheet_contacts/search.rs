@@ -181,7 +181,7 @@ mod tests {
         }
     }
 
-    /// What is found where so many have room: by `look`, or one by one; as bits, contacts in their order or in that of their keys.
+    /// The outcome of a search where so many have room: by `look`, or one by one; as bits, contacts in their order or in that of their keys.
     fn found(seed: u32, room: usize, alone: bool, astray: bool, sorted: bool) -> (usize, u64, u32, Vec<u32>) {
         let demand = lists::demand(COUNTS);
         let [mut fixed, mut step, mut scratch] =
