@@ -1,7 +1,8 @@
 //! The links of a rope in a sub-step, and the direct solution for what they pull.
 
-use super::super::Bodies;
-use crate::math::{length, max, sqrt};
+use super::super::{Bodies, SHIFTED};
+use crate::index::{Room, between};
+use crate::math::{largest, length, max, sqrt};
 use crate::memory::take;
 use glam::Vec3;
 
@@ -12,61 +13,115 @@ const RIDGE: f32 = 1e-6;
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
-/// Moves a particle, and its velocity with it; puts one that is fixed to a place, and leaves its velocity.
-pub(super) fn put(bodies: &mut Bodies<'_>, row: usize, by: Vec3, to: Vec3) {
-    if bodies.inverse_mass[row] > 0.0 {
-        bodies.shift(row, by);
-    } else {
-        bodies.position[row] = to;
-    }
-}
+/// Words for each particle.
+pub(super) const WORDS: usize = 21;
 
-/// The links of a chain in a sub-step. Link i joins the particles i and i + 1, the last one of a closed chain its last and first.
+/// The links of a chain in a sub-step. Link i joins the particles i and i + 1, the last one of a closed chain its last and first. They move copies of
+/// their particles, told from near, so that the shortest of paces loses nothing in rounding, wherever they are.
 pub(super) struct Links<'m> {
     /// The number of links.
     pub(super) count: usize,
     /// How far it all goes wrong, summed over the links: nothing is moved farther than twice that.
     pub(super) reach: f32,
+    /// Where places are told from \[m\], and the room that they are in.
+    origin: Vec3,
+    room: Option<Room>,
     /// The row of each particle.
     pub(super) rows: &'m mut [u32],
-    /// λ of each link, below zero where it pulls [kg m], or [kg m/s] where velocities are settled.
+    /// λ of each link, below zero where it pulls \[kg m\], or \[kg m/s\] where velocities are settled.
     pub(super) pull: &'m mut [f32],
     /// By how much the link has to get longer; when it has been solved, the change of its λ.
-    pub(super) change: &'m mut [f32],
+    change: &'m mut [f32],
     /// What elimination has left beside the diagonal, and of the column of the link that closes the chain.
-    pub(super) upper: &'m mut [f32],
-    pub(super) border: &'m mut [f32],
+    upper: &'m mut [f32],
+    border: &'m mut [f32],
+    /// The inverse mass of each particle \[1/kg\].
+    weight: &'m mut [f32],
     /// The direction that each link has, to its first end; zero if it is not to act.
-    pub(super) normal: &'m mut [Vec3],
+    normal: &'m mut [Vec3],
     /// The direction along which it acts.
     pub(super) way: &'m mut [Vec3],
-    /// Where the method has moved each particle.
-    pub(super) aim: &'m mut [Vec3],
+    /// Where each particle is \[m\], and how fast it goes \[m/s\].
+    place: &'m mut [Vec3],
+    pub(super) velocity: &'m mut [Vec3],
+    /// Velocities put by \[m/s\].
+    aside: &'m mut [Vec3],
 }
 
 /// A link as it lies.
 pub(super) struct Line {
-    pub(super) rows: [usize; 2],
+    pub(super) ends: [usize; 2],
     pub(super) apart: Vec3,
     pub(super) distance: f32,
     pub(super) normal: Vec3,
+    /// The sum of its ends' inverse masses \[1/kg\].
+    pub(super) weight: f32,
+}
+
+/// What the changes of λ move: places and velocities, by so much of what they move.
+#[derive(Clone, Copy)]
+pub(super) struct Moves {
+    places: f32,
+    velocities: f32,
+}
+
+impl Moves {
+    /// Velocities alone.
+    pub(super) const VELOCITIES: Self = Self { places: 0.0, velocities: 1.0 };
+
+    /// Places, and velocities by what that is over a time \[s\].
+    pub(super) fn places_in(time: f32) -> Self {
+        Self { places: 1.0, velocities: 1.0 / time }
+    }
+}
+
+/// The particles that are there, and their rows.
+fn living(rows: &[u32]) -> impl DoubleEndedIterator<Item = (usize, usize)> + Clone + use<'_> {
+    rows.iter().map(|&row| row as usize).enumerate().filter(|&(_, row)| row != NOBODY as usize)
 }
 
 impl<'m> Links<'m> {
-    /// Memory for them, in which nothing acts.
-    pub(super) fn new(words: &'m mut [u32], particles: usize, links: usize) -> Self {
+    /// Memory for them, in which nothing acts, and what is left of it.
+    pub(super) fn new(words: &'m mut [u32], particles: usize, links: usize) -> (Self, &'m mut [u32]) {
         let mut rest = words;
-        let rows = take(&mut rest, particles);
+        let mut own = take(&mut rest, WORDS * particles);
+        own.fill(0);
+        let rows = take(&mut own, particles);
         rows.fill(NOBODY);
-        let mut floats = |count: usize| {
-            let words = take(&mut rest, count);
-            words.fill(0);
-            words
+        let [pull, change, upper, border, weight] =
+            [(); 5].map(|()| bytemuck::cast_slice_mut(take(&mut own, particles)));
+        let [normal, way, place, velocity, aside] =
+            [(); 5].map(|()| bytemuck::cast_slice_mut(take(&mut own, 3 * particles)));
+        let (count, origin, room) = (links.min(aside.len()), Vec3::ZERO, None);
+        #[rustfmt::skip]
+        let nothing = Self {
+            count, reach: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
         };
-        let [pull, change, upper, border] = core::array::from_fn(|_| bytemuck::cast_slice_mut(floats(particles)));
-        let [normal, way, aim] = core::array::from_fn(|_| bytemuck::cast_slice_mut(floats(3 * particles)));
-        let count = links.min(aim.len());
-        Self { count, reach: 0.0, rows, pull, change, upper, border, normal, way, aim }
+        (nothing, rest)
+    }
+
+    /// Copies where all are, how fast they go and how heavy they are.
+    pub(super) fn take_up(&mut self, bodies: &Bodies<'_>) {
+        let first = living(self.rows).next();
+        self.origin = first.map_or(Vec3::ZERO, |(_, row)| bodies.before[0][row]);
+        self.room = bodies.near.room().copied();
+        for (particle, row) in living(self.rows) {
+            self.place[particle] = between(self.room.as_ref(), self.origin, bodies.position[row]);
+            self.velocity[particle] = bodies.velocity[row];
+            self.weight[particle] = bodies.inverse_mass[row];
+        }
+    }
+
+    /// Moves all to where the copies are, with their velocities; those that are fixed stay.
+    pub(super) fn hand_back(&self, bodies: &mut Bodies<'_>) {
+        for (particle, row) in living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0) {
+            let by = self.place[particle] - between(self.room.as_ref(), self.origin, bodies.position[row]);
+            if by != Vec3::ZERO && by.is_finite() {
+                bodies.position[row] += by;
+                bodies.marks[row] |= SHIFTED;
+            }
+            bodies.velocity[row] = self.velocity[particle];
+        }
     }
 
     /// The numbers of a link's ends among the particles.
@@ -76,15 +131,39 @@ impl<'m> Links<'m> {
     }
 
     /// A link as it lies; none if it cannot act.
-    pub(super) fn line(&self, bodies: &Bodies<'_>, link: usize) -> Option<Line> {
-        let rows = self.ends(link).map(|end| self.rows[end] as usize);
-        let [p, q] = rows;
-        if p >= bodies.len() || q >= bodies.len() || !(bodies.inverse_mass[p] + bodies.inverse_mass[q] > 0.0) {
+    pub(super) fn line(&self, link: usize) -> Option<Line> {
+        let ends = self.ends(link);
+        let [p, q] = ends;
+        let weight = self.weight[p] + self.weight[q];
+        if ends.iter().any(|&end| self.rows[end] == NOBODY) || !(weight > 0.0) {
             return None;
         }
-        let apart = bodies.between(q, p);
+        let apart = between(self.room.as_ref(), self.place[q], self.place[p]);
         let distance = length(apart);
-        (distance > 0.0 && distance < f32::INFINITY).then(|| Line { rows, apart, distance, normal: apart / distance })
+        (distance > 0.0 && distance < f32::INFINITY).then(|| Line {
+            ends,
+            apart,
+            distance,
+            normal: apart / distance,
+            weight,
+        })
+    }
+
+    /// How fast a link's ends go apart \[m/s\].
+    pub(super) fn parting(&self, line: &Line) -> Vec3 {
+        let [p, q] = line.ends;
+        self.velocity[p] - self.velocity[q]
+    }
+
+    /// The rounding of where a link's ends are \[m\].
+    pub(super) fn rounding(&self, line: &Line) -> f32 {
+        f32::EPSILON * largest(self.origin) + self.rounding_near(line)
+    }
+
+    /// The same as far as they are told from near \[m\].
+    pub(super) fn rounding_near(&self, line: &Line) -> f32 {
+        let [p, q] = line.ends.map(|end| largest(self.place[end]));
+        f32::EPSILON * max(p, q)
     }
 
     /// Asks a link to close what it is open by; one that is slack lets go of what it has pulled.
@@ -95,26 +174,25 @@ impl<'m> Links<'m> {
     }
 
     /// Minus what λ of a neighbour changes in a link, through the particle that both have.
-    fn coupling(&self, bodies: &Bodies<'_>, link: usize, neighbour: usize, particle: usize) -> f32 {
-        let row = self.rows[particle] as usize;
-        if row < bodies.len() { bodies.inverse_mass[row] * self.normal[link].dot(self.way[neighbour]) } else { 0.0 }
+    fn coupling(&self, link: usize, neighbour: usize, particle: usize) -> f32 {
+        self.weight[particle] * self.normal[link].dot(self.way[neighbour])
     }
 
     /// What λ of a link changes in itself; one if it is not to act.
-    fn diagonal(&self, bodies: &Bodies<'_>, link: usize, soft: f32) -> f32 {
+    fn diagonal(&self, link: usize, soft: f32) -> f32 {
         if self.normal[link] == Vec3::ZERO {
             return 1.0;
         }
-        let [p, q] = self.ends(link).map(|end| bodies.inverse_mass[self.rows[end] as usize]);
+        let [p, q] = self.ends(link).map(|end| self.weight[end]);
         (p + q) * self.normal[link].dot(self.way[link]) * (1.0 + RIDGE) + soft
     }
 
     /// What elimination of the links before leaves of a link's λ in itself, through its first end alone.
-    fn remains(&self, bodies: &Bodies<'_>, link: usize, left: f32, pivot: f32) -> f32 {
+    fn remains(&self, link: usize, left: f32, pivot: f32) -> f32 {
         if self.normal[link] == Vec3::ZERO {
             return 0.0;
         }
-        let (own, weight) = (self.normal[link].dot(self.way[link]), bodies.inverse_mass[self.rows[link] as usize]);
+        let (own, weight) = (self.normal[link].dot(self.way[link]), self.weight[link]);
         match link.checked_sub(1).filter(|&i| self.normal[i] != Vec3::ZERO) {
             // (n₁·w₁)(n₀·w₀) − (n₁·w₀)(n₀·w₁) = (n₁ × n₀)·(w₁ × w₀).
             Some(i) => {
@@ -126,39 +204,39 @@ impl<'m> Links<'m> {
     }
 
     /// The pivot of a link of whose own such a rest is left.
-    fn pivot(&self, bodies: &Bodies<'_>, link: usize, left: f32) -> f32 {
+    fn pivot(&self, link: usize, left: f32) -> f32 {
         if self.normal[link] == Vec3::ZERO {
             return 1.0;
         }
-        let [first, second] = self.ends(link).map(|end| bodies.inverse_mass[self.rows[end] as usize]);
+        let [first, second] = self.ends(link).map(|end| self.weight[end]);
         let own = self.normal[link].dot(self.way[link]);
         let least = if second > 0.0 { 0.5 * second } else { RIDGE * self.count as f32 * first };
         max(own * second + left, least * own)
     }
 
     /// Solves for the changes of λ: elimination from the first link to the last, and back. Tells whether there is a solution.
-    pub(super) fn solve(&mut self, bodies: &Bodies<'_>, soft: f32) -> bool {
+    pub(super) fn solve(&mut self, soft: f32) -> bool {
         let closed = self.count == self.rows.len();
         let open = self.count - usize::from(closed);
         let last = self.count - 1;
         // What is left of a link's own pivot without its second end: no difference of what is nearly the same, which would lose a heavy bob.
         let mut left = 0.0;
         for link in 0..open {
-            let lower = if link > 0 { -self.coupling(bodies, link, link - 1, link) } else { 0.0 };
-            let upper = if link + 1 < open { -self.coupling(bodies, link, link + 1, link + 1) } else { 0.0 };
+            let lower = if link > 0 { -self.coupling(link, link - 1, link) } else { 0.0 };
+            let upper = if link + 1 < open { -self.coupling(link, link + 1, link + 1) } else { 0.0 };
             let mut border = 0.0;
             if closed && link == 0 {
-                border -= self.coupling(bodies, link, last, 0);
+                border -= self.coupling(link, last, 0);
             }
             if closed && link + 1 == open {
-                border -= self.coupling(bodies, link, last, last);
+                border -= self.coupling(link, last, last);
             }
             let [before, beside, pivot] = match link.checked_sub(1) {
-                Some(i) => [self.change[i], self.border[i], self.pivot(bodies, i, left)],
+                Some(i) => [self.change[i], self.border[i], self.pivot(i, left)],
                 None => [0.0, 0.0, 1.0],
             };
-            left = soft + self.remains(bodies, link, left, pivot);
-            let pivot = self.pivot(bodies, link, left);
+            left = soft + self.remains(link, left, pivot);
+            let pivot = self.pivot(link, left);
             self.upper[link] = upper / pivot;
             self.change[link] = (self.change[link] - lower * before) / pivot;
             self.border[link] = (border - lower * beside) / pivot;
@@ -169,9 +247,9 @@ impl<'m> Links<'m> {
             self.border[link] -= upper * self.border[link + 1];
         }
         if closed {
-            let first = -self.coupling(bodies, last, 0, 0);
-            let lower = -self.coupling(bodies, last, last - 1, last);
-            let diagonal = self.diagonal(bodies, last, soft);
+            let first = -self.coupling(last, 0, 0);
+            let lower = -self.coupling(last, last - 1, last);
+            let diagonal = self.diagonal(last, soft);
             let pivot = diagonal - first * self.border[0] - lower * self.border[last - 1];
             let rest = self.change[last] - first * self.change[0] - lower * self.change[last - 1];
             let closing = rest / max(pivot, diagonal * RIDGE);
@@ -184,9 +262,8 @@ impl<'m> Links<'m> {
     }
 
     /// By how much the changes of λ move a particle.
-    fn movement(&self, bodies: &Bodies<'_>, particle: usize) -> Option<(usize, Vec3)> {
-        let row = self.rows[particle] as usize;
-        let weight = *bodies.inverse_mass.get(row)?;
+    fn movement(&self, particle: usize) -> Option<Vec3> {
+        let weight = self.weight[particle];
         let mut sum = Vec3::ZERO;
         if particle < self.count {
             sum += self.way[particle] * self.change[particle];
@@ -196,14 +273,14 @@ impl<'m> Links<'m> {
             sum -= self.way[before] * self.change[before];
         }
         let by = sum * weight;
-        (weight > 0.0 && by.is_finite()).then_some((row, by))
+        (weight > 0.0 && by.is_finite()).then_some(by)
     }
 
     /// Lets the changes of λ act.
-    pub(super) fn act(&mut self, bodies: &mut Bodies<'_>, act: &mut dyn FnMut(&mut Bodies<'_>, usize, Vec3)) {
+    pub(super) fn act(&mut self, moves: Moves) {
         let mut farthest = 0.0;
         for particle in 0..self.rows.len() {
-            farthest = self.movement(bodies, particle).map_or(farthest, |(_, by)| max(farthest, length(by)));
+            farthest = self.movement(particle).map_or(farthest, |by| max(farthest, length(by)));
         }
         let share = if farthest > 2.0 * self.reach { 2.0 * self.reach / farthest } else { 1.0 };
         for (pull, change) in self.pull.iter_mut().zip(self.change.iter_mut()) {
@@ -211,48 +288,165 @@ impl<'m> Links<'m> {
             *pull += *change;
         }
         for particle in 0..self.rows.len() {
-            if let Some((row, by)) = self.movement(bodies, particle) {
-                act(bodies, row, by);
+            if let Some(by) = self.movement(particle) {
+                self.place[particle] += by * moves.places;
+                self.velocity[particle] += by * moves.velocities;
             }
         }
     }
 
-    /// Remembers where all are to go.
-    pub(super) fn aim_at(&mut self, bodies: &Bodies<'_>) {
-        for (aim, &row) in self.aim.iter_mut().zip(self.rows.iter()) {
-            *aim = bodies.position.get(row as usize).copied().unwrap_or(Vec3::ZERO);
+    /// Takes back what links push.
+    pub(super) fn let_go(&mut self, moves: Moves) {
+        let mut pushes = false;
+        for (change, &pull) in self.change.iter_mut().zip(self.pull.iter()) {
+            *change = if pull > 0.0 { -pull } else { 0.0 };
+            pushes |= pull > 0.0;
+        }
+        self.reach = f32::MAX;
+        if pushes {
+            self.act(moves);
         }
     }
 
-    /// Puts all back to where they were as the sub-step began.
-    pub(super) fn start_over(&mut self, bodies: &mut Bodies<'_>) {
-        for row in self.rows.iter().map(|&row| row as usize) {
-            if row < bodies.len() {
-                let to = bodies.before[0][row];
-                put(bodies, row, to - bodies.position[row], to);
+    /// Takes out of velocities what makes links longer or shorter, but for those that are slack.
+    pub(super) fn turn_only(&mut self, is_slack: impl Fn(usize, &Line) -> bool) {
+        self.pull.fill(0.0);
+        self.reach = 0.0;
+        for link in 0..self.count {
+            let Some(line) = self.line(link) else { continue };
+            self.way[link] = line.normal;
+            let open = self.parting(&line).dot(line.normal);
+            self.ask(link, is_slack(link, &line), line.normal, open, line.weight);
+        }
+        if self.reach > 0.0 && self.solve(0.0) {
+            self.act(Moves::VELOCITIES);
+        }
+        self.pull.fill(0.0);
+    }
+
+    /// Takes for velocities what the method has shown beyond them, if it had gone in so many paces: as fast as all would have to be for how far it has
+    /// brought them beyond where velocities lead.
+    fn take_up_leads(&mut self, bodies: &Bodies<'_>, paces: f32) {
+        let h = bodies.substep.seconds();
+        for (particle, row) in living(self.rows) {
+            let [from, before] = bodies.before.map(|before| before[row]);
+            let (way, gained) = (between(self.room.as_ref(), from, bodies.position[row]), bodies.velocity[row] - before);
+            let moves = bodies.inverse_mass[row] > 0.0;
+            self.velocity[particle] = if moves { way / h - before - gained * (0.5 + 0.5 / paces) } else { Vec3::ZERO };
+        }
+    }
+
+    /// Takes out of places what the method shows beyond velocities: of all, if somebody is fixed, else what lengths show of it.
+    pub(super) fn catch_up(&mut self, bodies: &mut Bodies<'_>, is_slack: impl Fn(usize, &Line) -> bool) {
+        if living(self.rows).any(|(_, row)| !(bodies.inverse_mass[row] > 0.0)) {
+            return living(self.rows).for_each(|(_, row)| bodies.catch_up(row));
+        }
+        let h = bodies.substep.seconds();
+        self.take_up(bodies);
+        self.take_up_leads(bodies, 1.0);
+        self.aside.copy_from_slice(self.velocity);
+        self.turn_only(is_slack);
+        for (particle, row) in living(self.rows) {
+            let by = (self.aside[particle] - self.velocity[particle]) * h;
+            if by.is_finite() {
+                bodies.position[row] -= by;
             }
         }
     }
 
-    /// Moves all by a share of the way; whoever is fixed is to be so far on his.
-    pub(super) fn pace(&mut self, bodies: &mut Bodies<'_>, far: f32, share: f32) {
-        for (&aim, row) in self.aim.iter().zip(self.rows.iter().map(|&row| row as usize)) {
-            if row < bodies.len() {
-                let from = bodies.before[0][row];
-                let to = if far < 1.0 { from + (aim - from) * far } else { aim };
-                put(bodies, row, (aim - from) * share, to);
+    /// Puts all back to where they were as the sub-step began, with the velocities with which they would go on from there in so many paces.
+    pub(super) fn set_out(&mut self, bodies: &Bodies<'_>, paces: f32, is_slack: impl Fn(usize, &Line) -> bool) {
+        for (particle, row) in living(self.rows) {
+            self.place[particle] = between(self.room.as_ref(), self.origin, bodies.before[0][row]);
+        }
+        self.take_up_leads(bodies, paces);
+        self.turn_only(is_slack);
+        for (particle, row) in living(self.rows) {
+            self.velocity[particle] += bodies.before[1][row];
+        }
+    }
+
+    /// Goes on for a time \[s\], a share of the sub-step, to where so much of it has passed; whoever is fixed goes evenly.
+    pub(super) fn pace(&mut self, bodies: &Bodies<'_>, far: f32, share: f32, time: f32) {
+        let h = bodies.substep.seconds();
+        for (particle, row) in living(self.rows) {
+            if self.weight[particle] > 0.0 {
+                self.velocity[particle] += (bodies.velocity[row] - bodies.before[1][row]) * share;
+                self.place[particle] += self.velocity[particle] * time;
+            } else {
+                let [from, to] = [bodies.before[0][row], bodies.position[row]];
+                let way = between(self.room.as_ref(), from, to);
+                self.place[particle] = between(self.room.as_ref(), self.origin, from) + way * far;
+                self.velocity[particle] = way / h;
             }
         }
+    }
+
+    /// Takes out of velocities what they have been given as they set out.
+    pub(super) fn arrive(&mut self, bodies: &Bodies<'_>, paces: f32, is_slack: impl Fn(usize, &Line) -> bool) {
+        self.aside.copy_from_slice(self.velocity);
+        self.take_up_leads(bodies, paces);
+        self.turn_only(is_slack);
+        for (velocity, aside) in self.velocity.iter_mut().zip(self.aside.iter()) {
+            *velocity = *aside - *velocity;
+        }
+    }
+
+    /// The largest square of how far a particle swings across its links in a pace, in radians of its oscillation.
+    pub(super) fn stiffness(&self, rest: impl Fn(usize) -> f32) -> f32 {
+        let square = |particle| self.swing(particle, &rest) * self.weight[particle];
+        (0..self.rows.len()).map(square).fold(0.0, max)
+    }
+
+    /// What pulls a particle back that swings across its links: their pull over how long they are. Past the end of an open chain nothing does \[kg\].
+    fn swing(&self, particle: usize, rest: impl Fn(usize) -> f32) -> f32 {
+        let before = if particle > 0 { particle - 1 } else { self.rows.len() - 1 };
+        let pull = |link: usize| {
+            let distance = self.line(link).map_or(0.0, |line| line.distance);
+            if self.pull[link] == 0.0 { 0.0 } else { self.pull[link].abs() / max(distance, rest(link)) }
+        };
+        if before < self.count && particle < self.count { pull(before) + pull(particle) } else { 0.0 }
+    }
+
+    /// Makes those heavier who would swing farther.
+    pub(super) fn load(&mut self, most: f32, rest: impl Fn(usize) -> f32) {
+        for particle in 0..self.rows.len() {
+            let heavy = self.swing(particle, &rest) / most;
+            if heavy * self.weight[particle] > 1.0 && heavy < f32::INFINITY {
+                self.weight[particle] = 1.0 / heavy;
+            }
+        }
+    }
+
+    /// Puts all to where they were as the sub-step began, in the middle of all of their masses if nobody is fixed: that keeps their momentum.
+    pub(super) fn keep_form(&mut self, bodies: &Bodies<'_>) {
+        let h = bodies.substep.seconds();
+        let room = bodies.near.room();
+        let way = |row: usize| between(room, bodies.before[0][row], bodies.position[row]);
+        let moves = |row: usize| bodies.inverse_mass[row] > 0.0;
+        let (mut sum, mut mass) = (Vec3::ZERO, 0.0);
+        for (_, row) in living(self.rows) {
+            sum += way(row) * bodies.mass[row];
+            mass += bodies.mass[row];
+        }
+        let is_free = living(self.rows).all(|(_, row)| moves(row));
+        let together = if is_free && mass > 0.0 { sum / mass } else { Vec3::ZERO };
+        for (particle, row) in living(self.rows).filter(|&(_, row)| moves(row)) {
+            self.place[particle] = between(room, self.origin, bodies.before[0][row]) + together;
+            self.velocity[particle] = bodies.velocity[row] + (together - way(row)) * (1.0 / h);
+        }
+        // Nothing pulls that could be taken back.
+        self.pull.fill(0.0);
     }
 
     /// The velocity that all of it has: that of whoever is fixed, else the mean by mass \[m/s\].
     fn drift(&self, bodies: &Bodies<'_>) -> Vec3 {
         let (mut sum, mut mass) = (Vec3::ZERO, 0.0);
-        for row in self.rows.iter().map(|&row| row as usize).filter(|&row| row < bodies.len()) {
-            if !(bodies.inverse_mass[row] > 0.0) {
-                return bodies.velocity[row];
+        for (particle, row) in living(self.rows) {
+            if !(self.weight[particle] > 0.0) {
+                return self.velocity[particle];
             }
-            sum += bodies.velocity[row] * bodies.mass[row];
+            sum += self.velocity[particle] * bodies.mass[row];
             mass += bodies.mass[row];
         }
         if mass > 0.0 { sum / mass } else { Vec3::ZERO }
@@ -261,35 +455,16 @@ impl<'m> Links<'m> {
     /// Twice the kinetic energy beside that \[J\].
     pub(super) fn vigour(&self, bodies: &Bodies<'_>) -> f32 {
         let drift = self.drift(bodies);
-        let rows = self.rows.iter().map(|&row| row as usize).filter(|&row| row < bodies.len());
-        let moving = rows.filter(|&row| bodies.inverse_mass[row] > 0.0);
-        moving.map(|row| (bodies.velocity[row] - drift).length_squared() * bodies.mass[row]).sum()
+        let moving = living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0);
+        moving.map(|(particle, row)| (self.velocity[particle] - drift).length_squared() * bodies.mass[row]).sum()
     }
 
-    /// Slows all down to the kinetic energy that they had before: links that have turned too far for the sub-step must not drive.
-    pub(super) fn calm(&self, bodies: &mut Bodies<'_>, before: f32) {
+    /// Slows all down to the kinetic energy that they had before.
+    pub(super) fn calm(&mut self, bodies: &Bodies<'_>, before: f32) {
         let (drift, now) = (self.drift(bodies), self.vigour(bodies));
-        if !(now > before) {
-            return;
-        }
-        let share = sqrt(before / now);
-        for row in self.rows.iter().map(|&row| row as usize) {
-            if row < bodies.len() && bodies.inverse_mass[row] > 0.0 {
-                bodies.velocity[row] = drift + (bodies.velocity[row] - drift) * share;
-            }
-        }
-    }
-
-    /// Takes back what links push.
-    pub(super) fn let_go(&mut self, bodies: &mut Bodies<'_>, act: &mut dyn FnMut(&mut Bodies<'_>, usize, Vec3)) {
-        let mut pushes = false;
-        for (change, &pull) in self.change.iter_mut().zip(self.pull.iter()) {
-            *change = if pull > 0.0 { -pull } else { 0.0 };
-            pushes |= pull > 0.0;
-        }
-        self.reach = f32::MAX;
-        if pushes {
-            self.act(bodies, act);
+        if now > before {
+            let share = sqrt(before / now);
+            self.velocity.iter_mut().for_each(|velocity| *velocity = drift + (*velocity - drift) * share);
         }
     }
 }

@@ -4,12 +4,9 @@ mod bounded;
 mod links;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
-use crate::index::between;
-use crate::math::{clamp, floor, largest, length, max, sqrt};
-use crate::memory::take;
+use crate::math::{length, max, sqrt};
 use bounded::{Bounds, Form};
-use glam::Vec3;
-use links::{Links, NOBODY, put};
+use links::{Line, Links, Moves, NOBODY};
 
 /// Links between particles, each to the next, all solved at once: C = |x₁ − x₂| − length of every link.
 ///
@@ -86,18 +83,18 @@ pub struct Rope<P, L> {
 
 /// Rounds of a solution, at the most.
 const ROUNDS: u32 = 8;
+/// Rounds of one that has to go by the directions that links have, at the most.
+const LAST_ROUNDS: u32 = 24;
 /// The cosine of how far a link may turn in one: by 60°.
 const COSINE: f32 = 0.5;
-/// Paces of a sub-step in which links turn farther, at the most.
-const PACES: f32 = 64.0;
-/// Rounds of the last pace, at the most.
-const LAST_ROUNDS: u32 = 24;
-/// The square of how far a particle may swing across its links in a sub-step, in radians of its oscillation: half of what is stable.
-const STIFF: f32 = 2.0;
+/// Paces of a sub-step, at the most.
+const PACES: u32 = 256;
+/// How often paces are tried, at the most.
+const TRIES: u32 = 12;
+/// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: a quarter of what is stable for a long chain.
+const STIFF: f32 = 0.5;
 /// How far a link may be off after all rounds, a share of its length: what is left is rounding.
 const NEARLY: f32 = 1e-4;
-/// Words that the links take for each particle.
-const WORDS: usize = 14;
 
 impl<P, L> Rope<P, L> {
     /// A chain of rigid links.
@@ -151,8 +148,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
     /// Its particles and the memory for its links, with nothing known of these, and what is left of it.
     fn links_of<'m>(&self, bodies: &Bodies<'_>, scratch: &'m mut [u32]) -> (Links<'m>, &'m mut [u32]) {
-        let (mut rest, count) = (scratch, self.particles.as_ref().len());
-        let links = Links::new(take(&mut rest, WORDS * count), count, self.links());
+        let (links, rest) = Links::new(scratch, self.particles.as_ref().len(), self.links());
         for (row, &number) in links.rows.iter_mut().zip(self.particles.as_ref()) {
             *row = bodies.row_of_start(number).map_or(NOBODY, |row| row as u32);
         }
@@ -161,28 +157,31 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
     /// What it asks for where something holds it: nothing is kept of it.
     pub(super) fn demand_held(&self) -> Demand {
-        let fixed = WORDS.saturating_mul(self.particles.as_ref().len());
+        let fixed = links::WORDS.saturating_mul(self.particles.as_ref().len());
         Demand { scratch: Words { per_row: 0, fixed }, ..Demand::NONE }
     }
 
-    /// Brings all links to their lengths, in a few rounds. Tells whether they have come near.
-    fn meet(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>, soft: f32, along: Way) -> bool {
-        let (h, mut worst) = (bodies.substep.seconds(), 0.0);
-        let longest = self.lengths.as_ref().iter().copied().fold(0.0, max);
+    /// Tells whether a link does not pull where it is.
+    fn is_slack(&self) -> impl Fn(usize, &Line) -> bool + use<'_, P, L> {
+        |link, line| self.tether && line.distance <= self.length(link)
+    }
+
+    /// Brings all links to their lengths after a time \[s\], in a few rounds. Tells whether they have come near.
+    fn meet(&self, links: &mut Links<'_>, time: f32, along: Way) -> bool {
+        let (soft, mut worst) = (self.compliance / (time * time), 0.0);
+        links.pull.fill(0.0);
         for round in 0..along.rounds() {
             let mut met = true;
             (links.reach, worst) = (0.0, 0.0);
             for link in 0..links.count {
-                let Some(line) = links.line(bodies, link) else { continue };
-                let [p, q] = line.rows;
-                let weight = bodies.inverse_mass[p] + bodies.inverse_mass[q];
+                let Some(line) = links.line(link) else { continue };
                 let rest = self.length(link);
                 let open = line.distance - rest + soft * links.pull[link];
-                let slack = self.tether && links.pull[link] * (weight + soft) >= open;
-                if let Way::Now(_) = along {
+                let slack = self.tether && links.pull[link] * (line.weight + soft) >= open;
+                if along == Way::Now {
                     links.way[link] = line.normal;
                 } else if round == 0 {
-                    let earlier = line.apart - (bodies.velocity[p] - bodies.velocity[q]) * h;
+                    let earlier = line.apart - links.parting(&line) * time;
                     let far = length(earlier);
                     links.way[link] = if far > 0.0 && far < f32::INFINITY { earlier / far } else { line.normal };
                 }
@@ -192,143 +191,101 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                     }
                     links.way[link] = line.normal;
                 }
-                links.ask(link, slack, line.normal, open, weight);
-                let x = [p, q].map(|row| bodies.position[row]);
+                links.ask(link, slack, line.normal, open, line.weight);
                 if slack {
                     met &= links.pull[link] == 0.0;
                 } else {
-                    met &= open.abs() <= Self::rounding(x, line.distance, rest);
+                    met &= open.abs() <= along.rounding(links, &line) + f32::EPSILON * (line.distance + rest);
                     worst = max(worst, open.abs() / (line.distance + rest));
                 }
             }
             if met {
                 return true;
             }
-            if let Way::Now(_) = along {
+            if along == Way::Now {
                 // Straight across a taut link it takes the root of that to close a gap.
+                let longest = self.lengths.as_ref().iter().copied().fold(0.0, max);
                 links.reach += sqrt(0.5 * links.reach * longest);
             }
-            if !links.solve(bodies, soft) {
+            if !links.solve(soft) {
                 return false;
             }
-            links.act(bodies, &mut |bodies, row, by| bodies.shift(row, by));
+            links.act(Moves::places_in(time));
         }
         worst < NEARLY
     }
 
-    /// Goes from where all were as the sub-step began to where the method has moved them, in paces so short that no link turns far in
-    /// one, and keeps to the lengths at each. That costs energy, and never brings any: nobody gets farther than he was to go.
-    fn walk(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>, soft: f32) {
-        let mut turn = 0.0;
-        for link in 0..links.count {
-            let ends = links.ends(link).map(|end| (links.rows[end] as usize, links.aim[end]));
-            let [(p, to), (q, other)] = ends;
-            if p < bodies.len() && q < bodies.len() {
-                let [x, y] = [p, q].map(|row| bodies.before[0][row]);
-                let apart = between(bodies.near.room(), y, x);
-                let turned = length((to - x) - (other - y)) / max(length(apart), self.length(link));
-                turn = if turned > turn { turned } else { turn };
+    /// Goes through the sub-step from where all were as it began, by the forces that the method shows, in so many paces, and keeps to the lengths at each.
+    /// Gives up where links turn too far in a pace or do not come near their lengths, and where particles swing too far across them: tells how far, squared.
+    fn walk(&self, bodies: &Bodies<'_>, links: &mut Links<'_>, paces: u32) -> Result<(), f32> {
+        let share = 1.0 / paces as f32;
+        let time = bodies.substep.seconds() * share;
+        links.set_out(bodies, paces as f32, self.is_slack());
+        for pace in 1..=paces {
+            links.pace(bodies, pace as f32 * share, share, time);
+            let met = self.meet(links, time, Way::Pace);
+            if self.tether {
+                links.let_go(Moves::places_in(time));
+            }
+            let stiff = links.stiffness(|link| self.length(link));
+            if !met || stiff > STIFF {
+                return Err(stiff);
             }
         }
-        let paces = floor(clamp(2.0 * turn, 0.0, PACES - 1.0)) + 1.0;
-        links.pull.fill(0.0);
-        links.start_over(bodies);
-        let mut met = true;
-        for pace in 1..=paces as u32 {
-            links.pace(bodies, pace as f32 / paces, 1.0 / paces);
-            met = self.meet(bodies, links, soft, Way::Now(if pace as f32 == paces { LAST_ROUNDS } else { 3 }));
+        links.arrive(bodies, paces as f32, self.is_slack());
+        Ok(())
+    }
+
+    /// The same in as few paces as will do. Where the most of them will not, who is too light for what pulls at him is made heavier. Tells whether that has
+    /// come to an end.
+    fn walk_through(&self, bodies: &Bodies<'_>, links: &mut Links<'_>) -> bool {
+        let (mut paces, mut stiff) = (1, links.stiffness(|link| self.length(link)));
+        for _ in 0..TRIES {
+            if paces == PACES {
+                links.load(0.5 * STIFF, |link| self.length(link));
+            }
+            let wanted = paces as f32 * sqrt(stiff / STIFF);
+            paces *= 2;
+            while (paces as f32) < wanted && paces < PACES {
+                paces *= 2;
+            }
+            paces = paces.min(PACES);
+            match self.walk(bodies, links, paces) {
+                Ok(()) => return true,
+                Err(next) => stiff = next,
+            }
         }
-        if !met {
+        false
+    }
+
+    /// Goes straight to where lengths are met next to where the method has moved all, by the directions that links have there. Gives a rope that has not
+    /// come near its lengths the form back that it had when the sub-step began, if that was nearer. No energy comes of it.
+    fn jump(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
+        links.take_up(bodies);
+        let (h, before) = (bodies.substep.seconds(), links.vigour(bodies));
+        if !self.meet(links, h, Way::Now) {
             bodies.report.effort.capped += 1;
-            self.hold(bodies, links);
-        }
-    }
-
-    /// Gives a rope that has not come near its lengths the form back that it had when the sub-step began, if that was nearer: in the middle of all
-    /// of its masses if nobody is fixed, which keeps its momentum.
-    fn hold(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
-        let (mut sum, mut mass, mut is_free) = (Vec3::ZERO, 0.0, true);
-        let rows = links.rows.iter().map(|&row| row as usize).zip(links.aim.iter());
-        for (row, &aim) in rows.filter(|&(row, _)| row < bodies.len()) {
-            is_free &= bodies.inverse_mass[row] > 0.0;
-            sum += (aim - bodies.before[0][row]) * bodies.mass[row];
-            mass += bodies.mass[row];
-        }
-        let way = if is_free && mass > 0.0 { sum / mass } else { Vec3::ZERO };
-        let place = |bodies: &Bodies<'_>, end: usize| {
-            let row = links.rows[end] as usize;
-            let moves = bodies.inverse_mass[row] > 0.0;
-            if moves { bodies.before[0][row] + way } else { links.aim[end] }
-        };
-        let (mut now, mut then) = (0.0, 0.0);
-        for link in 0..links.count {
-            let Some(line) = links.line(bodies, link) else { continue };
-            let [one, other] = links.ends(link).map(|end| place(bodies, end));
-            let rest = self.length(link);
-            let off = |distance: f32| {
-                let off = (distance - rest) / (distance + rest);
-                if self.tether { max(off, 0.0) } else { off.abs() }
-            };
-            now = max(now, off(line.distance));
-            then = max(then, off(length(between(bodies.near.room(), other, one))));
-        }
-        if !(then < now) {
-            return;
-        }
-        for (particle, row) in links.rows.iter().map(|&row| row as usize).enumerate() {
-            if row < bodies.len() {
-                let to = place(bodies, particle);
-                put(bodies, row, to - bodies.position[row], to);
+            let off = self.worst(links);
+            links.keep_form(bodies);
+            if !(self.worst(links) < off) {
+                links.take_up(bodies);
+                let _ = self.meet(links, h, Way::Now);
             }
         }
-        // Nothing pulls that could be taken back.
-        links.pull.fill(0.0);
+        if self.tether {
+            links.let_go(Moves::places_in(h));
+        }
+        links.calm(bodies, before);
     }
 
-    /// Tells whether a particle is so light for what pulls at it that it would swing across its links faster than the sub-step shows. Along the
-    /// directions of before it would be driven on and on by what it should only follow.
-    fn is_stiff(&self, bodies: &Bodies<'_>, links: &Links<'_>) -> bool {
-        // What swings across a link is pulled back by its pull over the length that it has.
-        let pull = |link: usize| {
-            let length = links.line(bodies, link).map_or(0.0, |line| line.distance);
-            links.pull[link].abs() / max(length, self.length(link))
+    /// How far the worst link is off, as a share of its length.
+    fn worst(&self, links: &Links<'_>) -> f32 {
+        let off = |link| {
+            let (distance, rest) = (links.line(link)?.distance, self.length(link));
+            let off = (distance - rest) / (distance + rest);
+            Some(if self.tether { off } else { off.abs() })
         };
-        (0..links.count).any(|link| {
-            let [_, other] = links.ends(link);
-            let next = if other < links.count { pull(other) } else { 0.0 };
-            // Past the end of an open chain nothing pulls back.
-            let weight = bodies.inverse_mass.get(links.rows[other] as usize).copied().unwrap_or(0.0);
-            next > 0.0 && weight * (pull(link) + next) > STIFF
-        })
-    }
-
-    /// Takes out of the places the method's own way beyond where velocities lead: of all, if somebody is fixed, else what lengths show of it. Soft
-    /// links answer forces by what they do in a whole sub-step, along the directions of its beginning, as a method of first order shows it: with others what
-    /// hangs still would show speed, and what swings would be driven.
-    fn catch_up(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
-        let living = || links.rows.iter().map(|&row| row as usize).filter(|&row| row != NOBODY as usize);
-        if living().any(|row| !(bodies.inverse_mass[row] > 0.0)) {
-            return living().for_each(|row| bodies.catch_up(row));
-        }
-        let h = bodies.substep.seconds();
-        links.reach = 0.0;
-        for link in 0..links.count {
-            let Some(line) = links.line(bodies, link) else { continue };
-            let [p, q] = line.rows;
-            let [ahead, behind] = [p, q].map(|row| bodies.lead(row, h));
-            let weight = bodies.inverse_mass[p] + bodies.inverse_mass[q];
-            links.way[link] = line.normal;
-            let slack = self.tether && line.distance <= self.length(link);
-            links.ask(link, slack, line.normal, (ahead - behind).dot(line.normal), weight);
-        }
-        if links.reach > 0.0 && links.solve(bodies, 0.0) {
-            links.act(bodies, &mut |bodies, row, by| bodies.position[row] += by);
-        }
-    }
-
-    /// The rounding of a link's length, from where its ends are.
-    fn rounding(x: [Vec3; 2], distance: f32, length: f32) -> f32 {
-        f32::EPSILON * (max(largest(x[0]), largest(x[1])) + distance + length)
+        (0..links.count).filter_map(off).fold(0.0, max)
     }
 }
 
@@ -351,28 +308,25 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(h > 0.0) {
             return;
         }
-        let soft = self.compliance / (h * h);
         let (mut links, work) = self.links_of(bodies, share.scratch);
-        if soft > 0.0 {
-            self.catch_up(bodies, &mut links);
-            // Nothing is known of them any longer.
-            links.pull.fill(0.0);
-            links.normal.fill(Vec3::ZERO);
-            links.change.fill(0.0);
+        if self.compliance > 0.0 {
+            // Soft links answer forces by what they do in a whole sub-step, along the directions of its beginning, as a method of first order shows it:
+            // with others what hangs still would show speed, and what swings would be driven.
+            links.catch_up(bodies, self.is_slack());
         }
         let mut bounds = Bounds::of(self.form(), bodies, links.rows, share.kept.fixed, work);
         if let Some(bounds) = &mut bounds {
             bounds.limit(bodies);
         }
-        links.aim_at(bodies);
-        if !self.meet(bodies, &mut links, soft, Way::First) || self.is_stiff(bodies, &links) {
-            let before = links.vigour(bodies);
-            self.walk(bodies, &mut links, soft);
-            links.calm(bodies, before);
+        links.take_up(bodies);
+        let through = self.meet(&mut links, h, Way::First) && !(links.stiffness(|link| self.length(link)) > STIFF);
+        if self.tether && through {
+            links.let_go(Moves::places_in(h));
         }
-        if self.tether {
-            links.let_go(bodies, &mut |bodies, row, by| bodies.shift(row, by));
+        if !through && !self.walk_through(bodies, &mut links) {
+            self.jump(bodies, &mut links);
         }
+        links.hand_back(bodies);
         if let Some(bounds) = &mut bounds {
             bounds.keep_within(bodies);
         }
@@ -389,53 +343,55 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if let Some(bounds) = &mut bounds {
             bounds.limit_settled(bodies);
         }
-        let rounds = if self.tether { ROUNDS } else { 1 };
-        let turn = |bodies: &mut Bodies<'_>, row: usize, by: Vec3| bodies.velocity[row] += by;
-        for _ in 0..rounds {
+        links.take_up(bodies);
+        for _ in 0..if self.tether { ROUNDS } else { 1 } {
             let mut met = true;
             links.reach = 0.0;
             for link in 0..links.count {
-                let Some(line) = links.line(bodies, link) else { continue };
-                let [p, q] = line.rows;
-                let weight = bodies.inverse_mass[p] + bodies.inverse_mass[q];
+                let Some(line) = links.line(link) else { continue };
                 let rest = self.length(link);
-                let x = [p, q].map(|row| bodies.position[row]);
-                let loose = self.tether && line.distance < rest - 4.0 * Self::rounding(x, line.distance, rest);
-                let open = (bodies.velocity[p] - bodies.velocity[q]).dot(line.normal) + soft * links.pull[link];
-                let slack = loose || self.tether && links.pull[link] * (weight + soft) >= open;
+                let coarse = links.rounding(&line) + f32::EPSILON * (line.distance + rest);
+                let loose = self.tether && line.distance < rest - 4.0 * coarse;
+                let open = links.parting(&line).dot(line.normal) + soft * links.pull[link];
+                let slack = loose || self.tether && links.pull[link] * (line.weight + soft) >= open;
                 links.way[link] = line.normal;
-                links.ask(link, slack, line.normal, open, weight);
+                links.ask(link, slack, line.normal, open, line.weight);
                 met &= slack && links.pull[link] == 0.0;
             }
-            if met || !links.solve(bodies, soft) {
+            if met || !links.solve(soft) {
                 break;
             }
-            links.act(bodies, &mut { turn });
+            links.act(Moves::VELOCITIES);
         }
         if self.tether {
-            links.let_go(bodies, &mut { turn });
+            links.let_go(Moves::VELOCITIES);
         }
+        links.hand_back(bodies);
         if let Some(bounds) = &mut bounds {
             bounds.keep_settled(bodies);
         }
     }
 }
 
-/// The directions along which links act.
-#[derive(Clone, Copy)]
+/// How a solution goes about it.
+#[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// Those that they had when the sub-step began.
+    /// Along the directions that links had when the sub-step began.
     First,
-    /// Those that they have, in so many rounds.
-    Now(u32),
+    /// The same in a pace, with lengths as near as rounding of what is told from near allows.
+    Pace,
+    /// Along the directions that they have.
+    Now,
 }
 
 impl Way {
     fn rounds(self) -> u32 {
-        match self {
-            Self::First => ROUNDS,
-            Self::Now(rounds) => rounds,
-        }
+        if self == Self::Now { LAST_ROUNDS } else { ROUNDS }
+    }
+
+    /// How finely places are told \[m\].
+    fn rounding(self, links: &Links<'_>, line: &Line) -> f32 {
+        if self == Self::Pace { links.rounding_near(line) } else { links.rounding(line) }
     }
 }
 
