@@ -23,6 +23,8 @@ pub(super) struct Links<'m> {
     pub(super) count: usize,
     /// How far it all goes wrong, summed over the links: nothing is moved farther than twice that.
     pub(super) reach: f32,
+    /// How long it takes from where the copies are to where links are met, with the velocities of the copies \[s\].
+    time: f32,
     /// Where places are told from \[m\], and the room that they are in.
     origin: Vec3,
     room: Option<Room>,
@@ -48,31 +50,17 @@ pub(super) struct Links<'m> {
     aside: &'m mut [Vec3],
 }
 
-/// A link as it lies.
+/// A link as it lies at the end of a pace.
 pub(super) struct Line {
-    pub(super) ends: [usize; 2],
-    pub(super) apart: Vec3,
+    ends: [usize; 2],
     pub(super) distance: f32,
     pub(super) normal: Vec3,
+    /// The direction that it has as the pace begins, how long it is then \[m\], and by how much longer it gets \[m\]: that is told to its own rounding.
+    pub(super) first: Vec3,
+    pub(super) before: f32,
+    pub(super) longer: f32,
     /// The sum of its ends' inverse masses \[1/kg\].
     pub(super) weight: f32,
-}
-
-/// What the changes of λ move: places and velocities, by so much of what they move.
-#[derive(Clone, Copy)]
-pub(super) struct Moves {
-    places: f32,
-    velocities: f32,
-}
-
-impl Moves {
-    /// Velocities alone.
-    pub(super) const VELOCITIES: Self = Self { places: 0.0, velocities: 1.0 };
-
-    /// Places, and velocities by what that is over a time \[s\].
-    pub(super) fn places_in(time: f32) -> Self {
-        Self { places: 1.0, velocities: 1.0 / time }
-    }
 }
 
 /// The particles that are there, and their rows.
@@ -95,32 +83,43 @@ impl<'m> Links<'m> {
         let (count, origin, room) = (links.min(aside.len()), Vec3::ZERO, None);
         #[rustfmt::skip]
         let nothing = Self {
-            count, reach: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
+            count, reach: 0.0, time: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
         };
         (nothing, rest)
     }
 
-    /// Copies where all are, how fast they go and how heavy they are.
-    pub(super) fn take_up(&mut self, bodies: &Bodies<'_>) {
+    /// Copies how fast all go, how heavy they are and where they were so long ago \[s\] with these velocities.
+    pub(super) fn take_up(&mut self, bodies: &Bodies<'_>, time: f32) {
         let first = living(self.rows).next();
-        self.origin = first.map_or(Vec3::ZERO, |(_, row)| bodies.before[0][row]);
+        self.origin = first.map_or(Vec3::ZERO, |(_, row)| bodies.position[row]);
         self.room = bodies.near.room().copied();
+        self.time = time;
         for (particle, row) in living(self.rows) {
-            self.place[particle] = between(self.room.as_ref(), self.origin, bodies.position[row]);
+            let place = between(self.room.as_ref(), self.origin, bodies.position[row]);
+            self.place[particle] = place - bodies.velocity[row] * time;
             self.velocity[particle] = bodies.velocity[row];
             self.weight[particle] = bodies.inverse_mass[row];
         }
     }
 
-    /// Moves all to where the copies are, with their velocities; those that are fixed stay.
-    pub(super) fn hand_back(&self, bodies: &mut Bodies<'_>) {
+    /// Gives the velocities of the copies to those of whom they are, and moves these by as much as that is in a time \[s\].
+    pub(super) fn hand_back(&self, bodies: &mut Bodies<'_>, time: f32) {
         for (particle, row) in living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0) {
-            let by = self.place[particle] - between(self.room.as_ref(), self.origin, bodies.position[row]);
-            if by != Vec3::ZERO && by.is_finite() {
-                bodies.position[row] += by;
+            let faster = self.velocity[particle] - bodies.velocity[row];
+            bodies.velocity[row] = self.velocity[particle];
+            if time > 0.0 {
+                bodies.position[row] += faster * time;
                 bodies.marks[row] |= SHIFTED;
             }
+        }
+    }
+
+    /// Moves all to where the copies are, with their velocities; those that are fixed stay.
+    pub(super) fn put_back(&self, bodies: &mut Bodies<'_>) {
+        for (particle, row) in living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0) {
+            bodies.position[row] += self.place[particle] - between(self.room.as_ref(), self.origin, bodies.position[row]);
             bodies.velocity[row] = self.velocity[particle];
+            bodies.marks[row] |= SHIFTED;
         }
     }
 
@@ -138,15 +137,14 @@ impl<'m> Links<'m> {
         if ends.iter().any(|&end| self.rows[end] == NOBODY) || !(weight > 0.0) {
             return None;
         }
-        let apart = between(self.room.as_ref(), self.place[q], self.place[p]);
-        let distance = length(apart);
-        (distance > 0.0 && distance < f32::INFINITY).then(|| Line {
-            ends,
-            apart,
-            distance,
-            normal: apart / distance,
-            weight,
-        })
+        let from = between(self.room.as_ref(), self.place[q], self.place[p]);
+        let by = (self.velocity[p] - self.velocity[q]) * self.time;
+        let apart = from + by;
+        let [before, distance] = [from, apart].map(length);
+        let normal = apart / distance;
+        let first = if before > 0.0 { from / before } else { normal };
+        let longer = by.dot(from + apart) / (before + distance);
+        (distance > 0.0 && before + distance < f32::INFINITY).then_some(Line { ends, distance, normal, first, before, longer, weight })
     }
 
     /// How fast a link's ends go apart \[m/s\].
@@ -155,15 +153,10 @@ impl<'m> Links<'m> {
         self.velocity[p] - self.velocity[q]
     }
 
-    /// The rounding of where a link's ends are \[m\].
-    pub(super) fn rounding(&self, line: &Line) -> f32 {
-        f32::EPSILON * largest(self.origin) + self.rounding_near(line)
-    }
-
-    /// The same as far as they are told from near \[m\].
-    pub(super) fn rounding_near(&self, line: &Line) -> f32 {
+    /// The rounding of a link's length, from where its ends are \[m\].
+    pub(super) fn rounding(&self, line: &Line, rest: f32) -> f32 {
         let [p, q] = line.ends.map(|end| largest(self.place[end]));
-        f32::EPSILON * max(p, q)
+        f32::EPSILON * (largest(self.origin) + max(p, q) + line.distance + rest)
     }
 
     /// Asks a link to close what it is open by; one that is slack lets go of what it has pulled.
@@ -276,8 +269,8 @@ impl<'m> Links<'m> {
         (weight > 0.0 && by.is_finite()).then_some(by)
     }
 
-    /// Lets the changes of λ act.
-    pub(super) fn act(&mut self, moves: Moves) {
+    /// Lets the changes of λ act, which change velocities by what they move over a time \[s\].
+    pub(super) fn act(&mut self, time: f32) {
         let mut farthest = 0.0;
         for particle in 0..self.rows.len() {
             farthest = self.movement(particle).map_or(farthest, |by| max(farthest, length(by)));
@@ -289,14 +282,18 @@ impl<'m> Links<'m> {
         }
         for particle in 0..self.rows.len() {
             if let Some(by) = self.movement(particle) {
-                self.place[particle] += by * moves.places;
-                self.velocity[particle] += by * moves.velocities;
+                self.velocity[particle] += by * (1.0 / time);
             }
         }
     }
 
+    /// Tells whether any of them pulls or pushes.
+    pub(super) fn has_acted(&self) -> bool {
+        self.pull.iter().any(|&pull| pull != 0.0)
+    }
+
     /// Takes back what links push.
-    pub(super) fn let_go(&mut self, moves: Moves) {
+    pub(super) fn let_go(&mut self, time: f32) {
         let mut pushes = false;
         for (change, &pull) in self.change.iter_mut().zip(self.pull.iter()) {
             *change = if pull > 0.0 { -pull } else { 0.0 };
@@ -304,14 +301,14 @@ impl<'m> Links<'m> {
         }
         self.reach = f32::MAX;
         if pushes {
-            self.act(moves);
+            self.act(time);
         }
     }
 
     /// Takes out of velocities what makes links longer or shorter, but for those that are slack.
     pub(super) fn turn_only(&mut self, is_slack: impl Fn(usize, &Line) -> bool) {
         self.pull.fill(0.0);
-        self.reach = 0.0;
+        (self.reach, self.time) = (0.0, 0.0);
         for link in 0..self.count {
             let Some(line) = self.line(link) else { continue };
             self.way[link] = line.normal;
@@ -319,7 +316,7 @@ impl<'m> Links<'m> {
             self.ask(link, is_slack(link, &line), line.normal, open, line.weight);
         }
         if self.reach > 0.0 && self.solve(0.0) {
-            self.act(Moves::VELOCITIES);
+            self.act(1.0);
         }
         self.pull.fill(0.0);
     }
@@ -342,7 +339,7 @@ impl<'m> Links<'m> {
             return living(self.rows).for_each(|(_, row)| bodies.catch_up(row));
         }
         let h = bodies.substep.seconds();
-        self.take_up(bodies);
+        self.take_up(bodies, 0.0);
         self.take_up_leads(bodies, 1.0);
         self.aside.copy_from_slice(self.velocity);
         self.turn_only(is_slack);
@@ -366,19 +363,24 @@ impl<'m> Links<'m> {
         }
     }
 
-    /// Goes on for a time \[s\], a share of the sub-step, to where so much of it has passed; whoever is fixed goes evenly.
-    pub(super) fn pace(&mut self, bodies: &Bodies<'_>, far: f32, share: f32, time: f32) {
+    /// Lets forces act for a share of the sub-step, in which the next pace is to be made. Whoever is fixed goes evenly.
+    pub(super) fn kick(&mut self, bodies: &Bodies<'_>, share: f32) {
         let h = bodies.substep.seconds();
+        self.time = h * share;
         for (particle, row) in living(self.rows) {
             if self.weight[particle] > 0.0 {
                 self.velocity[particle] += (bodies.velocity[row] - bodies.before[1][row]) * share;
-                self.place[particle] += self.velocity[particle] * time;
             } else {
-                let [from, to] = [bodies.before[0][row], bodies.position[row]];
-                let way = between(self.room.as_ref(), from, to);
-                self.place[particle] = between(self.room.as_ref(), self.origin, from) + way * far;
+                let way = between(self.room.as_ref(), bodies.before[0][row], bodies.position[row]);
                 self.velocity[particle] = way / h;
             }
+        }
+    }
+
+    /// Makes the pace.
+    pub(super) fn go(&mut self) {
+        for (place, velocity) in self.place.iter_mut().zip(self.velocity.iter()) {
+            *place += *velocity * self.time;
         }
     }
 
@@ -418,7 +420,7 @@ impl<'m> Links<'m> {
         }
     }
 
-    /// Puts all to where they were as the sub-step began, in the middle of all of their masses if nobody is fixed: that keeps their momentum.
+    /// Takes all to where they were as the sub-step began, in the middle of all of their masses if nobody is fixed: that keeps their momentum.
     pub(super) fn keep_form(&mut self, bodies: &Bodies<'_>) {
         let h = bodies.substep.seconds();
         let room = bodies.near.room();
@@ -432,7 +434,6 @@ impl<'m> Links<'m> {
         let is_free = living(self.rows).all(|(_, row)| moves(row));
         let together = if is_free && mass > 0.0 { sum / mass } else { Vec3::ZERO };
         for (particle, row) in living(self.rows).filter(|&(_, row)| moves(row)) {
-            self.place[particle] = between(room, self.origin, bodies.before[0][row]) + together;
             self.velocity[particle] = bodies.velocity[row] + (together - way(row)) * (1.0 / h);
         }
         // Nothing pulls that could be taken back.

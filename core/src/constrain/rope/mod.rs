@@ -4,9 +4,9 @@ mod bounded;
 mod links;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
-use crate::math::{length, max, sqrt};
+use crate::math::{clamp, max, sqrt};
 use bounded::{Bounds, Form};
-use links::{Line, Links, Moves, NOBODY};
+use links::{Line, Links, NOBODY};
 
 /// Links between particles, each to the next, all solved at once: C = |x₁ − x₂| − length of every link.
 ///
@@ -88,11 +88,16 @@ const LAST_ROUNDS: u32 = 24;
 /// The cosine of how far a link may turn in one: by 60°.
 const COSINE: f32 = 0.5;
 /// Paces of a sub-step, at the most.
-const PACES: u32 = 256;
+const PACES: u32 = 64;
 /// How often paces are tried, at the most.
 const TRIES: u32 = 12;
 /// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: a quarter of what is stable for a long chain.
 const STIFF: f32 = 0.5;
+/// How far a link may be off before a round that brings it to its length for sure, a share of that.
+const SURELY: f32 = 1e-5;
+/// How many roundings of places are made good little by little, and which share of them in a pace.
+const ROUNDINGS: f32 = 16.0;
+const SLOWLY: f32 = 0.03125;
 /// How far a link may be off after all rounds, a share of its length: what is left is rounding.
 const NEARLY: f32 = 1e-4;
 
@@ -166,25 +171,20 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         |link, line| self.tether && line.distance <= self.length(link)
     }
 
-    /// Brings all links to their lengths after a time \[s\], in a few rounds. Tells whether they have come near.
+    /// Changes velocities so that all links come to their lengths in a pace of so long \[s\], in a few rounds. Tells whether they have come near.
     fn meet(&self, links: &mut Links<'_>, time: f32, along: Way) -> bool {
         let (soft, mut worst) = (self.compliance / (time * time), 0.0);
         links.pull.fill(0.0);
-        for round in 0..along.rounds() {
+        for _ in 0..along.rounds() {
             let mut met = true;
             (links.reach, worst) = (0.0, 0.0);
             for link in 0..links.count {
                 let Some(line) = links.line(link) else { continue };
                 let rest = self.length(link);
-                let open = line.distance - rest + soft * links.pull[link];
+                let rounding = links.rounding(&line, rest);
+                let open = line.longer + self.due(line.before - rest, rounding) + soft * links.pull[link];
                 let slack = self.tether && links.pull[link] * (line.weight + soft) >= open;
-                if along == Way::Now {
-                    links.way[link] = line.normal;
-                } else if round == 0 {
-                    let earlier = line.apart - links.parting(&line) * time;
-                    let far = length(earlier);
-                    links.way[link] = if far > 0.0 && far < f32::INFINITY { earlier / far } else { line.normal };
-                }
+                links.way[link] = if along == Way::First { line.first } else { line.normal };
                 if links.way[link].dot(line.normal) < COSINE {
                     if !slack {
                         return false;
@@ -195,11 +195,11 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 if slack {
                     met &= links.pull[link] == 0.0;
                 } else {
-                    met &= open.abs() <= along.rounding(links, &line) + f32::EPSILON * (line.distance + rest);
+                    met &= open.abs() <= rounding;
                     worst = max(worst, open.abs() / (line.distance + rest));
                 }
             }
-            if met {
+            if met && !(links.reach > 0.0) {
                 return true;
             }
             if along == Way::Now {
@@ -210,9 +210,20 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             if !links.solve(soft) {
                 return false;
             }
-            links.act(Moves::places_in(time));
+            links.act(time);
+            // What is left is the square of that.
+            if met || worst < SURELY && !self.tether {
+                return true;
+            }
         }
         worst < NEARLY
+    }
+
+    /// By how much a link gets shorter that is so much too long \[m\]: a soft one by all of it; a rigid one makes good what rounding of places shows little by little, since
+    /// what is heavy would be thrown about by it.
+    fn due(&self, off: f32, rounding: f32) -> f32 {
+        let coarse = ROUNDINGS * rounding;
+        if self.compliance > 0.0 { off } else { off - (1.0 - SLOWLY) * clamp(off, -coarse, coarse) }
     }
 
     /// Goes through the sub-step from where all were as it began, by the forces that the method shows, in so many paces, and keeps to the lengths at each.
@@ -221,16 +232,17 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         let share = 1.0 / paces as f32;
         let time = bodies.substep.seconds() * share;
         links.set_out(bodies, paces as f32, self.is_slack());
-        for pace in 1..=paces {
-            links.pace(bodies, pace as f32 * share, share, time);
-            let met = self.meet(links, time, Way::Pace);
-            if self.tether {
-                links.let_go(Moves::places_in(time));
-            }
+        for _ in 0..paces {
+            links.kick(bodies, share);
+            let met = self.meet(links, time, Way::First);
             let stiff = links.stiffness(|link| self.length(link));
             if !met || stiff > STIFF {
                 return Err(stiff);
             }
+            if self.tether {
+                links.let_go(time);
+            }
+            links.go();
         }
         links.arrive(bodies, paces as f32, self.is_slack());
         Ok(())
@@ -261,21 +273,23 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     /// Goes straight to where lengths are met next to where the method has moved all, by the directions that links have there. Gives a rope that has not
     /// come near its lengths the form back that it had when the sub-step began, if that was nearer. No energy comes of it.
     fn jump(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
-        links.take_up(bodies);
-        let (h, before) = (bodies.substep.seconds(), links.vigour(bodies));
+        let h = bodies.substep.seconds();
+        links.take_up(bodies, h);
+        let before = links.vigour(bodies);
         if !self.meet(links, h, Way::Now) {
             bodies.report.effort.capped += 1;
             let off = self.worst(links);
             links.keep_form(bodies);
             if !(self.worst(links) < off) {
-                links.take_up(bodies);
+                links.take_up(bodies, h);
                 let _ = self.meet(links, h, Way::Now);
             }
         }
         if self.tether {
-            links.let_go(Moves::places_in(h));
+            links.let_go(h);
         }
         links.calm(bodies, before);
+        links.hand_back(bodies, h);
     }
 
     /// How far the worst link is off, as a share of its length.
@@ -318,15 +332,19 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if let Some(bounds) = &mut bounds {
             bounds.limit(bodies);
         }
-        links.take_up(bodies);
-        let through = self.meet(&mut links, h, Way::First) && !(links.stiffness(|link| self.length(link)) > STIFF);
-        if self.tether && through {
-            links.let_go(Moves::places_in(h));
-        }
-        if !through && !self.walk_through(bodies, &mut links) {
+        links.take_up(bodies, h);
+        if self.meet(&mut links, h, Way::First) && !(links.stiffness(|link| self.length(link)) > STIFF) {
+            if self.tether {
+                links.let_go(h);
+            }
+            if links.has_acted() {
+                links.hand_back(bodies, h);
+            }
+        } else if self.walk_through(bodies, &mut links) {
+            links.put_back(bodies);
+        } else {
             self.jump(bodies, &mut links);
         }
-        links.hand_back(bodies);
         if let Some(bounds) = &mut bounds {
             bounds.keep_within(bodies);
         }
@@ -343,15 +361,14 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if let Some(bounds) = &mut bounds {
             bounds.limit_settled(bodies);
         }
-        links.take_up(bodies);
+        links.take_up(bodies, 0.0);
         for _ in 0..if self.tether { ROUNDS } else { 1 } {
             let mut met = true;
             links.reach = 0.0;
             for link in 0..links.count {
                 let Some(line) = links.line(link) else { continue };
                 let rest = self.length(link);
-                let coarse = links.rounding(&line) + f32::EPSILON * (line.distance + rest);
-                let loose = self.tether && line.distance < rest - 4.0 * coarse;
+                let loose = self.tether && line.distance < rest - 4.0 * links.rounding(&line, rest);
                 let open = links.parting(&line).dot(line.normal) + soft * links.pull[link];
                 let slack = loose || self.tether && links.pull[link] * (line.weight + soft) >= open;
                 links.way[link] = line.normal;
@@ -361,37 +378,33 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
             if met || !links.solve(soft) {
                 break;
             }
-            links.act(Moves::VELOCITIES);
+            links.act(1.0);
         }
         if self.tether {
-            links.let_go(Moves::VELOCITIES);
+            links.let_go(1.0);
         }
-        links.hand_back(bodies);
+        links.hand_back(bodies, 0.0);
         if let Some(bounds) = &mut bounds {
             bounds.keep_settled(bodies);
         }
     }
 }
 
-/// How a solution goes about it.
+/// The directions along which links act.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// Along the directions that links had when the sub-step began.
+    /// Those that they have when the pace begins.
     First,
-    /// The same in a pace, with lengths as near as rounding of what is told from near allows.
-    Pace,
-    /// Along the directions that they have.
+    /// Those that they have at its end.
     Now,
 }
 
 impl Way {
     fn rounds(self) -> u32 {
-        if self == Self::Now { LAST_ROUNDS } else { ROUNDS }
-    }
-
-    /// How finely places are told \[m\].
-    fn rounding(self, links: &Links<'_>, line: &Line) -> f32 {
-        if self == Self::Pace { links.rounding_near(line) } else { links.rounding(line) }
+        match self {
+            Self::First => ROUNDS,
+            Self::Now => LAST_ROUNDS,
+        }
     }
 }
 
