@@ -10,6 +10,9 @@ use glam::Vec3;
 /// leave the system singular.
 const RIDGE: f32 = 1e-6;
 
+/// How much of what its neighbours are faster is given in a pace to a particle that has been made heavier.
+const FOLLOWING: f32 = 0.125;
+
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
@@ -23,6 +26,8 @@ pub(super) struct Links<'m> {
     pub(super) count: usize,
     /// How far it all goes wrong, summed over the links: nothing is moved farther than twice that.
     pub(super) reach: f32,
+    /// The cosine of how far a link has turned in a pace, at the most.
+    pub(super) turn: f32,
     /// How long it takes from where the copies are to where links are met, with the velocities of the copies \[s\].
     time: f32,
     /// Where places are told from \[m\], and the room that they are in.
@@ -83,7 +88,7 @@ impl<'m> Links<'m> {
         let (count, origin, room) = (links.min(aside.len()), Vec3::ZERO, None);
         #[rustfmt::skip]
         let nothing = Self {
-            count, reach: 0.0, time: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
+            count, reach: 0.0, turn: 1.0, time: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
         };
         (nothing, rest)
     }
@@ -127,6 +132,12 @@ impl<'m> Links<'m> {
     pub(super) fn ends(&self, link: usize) -> [usize; 2] {
         let next = link + 1;
         [link, if next == self.rows.len() { 0 } else { next }]
+    }
+
+    /// The numbers of those beside a particle.
+    fn beside(&self, particle: usize) -> [usize; 2] {
+        let before = if particle > 0 { particle - 1 } else { self.rows.len() - 1 };
+        [before, self.ends(particle)[1]]
     }
 
     /// A link as it lies; none if it cannot act.
@@ -356,6 +367,7 @@ impl<'m> Links<'m> {
         for (particle, row) in living(self.rows) {
             self.place[particle] = between(self.room.as_ref(), self.origin, bodies.before[0][row]);
         }
+        self.turn = 1.0;
         self.take_up_leads(bodies, paces);
         self.turn_only(is_slack);
         for (particle, row) in living(self.rows) {
@@ -363,12 +375,17 @@ impl<'m> Links<'m> {
         }
     }
 
-    /// Lets forces act for a share of the sub-step, in which the next pace is to be made. Whoever is fixed goes evenly.
+    /// Lets forces act for a share of the sub-step, in which the next pace is to be made. Whoever is fixed goes evenly, and who has been made heavier
+    /// follows those beside him, so that nothing of that comes to swing.
     pub(super) fn kick(&mut self, bodies: &Bodies<'_>, share: f32) {
         let h = bodies.substep.seconds();
         self.time = h * share;
         for (particle, row) in living(self.rows) {
             if self.weight[particle] > 0.0 {
+                if self.weight[particle] < bodies.inverse_mass[row] {
+                    let [before, next] = self.beside(particle).map(|beside| self.velocity[beside]);
+                    self.velocity[particle] += ((before + next) * 0.5 - self.velocity[particle]) * FOLLOWING;
+                }
                 self.velocity[particle] += (bodies.velocity[row] - bodies.before[1][row]) * share;
             } else {
                 let way = between(self.room.as_ref(), bodies.before[0][row], bodies.position[row]);
@@ -453,18 +470,34 @@ impl<'m> Links<'m> {
         if mass > 0.0 { sum / mass } else { Vec3::ZERO }
     }
 
-    /// Twice the kinetic energy beside that \[J\].
-    pub(super) fn vigour(&self, bodies: &Bodies<'_>) -> f32 {
+    /// Twice the kinetic energy beside that, after so much more of what forces do in the sub-step \[J\].
+    pub(super) fn vigour(&self, bodies: &Bodies<'_>, share: f32) -> f32 {
         let drift = self.drift(bodies);
         let moving = living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0);
-        moving.map(|(particle, row)| (self.velocity[particle] - drift).length_squared() * bodies.mass[row]).sum()
+        let twice = moving.map(|(particle, row)| {
+            let gained = bodies.velocity[row] - bodies.before[1][row];
+            (self.velocity[particle] + gained * share - drift).length_squared() * bodies.mass[row]
+        });
+        twice.sum()
     }
 
-    /// Slows all down to the kinetic energy that they had before.
-    pub(super) fn calm(&mut self, bodies: &Bodies<'_>, before: f32) {
-        let (drift, now) = (self.drift(bodies), self.vigour(bodies));
-        if now > before {
-            let share = sqrt(before / now);
+    /// The work of forces on the way to where all are from where they were as the sub-step began, beside what all of it moves \[J\].
+    pub(super) fn work(&self, bodies: &Bodies<'_>) -> f32 {
+        let (h, drift) = (bodies.substep.seconds(), self.drift(bodies));
+        let moving = living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0);
+        let work = moving.map(|(particle, row)| {
+            let from = between(self.room.as_ref(), self.origin, bodies.before[0][row]);
+            let (way, gained) = (self.place[particle] - from - drift * h, bodies.velocity[row] - bodies.before[1][row]);
+            way.dot(gained) * (bodies.mass[row] / h)
+        });
+        work.sum()
+    }
+
+    /// Slows all down so that twice their kinetic energy is no more than `most`, where it is `now` \[J\].
+    pub(super) fn calm(&mut self, bodies: &Bodies<'_>, now: f32, most: f32) {
+        let drift = self.drift(bodies);
+        if now > most {
+            let share = sqrt(max(most, 0.0) / now);
             self.velocity.iter_mut().for_each(|velocity| *velocity = drift + (*velocity - drift) * share);
         }
     }

@@ -4,7 +4,7 @@ mod bounded;
 mod links;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
-use crate::math::{clamp, max, sqrt};
+use crate::math::{clamp, max, min, sqrt};
 use bounded::{Bounds, Form};
 use links::{Line, Links, NOBODY};
 
@@ -85,19 +85,21 @@ pub struct Rope<P, L> {
 const ROUNDS: u32 = 8;
 /// Rounds of one that has to go by the directions that links have, at the most.
 const LAST_ROUNDS: u32 = 24;
-/// The cosine of how far a link may turn in one: by 60°.
-const COSINE: f32 = 0.5;
+/// The cosine of how far a link may turn in a pace: by 30°.
+const COSINE: f32 = 0.866;
+/// The cosine of how far one may turn so that its energy is safe: by 15°.
+const GENTLE: f32 = 0.966;
 /// Paces of a sub-step, at the most.
-const PACES: u32 = 64;
+const PACES: u32 = 256;
 /// How often paces are tried, at the most.
 const TRIES: u32 = 12;
 /// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: a quarter of what is stable for a long chain.
 const STIFF: f32 = 0.5;
 /// How far a link may be off before a round that brings it to its length for sure, a share of that.
 const SURELY: f32 = 1e-5;
-/// How many roundings of places are made good little by little, and which share of them in a pace.
+/// How many roundings of places are made good little by little, and which share of them in a second.
 const ROUNDINGS: f32 = 16.0;
-const SLOWLY: f32 = 0.03125;
+const SLOWLY: f32 = 8.0;
 /// How far a link may be off after all rounds, a share of its length: what is left is rounding.
 const NEARLY: f32 = 1e-4;
 
@@ -182,14 +184,17 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 let Some(line) = links.line(link) else { continue };
                 let rest = self.length(link);
                 let rounding = links.rounding(&line, rest);
-                let open = line.longer + self.due(line.before - rest, rounding) + soft * links.pull[link];
+                let open = line.longer + self.due(line.before - rest, rounding, time) + soft * links.pull[link];
                 let slack = self.tether && links.pull[link] * (line.weight + soft) >= open;
                 links.way[link] = if along == Way::First { line.first } else { line.normal };
-                if links.way[link].dot(line.normal) < COSINE {
+                let turn = links.way[link].dot(line.normal);
+                if turn < COSINE {
                     if !slack {
                         return false;
                     }
                     links.way[link] = line.normal;
+                } else if !slack {
+                    links.turn = min(links.turn, turn);
                 }
                 links.ask(link, slack, line.normal, open, line.weight);
                 if slack {
@@ -221,9 +226,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
     /// By how much a link gets shorter that is so much too long \[m\]: a soft one by all of it; a rigid one makes good what rounding of places shows little by little, since
     /// what is heavy would be thrown about by it.
-    fn due(&self, off: f32, rounding: f32) -> f32 {
+    fn due(&self, off: f32, rounding: f32, time: f32) -> f32 {
         let coarse = ROUNDINGS * rounding;
-        if self.compliance > 0.0 { off } else { off - (1.0 - SLOWLY) * clamp(off, -coarse, coarse) }
+        if self.compliance > 0.0 { off } else { off - max(1.0 - SLOWLY * time, 0.0) * clamp(off, -coarse, coarse) }
     }
 
     /// Goes through the sub-step from where all were as it began, by the forces that the method shows, in so many paces, and keeps to the lengths at each.
@@ -232,6 +237,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         let share = 1.0 / paces as f32;
         let time = bodies.substep.seconds() * share;
         links.set_out(bodies, paces as f32, self.is_slack());
+        let before = links.vigour(bodies, 0.5 * share);
         for _ in 0..paces {
             links.kick(bodies, share);
             let met = self.meet(links, time, Way::First);
@@ -243,6 +249,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 links.let_go(time);
             }
             links.go();
+        }
+        if links.turn < GENTLE {
+            links.calm(bodies, links.vigour(bodies, 0.5 * share), before + 2.0 * links.work(bodies));
         }
         links.arrive(bodies, paces as f32, self.is_slack());
         Ok(())
@@ -275,7 +284,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     fn jump(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
         let h = bodies.substep.seconds();
         links.take_up(bodies, h);
-        let before = links.vigour(bodies);
+        let before = links.vigour(bodies, 0.0);
         if !self.meet(links, h, Way::Now) {
             bodies.report.effort.capped += 1;
             let off = self.worst(links);
@@ -288,7 +297,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         if self.tether {
             links.let_go(h);
         }
-        links.calm(bodies, before);
+        links.calm(bodies, links.vigour(bodies, 0.0), before);
         links.hand_back(bodies, h);
     }
 
