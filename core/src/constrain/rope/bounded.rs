@@ -116,6 +116,9 @@ impl<'m> Bounds<'m> {
     pub(super) fn keep_within(&mut self, bodies: &mut Bodies<'_>) {
         let take: Taking<'m> =
             if self.form.compliance > 0.0 { Form::hold_back } else { |_, mut free, _, most| free.hold_form(most) };
+        if let Some(whole) = &self.whole {
+            self.owed.lay_across(bodies, self.rows, whole);
+        }
         self.giving_back(bodies, |this, bodies, due| this.keep(bodies, due, take));
     }
 
@@ -140,9 +143,6 @@ impl<'m> Bounds<'m> {
 
     /// Gives a rope the angular momentum back that it has lost, and owes it what is missing when something more has been done.
     fn giving_back(&mut self, bodies: &mut Bodies<'_>, then: impl FnOnce(&mut Self, &mut Bodies<'_>, Option<Whole>)) {
-        if let Some(whole) = &self.whole {
-            self.owed.lay_across(bodies, self.rows, whole);
-        }
         let due = self.owed.give_back(bodies, self.rows, self.whole);
         then(self, bodies, due);
         self.owed.note(bodies, self.rows, due);

@@ -122,7 +122,8 @@ impl<'m> Links<'m> {
     /// Moves all to where the copies are, with their velocities; those that are fixed stay.
     pub(super) fn put_back(&self, bodies: &mut Bodies<'_>) {
         for (particle, row) in living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0) {
-            bodies.position[row] += self.place[particle] - between(self.room.as_ref(), self.origin, bodies.position[row]);
+            bodies.position[row] +=
+                self.place[particle] - between(self.room.as_ref(), self.origin, bodies.position[row]);
             bodies.velocity[row] = self.velocity[particle];
             bodies.marks[row] |= SHIFTED;
         }
@@ -155,7 +156,15 @@ impl<'m> Links<'m> {
         let normal = apart / distance;
         let first = if before > 0.0 { from / before } else { normal };
         let longer = by.dot(from + apart) / (before + distance);
-        (distance > 0.0 && before + distance < f32::INFINITY).then_some(Line { ends, distance, normal, first, before, longer, weight })
+        (distance > 0.0 && before + distance < f32::INFINITY).then_some(Line {
+            ends,
+            distance,
+            normal,
+            first,
+            before,
+            longer,
+            weight,
+        })
     }
 
     /// How fast a link's ends go apart \[m/s\].
@@ -338,7 +347,8 @@ impl<'m> Links<'m> {
         let h = bodies.substep.seconds();
         for (particle, row) in living(self.rows) {
             let [from, before] = bodies.before.map(|before| before[row]);
-            let (way, gained) = (between(self.room.as_ref(), from, bodies.position[row]), bodies.velocity[row] - before);
+            let (way, gained) =
+                (between(self.room.as_ref(), from, bodies.position[row]), bodies.velocity[row] - before);
             let moves = bodies.inverse_mass[row] > 0.0;
             self.velocity[particle] = if moves { way / h - before - gained * (0.5 + 0.5 / paces) } else { Vec3::ZERO };
         }

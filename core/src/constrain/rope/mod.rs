@@ -93,10 +93,12 @@ const GENTLE: f32 = 0.966;
 const PACES: u32 = 256;
 /// How often paces are tried, at the most.
 const TRIES: u32 = 12;
-/// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: a quarter of what is stable for a long chain.
-const STIFF: f32 = 0.5;
-/// How far a link may be off before a round that brings it to its length for sure, a share of that.
-const SURELY: f32 = 1e-5;
+/// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: half of what is stable for a long chain.
+const STIFF: f32 = 1.0;
+/// How much of what links were off as a solution began may be left before its last round, and of a rounding: what is heavy is thrown about by the least
+/// of what rounding leaves of the pull of what is light.
+const FINELY: f32 = 1e-3;
+const FINE: f32 = 0.01;
 /// How many roundings of places are made good little by little, and which share of them in a second.
 const ROUNDINGS: f32 = 16.0;
 const SLOWLY: f32 = 8.0;
@@ -175,10 +177,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
 
     /// Changes velocities so that all links come to their lengths in a pace of so long \[s\], in a few rounds. Tells whether they have come near.
     fn meet(&self, links: &mut Links<'_>, time: f32, along: Way) -> bool {
-        let (soft, mut worst) = (self.compliance / (time * time), 0.0);
+        let (soft, mut worst, mut begun) = (self.compliance / (time * time), 0.0, 0.0);
         links.pull.fill(0.0);
-        for _ in 0..along.rounds() {
-            let mut met = true;
+        for round in 0..along.rounds() {
+            let (mut met, mut lets_go) = (true, false);
             (links.reach, worst) = (0.0, 0.0);
             for link in 0..links.count {
                 let Some(line) = links.line(link) else { continue };
@@ -198,15 +200,16 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 }
                 links.ask(link, slack, line.normal, open, line.weight);
                 if slack {
-                    met &= links.pull[link] == 0.0;
+                    lets_go |= links.pull[link] != 0.0;
                 } else {
-                    met &= open.abs() <= rounding;
+                    met &= open.abs() <= FINE * rounding;
                     worst = max(worst, open.abs() / (line.distance + rest));
                 }
             }
-            if met && !(links.reach > 0.0) {
+            if !(links.reach > 0.0) {
                 return true;
             }
+            begun = if round == 0 { worst } else { begun };
             if along == Way::Now {
                 // Straight across a taut link it takes the root of that to close a gap.
                 let longest = self.lengths.as_ref().iter().copied().fold(0.0, max);
@@ -216,8 +219,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 return false;
             }
             links.act(time);
-            // What is left is the square of that.
-            if met || worst < SURELY && !self.tether {
+            if !lets_go && (met || round > 0 && worst < FINELY * begun) {
                 return true;
             }
         }
@@ -342,7 +344,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
             bounds.limit(bodies);
         }
         links.take_up(bodies, h);
-        if self.meet(&mut links, h, Way::First) && !(links.stiffness(|link| self.length(link)) > STIFF) {
+        if self.meet(&mut links, h, Way::First) && !(2.0 * links.stiffness(|link| self.length(link)) > STIFF) {
             if self.tether {
                 links.let_go(h);
             }
