@@ -28,6 +28,8 @@ pub(super) struct Links<'m> {
     pub(super) reach: f32,
     /// The cosine of how far a link has turned in a pace, at the most.
     pub(super) turn: f32,
+    /// The share of the sub-step that a pace is.
+    pub(super) share: f32,
     /// How long it takes from where the copies are to where links are met, with the velocities of the copies \[s\].
     time: f32,
     /// Where places are told from \[m\], and the room that they are in.
@@ -88,7 +90,7 @@ impl<'m> Links<'m> {
         let (count, origin, room) = (links.min(aside.len()), Vec3::ZERO, None);
         #[rustfmt::skip]
         let nothing = Self {
-            count, reach: 0.0, turn: 1.0, time: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
+            count, reach: 0.0, turn: 1.0, share: 1.0, time: 0.0, origin, room, rows, pull, change, upper, border, weight, normal, way, place, velocity, aside,
         };
         (nothing, rest)
     }
@@ -98,7 +100,7 @@ impl<'m> Links<'m> {
         let first = living(self.rows).next();
         self.origin = first.map_or(Vec3::ZERO, |(_, row)| bodies.position[row]);
         self.room = bodies.near.room().copied();
-        self.time = time;
+        (self.time, self.share) = (time, 1.0);
         for (particle, row) in living(self.rows) {
             let place = between(self.room.as_ref(), self.origin, bodies.position[row]);
             self.place[particle] = place - bodies.velocity[row] * time;
@@ -389,7 +391,7 @@ impl<'m> Links<'m> {
     /// follows those beside him, so that nothing of that comes to swing.
     pub(super) fn kick(&mut self, bodies: &Bodies<'_>, share: f32) {
         let h = bodies.substep.seconds();
-        self.time = h * share;
+        (self.time, self.share) = (h * share, share);
         for (particle, row) in living(self.rows) {
             if self.weight[particle] > 0.0 {
                 if self.weight[particle] < bodies.inverse_mass[row] {

@@ -4,7 +4,7 @@ mod bounded;
 mod links;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
-use crate::math::{clamp, max, min, sqrt};
+use crate::math::{max, min, sqrt};
 use bounded::{Bounds, Form};
 use links::{Line, Links, NOBODY};
 
@@ -99,9 +99,6 @@ const STIFF: f32 = 1.0;
 /// of what rounding leaves of the pull of what is light.
 const FINELY: f32 = 1e-3;
 const FINE: f32 = 0.01;
-/// How many roundings of places are made good little by little, and which share of them in a second.
-const ROUNDINGS: f32 = 16.0;
-const SLOWLY: f32 = 8.0;
 /// How far a link may be off after all rounds, a share of its length: what is left is rounding.
 const NEARLY: f32 = 1e-4;
 
@@ -180,13 +177,13 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         let (soft, mut worst, mut begun) = (self.compliance / (time * time), 0.0, 0.0);
         links.pull.fill(0.0);
         for round in 0..along.rounds() {
-            let (mut met, mut lets_go) = (true, false);
+            let (mut met, mut lets_go, mut fine) = (true, false, true);
             (links.reach, worst) = (0.0, 0.0);
             for link in 0..links.count {
                 let Some(line) = links.line(link) else { continue };
                 let rest = self.length(link);
                 let rounding = links.rounding(&line, rest);
-                let open = line.longer + self.due(line.before - rest, rounding, time) + soft * links.pull[link];
+                let open = line.longer + self.due(line.before - rest, links.share) + soft * links.pull[link];
                 let slack = self.tether && links.pull[link] * (line.weight + soft) >= open;
                 links.way[link] = if along == Way::First { line.first } else { line.normal };
                 let turn = links.way[link].dot(line.normal);
@@ -202,11 +199,13 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 if slack {
                     lets_go |= links.pull[link] != 0.0;
                 } else {
-                    met &= open.abs() <= FINE * rounding;
+                    met &= open.abs() <= rounding;
+                    fine &= open.abs() <= FINE * rounding;
                     worst = max(worst, open.abs() / (line.distance + rest));
                 }
             }
-            if !(links.reach > 0.0) {
+            // Rounding of places is nothing to be made good at once.
+            if !(links.reach > 0.0) || round == 0 && met && !lets_go && links.share == 1.0 {
                 return true;
             }
             begun = if round == 0 { worst } else { begun };
@@ -219,18 +218,18 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
                 return false;
             }
             links.act(time);
-            if !lets_go && (met || round > 0 && worst < FINELY * begun) {
+            if !lets_go && (fine || round > 0 && worst < FINELY * begun) {
                 return true;
             }
         }
         worst < NEARLY
     }
 
-    /// By how much a link gets shorter that is so much too long \[m\]: a soft one by all of it; a rigid one makes good what rounding of places shows little by little, since
-    /// what is heavy would be thrown about by it.
-    fn due(&self, off: f32, rounding: f32, time: f32) -> f32 {
-        let coarse = ROUNDINGS * rounding;
-        if self.compliance > 0.0 { off } else { off - max(1.0 - SLOWLY * time, 0.0) * clamp(off, -coarse, coarse) }
+    /// By how much a link has to get shorter in a share of the sub-step that is so much too long as that begins \[m\]. A rigid one gets so fast as to do it in
+    /// the whole of it: what was drawn out would be shot about, and what is heavy be thrown about by rounding of places.
+    fn due(&self, off: f32, share: f32) -> f32 {
+        let is_rigid = self.compliance == 0.0 && !(self.tether && off < 0.0);
+        if is_rigid { off * share } else { off }
     }
 
     /// Goes through the sub-step from where all were as it began, by the forces that the method shows, in so many paces, and keeps to the lengths at each.
@@ -275,6 +274,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             paces = paces.min(PACES);
             match self.walk(bodies, links, paces) {
                 Ok(()) => return true,
+                Err(next) if paces == PACES && !(next > STIFF) => return false,
                 Err(next) => stiff = next,
             }
         }
@@ -299,8 +299,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         if self.tether {
             links.let_go(h);
         }
-        links.calm(bodies, links.vigour(bodies, 0.0), before);
         links.hand_back(bodies, h);
+        links.calm(bodies, links.vigour(bodies, 0.0), before);
+        links.hand_back(bodies, 0.0);
     }
 
     /// How far the worst link is off, as a share of its length.
