@@ -356,6 +356,17 @@ impl<'m> Links<'m> {
         }
     }
 
+    /// How many times what links have pulled in one pace they have to pull in all: methods of higher order go half as far by forces as velocities lead, and
+    /// leave the other half to settling.
+    pub(super) fn shown(&self, bodies: &Bodies<'_>) -> f32 {
+        let h = bodies.substep.seconds();
+        let lags = |(_, row): (usize, usize)| {
+            let gained = bodies.velocity[row] - bodies.before[1][row];
+            length(bodies.lead(row, h)) > 0.25 * h * length(gained)
+        };
+        if living(self.rows).any(lags) { 2.0 } else { 1.0 }
+    }
+
     /// Takes out of places what the method shows beyond velocities: of all, if somebody is fixed, else what lengths show of it.
     pub(super) fn catch_up(&mut self, bodies: &mut Bodies<'_>, is_slack: impl Fn(usize, &Line) -> bool) {
         if living(self.rows).any(|(_, row)| !(bodies.inverse_mass[row] > 0.0)) {

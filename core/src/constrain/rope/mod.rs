@@ -266,9 +266,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             if paces == PACES {
                 links.load(0.5 * STIFF, |link| self.length(link));
             }
-            let wanted = paces as f32 * sqrt(stiff / STIFF);
+            // What has not come near tells little: no more than eight times as many.
+            let wanted = paces as f32 * min(sqrt(stiff / STIFF), 8.0);
             paces *= 2;
-            while (paces as f32) < wanted && paces < PACES {
+            while (paces as f32) < wanted {
                 paces *= 2;
             }
             paces = paces.min(PACES);
@@ -345,7 +346,8 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
             bounds.limit(bodies);
         }
         links.take_up(bodies, h);
-        if self.meet(&mut links, h, Way::First) && !(2.0 * links.stiffness(|link| self.length(link)) > STIFF) {
+        let stiff = |links: &Links<'_>| links.stiffness(|link| self.length(link));
+        if self.meet(&mut links, h, Way::First) && !(links.shown(bodies) * stiff(&links) > STIFF) {
             if self.tether {
                 links.let_go(h);
             }
