@@ -29,7 +29,7 @@ use links::{Line, Links, NOBODY};
 /// forces that the method shows (as multiple time steps: Tuckerman, Berne and Martyna, J. Chem. Phys. 97, 1992): a pendulum swings in its time and as wide as
 /// before, however heavy its bob is and however few the sub-steps are. The number of paces grows with that of links and with the root of how many times as heavy as the rope the
 /// bob is; where 256 are too few (30 links of 0.3 m in all in one sub-step of 1/60 s that hold a thousand times their mass), links are made heavier meanwhile, which makes such a swing slower by
-/// a hundredth. Rounding of what pulls makes light links swing: with a bob of a thousand times the rope's mass by up to some thousandths of the energy of the swing in half a minute.
+/// some hundredths. Rounding of what pulls makes light links swing: with a bob of a thousand times the rope's mass by up to some thousandths of the energy of the swing in half a minute.
 /// A rope that does not come near its lengths even so goes by the directions that links have at the sub-step's end, which takes energy, or keeps the form that it had as
 /// the sub-step began, if that was nearer, and is counted as capped in [`Effort`](crate::Effort).
 ///
