@@ -25,6 +25,9 @@ const MOST: usize = 1 << 22;
 #[cfg(feature = "alloc")]
 const SIDES: f32 = 3.0;
 
+/// In place of the number of a box that is not there.
+pub(crate) const NOBODY: u32 = u32::MAX;
+
 /// What is added to numbers to have the nearest whole ones in their last bits.
 const WHOLE: f32 = 8_388_608.0;
 
@@ -36,10 +39,11 @@ pub struct Clearance<'a> {
     nearest: &'a [Nearest],
 }
 
-/// The box that is nearest to a cell, and how far all others are from anywhere in it at the least \[units\].
+/// The two boxes that are nearest to a cell, how far the second is, and how far all others are from anywhere in it at the least \[units\].
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
-    number: u32,
+    numbers: [u32; 2],
+    second: u8,
     others: u8,
 }
 
@@ -82,7 +86,7 @@ impl ClearanceBuf {
             grid = finer;
         }
         let cells = if grid.scale == 0.0 { 0 } else { grid.len() };
-        let nobody = Nearest { number: u32::MAX, others: u8::MAX };
+        let nobody = Nearest { numbers: [NOBODY; 2], second: u8::MAX, others: u8::MAX };
         let mut all = Self { grid, free: vec![u8::MAX; cells], nearest: vec![nobody; cells] };
         if cells > 0 {
             boxes.iter().for_each(|(number, bounds)| all.enter(*number, bounds));
@@ -113,11 +117,14 @@ impl ClearanceBuf {
                 for (column, (free, nearest)) in (x[0]..x[1]).zip(places) {
                     // The cast rounds down and saturates.
                     let distance = (max(gap(0, column), aside) / unit) as u8;
+                    let Nearest { numbers: [first, other], second, others } = *nearest;
                     if distance < *free {
-                        *nearest = Nearest { number, others: *free };
+                        *nearest = Nearest { numbers: [number, first], second: *free, others: second };
                         *free = distance;
+                    } else if distance < second {
+                        *nearest = Nearest { numbers: [first, number], second: distance, others: second };
                     } else {
-                        nearest.others = nearest.others.min(distance);
+                        *nearest = Nearest { numbers: [first, other], second, others: others.min(distance) };
                     }
                 }
             }
@@ -180,10 +187,11 @@ impl Clearance<'_> {
         (is_far & (x + y + z).simd_eq(zero), cells)
     }
 
-    /// The number of the box that is nearest to a cell, and how far all others are from anywhere in it at the least \[m\].
-    pub(crate) fn nearest(&self, cell: u32) -> Option<(usize, f32)> {
-        let Nearest { number, others } = *self.nearest.get(cell as usize)?;
-        Some((number as usize, f32::from(others) * self.grid.unit))
+    /// The numbers of the two boxes that are nearest to a cell, [`NOBODY`] for one that is not there, and how far all others are from anywhere in
+    /// it at the least \[m\].
+    pub(crate) fn nearest(&self, cell: u32) -> Option<([u32; 2], f32)> {
+        let Nearest { numbers, others, .. } = *self.nearest.get(cell as usize)?;
+        Some((numbers, f32::from(others) * self.grid.unit))
     }
 }
 
@@ -226,7 +234,7 @@ mod tests {
                     clearance.view().nearest(cell).filter(|(_, others)| half + 1e-4 < *others)
                 {
                     assert!(
-                        boxes.iter().enumerate().all(|(i, one)| i == nearest || !meets(one)),
+                        boxes.iter().enumerate().all(|(i, one)| nearest.contains(&(i as u32)) || !meets(one)),
                         "{count}: {middle} {half}"
                     );
                     alone += usize::from(!is_told && others > 0.0);

@@ -196,7 +196,8 @@ impl<C: Collider> Many for Scenery<C> {
     }
 
     fn meets(&self, number: usize, bounds: &Aabb) -> bool {
-        self.boxes.0.get(number).is_none_or(|one| meet(one, bounds))
+        let is_near = self.boxes.0.get(number).is_none_or(|one| meet(one, bounds));
+        is_near && self.solids.get(number).is_none_or(|solid| solid.is_none_or(|solid| solid.may_meet(bounds)))
     }
 
     fn few(&self, bounds: &Aabb) -> Few {

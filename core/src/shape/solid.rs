@@ -1,6 +1,7 @@
 //! Solids that are met side by side with others of their kind.
 
-use super::Aabb;
+use super::convex::Convex;
+use super::{Aabb, Sphere};
 use crate::math::{largest, max};
 use glam::Vec3;
 
@@ -24,6 +25,15 @@ impl Solid {
         match *self {
             Self::Sphere { center, radius } => Aabb { min: center - radius, max: center + radius },
             Self::Box(bounds) => bounds,
+        }
+    }
+
+    /// False if surely nothing in a box touches it.
+    #[inline]
+    pub(super) fn may_meet(&self, bounds: &Aabb) -> bool {
+        match *self {
+            Self::Sphere { center, radius } => Sphere { center, radius }.may_meet(bounds),
+            Self::Box(own) => own.overlaps(bounds),
         }
     }
 

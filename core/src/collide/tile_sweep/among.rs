@@ -10,7 +10,7 @@ use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
 use crate::lanes::{LANES, run, run_broad, widest};
 use crate::math::{largest, max};
-use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, Solid};
+use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, NOBODY, Solid};
 use core::ops::Range;
 
 /// Things that rows go among, the box around all of them, and the face outside it.
@@ -25,6 +25,26 @@ struct Among<'m> {
     has_packets: bool,
     /// Rows that wait to go past spheres, and past boxes.
     pairs: [Pairs; 2],
+}
+
+impl Among<'_> {
+    /// Those of the things that may be near the ways of a row, and so much farther away on all sides.
+    #[inline]
+    fn few(&self, sought: &Sought, i: usize, beyond: f32) -> Few {
+        let (bounds, [.., widest]) = (sought.around(i, beyond), sought.middle[i]);
+        let nearest = self.clearance.and_then(|clearance| clearance.nearest(sought.cells[i]));
+        match nearest {
+            Some((numbers, others)) if widest + beyond < others => {
+                let [one, other] = numbers.map(|number| number != NOBODY && self.many.meets(number as usize, &bounds));
+                match [one, other] {
+                    [true, true] => Few::Several,
+                    [false, false] => Few::Nothing,
+                    _ => Few::One(numbers[usize::from(other)] as usize),
+                }
+            }
+            _ => self.many.few(&bounds),
+        }
+    }
 }
 
 impl TileSweep<'_, '_> {
@@ -141,30 +161,21 @@ impl TileSweep<'_, '_> {
     /// Follows a row that may be near things, or has it wait for others; false, if it is not near any.
     #[inline]
     fn go_near(&mut self, row: usize, sought: &Sought, i: usize, among: &mut Among<'_>) -> bool {
-        let (many, bounds) = (among.many, sought.around(i, 0.0));
-        let nearest = among.clearance.and_then(|clearance| clearance.nearest(sought.cells[i]));
-        let ([x, y, z, widest], [.., beyond]) = (sought.middle[i], sought.half[i]);
+        let [x, y, z, widest] = sought.middle[i];
         if !(x + y + z + widest).is_finite() {
             return self.go_between(row, among);
         }
-        let (number, mut is_alone) = match nearest {
-            Some((number, others)) if widest < others => {
-                if !many.meets(number, &bounds) {
-                    return false;
-                }
-                (number, widest + beyond < others)
-            }
-            _ => match many.few(&bounds) {
-                Few::Nothing => return false,
-                Few::One(number) => (number, false),
-                Few::Several => return self.go_between(row, among),
-            },
+        let number = match among.few(sought, i, 0.0) {
+            Few::Nothing => return false,
+            Few::One(number) => number,
+            Few::Several => return self.go_between(row, among),
         };
         let may_wait = among.has_packets && self.tile.attributes.lives.radius[row] == 0.0;
-        let Some(solid) = many.solid(number).filter(|_| may_wait) else {
+        let Some(solid) = among.many.solid(number).filter(|_| may_wait) else {
             return self.go_between(row, among);
         };
-        is_alone = is_alone || matches!(many.few(&sought.around(i, beyond)), Few::One(_));
+        let [.., beyond] = sought.half[i];
+        let is_alone = matches!(among.few(sought, i, beyond), Few::One(_));
         let is_box = matches!(solid.0, Solid::Box(_));
         if among.pairs[usize::from(is_box)].push(row as u32, solid, is_alone) {
             if is_box { self.past_things::<true>(among) } else { self.past_things::<false>(among) }
