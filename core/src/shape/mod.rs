@@ -44,7 +44,6 @@ pub use aabb::Aabb;
 pub use affine::Affine;
 pub use capsule::Capsule;
 pub use clearance::Clearance;
-pub(crate) use clearance::NOBODY;
 pub use collider::{Collider, Few, Many, Mapped};
 pub use cone::Cone;
 pub use cuboid::Cuboid;

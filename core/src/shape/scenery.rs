@@ -126,6 +126,12 @@ impl<C: Collider> Scenery<C> {
         endless.for_each(|number| ask(&self.things[number]));
     }
 
+    /// Tells whether a box may share a point with one of them.
+    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
+        let is_near = self.boxes.0.get(number).is_none_or(|one| meet(one, bounds));
+        is_near && self.solids.get(number).is_none_or(|solid| solid.is_none_or(|solid| solid.may_meet(bounds)))
+    }
+
     /// All of them.
     fn anywhere(&self) -> Nearby<'_, C> {
         Nearby { of: self, known: None }
@@ -195,9 +201,12 @@ impl<C: Collider> Many for Scenery<C> {
         Some((solid, self.endless.first().is_some_and(|&face| face < number)))
     }
 
-    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
-        let is_near = self.boxes.0.get(number).is_none_or(|one| meet(one, bounds));
-        is_near && self.solids.get(number).is_none_or(|solid| solid.is_none_or(|solid| solid.may_meet(bounds)))
+    fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
+        numbers.iter().fold(Few::Nothing, |few, &number| match few {
+            _ if !self.meets(number as usize, bounds) => few,
+            Few::Nothing => Few::One(number as usize),
+            _ => Few::Several,
+        })
     }
 
     fn few(&self, bounds: &Aabb) -> Few {

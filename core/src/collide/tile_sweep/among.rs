@@ -8,9 +8,9 @@ use crate::collide::near::{BLOCK, Near};
 use crate::collide::sweep::surroundings;
 use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
-use crate::lanes::{LANES, run, run_broad, widest};
+use crate::lanes::{LANES, run_broad, widest};
 use crate::math::{largest, max};
-use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, NOBODY, Solid};
+use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, Solid};
 use core::ops::Range;
 
 /// Things that rows go among, the box around all of them, and the face outside it.
@@ -32,18 +32,8 @@ impl Among<'_> {
     #[inline]
     fn few(&self, sought: &Sought, i: usize, beyond: f32) -> Few {
         let (bounds, [.., widest]) = (sought.around(i, beyond), sought.middle[i]);
-        let nearest = self.clearance.and_then(|clearance| clearance.nearest(sought.cells[i]));
-        match nearest {
-            Some((numbers, others)) if widest + beyond < others => {
-                let [one, other] = numbers.map(|number| number != NOBODY && self.many.meets(number as usize, &bounds));
-                match [one, other] {
-                    [true, true] => Few::Several,
-                    [false, false] => Few::Nothing,
-                    _ => Few::One(numbers[usize::from(other)] as usize),
-                }
-            }
-            _ => self.many.few(&bounds),
-        }
+        let nearest = self.clearance.and_then(|clearance| clearance.nearest(sought.cells[i], widest + beyond));
+        nearest.map_or_else(|| self.many.few(&bounds), |numbers| self.many.few_of(numbers, &bounds))
     }
 }
 
@@ -146,7 +136,7 @@ impl TileSweep<'_, '_> {
     fn seek_for(&mut self, asking: &mut Asking, first: usize, among: &mut Among<'_>, room: Room, gone: &mut Bits) {
         let Asking { list, sought } = asking;
         let (eights, len) = list.take_eights();
-        run(Seek { of: self, rows: eights, face: among.face, clearance: among.clearance, room, sought });
+        run_broad(Seek { of: self, eights, len, face: among.face, clearance: among.clearance, room, sought });
         for (nth, (rows, sought)) in eights.iter().zip(sought).enumerate() {
             let are_there = if len < LANES * (nth + 1) { (1 << (len % LANES)) - 1 } else { u32::MAX };
             for i in ones(sought.near & are_there) {
