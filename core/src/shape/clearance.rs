@@ -1,4 +1,5 @@
-//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in: most who ask are told enough by one number.
+//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in, and which two are the nearest: most who ask are told
+//! enough by one number, and nearly all others by these.
 
 use super::Aabb;
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors};

@@ -156,7 +156,8 @@ pub trait Many: Sync {
         None
     }
 
-    /// Those of some of them, known by their numbers, that may share a point with a box.
+    /// Those of some of them, known by the numbers that the clearance knows them by, that may share a point with a box: fewer than of all, if it can be
+    /// told that a box around one of them says too much.
     fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
         let _ = (numbers, bounds);
         Few::Several

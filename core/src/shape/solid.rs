@@ -1,7 +1,8 @@
 //! Solids that are met side by side with others of their kind.
 
-use super::convex::Convex;
-use super::{Aabb, Sphere};
+use super::Aabb;
+#[cfg(feature = "alloc")]
+use super::{Sphere, convex::Convex};
 use crate::math::{largest, max};
 use glam::Vec3;
 
@@ -29,6 +30,7 @@ impl Solid {
     }
 
     /// False if surely nothing in a box touches it.
+    #[cfg(feature = "alloc")]
     #[inline]
     pub(super) fn may_meet(&self, bounds: &Aabb) -> bool {
         match *self {

@@ -22,7 +22,7 @@ pub struct Sphere {
 }
 
 /// What rounding may do to whoever is held against it, a share of its extents.
-const ROOM: f32 = 32.0 * f32::EPSILON;
+const ROOM: f32 = 16.0 * f32::EPSILON;
 
 impl Surface for Sphere {
     fn area(&self) -> f32 {

@@ -84,8 +84,8 @@ impl Workspace<'_> {
         self.memory.columns().state(&scene.backdrop(), self.status)
     }
 
-    /// Takes the particles in some rows out, no more than [`AT_ONCE`], from back to front; the last row fills each gap. Where there are springs, it
-    /// takes one at a time.
+    /// Takes the particles in some rows out, no more than [`AT_ONCE`], from back to front; the last row fills each gap. Where there are springs,
+    /// there must not be more than one.
     #[cfg_attr(target_os = "none", inline(always))]
     #[cfg_attr(not(target_os = "none"), inline(never))]
     pub(crate) fn remove(&mut self, rows: &[u32], springs: &dyn SpringList, report: &mut Report) {
@@ -108,6 +108,7 @@ impl Workspace<'_> {
             // There are fewer than 2³² slots, and so fewer rows.
             *onto = [last as u32, row];
         }
+        // Slots, too, once more: to where they are already.
         let moves = &moves[..rows.len()];
         self.memory.move_rows(moves);
         for column in self.memory.kept.chunks_mut(capacity).take(self.status.kept.per_row) {

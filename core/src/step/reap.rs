@@ -29,7 +29,7 @@ impl Workspace<'_> {
         let is_heard = !TILED || observer.attention() > Attention::Nothing;
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
-        let most = if scene.springs.code().is_some() { 1 } else { AT_ONCE };
+        let most = if TILED && !scene.springs.list().is_empty() { 1 } else { AT_ONCE };
         let (mut doomed, mut count) = ([0; AT_ONCE], 0);
         while let Some((row, cause)) = widest(
             #[inline(always)]

@@ -1,4 +1,4 @@
-//! Rows among many things: who may be near any of them is told eight at a time, and only those look for what they are near.
+//! Rows among many things: who may be near any of them is told many at a time, and only those look for what they are near.
 
 use super::pairs::{Pairs, PastThings};
 use super::seek::{Asking, Seek, Sought};
