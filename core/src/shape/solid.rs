@@ -1,8 +1,6 @@
 //! Solids that are met side by side with others of their kind.
 
 use super::Aabb;
-#[cfg(feature = "alloc")]
-use super::{Sphere, convex::Convex};
 use crate::math::{largest, max};
 use glam::Vec3;
 
@@ -34,7 +32,7 @@ impl Solid {
     #[inline]
     pub(super) fn may_meet(&self, bounds: &Aabb) -> bool {
         match *self {
-            Self::Sphere { center, radius } => Sphere { center, radius }.may_meet(bounds),
+            Self::Sphere { center, radius } => bounds.is_near(center, radius),
             Self::Box(own) => own.overlaps(bounds),
         }
     }

@@ -5,7 +5,7 @@ use super::Solid;
 use super::ball::{Filled, circle_span, leave_circle};
 use super::convex::{Convex, Hollow, Span, convex_collider};
 use super::{Aabb, Affine, Collider, Segment, Spot, Surface};
-use crate::math::{high, largest, length, low, max, sin_cos_turns, sqrt, unit};
+use crate::math::{largest, length, max, sin_cos_turns, sqrt, unit};
 use core::f32::consts::PI;
 use glam::Vec3;
 
@@ -20,9 +20,6 @@ pub struct Sphere {
     /// Its radius \[m\].
     pub radius: f32,
 }
-
-/// What rounding may do to whoever is held against it, a share of its extents.
-const ROOM: f32 = 16.0 * f32::EPSILON;
 
 impl Surface for Sphere {
     fn area(&self) -> f32 {
@@ -71,9 +68,7 @@ impl Convex for Sphere {
 
     /// Boxes are near the box around it more often than it.
     fn may_meet(&self, bounds: &Aabb) -> bool {
-        let away = self.center - high(low(self.center, bounds.max), bounds.min);
-        let far = self.radius + ROOM * (self.reach() + self.radius);
-        !(away.dot(away) > far * far)
+        bounds.is_near(self.center, self.radius)
     }
 }
 
