@@ -1,4 +1,4 @@
-//! Looking at pairs that may come near each other in a sub-step: eight of a kind side by side, and one by one those that have to be followed.
+//! Looking at pairs that may come near each other in a sub-step: as many of a kind side by side as registers hold, and one by one those that have to be followed.
 
 use super::closest::{self, FARTHEST, Kind, MARGIN, Meeting, parts};
 use super::contact::Contact;
@@ -6,8 +6,8 @@ use super::eights::{Closest, Gaps, Seen, apart, fastest, seen};
 use super::listing::thickness;
 use super::pair::{self, Pair, are_apart, is_own};
 use super::rest::Rest;
-use super::waiting::Waiting;
-use crate::lanes::{self, ABREAST, Eight, Kernel, LANES, min};
+use super::waiting::{ROOM, Waiting};
+use crate::lanes::{self, ABREAST, BroadKernel, Eight, LANES, Lanes, PARTS, min};
 use crate::math::{self, length};
 use glam::Vec3;
 
@@ -37,8 +37,8 @@ pub(super) struct Look<'m, 'r> {
     waiting: [Waiting; 2],
     /// True if each is looked at alone, in the order in which they come.
     alone: bool,
-    /// The outcome for the last eight.
-    met: Met,
+    /// The outcome for the last that have waited.
+    met: [Met; PARTS],
 }
 
 impl<'m, 'r> Look<'m, 'r> {
@@ -51,7 +51,7 @@ impl<'m, 'r> Look<'m, 'r> {
     ) -> Self {
         let (count, lost, meetings) = (0, 0, 0);
         let waiting = Waiting::none();
-        Self { rest, uniform, from, now, room, contacts, count, lost, meetings, waiting, alone, met: Met::default() }
+        Self { rest, uniform, from, now, room, contacts, count, lost, meetings, waiting, alone, met: Default::default() }
     }
 
     /// Looks at two that are kept so far apart; no number: that is not known.
@@ -60,32 +60,35 @@ impl<'m, 'r> Look<'m, 'r> {
         if ABREAST < LANES || self.alone {
             self.one(pair, corners, wanted);
         } else if self.waiting[kind as usize].push(pair, corners, wanted) {
-            self.eight(kind);
+            self.all(kind);
         }
     }
 
     /// Looks at all that wait.
     pub(super) fn finish(&mut self) {
         for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
-            if ABREAST == LANES && !self.waiting[kind as usize].len.is_multiple_of(LANES) {
-                self.eight(kind);
+            if ABREAST == LANES && !self.waiting[kind as usize].len.is_multiple_of(ROOM) {
+                self.all(kind);
             }
         }
         self.waiting = Waiting::none();
     }
 
-    fn eight(&mut self, kind: Kind) {
+    /// Looks at all of a kind that wait.
+    fn all(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
         let Self { rest, uniform, from, now, .. } = *self;
         let together = Together { rest, uniform, from, now, kind, waiting: &waiting };
-        let Some([near, unsure]) = lanes::run(Meet(together, &mut self.met)) else {
+        let Some([near, unsure]) = lanes::run_broad(Meet(together, &mut self.met)) else {
             waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, wanted)| self.one(pair, corners, wanted));
             return;
         };
         for (lane, pair, corners, _) in waiting.of_mask(near) {
-            let ([x, y, z, begun], weights) = (self.met.gap[lane], self.met.weights[lane]);
-            let (closest, wanted) = (closest::Closest { weights, gap: Vec3::new(x, y, z) }, self.met.wanted[lane]);
-            let meeting = Meeting { closest, distance: [begun, self.met.ended[lane]], meets: false };
+            let met = &self.met[lane / LANES];
+            let lane = lane % LANES;
+            let ([x, y, z, begun], weights, wanted) = (met.gap[lane], met.weights[lane], met.wanted[lane]);
+            let closest = closest::Closest { weights, gap: Vec3::new(x, y, z) };
+            let meeting = Meeting { closest, distance: [begun, met.ended[lane]], meets: false };
             self.note(pair, corners, wanted, meeting);
         }
         for (_, pair, corners, wanted) in waiting.of_mask(unsure) {
@@ -147,7 +150,7 @@ impl<'m, 'r> Look<'m, 'r> {
     }
 }
 
-/// Eight pairs of a kind in a sub-step.
+/// Pairs of a kind in a sub-step.
 struct Together<'a, 'r> {
     rest: &'a Rest<'r>,
     uniform: Option<f32>,
@@ -158,35 +161,35 @@ struct Together<'a, 'r> {
 }
 
 impl Together<'_, '_> {
-    /// Their corners at both ends; none, if one of them has to be looked at alone.
+    /// The corners of some from one eight on at both ends; none, if one of them has to be looked at alone.
     #[inline(always)]
-    fn ends<F: Eight>(&self, like: F) -> Option<[Seen<F>; 2]> {
-        let corners = &self.waiting.corners;
+    fn ends<F: Lanes>(&self, like: F, first: usize) -> Option<[Seen<F>; 2]> {
+        let corners = &self.waiting.corners[first..];
         Some([seen(like, self.from, corners)?, seen(like, self.now, corners)?])
     }
 
     /// The bounds that are found at first glance: a direction that keeps them apart counts where they are not too fast.
     #[inline(always)]
-    fn gaps<F: Eight>(&self, like: F, ends: &[Seen<F>; 2]) -> Gaps<F> {
+    fn gaps<F: Lanes>(&self, like: F, ends: &[Seen<F>; 2]) -> Gaps<F> {
         let fast = like.all(2.0 * FARTHEST * self.rest.facts.budget);
         Gaps::of(self.kind, ends).masked(fastest(self.kind, ends).simd_le(fast * fast))
     }
 
     /// How far apart two may be at the most that are looked at.
     #[inline(always)]
-    fn reach<F: Eight>(&self, wanted: F) -> F {
+    fn reach<F: Lanes>(&self, wanted: F) -> F {
         wanted + wanted.all(2.0 * self.rest.facts.budget)
     }
 
     /// Those that something may be found of, if they are kept so far apart.
     #[inline(always)]
-    fn left<F: Eight>(&self, gaps: &Gaps<F>, wanted: F) -> F {
+    fn left<F: Lanes>(&self, gaps: &Gaps<F>, wanted: F) -> F {
         let reach = self.reach(wanted);
         gaps.left(reach, reach * wanted.all(1.0 + MARGIN))
     }
 }
 
-/// The outcome for those that come near each other.
+/// The outcome for those of eight that come near each other.
 #[derive(Default)]
 struct Met {
     weights: [[f32; 4]; LANES],
@@ -198,27 +201,27 @@ struct Met {
 }
 
 /// Finds those of them that come near each other without coming together, and those that have to be followed.
-struct Meet<'a, 'r>(Together<'a, 'r>, &'a mut Met);
+struct Meet<'a, 'r>(Together<'a, 'r>, &'a mut [Met; PARTS]);
 
-impl Kernel for Meet<'_, '_> {
-    /// None: one of them has to be looked at alone.
-    type Output = Option<[u32; 2]>;
-
-    /// As [`Meeting::of`], as far as that goes without following the ways.
+impl Meet<'_, '_> {
+    /// As [`Meeting::of`], as far as that goes without following the ways, of some from one eight on.
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Self::Output {
+    fn some<F: Lanes>(&mut self, like: F, first: usize) -> Option<[u32; 2]> {
         let Self(this, met) = self;
-        let (kind, budget) = (this.kind, this.rest.facts.budget);
-        let ends = this.ends(like)?;
+        let (kind, budget, corners) = (this.kind, this.rest.facts.budget, &this.waiting.corners[first..]);
+        let ends = this.ends(like, first)?;
         let gaps = this.gaps(like, &ends);
-        let [thickness, alike] = thickness(like, this.rest, this.uniform, kind, &this.waiting.corners);
+        let [thickness, alike] = thickness(like, this.rest, this.uniform, kind, corners);
         let mut some = this.left(&gaps, thickness);
         if !some.any() {
             return Some([0; 2]);
         }
-        let mut wanted = like.of(this.waiting.wanted);
+        let [mut wanted] = like.of_parts(
+            #[inline(always)]
+            |like, nth| [like.of(this.waiting.wanted[first + nth])],
+        );
         if lanes::not(wanted.simd_le(thickness)).any() {
-            let gap = Closest::of(kind, seen(like, this.rest.places, &this.waiting.corners)?).gap;
+            let gap = Closest::of(kind, seen(like, this.rest.places, corners)?).gap;
             let half = min(like.all(0.5) * gap.length(), thickness);
             wanted = wanted.simd_le(thickness).select(wanted, alike.select(half, thickness));
         }
@@ -227,11 +230,11 @@ impl Kernel for Meet<'_, '_> {
         if !some.any() {
             return Some([0; 2]);
         }
-        let first = Closest::of(kind, ends[0]);
-        let begun = first.gap.length();
+        let start = Closest::of(kind, ends[0]);
+        let begun = start.gap.length();
         let (zero, sound) = (like.all(0.0), begun.simd_lt(like.all(f32::INFINITY)));
         some = some & begun.simd_gt(zero) & sound;
-        some = some & lanes::not(apart(kind, &ends[1], first.gap / begun).simd_ge(reach));
+        some = some & lanes::not(apart(kind, &ends[1], start.gap / begun).simd_ge(reach));
         if !some.any() {
             return Some([0; 2]);
         }
@@ -240,10 +243,28 @@ impl Kernel for Meet<'_, '_> {
         let near = min(like.all(NEAR) * lanes::max(wanted, like.all(budget)), like.all(0.5) * begun);
         let straight = ended.simd_gt(near) & apart(kind, &ends[0], closest.gap / ended).simd_gt(zero);
         let [x, y, z] = closest.gap.0;
-        met.weights = F::rows_of(closest.weights);
-        met.gap = F::rows_of([x, y, z, begun]);
-        (met.ended, met.wanted) = (ended.to_array(), wanted.to_array());
+        let [a, b, c, d] = closest.weights;
+        for (nth, met) in met[first..].iter_mut().enumerate().take(F::PARTS) {
+            met.weights = Eight::rows_of([a.part(nth), b.part(nth), c.part(nth), d.part(nth)]);
+            met.gap = Eight::rows_of([x.part(nth), y.part(nth), z.part(nth), begun.part(nth)]);
+            (met.ended, met.wanted) = (ended.part(nth).to_array(), wanted.part(nth).to_array());
+        }
         let near = some & straight & lanes::not(ended.simd_ge(reach));
         Some([near.to_bitmask(), (some & lanes::not(straight)).to_bitmask()])
+    }
+}
+
+impl BroadKernel for Meet<'_, '_> {
+    /// None: one of them has to be looked at alone.
+    type Output = Option<[u32; 2]>;
+
+    #[inline(always)]
+    fn run<F: Lanes>(mut self, like: F) -> Self::Output {
+        let mut found = [0; 2];
+        for first in (0..PARTS).step_by(F::PARTS) {
+            let [near, unsure] = self.some(like, first)?;
+            found = [found[0] | near << (LANES * first), found[1] | unsure << (LANES * first)];
+        }
+        Some(found)
     }
 }
