@@ -4,6 +4,7 @@ use super::closest::{self, FARTHEST, Kind, MARGIN, Meeting, parts};
 use super::contact::Contact;
 use super::eights::{Closest, Gaps, Seen, apart, fastest, seen};
 use super::listing::thickness;
+use super::near::Listed;
 use super::pair::{self, Pair, are_apart, is_own};
 use super::rest::Rest;
 use super::waiting::{ROOM, Waiting};
@@ -28,6 +29,10 @@ pub(super) struct Look<'m, 'r> {
     /// How far each may be pushed from where it is.
     room: &'m mut [f32],
     contacts: &'m mut [Contact],
+    /// Room for those that come near if they are pushed together by so much more, how much that is \[m\], and their number.
+    close: &'m mut [Listed],
+    more: f32,
+    closed: usize,
     /// The number of contacts, and of those that found no room.
     pub(super) count: usize,
     pub(super) lost: u64,
@@ -47,11 +52,29 @@ impl<'m, 'r> Look<'m, 'r> {
         [from, now]: [&'m [Vec3]; 2],
         room: &'m mut [f32],
         contacts: &'m mut [Contact],
+        (close, more): (&'m mut [Listed], f32),
         alone: bool,
     ) -> Self {
-        let (count, lost, meetings) = (0, 0, 0);
+        let (count, lost, meetings, closed) = (0, 0, 0, 0);
         let waiting = Waiting::none();
-        Self { rest, uniform, from, now, room, contacts, count, lost, meetings, waiting, alone, met: Default::default() }
+        let met = Default::default();
+        Self {
+            rest,
+            uniform,
+            from,
+            now,
+            room,
+            contacts,
+            close,
+            more,
+            closed,
+            count,
+            lost,
+            meetings,
+            waiting,
+            alone,
+            met,
+        }
     }
 
     /// Looks at two that are kept so far apart; no number: that is not known.
@@ -77,12 +100,20 @@ impl<'m, 'r> Look<'m, 'r> {
     /// Looks at all of a kind that wait.
     fn all(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
-        let Self { rest, uniform, from, now, .. } = *self;
-        let together = Together { rest, uniform, from, now, kind, waiting: &waiting };
-        let Some([near, unsure]) = lanes::run_broad(Meet(together, &mut self.met)) else {
-            waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, wanted)| self.one(pair, corners, wanted));
+        let Self { rest, uniform, from, now, more, .. } = *self;
+        let together = Together { rest, uniform, from, now, more, kind, waiting: &waiting };
+        let Some([near, unsure, close]) = lanes::run_broad(Meet(together, &mut self.met)) else {
+            for (_, pair, corners, wanted) in waiting.of_mask(u32::MAX) {
+                self.keep(pair, wanted);
+                self.one(pair, corners, wanted);
+            }
             return;
         };
+        if !self.close.is_empty() {
+            waiting.of_mask(close).for_each(|(lane, pair, ..)| {
+                self.keep(pair, self.met[lane / LANES].wanted[lane % LANES]);
+            });
+        }
         for (lane, pair, corners, _) in waiting.of_mask(near) {
             let met = &self.met[lane / LANES];
             let lane = lane % LANES;
@@ -94,6 +125,19 @@ impl<'m, 'r> Look<'m, 'r> {
         for (_, pair, corners, wanted) in waiting.of_mask(unsure) {
             self.one(pair, corners, wanted);
         }
+    }
+
+    /// Lists two that are close.
+    fn keep(&mut self, pair: Pair, wanted: f32) {
+        if let Some(place) = self.close.get_mut(self.closed) {
+            *place = Listed { pair, apart: 0.0, wanted };
+        }
+        self.closed += 1;
+    }
+
+    /// The number of those that are close; none, if there was no room for them.
+    pub(super) fn closed(&self) -> Option<usize> {
+        Some(self.closed).filter(|&count| !self.close.is_empty() && count <= self.close.len())
     }
 
     /// Looks at two alone.
@@ -156,6 +200,7 @@ struct Together<'a, 'r> {
     uniform: Option<f32>,
     from: &'a [Vec3],
     now: &'a [Vec3],
+    more: f32,
     kind: Kind,
     waiting: &'a Waiting,
 }
@@ -187,6 +232,12 @@ impl Together<'_, '_> {
         let reach = self.reach(wanted);
         gaps.left(reach, reach * wanted.all(1.0 + MARGIN))
     }
+
+    /// How far apart two may be at the most that are close.
+    #[inline(always)]
+    fn far<F: Lanes>(&self, wanted: F) -> F {
+        self.reach(wanted) * wanted.all(1.0 + MARGIN) + wanted.all(self.more)
+    }
 }
 
 /// The outcome for those of eight that come near each other.
@@ -206,15 +257,16 @@ struct Meet<'a, 'r>(Together<'a, 'r>, &'a mut [Met; PARTS]);
 impl Meet<'_, '_> {
     /// As [`Meeting::of`], as far as that goes without following the ways, of some from one eight on.
     #[inline(always)]
-    fn some<F: Lanes>(&mut self, like: F, first: usize) -> Option<[u32; 2]> {
+    fn some<F: Lanes>(&mut self, like: F, first: usize) -> Option<[u32; 3]> {
         let Self(this, met) = self;
         let (kind, budget, corners) = (this.kind, this.rest.facts.budget, &this.waiting.corners[first..]);
         let ends = this.ends(like, first)?;
         let gaps = this.gaps(like, &ends);
         let [thickness, alike] = thickness(like, this.rest, this.uniform, kind, corners);
-        let mut some = this.left(&gaps, thickness);
-        if !some.any() {
-            return Some([0; 2]);
+        let far = this.far(thickness);
+        let mut close = gaps.left(far, far);
+        if !close.any() {
+            return Some([0; 3]);
         }
         let [mut wanted] = like.of_parts(
             #[inline(always)]
@@ -225,18 +277,24 @@ impl Meet<'_, '_> {
             let half = min(like.all(0.5) * gap.length(), thickness);
             wanted = wanted.simd_le(thickness).select(wanted, alike.select(half, thickness));
         }
-        let reach = this.reach(wanted);
-        some = some & this.left(&gaps, wanted);
-        if !some.any() {
-            return Some([0; 2]);
+        for (nth, met) in met[first..].iter_mut().enumerate().take(F::PARTS) {
+            met.wanted = wanted.part(nth).to_array();
+        }
+        let (reach, far) = (this.reach(wanted), this.far(wanted));
+        close = close & gaps.left(far, far);
+        let mut some = close & this.left(&gaps, wanted);
+        if !close.any() {
+            return Some([0; 3]);
         }
         let start = Closest::of(kind, ends[0]);
         let begun = start.gap.length();
         let (zero, sound) = (like.all(0.0), begun.simd_lt(like.all(f32::INFINITY)));
         some = some & begun.simd_gt(zero) & sound;
-        some = some & lanes::not(apart(kind, &ends[1], start.gap / begun).simd_ge(reach));
+        let still = apart(kind, &ends[1], start.gap / begun);
+        some = some & lanes::not(still.simd_ge(reach));
+        close = close & lanes::not(min(begun, still).simd_ge(far));
         if !some.any() {
-            return Some([0; 2]);
+            return Some([0, 0, close.to_bitmask()]);
         }
         let closest = Closest::of(kind, ends[1]);
         let ended = closest.gap.length();
@@ -247,23 +305,24 @@ impl Meet<'_, '_> {
         for (nth, met) in met[first..].iter_mut().enumerate().take(F::PARTS) {
             met.weights = Eight::rows_of([a.part(nth), b.part(nth), c.part(nth), d.part(nth)]);
             met.gap = Eight::rows_of([x.part(nth), y.part(nth), z.part(nth), begun.part(nth)]);
-            (met.ended, met.wanted) = (ended.part(nth).to_array(), wanted.part(nth).to_array());
+            met.ended = ended.part(nth).to_array();
         }
         let near = some & straight & lanes::not(ended.simd_ge(reach));
-        Some([near.to_bitmask(), (some & lanes::not(straight)).to_bitmask()])
+        Some([near.to_bitmask(), (some & lanes::not(straight)).to_bitmask(), close.to_bitmask()])
     }
 }
 
 impl BroadKernel for Meet<'_, '_> {
     /// None: one of them has to be looked at alone.
-    type Output = Option<[u32; 2]>;
+    type Output = Option<[u32; 3]>;
 
     #[inline(always)]
     fn run<F: Lanes>(mut self, like: F) -> Self::Output {
-        let mut found = [0; 2];
+        let mut found = [0; 3];
         for first in (0..PARTS).step_by(F::PARTS) {
-            let [near, unsure] = self.some(like, first)?;
-            found = [found[0] | near << (LANES * first), found[1] | unsure << (LANES * first)];
+            for (found, some) in found.iter_mut().zip(self.some(like, first)?) {
+                *found |= some << (LANES * first);
+            }
         }
         Some(found)
     }

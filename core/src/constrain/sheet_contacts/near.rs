@@ -5,6 +5,9 @@
 //! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
 //!
+//! Where half of all are astray, nobody is expected anywhere for the rest of the step: then each sub-step lists whoever is close as it looks at all for the first
+//! time, and looks again at these alone, and at whom those triangles are near that have been pushed far since.
+//!
 //! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::look::Look) finds nothing of.
 
 use super::closest::MARGIN;
@@ -26,6 +29,11 @@ pub(super) struct Facts {
     pub(super) full: u32,
     /// How far anyone may leave the expected way \[m\].
     pub(super) skin: f32,
+    /// 1 if everyone has left the ways that were expected in this step, and nobody is expected anywhere any more.
+    pub(super) lost: u32,
+    /// The number of pairs that are close in the sub-step, in place of the others, and 1 if it is known.
+    pub(super) close: u32,
+    pub(super) closed: u32,
 }
 
 /// Two that may come near each other.
@@ -50,6 +58,14 @@ pub(super) struct Near<'m> {
 
 /// The least and the most that anyone may leave the expected way by, as multiples of how far one may be pushed between searches.
 const SKINS: [f32; 2] = [0.5, 2.0];
+
+/// How far anyone may be pushed until those are sought anew who are close to it, as a multiple of how far one may be pushed between searches.
+const PUSHED: f32 = 0.25;
+
+/// How far that is \[m\].
+pub(super) fn pushed(rest: &Rest<'_>) -> f32 {
+    PUSHED * rest.facts.budget
+}
 
 /// How far anyone may leave the expected way: no farther, if it can be, than leaves neighbours in the sheets out of the lists while these are as
 /// they are at rest, as most triangles' least heights tell.
@@ -101,14 +117,30 @@ impl<'m> Near<'m> {
         *self.facts = Facts { skin: skin(rest), ..bytemuck::Zeroable::zeroed() };
     }
 
+    /// Gives up expecting anyone anywhere in this step.
+    pub(super) fn lose(&mut self) {
+        (self.facts.pairs, self.facts.lost) = (0, 1);
+    }
+
+    /// Forgets who is close, as a sub-step begins.
+    pub(super) fn part(&mut self) {
+        self.facts.closed = 0;
+    }
+
+    /// Takes in that so many are close as all are at these places in the end.
+    pub(super) fn close(&mut self, count: usize, now: &[Vec3]) {
+        (self.facts.close, self.facts.closed) = (count as u32, 1);
+        self.base.copy_from_slice(now);
+    }
+
     /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each triangle has left its way.
     pub(super) fn pairs<'a>(&'a self, rest: &'a Rest<'_>, strays: &'a [f32]) -> impl Iterator<Item = &'a Listed> {
-        let Facts { pairs, skin, .. } = *self.facts;
-        let all = &self.pairs[..pairs as usize];
+        let Facts { pairs, close, closed, .. } = *self.facts;
+        let all = &self.pairs[..if closed == 0 { pairs } else { close } as usize];
         all.iter().filter(move |listed| {
             let [one, other] = listed.pair.faces().map(|face| strays[face]);
             let least = rest.reach(listed.wanted) * (1.0 + MARGIN);
-            one <= skin && other <= skin && !(listed.apart - one - other > least)
+            one < f32::INFINITY && other < f32::INFINITY && !(listed.apart - one - other > least)
         })
     }
 }

@@ -2,9 +2,10 @@
 
 use super::super::Bodies;
 use super::super::contacts::Touch;
-use super::closest::Kind;
+use super::closest::{Kind, MARGIN};
 use super::contact::Contact;
 use super::lists::{Kept, Work};
+use super::near::pushed;
 use super::look::{Look, SHARE};
 use super::renew::ready;
 use super::rest::Rest;
@@ -22,7 +23,8 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     let drift = drift(work);
     let astray = ready(rest, kept, work, bodies, drift);
     let found = look(rest, kept, work, astray);
-    bodies.report.effort.streamed += u64::from(astray.is_none());
+    let is_lost = kept.near.as_ref().is_some_and(|near| near.facts.full == 0);
+    bodies.report.effort.streamed += u64::from(astray.is_none() && !is_lost);
     bodies.report.caps.contacts += found.lost;
     let contacts = &mut kept.contacts[..found.count];
     arrange(contacts, bytemuck::cast_slice_mut(work.searched));
@@ -45,11 +47,16 @@ struct Found {
     count: usize,
     lost: u64,
     meetings: u32,
+    /// Those that are close, if they have been listed.
+    close: Option<usize>,
 }
 
 /// Looks at all who may come near each other: by lists and at the triangles astray, of which there are so many, or all anew without lists.
 fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>) -> Found {
     let found = look_at(rest, kept, work, astray, ABREAST < LANES);
+    if let Some((near, count)) = kept.near.as_mut().zip(found.close) {
+        near.close(count, work.now);
+    }
     // Which of them find room is for the order to say in which a search of all meets them one by one.
     let is_said = ABREAST < LANES && astray.is_none();
     if found.lost > 0 && !is_said { look_at(rest, kept, work, None, true) } else { found }
@@ -61,18 +68,23 @@ fn look_at(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Op
     work.room.fill(2.0 * SHARE * budget);
     let (from, now) = (&*work.from, &*work.now);
     let uniform = kept.counts.uniform();
-    let mut look = Look::new((rest, uniform), [from, now], work.room, kept.contacts, alone);
-    if let Some(near) = kept.near.as_ref().filter(|_| astray.is_some()) {
+    let (near, free, more): (_, &mut [_], _) = match &mut kept.near {
+        Some(near) if astray.is_some() => (Some(&*near), &mut [], 0.0),
+        Some(near) if !alone => (None, near.pairs, 2.0 * pushed(rest)),
+        _ => (None, &mut [], 0.0),
+    };
+    let mut look = Look::new((rest, uniform), [from, now], work.room, kept.contacts, (free, more), alone);
+    if let Some(near) = near {
         let all = near.pairs(rest, work.tree.strays());
         all.for_each(|listed| look.at(listed.pair, listed.pair.corners(rest.faces), listed.wanted));
         look.finish();
     }
     if astray != Some(0) {
-        work.tree.fit((rest, uniform), Ways { from, to: now }, |half| half + budget);
+        work.tree.fit((rest, uniform), Ways { from, to: now }, |half| (half + budget) * (1.0 + MARGIN) + 0.5 * more);
         work.tree.pairs(rest.faces, astray.is_none(), |pair, corners| look.at(pair, corners, f32::NAN));
         look.finish();
     }
-    Found { count: look.count, lost: look.lost, meetings: look.meetings }
+    Found { count: look.count, lost: look.lost, meetings: look.meetings, close: look.closed() }
 }
 
 /// Puts contacts in the order of their keys: those of each first corner to their places first, as their numbers tell (McIlroy, Bostic and McIlroy,
@@ -194,7 +206,7 @@ mod tests {
         let mut contacts = vec![Contact::zeroed(); room];
         kept.contacts = &mut contacts;
         let all = work.tree.mark(rest.faces, |_| f32::INFINITY);
-        let Found { count, lost, meetings } = if alone {
+        let Found { count, lost, meetings, .. } = if alone {
             look_at(&rest, &mut kept, &mut work, None, true)
         } else {
             look(&rest, &mut kept, &mut work, astray.then_some(all))
