@@ -235,7 +235,8 @@ mod tests {
             let grid = [2, 3, 5, 1000][round % 4];
             let places: [Vec3; 65] =
                 core::array::from_fn(|_| Vec3::from([0; 3].map(|_| next(grid) as f32 / grid as f32 - 0.3)));
-            let lanes = |part: usize| core::array::from_fn(|lane| [0, 1, 2, 3].map(|k| (4 * (LANES * part + lane) + k) as u32));
+            let lanes =
+                |part: usize| core::array::from_fn(|lane| [0, 1, 2, 3].map(|k| (4 * (LANES * part + lane) + k) as u32));
             let corners = core::array::from_fn(lanes);
             for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
                 let all = lanes::run_broad(All(kind, &places, corners));

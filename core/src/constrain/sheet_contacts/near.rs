@@ -2,10 +2,10 @@
 //!
 //! Everyone is expected to go on by a mean of how it goes in the sub-step in which they are made and how fast it came. Two are listed unless some direction keeps them apart by more
 //! than they are looked for and two skins, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than a skin, as seen
-//! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
+//! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are given up. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
 //!
-//! Where half of all are astray, nobody is expected anywhere for the rest of the step: then each sub-step lists whoever is close as it looks at all for the first
+//! Where a quarter of all are astray, nobody is expected anywhere for the rest of the step: then each sub-step lists whoever is close as it looks at all for the first
 //! time, and looks again at these alone, and at whom those triangles are near that have been pushed far since.
 //!
 //! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::look::Look) finds nothing of.

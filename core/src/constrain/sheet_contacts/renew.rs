@@ -15,8 +15,8 @@ use glam::Vec3;
 /// How far a particle goes on average, as seen from all, until lists end, as a multiple of how far one may be pushed between
 /// searches.
 const STRETCH: f32 = 16.0;
-/// One triangle of so many may be astray before lists are made anew.
-const ASTRAY: usize = 2;
+/// One triangle of so many may be astray before lists are given up.
+const ASTRAY: usize = 4;
 
 impl Near<'_> {
     /// How far off its expected way one is at both ends of a sub-step that comes so many after the first.
