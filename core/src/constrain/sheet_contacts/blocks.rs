@@ -16,8 +16,7 @@ pub(super) struct Block {
     /// The lower and the upper ends of boxes, eight and eight, at the beginning and in the end, along each axis.
     low: [[[[f32; LANES]; 3]; 2]; 2],
     high: [[[[f32; LANES]; 3]; 2]; 2],
-    /// The ends of edges that are its own, and their numbers.
-    ends: [[u32; 2]; TRIANGLES],
+    /// The edges that are its own.
     edges: [u8; TRIANGLES],
     /// A bit for each corner that is its own.
     corners: u16,
@@ -81,10 +80,10 @@ impl Block {
             for k in 0..3 {
                 self.corners |= u16::from(face.owns_corner(k)) << (4 * i + k);
                 if face.owns_edge(k) {
-                    let (place, ends) = (self.count as usize, face.edge(k));
-                    let [a, b] = ends.map(|corner| &corners[corner as usize]);
+                    let place = self.count as usize;
+                    let [a, b] = face.edge(k).map(|corner| &corners[corner as usize]);
                     self.put(place, &a.and(b));
-                    (self.ends[place], self.edges[place]) = (ends, (4 * i + k) as u8);
+                    self.edges[place] = (4 * i + k) as u8;
                     self.marked |= u16::from(is_marked) << self.count;
                     self.count += 1;
                 }
@@ -138,9 +137,9 @@ impl Block {
         each(of.edges & self.there())
     }
 
-    /// The number of an edge, and its ends.
-    pub(super) fn edge(&self, place: usize) -> (usize, [u32; 2]) {
-        (self.edges[place].into(), self.ends[place])
+    /// The number of an edge.
+    pub(super) fn edge(&self, place: usize) -> usize {
+        self.edges[place].into()
     }
 
     /// The box around an edge.
@@ -222,7 +221,7 @@ mod tests {
         fn run<F: Eight>(self, like: F) -> Self::Output {
             let Self(block, first, bounds, all) = self;
             let near = block.near(like, bounds);
-            let edges = block.near_edges(like, near, all, first, bounds).map(|place| block.edge(place).0).collect();
+            let edges = block.near_edges(like, near, all, first, bounds).map(|place| block.edge(place)).collect();
             (edges, block.near_faces(like, near, all, bounds).collect())
         }
     }
@@ -257,7 +256,7 @@ mod tests {
             };
             let edges = own(Face::owns_edge);
             let listed = block.edges(Near::ALL).map(|place| block.edge(place));
-            assert!(listed.eq(edges.iter().map(|&edge| (edge, faces[edge / 4].edge(edge % 4)))));
+            assert!(listed.eq(edges.iter().copied()));
             assert_eq!(block.corners().collect::<Vec<_>>(), own(Face::owns_corner));
             let first = next(3) as usize;
             let (near, triangles) = lanes::run(Overlapping(&block, first, &bounds, true));

@@ -25,15 +25,31 @@ pub(super) struct Facts {
     pub(super) horizon: u32,
     /// The number of pairs.
     pub(super) pairs: u32,
-    /// 1 if pairs found no room in this step.
-    pub(super) full: u32,
+    /// What is known besides: any of [`FULL`], [`LOST`] and [`CLOSE`].
+    pub(super) state: u32,
     /// How far anyone may leave the expected way \[m\].
     pub(super) skin: f32,
-    /// 1 if everyone has left the ways that were expected in this step, and nobody is expected anywhere any more.
-    pub(super) lost: u32,
-    /// The number of pairs that are close in the sub-step, in place of the others, and 1 if it is known.
-    pub(super) close: u32,
-    pub(super) closed: u32,
+}
+
+/// Pairs found no room in this step.
+pub(super) const FULL: u32 = 1;
+/// Too many have left the ways that were expected in this step, and nobody is expected anywhere any more.
+const LOST: u32 = 2;
+/// The pairs are those that are close in the sub-step.
+const CLOSE: u32 = 4;
+
+impl Facts {
+    pub(super) fn is_full(&self) -> bool {
+        self.state & FULL != 0
+    }
+
+    pub(super) fn is_lost(&self) -> bool {
+        self.state & LOST != 0
+    }
+
+    pub(super) fn is_close(&self) -> bool {
+        self.state & CLOSE != 0
+    }
 }
 
 /// Two that may come near each other.
@@ -119,24 +135,28 @@ impl<'m> Near<'m> {
 
     /// Gives up expecting anyone anywhere in this step.
     pub(super) fn lose(&mut self) {
-        (self.facts.pairs, self.facts.lost) = (0, 1);
+        self.facts.pairs = 0;
+        self.facts.state |= LOST;
     }
 
     /// Forgets who is close, as a sub-step begins.
     pub(super) fn part(&mut self) {
-        self.facts.closed = 0;
+        if self.facts.is_close() {
+            self.facts.pairs = 0;
+            self.facts.state &= !CLOSE;
+        }
     }
 
     /// Takes in that so many are close as all are at these places in the end.
     pub(super) fn close(&mut self, count: usize, now: &[Vec3]) {
-        (self.facts.close, self.facts.closed) = (count as u32, 1);
+        self.facts.pairs = count as u32;
+        self.facts.state |= CLOSE;
         self.base.copy_from_slice(now);
     }
 
     /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each triangle has left its way.
     pub(super) fn pairs<'a>(&'a self, rest: &'a Rest<'_>, strays: &'a [f32]) -> impl Iterator<Item = &'a Listed> {
-        let Facts { pairs, close, closed, .. } = *self.facts;
-        let all = &self.pairs[..if closed == 0 { pairs } else { close } as usize];
+        let all = &self.pairs[..self.facts.pairs as usize];
         all.iter().filter(move |listed| {
             let [one, other] = listed.pair.faces().map(|face| strays[face]);
             let least = rest.reach(listed.wanted) * (1.0 + MARGIN);

@@ -5,7 +5,7 @@ use super::bounds::ROUNDING;
 use super::closest::{FARTHEST, MARGIN};
 use super::listing::Listing;
 use super::lists::{Kept, Work};
-use super::near::{Facts, Near, pushed};
+use super::near::{FULL, Facts, Near, pushed};
 use super::rest::Rest;
 use super::tree::Ways;
 use crate::lanes::{ABREAST, LANES};
@@ -53,7 +53,7 @@ impl Near<'_> {
     }
 
     /// The same by how far all have been pushed since those were listed that are close.
-    fn follow_close(&self, rest: &Rest<'_>, work: &mut Work<'_>, drift: Vec3) -> usize {
+    pub(super) fn follow_close(&self, rest: &Rest<'_>, work: &mut Work<'_>, drift: Vec3) -> usize {
         let square = |i: usize, [_, now]: [Vec3; 2]| {
             let off = now - self.base[i];
             dot(off, off)
@@ -119,7 +119,7 @@ impl Near<'_> {
                 return true;
             }
         }
-        *self.facts = Facts { horizon: 0, full: 1, ..*self.facts };
+        *self.facts = Facts { horizon: 0, state: FULL, ..*self.facts };
         false
     }
 
@@ -151,14 +151,14 @@ pub(super) fn ready(
     let Kept { near, rows, .. } = kept;
     let near = near.as_mut()?;
     let few = |astray: &usize| astray * ASTRAY <= rest.faces.len();
-    if near.facts.closed != 0 {
+    if near.facts.is_close() {
         let astray = Some(near.follow_close(rest, work, drift)).filter(few);
         if astray.is_none() {
             near.part();
         }
         return astray;
     }
-    if near.facts.full != 0 || near.facts.lost != 0 {
+    if near.facts.is_full() || near.facts.is_lost() {
         return None;
     }
     match near.follow(rest, work, substep, drift) {

@@ -23,8 +23,8 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     let drift = drift(work);
     let astray = ready(rest, kept, work, bodies, drift);
     let found = look(rest, kept, work, astray);
-    let is_lost = kept.near.as_ref().is_some_and(|near| near.facts.full == 0);
-    bodies.report.effort.streamed += u64::from(astray.is_none() && !is_lost);
+    let has_room = kept.near.as_ref().is_some_and(|near| !near.facts.is_full());
+    bodies.report.effort.streamed += u64::from(astray.is_none() && !has_room);
     bodies.report.caps.contacts += found.lost;
     let contacts = &mut kept.contacts[..found.count];
     arrange(contacts, bytemuck::cast_slice_mut(work.searched));
@@ -165,6 +165,7 @@ fn drift(work: &Work<'_>) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::super::lists;
+    use super::super::near::Listed;
     use super::*;
     use alloc::{vec, vec::Vec};
     use bytemuck::Zeroable;
@@ -236,5 +237,52 @@ mod tests {
             }
         }
         assert!(unsure > 10, "{unsure}");
+    }
+    #[test]
+    fn who_is_close_is_known_after_pushes() {
+        let (mut close, mut astray_most, mut meetings_most) = (0, 0, 0);
+        for seed in 0..12 {
+            let demand = lists::demand(COUNTS);
+            let [mut fixed, mut step, mut scratch] =
+                [demand.kept, demand.step, demand.scratch].map(|words| vec![0u32; words.fixed]);
+            let mut rest = Rest::of(&mut fixed, COUNTS).expect("the memory is asked for");
+            let mut kept = Kept::of(&mut step, COUNTS).expect("the memory is asked for");
+            let mut work = Work::of(&mut scratch, COUNTS).expect("the memory is asked for");
+            heap(&mut rest, &mut work, seed);
+            let mut contacts = vec![Contact::zeroed(); 10_000];
+            let mut pairs = vec![Listed::zeroed(); 100_000];
+            kept.contacts = &mut contacts;
+            kept.counts.compare(&rest);
+            kept.near.as_mut().expect("the memory is asked for").pairs = &mut pairs;
+            close += look(&rest, &mut kept, &mut work, None).close.expect("there is room");
+            let far = pushed(&rest);
+            for pushes in 1..4 {
+                // Most are pushed by less than brings anybody near who is not close, some by more.
+                for (i, now) in work.now.iter_mut().enumerate() {
+                    let far = if (i + seed as usize).is_multiple_of(7) { 5.0 * far } else { 0.3 * far };
+                    *now += Vec3::new(1.0, -1.0, 1.0) * [far, -far][(i + pushes) % 2] / 1.8;
+                }
+                let drift = drift(&work);
+                let near = kept.near.as_ref().expect("the memory is asked for");
+                let astray = near.follow_close(&rest, &mut work, drift);
+                let mut outcome = |kept: &mut Kept<'_>, alone: bool| {
+                    let found = match alone {
+                        true => look_at(&rest, kept, &mut work, None, true),
+                        false => look(&rest, kept, &mut work, Some(astray)),
+                    };
+                    let contacts = &mut kept.contacts[..found.count];
+                    contacts.sort_by_key(Contact::key);
+                    let mut bits: Vec<u32> = work.room.iter().map(|room| room.to_bits()).collect();
+                    bits.extend_from_slice(bytemuck::cast_slice(contacts));
+                    (found.count, found.lost, found.meetings, bits)
+                };
+                let (of_close, of_all) = (outcome(&mut kept, false), outcome(&mut kept, true));
+                assert!(of_close == of_all, "{seed}, {pushes} pushes, {astray} astray: {} of {}", of_close.0, of_all.0);
+                astray_most = astray.max(astray_most);
+                meetings_most = of_all.2.max(meetings_most);
+                assert!(astray < COUNTS[1], "{astray}");
+            }
+        }
+        assert!(close > 1000 && astray_most > 5 && meetings_most > 0, "{close} {astray_most} {meetings_most}");
     }
 }

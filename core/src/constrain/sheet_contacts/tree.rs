@@ -227,25 +227,25 @@ impl<V: FnMut(Pair, [u32; 4])> Visit<'_, '_, V> {
     /// Visits the edges of one block with those of another, of both those that are near the other one.
     #[inline(always)]
     fn edges<F: Eight>(&mut self, like: F, [a, b]: [usize; 2], [near, other_near]: [Near; 2]) {
-        let Self { tree, visit, .. } = self;
+        let Self { tree, faces, visit, .. } = self;
         let (one, other) = (&tree.inside[a], &tree.inside[b]);
         let some = other.is_marked();
         if other_near.edges == 0 {
             return;
         }
         for place in one.edges(near) {
-            let (feature, [p, q]) = one.edge(place);
-            let (i, k) = (feature / 4, feature % 4);
-            let counts = one.marks(i);
+            let (i, k) = (one.edge(place) / 4, one.edge(place) % 4);
+            let ([p, q], counts) = (faces[BLOCK * a + i].edge(k), one.marks(i));
             if !(counts || some) {
                 continue;
             }
             let bounds = one.around(place);
             let first = if a == b { place + 1 } else { 0 };
             for place in other.near_edges(like, other_near, counts, first, &bounds) {
-                let (feature, [r, s]) = other.edge(place);
+                let feature = other.edge(place);
+                let (j, l) = (BLOCK * b + feature / 4, feature % 4);
+                let [r, s] = faces[j].edge(l);
                 if p != r && p != s && q != r && q != s {
-                    let (j, l) = (BLOCK * b + feature / 4, feature % 4);
                     visit(Pair::of_edges([BLOCK * a + i, k], [j, l]), [p, q, r, s]);
                 }
             }
