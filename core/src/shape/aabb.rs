@@ -53,14 +53,6 @@ impl Aabb {
             && low.z - room * low.z.abs() <= high.z + room * high.z.abs()
     }
 
-    /// False if surely nothing in it is within a distance from a place, rounding errors of some units in the last place allowed for.
-    #[inline]
-    pub(super) fn is_near(&self, place: Vec3, distance: f32) -> bool {
-        let away = place - high(low(place, self.max), self.min);
-        let far = distance + 16.0 * f32::EPSILON * (largest(place) + 2.0 * distance);
-        !(away.dot(away) > far * far)
-    }
-
     /// The middle \[m\].
     #[must_use]
     pub fn center(&self) -> Vec3 {

@@ -156,8 +156,7 @@ pub trait Many: Sync {
         None
     }
 
-    /// Those of some of them, known by the numbers that the clearance knows them by, that may share a point with a box: fewer than of all, if it can be
-    /// told that a box around one of them says too much.
+    /// Those of some of them, known by the numbers that the clearance knows them by, that may share a point with a box.
     fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
         let _ = (numbers, bounds);
         Few::Several

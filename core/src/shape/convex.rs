@@ -1,12 +1,12 @@
 //! First hits on closed convex solids: shapes say what is inside and where a line runs inside; the rest is here, once.
 
 use super::ball::{Filled, approach, lean, lean_on};
-use super::{Aabb, Affine, Collider, Contact, Hit, Segment, Surface, earlier};
+use super::{Affine, Collider, Contact, Hit, Segment, earlier};
 use crate::math::{clamp, unit};
 use glam::Vec3;
 
 /// A closed convex solid.
-pub(super) trait Convex: Surface {
+pub(super) trait Convex {
     /// Tells whether `point` lies strictly inside; a pure function of the point, so that two paths that share an end
     /// agree.
     fn contains(&self, point: Vec3) -> bool;
@@ -16,11 +16,6 @@ pub(super) trait Convex: Surface {
 
     /// How far its surface reaches from the origin \[m\], about.
     fn reach(&self) -> f32;
-
-    /// False if surely nothing in a box touches it.
-    fn may_meet(&self, bounds: &Aabb) -> bool {
-        self.bounds().overlaps(bounds)
-    }
 }
 
 /// The part of a line inside a solid: its ends and the outward unit normals there.
@@ -156,7 +151,7 @@ macro_rules! convex_collider {
                 crate::shape::convex::ball_contacts(self, center, reach, visit);
             }
             fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
-                crate::shape::convex::Convex::may_meet(self, bounds)
+                crate::shape::Surface::bounds(self).overlaps(bounds)
             }
             fn mark_near(&self, hulls: &crate::shape::Hulls, marks: &mut crate::shape::Marks) {
                 hulls.near_box(&crate::shape::Surface::bounds(self), marks);

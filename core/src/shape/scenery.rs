@@ -126,12 +126,6 @@ impl<C: Collider> Scenery<C> {
         endless.for_each(|number| ask(&self.things[number]));
     }
 
-    /// Tells whether a box may share a point with one of them.
-    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
-        let is_near = self.boxes.0.get(number).is_none_or(|one| meet(one, bounds));
-        is_near && self.solids.get(number).is_none_or(|solid| solid.is_none_or(|solid| solid.may_meet(bounds)))
-    }
-
     /// All of them.
     fn anywhere(&self) -> Nearby<'_, C> {
         Nearby { of: self, known: None }
@@ -203,7 +197,7 @@ impl<C: Collider> Many for Scenery<C> {
 
     fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
         numbers.iter().fold(Few::Nothing, |few, &number| match few {
-            _ if !self.meets(number as usize, bounds) => few,
+            _ if self.boxes.0.get(number as usize).is_some_and(|one| !meet(one, bounds)) => few,
             Few::Nothing => Few::One(number as usize),
             _ => Few::Several,
         })

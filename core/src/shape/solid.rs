@@ -27,16 +27,6 @@ impl Solid {
         }
     }
 
-    /// False if surely nothing in a box touches it.
-    #[cfg(feature = "alloc")]
-    #[inline]
-    pub(super) fn may_meet(&self, bounds: &Aabb) -> bool {
-        match *self {
-            Self::Sphere { center, radius } => bounds.is_near(center, radius),
-            Self::Box(own) => own.overlaps(bounds),
-        }
-    }
-
     /// A sphere's centre and radius; of a box nothing.
     pub(crate) const fn ball(&self) -> (Vec3, f32) {
         match *self {

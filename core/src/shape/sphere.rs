@@ -65,11 +65,6 @@ impl Convex for Sphere {
     fn reach(&self) -> f32 {
         largest(self.center) + self.radius
     }
-
-    /// Boxes are near the box around it more often than it.
-    fn may_meet(&self, bounds: &Aabb) -> bool {
-        bounds.is_near(self.center, self.radius)
-    }
 }
 
 impl Filled for Sphere {

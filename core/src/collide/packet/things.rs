@@ -1,7 +1,6 @@
 //! A flat face and one solid before each of some points.
 //!
-//! Every number is made as the solid makes it by itself, in the same order, and so has the same bits. Spheres are asked wherever their boxes are
-//! near, those by themselves only where they are near: whoever hits one is.
+//! Every number is made as the solid makes it by itself, in the same order, and so has the same bits.
 
 use super::hits::{Hits, Seats, Segments, Walls};
 use super::walls::slack;
