@@ -9,10 +9,7 @@
 use pointmass::rng::Stream;
 use pointmass::shape::{Cuboid, Mesh, Plane, Scenery, Shape, Sphere, Surface};
 use pointmass::{Drag, Gravity, Heap, Scene, Symplectic, System, Vec3};
-use pointmass_bench::{Bare, FRAME, cloud, high_jet, started, timed};
-
-/// Steps before the first round, after which as many die as are born.
-const FILLING: usize = 360;
+use pointmass_bench::{Bare, FILLING, FRAME, cloud, high_jet, started, timed};
 
 fn main() {
     let argument = |i: usize, default: usize| std::env::args().nth(i).and_then(|x| x.parse().ok()).unwrap_or(default);

@@ -9,7 +9,7 @@ use pointmass::index::Structure;
 use pointmass::shape::Plane;
 use pointmass::{Drag, Gravity, Heap, MutualGravity, Particle, Scene, Size, Symplectic, System, Time, Vec3, Verlet};
 use pointmass_bench::neighbours::{STEP, WAY, balls, repulsion};
-use pointmass_bench::{FRAME, high_jet, plummer, started, timed};
+use pointmass_bench::{FILLING, FRAME, high_jet, plummer, started, timed};
 use rayon::ThreadPool;
 
 /// Steps of a particle of the fountain in a round; of what takes longer there are fewer.
@@ -36,8 +36,7 @@ fn fountain(particles: usize, rounds: usize, pools: &[ThreadPool; 2]) {
     let scene =
         Scene { emitters: &emitter, forces: &forces, colliders: &ground, integrator: &Symplectic, ..Scene::EMPTY };
     let mut system = started(&scene, particles + particles / 8 + 64);
-    // Until as many die as are born.
-    (0..360).for_each(|_| {
+    (0..FILLING).for_each(|_| {
         system.step(&scene, FRAME);
     });
     compare("fountain", &scene, &system, FRAME, [(WORK / particles).max(8), rounds], pools);

@@ -9,6 +9,9 @@ use pointmass::shape::{Disc, Mesh, Shape};
 use pointmass::{Emitter, Heap, Particle, Scene, Spread, System, Time, Varied, Vec3};
 use std::time::Instant;
 
+/// Steps of [`FRAME`] after which as many of a [`high_jet`] die as are born.
+pub const FILLING: usize = 360;
+
 /// `n` particles of 1 kg with drag 0.1 kg/s, spread over a cube of 2 m with speeds up to 1 m/s.
 #[must_use]
 pub fn cloud(n: u32) -> Vec<Particle> {

@@ -137,7 +137,7 @@ impl<B: Storage> System<B> {
         let mut report = Report::default();
         report.died.other = 1;
         self.status.hint = Time::ZERO;
-        Workspace::on(&mut self.memory.slices(), &mut self.status).remove(row, scene.springs, &mut report);
+        Workspace::on(&mut self.memory.slices(), &mut self.status).remove(&[row as u32], scene.springs, &mut report);
         self.status.totals.take_in(&report);
         true
     }

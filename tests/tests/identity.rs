@@ -4,8 +4,8 @@ use core::cell::Cell;
 use pointmass::emit::EmitterState;
 use pointmass::shape::Plane;
 use pointmass::{
-    Chance, Columns, Drag, Emitter, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size, Slices,
-    Spring, Storage, System, Time, Vec3,
+    Chance, Columns, Custom, Drag, Emitter, Force, Gravity, Heap, Id, Method, MutualGravity, Particle, Scene, Size,
+    Slices, Spring, Storage, System, Time, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy};
 use pointmass_tests::{Random, often, started};
@@ -183,6 +183,46 @@ fn ids_stay_with_their_particles() {
     }
     assert!(system.totals().died.lifetime > 0 && system.totals().died.other > 0);
     assert_eq!(system.id(system.len()), None);
+}
+
+/// As many as are taken out at once and more, the last rows among them, with a number of each one's own.
+#[test]
+fn many_that_die_at_once_leave_all_others_as_they_are() {
+    let custom = [Custom::new("name")];
+    let scene = Scene { custom: &custom, ..Scene::EMPTY };
+    let mut random = Random::new(37);
+    for (count, share) in [1, 63, 64, 65, 127, 128, 129, 500].into_iter().flat_map(|n| [(n, 0.1), (n, 0.9), (n, 1.0)]) {
+        let mut system = started(&scene, count, 3);
+        for round in 0..3 {
+            while system.len() < count {
+                let lifetime = if random.between(0.0, 1.0) < share { 0.1 } else { 0.0 };
+                let mass = random.between(1.0, 2.0);
+                system.spawn(&Particle { mass, lifetime, ..Particle::REST }).expect("there is room");
+            }
+            let masses = system.particles().mass.to_vec();
+            system.custom_mut(&scene).get_mut("name").expect("the scene has it").copy_from_slice(&masses);
+            let all: Vec<_> = (0..count).filter_map(|row| Some((system.id(row)?, masses[row]))).collect();
+            let dies = |row: usize, p: &Columns<'_>| p.dies[row] < Time::NEVER;
+            let lives: Vec<_> = (0..count).filter(|&row| !dies(row, &system.particles())).map(|row| all[row]).collect();
+            let report = system.step(&scene, Time::from_seconds(0.2));
+            assert_eq!(
+                (report.died.lifetime, system.len()),
+                ((count - lives.len()) as u64, lives.len()),
+                "{count}, {round}"
+            );
+            let dead = all.iter().filter(|one| !lives.contains(one));
+            dead.for_each(|&(id, _)| assert_eq!(system.row(id), None));
+            for &(id, mass) in &lives {
+                let row = system.row(id).expect("it lives");
+                let name = system.custom(&scene).get("name").expect("the scene has it")[row];
+                assert_eq!(
+                    (system.id(row), system.particles().mass[row], name),
+                    (Some(id), mass, mass),
+                    "{count}, {round}"
+                );
+            }
+        }
+    }
 }
 
 /// A change of memory.

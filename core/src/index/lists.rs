@@ -128,11 +128,12 @@ impl Lists<'_> {
         };
         match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
             Some((front, entries)) => {
-                if rows.contains(&0) && rows.len() >= self.places.len() {
+                if 3 * rows.len() >= self.places.len() {
                     front.copy_from_slice(entries);
                     return (room, start);
                 }
-                // Where threads share the rows, the others are no concern of this one.
+                // Where many threads share the rows, the others are no concern of this one. Up to a few, all lists in a stream take less time
+                // than every other one.
                 for (span, _) in spans.iter().zip(places).filter(|(_, place)| rows.contains(&(place.row as usize))) {
                     let [from, to] = span.map(|at| (at as usize).wrapping_sub(start));
                     if let Some((front, list)) = front.get_mut(from..to).zip(entries.get(from..to)) {

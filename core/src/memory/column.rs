@@ -47,10 +47,11 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
         }
     }
 
-    /// Gives row `to` what row `from` has.
-    pub(crate) fn move_row(&mut self, from: usize, to: usize) {
+    /// Gives rows what others have, each `[from, to]`, one after the other.
+    #[cfg_attr(target_os = "none", inline(always))]
+    pub(crate) fn move_rows(&mut self, moves: &[[u32; 2]]) {
         if let Self::Own(rows) = self {
-            rows[to] = rows[from];
+            moves.iter().for_each(|[from, to]| rows[*to as usize] = rows[*from as usize]);
         }
     }
 }

@@ -104,11 +104,12 @@ macro_rules! storage {
                 [$(self.$p.len(),)+ $(self.$c.len()),+].into_iter().fold(usize::MAX, usize::min)
             }
 
-            /// Moves row `from` onto row `to`; both exist.
-            pub(crate) fn move_row(&mut self, from: usize, to: usize) {
-                // The columns by slot and by number are no rows, but nothing reads them at `to` unless it is theirs.
-                storage!(@move self, from, to, $($p)+);
-                $(storage!(@unless_by_number $c { self.$c.move_row(from, to); });)+
+            /// Moves rows onto others, each `[from, to]`, one after the other; all exist.
+            #[cfg_attr(target_os = "none", inline(always))]
+            pub(crate) fn move_rows(&mut self, moves: &[[u32; 2]]) {
+                // Column by column, so that those in memory that is far away are waited for together.
+                storage!(@move self, moves, $($p)+);
+                $(storage!(@unless_by_number $c { self.$c.move_rows(moves); });)+
             }
 
             /// Gives a row those attributes of a particle that need not be kept of each.
@@ -294,18 +295,18 @@ macro_rules! storage {
     (@unless_by_number last_spring $code:block) => {};
     (@unless_by_number $c:ident $code:block) => { $code };
     // By slot, not by row: it stays where it is.
-    (@move $self:ident, $from:ident, $to:ident, $($p:ident)+) => {
-        $(storage!(@one $self, $from, $to, $p);)+
+    (@move $self:ident, $moves:ident, $($p:ident)+) => {
+        $(storage!(@one $self, $moves, $p);)+
     };
-    (@one $self:ident, $from:ident, $to:ident, row_of) => {};
-    (@one $self:ident, $from:ident, $to:ident, position) => {
-        copy($self.position, $from, $to);
+    (@one $self:ident, $moves:ident, row_of) => {};
+    (@one $self:ident, $moves:ident, position) => {
+        $moves.iter().for_each(|[from, to]| copy($self.position, *from as usize, *to as usize));
     };
-    (@one $self:ident, $from:ident, $to:ident, velocity) => {
-        copy($self.velocity, $from, $to);
+    (@one $self:ident, $moves:ident, velocity) => {
+        $moves.iter().for_each(|[from, to]| copy($self.velocity, *from as usize, *to as usize));
     };
-    (@one $self:ident, $from:ident, $to:ident, $p:ident) => {
-        $self.$p[$to] = $self.$p[$from];
+    (@one $self:ident, $moves:ident, $p:ident) => {
+        $moves.iter().for_each(|[from, to]| $self.$p[*to as usize] = $self.$p[*from as usize]);
     };
 }
 

@@ -1,7 +1,8 @@
-//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in: most who ask are told enough by one number.
+//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in, and which two are the nearest: most who ask are told
+//! enough by one number, and nearly all others by these.
 
 use super::Aabb;
-use crate::lanes::{Eight, LANES, Vectors};
+use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors};
 #[cfg(feature = "alloc")]
 use crate::math::max;
 #[cfg(feature = "alloc")]
@@ -36,10 +37,11 @@ pub struct Clearance<'a> {
     nearest: &'a [Nearest],
 }
 
-/// The box that is nearest to a cell, and how far all others are from anywhere in it at the least \[units\].
+/// The two boxes that are nearest to a cell, how far the second is, and how far all others are from anywhere in it at the least \[units\].
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
-    number: u32,
+    numbers: [u32; 2],
+    second: u8,
     others: u8,
 }
 
@@ -82,7 +84,7 @@ impl ClearanceBuf {
             grid = finer;
         }
         let cells = if grid.scale == 0.0 { 0 } else { grid.len() };
-        let nobody = Nearest { number: u32::MAX, others: u8::MAX };
+        let nobody = Nearest { numbers: [u32::MAX; 2], second: u8::MAX, others: u8::MAX };
         let mut all = Self { grid, free: vec![u8::MAX; cells], nearest: vec![nobody; cells] };
         if cells > 0 {
             boxes.iter().for_each(|(number, bounds)| all.enter(*number, bounds));
@@ -113,11 +115,14 @@ impl ClearanceBuf {
                 for (column, (free, nearest)) in (x[0]..x[1]).zip(places) {
                     // The cast rounds down and saturates.
                     let distance = (max(gap(0, column), aside) / unit) as u8;
+                    let Nearest { numbers: [first, other], second, others } = *nearest;
                     if distance < *free {
-                        *nearest = Nearest { number, others: *free };
+                        *nearest = Nearest { numbers: [number, first], second: *free, others: second };
                         *free = distance;
+                    } else if distance < second {
+                        *nearest = Nearest { numbers: [first, number], second: distance, others: second };
                     } else {
-                        nearest.others = nearest.others.min(distance);
+                        *nearest = Nearest { numbers: [first, other], second, others: others.min(distance) };
                     }
                 }
             }
@@ -153,11 +158,11 @@ impl Grid {
     }
 }
 
-impl Clearance<'_> {
+impl<'a> Clearance<'a> {
     /// Tells which cubes, so far from their middles to their sides, are surely free of boxes, and the cells of the middles; none of what is no
     /// number is. For rounding of places they have room themselves.
     #[inline(always)]
-    pub(crate) fn are_free<F: Eight>(&self, middle: Vectors<F>, half: F) -> (F, [u32; LANES]) {
+    pub(crate) fn are_free<F: Lanes>(&self, middle: Vectors<F>, half: F) -> (F, [[u32; LANES]; PARTS]) {
         let Grid { around: Aabb { min: least, max: most }, scale, counts, unit } = self.grid;
         let (all, zero) = (|x| half.all(x), half.all(0.0));
         let (mut beside, mut cells) = (zero, [zero; 3]);
@@ -169,21 +174,32 @@ impl Clearance<'_> {
         }
         let [columns, rows, _] = counts.map(|count| all(count as f32));
         let numbers = (cells[2] * rows + cells[1]) * columns + cells[0] + all(WHOLE);
-        let (mut free, mut cells) = ([0.0; LANES], [0; LANES]);
-        for ((free, cell), number) in free.iter_mut().zip(&mut cells).zip(numbers.to_array()) {
-            *cell = number.to_bits() & (WHOLE as u32 - 1);
-            *free = f32::from(self.free.get(*cell as usize).copied().unwrap_or(0));
-        }
+        let mut cells = [[0; LANES]; PARTS];
+        let [free] = half.of_parts(
+            #[inline(always)]
+            |like, nth| {
+                let mut free = [0.0; LANES];
+                for ((free, cell), number) in free.iter_mut().zip(&mut cells[nth]).zip(numbers.part(nth).to_array()) {
+                    *cell = number.to_bits() & (WHOLE as u32 - 1);
+                    *free = f32::from(self.free.get(*cell as usize).copied().unwrap_or(0));
+                }
+                [like.of(free)]
+            },
+        );
         // From beside all boxes they are no nearer than from the nearest place of what is around them.
-        let is_far = half.simd_lt(beside) | half.simd_lt(half.of(free) * all(unit));
+        let is_far = half.simd_lt(beside) | half.simd_lt(free * all(unit));
         let [x, y, z] = (middle * zero).0;
         (is_far & (x + y + z).simd_eq(zero), cells)
     }
 
-    /// The number of the box that is nearest to a cell, and how far all others are from anywhere in it at the least \[m\].
-    pub(crate) fn nearest(&self, cell: u32) -> Option<(usize, f32)> {
-        let Nearest { number, others } = *self.nearest.get(cell as usize)?;
-        Some((number as usize, f32::from(others) * self.grid.unit))
+    /// Those of the two boxes that are nearest to a cell which a cube with its middle there may meet, so far from its middle to its sides; none, if
+    /// it may meet others.
+    #[inline]
+    pub(crate) fn nearest(&self, cell: u32, half: f32) -> Option<&'a [u32]> {
+        let Nearest { numbers, second, others } = self.nearest.get(cell as usize)?;
+        let is_before = |distance: &u8| half < f32::from(*distance) * self.grid.unit;
+        let count = if is_before(second) { 1 } else { 2 };
+        is_before(others).then(|| &numbers[..count])
     }
 }
 
@@ -201,7 +217,7 @@ mod tests {
         fn run<F: Eight>(self, like: F) -> (u32, u32) {
             let [x, y, z] = self.1.map(|lanes| like.of(lanes));
             let (are_free, cells) = self.0.are_free(Vectors([x, y, z]), like.of(self.2));
-            (are_free.to_bitmask(), cells[0])
+            (are_free.to_bitmask(), cells[0][0])
         }
     }
 
@@ -210,7 +226,7 @@ mod tests {
         for (count, size, shape) in SPREADS {
             let (boxes, all) = spread((count, size, shape));
             let clearance = ClearanceBuf::new(&(0..).zip(&boxes).collect::<Vec<_>>(), &all);
-            let (mut told, mut apart, mut alone) = (0, 0, 0);
+            let (mut told, mut apart, mut known) = (0, 0, [0; 2]);
             for i in 0..4000 {
                 // One half of them are anywhere around, the others where the boxes are; most are small.
                 let anywhere = vector(i, 3) * shape * 1.5 + 30.0;
@@ -222,21 +238,20 @@ mod tests {
                 let is_free = !boxes.iter().any(meets);
                 let (are_free, cell) = run(free);
                 let is_told = are_free != 0;
-                if let Some((nearest, others)) =
-                    clearance.view().nearest(cell).filter(|(_, others)| half + 1e-4 < *others)
-                {
-                    assert!(
-                        boxes.iter().enumerate().all(|(i, one)| i == nearest || !meets(one)),
-                        "{count}: {middle} {half}"
-                    );
-                    alone += usize::from(!is_told && others > 0.0);
+                if let Some(nearest) = clearance.view().nearest(cell, half + 1e-4) {
+                    let is_known = |number: usize| nearest.contains(&(number as u32));
+                    let are_known = boxes.iter().enumerate().all(|(number, one)| is_known(number) || !meets(one));
+                    assert!(are_known, "{count}: {middle} {half}");
+                    for (few, number) in known.iter_mut().zip(1..) {
+                        *few += usize::from(!is_told && nearest.len() == number);
+                    }
                 }
                 assert!(is_free || !is_told, "{count}: {middle} {half}");
                 (told, apart) = (told + usize::from(is_told), apart + usize::from(is_free));
             }
             // Most of what is free is told to be so.
             assert!(told > apart / 2 && apart > 100, "{count}: {told} of {apart}");
-            assert!(alone > 20, "{count}: {alone}");
+            assert!(known[0] > 20 && (count == 1 || known[1] > 20), "{count}: {known:?}");
             for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 assert_eq!(run(Free(clearance.view(), [[number; LANES]; 3], [0.1; LANES])).0, 0);
                 assert_eq!(run(Free(clearance.view(), [[50.0; LANES]; 3], [f32::NAN; LANES])).0, 0);

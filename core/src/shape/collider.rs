@@ -156,10 +156,10 @@ pub trait Many: Sync {
         None
     }
 
-    /// Tells whether a box may share a point with one of them, known by its number.
-    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
-        let _ = (number, bounds);
-        true
+    /// Those of some of them, known by the numbers that the clearance knows them by, that may share a point with a box.
+    fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
+        let _ = (numbers, bounds);
+        Few::Several
     }
 
     /// Those of them that may share a point with a box.

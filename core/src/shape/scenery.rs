@@ -195,8 +195,12 @@ impl<C: Collider> Many for Scenery<C> {
         Some((solid, self.endless.first().is_some_and(|&face| face < number)))
     }
 
-    fn meets(&self, number: usize, bounds: &Aabb) -> bool {
-        self.boxes.0.get(number).is_none_or(|one| meet(one, bounds))
+    fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
+        numbers.iter().fold(Few::Nothing, |few, &number| match few {
+            _ if self.boxes.0.get(number as usize).is_some_and(|one| !meet(one, bounds)) => few,
+            Few::Nothing => Few::One(number as usize),
+            _ => Few::Several,
+        })
     }
 
     fn few(&self, bounds: &Aabb) -> Few {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::rng::Stream;
+use crate::time::Time;
 use glam::Vec3;
 use proptest::prelude::*;
 
@@ -77,6 +78,34 @@ proptest! {
                 let again = shape.first_hit(&before);
                 prop_assert!(again.is_none_or(|h| h.time > 0.999), "{shape:?} {segment:?} {hit:?} {again:?}");
             }
+        }
+    }
+
+    /// Nobody is passed over who hits a shape or leans on it: along its surface, of any size, wherever it is, and where a box touches it at its poles.
+    #[test]
+    fn who_touches_a_shape_may_touch_it(
+        u in prop::array::uniform3(0.0f32..1.0), away in -2e-6f32..2e-6, ways in prop::array::uniform3(-1.0f32..1.0), pole in 0usize..10,
+        size in -4.0f32..4.0, center in prop::array::uniform3(-1.0f32..1.0), far in 0.0f32..3.0, ball in -6.0f32..-1.0,
+    ) {
+        let size = 10.0_f32.powf(size);
+        let sphere = Sphere { center: Vec3::from(center) * (size * 10.0_f32.powf(far)), radius: size };
+        let shapes = all().into_iter().map(|shape| (shape, 1.0)).chain([(Shape::Sphere(sphere), size)]);
+        let poles = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.0], [0.5, 0.25], [0.5, 0.5], [0.5, 0.75]];
+        for ((shape, size), radius) in shapes.flat_map(|one| [(one.clone(), 0.0), (one, ball.exp2())]) {
+            let u = poles.get(pole).map_or(u, |&[height, turn]| [height, turn, u[2]]);
+            let spot = shape.sample(u);
+            let (a, _) = crate::math::frame(spot.normal);
+            let (radius, beside) = (radius * size, spot.point + spot.normal * ((away + radius) * size));
+            let leaning = if pole < poles.len() { Vec3::ZERO } else { Vec3::from(ways) * 0.01 };
+            let step = (a * ways[0] + leaning) * size;
+            let segment = Segment { radius, ..Segment::new(beside - step, beside + step * ways[1]) };
+            if shape.first_hit(&segment).is_some() {
+                prop_assert!(shape.may_touch(&segment.bounds()), "{shape:?} {segment:?}");
+            }
+            let (mut leans, reach) = (false, radius + away.abs() * size);
+            shape.contacts(beside, reach, Time::ZERO, &mut |_| leans = true);
+            let around = Aabb { min: beside - reach, max: beside + reach };
+            prop_assert!(!leans || shape.may_touch(&around), "{shape:?} {beside} {reach}");
         }
     }
 

@@ -1,11 +1,14 @@
 //! The system as a step finds it: what a scene begins with is put in, who has died is taken out.
 
 use crate::force::{SpringList, State};
-use crate::memory::{Attribute, Layout, Slices, Storage, Workspace};
+use crate::memory::{Attribute, Layout, Slices, Storage, TILED, Workspace};
 use crate::particles::{Full, Particle};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::time::Time;
+
+/// Rows that are taken out at once, at the most.
+pub(crate) const AT_ONCE: usize = if TILED { 64 } else { 1 };
 
 impl Workspace<'_> {
     /// Where the memory that a scene's step asks for lies.
@@ -81,28 +84,35 @@ impl Workspace<'_> {
         self.memory.columns().state(&scene.backdrop(), self.status)
     }
 
-    /// Takes the particle in `row` out; the last row fills the gap.
-    #[cfg_attr(target_os = "none", inline(never))]
-    pub(crate) fn remove(&mut self, row: usize, springs: &dyn SpringList, report: &mut Report) {
-        let len = self.status.len;
-        let last = len - 1;
-        if let Some(code) = springs.code() {
-            let table = self.memory.columns().springs(springs.list(), self.status);
-            report.caps.springs += (code.held_by)(&table, row);
-        }
-
-        let slot = self.memory.slot[row];
-        if row != last {
-            self.memory.move_row(last, row);
-            let capacity = self.capacity();
-            for column in self.memory.kept.chunks_mut(capacity).take(self.status.kept.per_row) {
-                column[row] = column[last];
+    /// Takes the particles in some rows out, no more than [`AT_ONCE`], from back to front; the last row fills each gap. Where there are springs,
+    /// there must not be more than one.
+    #[cfg_attr(target_os = "none", inline(always))]
+    #[cfg_attr(not(target_os = "none"), inline(never))]
+    pub(crate) fn remove(&mut self, rows: &[u32], springs: &dyn SpringList, report: &mut Report) {
+        let (capacity, mut moves) = (self.capacity(), [[0; 2]; AT_ONCE]);
+        for (&row, onto) in rows.iter().zip(&mut moves) {
+            if let Some(code) = springs.code() {
+                let table = self.memory.columns().springs(springs.list(), self.status);
+                report.caps.springs += (code.held_by)(&table, row as usize);
             }
-            self.memory.row_of[self.memory.slot[row] as usize] = row as u32;
+            let (m, status) = (&mut self.memory, &mut *self.status);
+            let last = status.len - 1;
+            let slot = m.slot[row as usize];
+            let moved = m.slot[last];
+            m.slot[row as usize] = moved;
+            m.row_of[moved as usize] = row;
+            m.row_of[slot as usize] = status.free;
+            status.free = slot + 1;
+            status.len = last;
+            status.changes = status.changes.wrapping_add(1);
+            // There are fewer than 2³² slots, and so fewer rows.
+            *onto = [last as u32, row];
         }
-        self.memory.row_of[slot as usize] = self.status.free;
-        self.status.free = slot + 1;
-        self.status.len = last;
-        self.status.changes = self.status.changes.wrapping_add(1);
+        // Slots, too, once more: to where they are already.
+        let moves = &moves[..rows.len()];
+        self.memory.move_rows(moves);
+        for column in self.memory.kept.chunks_mut(capacity).take(self.status.kept.per_row) {
+            moves.iter().for_each(|[from, to]| column[*to as usize] = column[*from as usize]);
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Delete: the scene's reapers judge all rows, and whom the step has ended goes.
 
+use super::population::AT_ONCE;
 use crate::index::ARE_KEPT;
 use crate::lanes::widest;
 use crate::memory::{Layout, TILED, Workspace};
@@ -28,6 +29,8 @@ impl Workspace<'_> {
         let is_heard = !TILED || observer.attention() > Attention::Nothing;
         // From the back, so that the row that fills a gap has been looked at already.
         let (time, mut end) = (self.status.time, self.len());
+        let most = if TILED && !scene.springs.list().is_empty() { 1 } else { AT_ONCE };
+        let (mut doomed, mut count) = ([0; AT_ONCE], 0);
         while let Some((row, cause)) = widest(
             #[inline(always)]
             || last_doomed(&self.memory.pending_death[..end]),
@@ -38,8 +41,15 @@ impl Workspace<'_> {
                 let id = Id { slot: m.slot[row], serial: m.serial[row] };
                 observer.died(&LifeEvent { id, place: m.position[row], velocity: m.velocity[row], time }, cause);
             }
-            self.remove(row, scene.springs, report);
-            end = row;
+            (doomed[count], end) = (row as u32, row);
+            count += 1;
+            if count == most {
+                self.remove(&doomed[..most], scene.springs, report);
+                count = 0;
+            }
+        }
+        if count > 0 {
+            self.remove(&doomed[..count], scene.springs, report);
         }
         // Where many are born somebody dies all the time; else it is worth knowing when the next one does.
         if TILED && self.status.next_end() <= time && report.died.lifetime == before {

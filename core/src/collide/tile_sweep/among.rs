@@ -1,4 +1,4 @@
-//! Rows among many things: who may be near any of them is told eight at a time, and only those look for what they are near.
+//! Rows among many things: who may be near any of them is told many at a time, and only those look for what they are near.
 
 use super::pairs::{Pairs, PastThings};
 use super::seek::{Asking, Seek, Sought};
@@ -8,7 +8,7 @@ use crate::collide::near::{BLOCK, Near};
 use crate::collide::sweep::surroundings;
 use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
-use crate::lanes::{LANES, run, run_broad, widest};
+use crate::lanes::{LANES, run_broad, widest};
 use crate::math::{largest, max};
 use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, Solid};
 use core::ops::Range;
@@ -25,6 +25,16 @@ struct Among<'m> {
     has_packets: bool,
     /// Rows that wait to go past spheres, and past boxes.
     pairs: [Pairs; 2],
+}
+
+impl Among<'_> {
+    /// Those of the things that may be near the ways of a row, and so much farther away on all sides.
+    #[inline]
+    fn few(&self, sought: &Sought, i: usize, beyond: f32) -> Few {
+        let (bounds, [.., widest]) = (sought.around(i, beyond), sought.middle[i]);
+        let nearest = self.clearance.and_then(|clearance| clearance.nearest(sought.cells[i], widest + beyond));
+        nearest.map_or_else(|| self.many.few(&bounds), |numbers| self.many.few_of(numbers, &bounds))
+    }
 }
 
 impl TileSweep<'_, '_> {
@@ -126,7 +136,7 @@ impl TileSweep<'_, '_> {
     fn seek_for(&mut self, asking: &mut Asking, first: usize, among: &mut Among<'_>, room: Room, gone: &mut Bits) {
         let Asking { list, sought } = asking;
         let (eights, len) = list.take_eights();
-        run(Seek { of: self, rows: eights, face: among.face, clearance: among.clearance, room, sought });
+        run_broad(Seek { of: self, eights, len, face: among.face, clearance: among.clearance, room, sought });
         for (nth, (rows, sought)) in eights.iter().zip(sought).enumerate() {
             let are_there = if len < LANES * (nth + 1) { (1 << (len % LANES)) - 1 } else { u32::MAX };
             for i in ones(sought.near & are_there) {
@@ -141,30 +151,21 @@ impl TileSweep<'_, '_> {
     /// Follows a row that may be near things, or has it wait for others; false, if it is not near any.
     #[inline]
     fn go_near(&mut self, row: usize, sought: &Sought, i: usize, among: &mut Among<'_>) -> bool {
-        let (many, bounds) = (among.many, sought.around(i, 0.0));
-        let nearest = among.clearance.and_then(|clearance| clearance.nearest(sought.cells[i]));
-        let ([x, y, z, widest], [.., beyond]) = (sought.middle[i], sought.half[i]);
+        let [x, y, z, widest] = sought.middle[i];
         if !(x + y + z + widest).is_finite() {
             return self.go_between(row, among);
         }
-        let (number, mut is_alone) = match nearest {
-            Some((number, others)) if widest < others => {
-                if !many.meets(number, &bounds) {
-                    return false;
-                }
-                (number, widest + beyond < others)
-            }
-            _ => match many.few(&bounds) {
-                Few::Nothing => return false,
-                Few::One(number) => (number, false),
-                Few::Several => return self.go_between(row, among),
-            },
+        let number = match among.few(sought, i, 0.0) {
+            Few::Nothing => return false,
+            Few::One(number) => number,
+            Few::Several => return self.go_between(row, among),
         };
         let may_wait = among.has_packets && self.tile.attributes.lives.radius[row] == 0.0;
-        let Some(solid) = many.solid(number).filter(|_| may_wait) else {
+        let Some(solid) = among.many.solid(number).filter(|_| may_wait) else {
             return self.go_between(row, among);
         };
-        is_alone = is_alone || matches!(many.few(&sought.around(i, beyond)), Few::One(_));
+        let [.., beyond] = sought.half[i];
+        let is_alone = matches!(among.few(sought, i, beyond), Few::One(_));
         let is_box = matches!(solid.0, Solid::Box(_));
         if among.pairs[usize::from(is_box)].push(row as u32, solid, is_alone) {
             if is_box { self.past_things::<true>(among) } else { self.past_things::<false>(among) }

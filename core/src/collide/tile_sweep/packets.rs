@@ -12,7 +12,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// A bit for each of eight rows.
-const ALL: u32 = (1 << LANES) - 1;
+pub(super) const ALL: u32 = (1 << LANES) - 1;
 
 /// Rows, eight by eight, that may lie on a face, and how many they are.
 struct Lie<'t, 's, 'a, const POINTS: bool> {
@@ -273,7 +273,7 @@ impl TileSweep<'_, '_> {
 
 /// Rows counted from the first, before which none of them is.
 #[inline(always)]
-fn places_from(first: usize, [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [usize; LANES] {
+pub(super) fn places_from(first: usize, [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [usize; LANES] {
     let from = |row: &u32| (*row as usize).wrapping_sub(first);
     [from(a), from(b), from(c), from(d), from(e), from(f), from(g), from(h)]
 }

@@ -1,9 +1,10 @@
-//! Rows that wait until there are some, and are held against things eight at a time.
+//! Rows that wait until there are some, and are held against things side by side.
 
 use super::TileSweep;
+use super::packets::ALL;
 use super::ways::{Room, Ways, straight_ways, ways};
-use crate::collide::waiting::List;
-use crate::lanes::{Eight, Kernel, LANES, not};
+use crate::collide::waiting::{List, Packet};
+use crate::lanes::{BroadKernel, Eight, LANES, Lanes, PARTS, not};
 use crate::shape::{Aabb, Clearance, Face};
 use glam::Vec3;
 
@@ -22,7 +23,8 @@ pub(super) struct Asking {
 /// Rows of a tile eight by eight, none of which is its last, that may be near things.
 pub(super) struct Seek<'t, 's, 'a> {
     pub(super) of: &'t TileSweep<'s, 'a>,
-    pub(super) rows: &'t [[u32; LANES]],
+    pub(super) eights: &'t [[u32; LANES]],
+    pub(super) len: usize,
     pub(super) face: Option<Face>,
     pub(super) clearance: Option<Clearance<'t>>,
     pub(super) room: Room,
@@ -51,45 +53,48 @@ impl Sought {
         let (middle, half) = (Vec3::new(x, y, z), Vec3::new(u, v, w) + beyond);
         Aabb { min: middle - half, max: middle + half }
     }
+}
 
-    /// Sees who of eight may be near things, and more about them if any are.
+impl Seek<'_, '_, '_> {
+    /// Sees who of some eights, the first of which has this number, may be near things, and more about them if any are.
     #[inline(always)]
-    fn see<F: Eight>(&mut self, ways: Ways<F>, clearance: Option<Clearance<'_>>) {
+    fn see<F: Lanes>(&mut self, nth: usize, ways: Ways<F>) {
         let Ways { middle, half, beyond } = ways;
         let ([x, y, z], [u, v, w]) = (middle.0, half.0);
         let widest = u.most(v).most(w);
-        self.near = match clearance {
-            Some(clearance) => {
-                let (are_free, cells) = clearance.are_free(middle, widest);
-                self.cells = cells;
-                not(are_free).to_bitmask()
-            }
-            None => u32::MAX,
+        let (are_free, cells) = match self.clearance {
+            Some(clearance) => clearance.are_free(middle, widest),
+            None => (widest & widest.all(0.0), [[0; LANES]; PARTS]),
         };
-        if self.near != 0 {
-            self.middle = F::rows_of([x, y, z, widest]);
-            self.half = F::rows_of([u, v, w, beyond]);
+        let near = not(are_free).to_bitmask();
+        for (part, sought) in self.sought[nth..].iter_mut().enumerate().take(F::PARTS) {
+            sought.near = near >> (LANES * part) & ALL;
+            if sought.near != 0 {
+                sought.cells = cells[part];
+                sought.middle = F::Part::rows_of([x, y, z, widest].map(|column| column.part(part)));
+                sought.half = F::Part::rows_of([u, v, w, beyond].map(|column| column.part(part)));
+            }
         }
     }
 }
 
-impl Kernel for Seek<'_, '_, '_> {
+impl BroadKernel for Seek<'_, '_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) {
-        let Self { of, rows, face, clearance, room, sought } = self;
-        let (rows, sought) = (rows.iter(), sought.iter_mut());
+    fn run<F: Lanes>(mut self, like: F) {
+        let Self { of, eights, len, face, room, .. } = self;
+        let packets = Packet::all::<F>(eights, len);
         // The loop is for either case by itself, so that what is the same all along is worked out before it.
         match room.change {
             Some(change) if !room.swing => {
-                for (rows, sought) in rows.zip(sought) {
-                    sought.see(straight_ways(like, of, rows, face, room.rounding, change), clearance);
+                for (nth, packet) in packets {
+                    self.see(nth, straight_ways(like, of, &packet, face, room.rounding, change));
                 }
             }
             _ => {
-                for (rows, sought) in rows.zip(sought) {
-                    sought.see(ways(like, of, rows, face, room), clearance);
+                for (nth, packet) in packets {
+                    self.see(nth, ways(like, of, &packet, face, room));
                 }
             }
         }

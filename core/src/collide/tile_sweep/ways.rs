@@ -1,8 +1,9 @@
-//! How far rows may get in a step, eight at a time.
+//! How far rows may get in a step, side by side.
 
 use super::TileSweep;
 use crate::collide::tile::Tile;
-use crate::lanes::{Eight, LANES, Vectors, not};
+use crate::collide::waiting::Packet;
+use crate::lanes::{Eight, Lanes, Vectors, not};
 use crate::shape::Face;
 
 /// Bounds on the ways of a block's rows in the step, beyond those that the rows show themselves.
@@ -29,25 +30,23 @@ pub(super) struct Ways<F> {
 /// no farther than they could have got toward it. All that they may lean on is in them as well, half the change of velocity away in that time.
 /// Velocities change by no number larger than `change`, by an Euler method.
 #[inline(always)]
-pub(super) fn straight_ways<F: Eight>(
+pub(super) fn straight_ways<F: Lanes>(
     like: F,
     of: &TileSweep<'_, '_>,
-    rows: &[u32; LANES],
+    packet: &Packet<'_>,
     face: Option<Face>,
     rounding: f32,
     change: f32,
 ) -> Ways<F> {
-    let (last, time, all) = (of.tile.position.len() - 1, of.tile.dt.seconds(), |x| like.all(x));
-    let rows = &rows.map(|row| row as usize);
-    let x0 = Vectors::gather(like, of.past.start[0], last, rows);
-    let x1 = Vectors::gather(like, of.tile.position, last, rows);
+    let (time, all) = (of.tile.dt.seconds(), |x| like.all(x));
+    let [[x0, x1], _] = of.ends::<F, false>(like, packet);
     // Of a vector each of whose numbers is below that; an Euler method strays by half of it from the parabola.
     let bend = all(2.0 * change * time);
     let way = x1 - x0;
     let hull = Hull {
         middle: (x0 + x1) * all(0.5),
         half: way * all(0.5),
-        room: of.radii(like, rows) + all(rounding + time * (1.0 / 3.0) * change) + all(0.5) * bend,
+        room: of.radii(like, packet) + all(rounding + time * (1.0 / 3.0) * change) + all(0.5) * bend,
     };
     let strays = all(5.0) * bend;
     let across = |normal: Vectors<F>| way.dot(normal).abs() + bend;
@@ -56,18 +55,15 @@ pub(super) fn straight_ways<F: Eight>(
 
 /// The same of any.
 #[inline(always)]
-pub(super) fn ways<F: Eight>(
+pub(super) fn ways<F: Lanes>(
     like: F,
     of: &TileSweep<'_, '_>,
-    rows: &[u32; LANES],
+    packet: &Packet<'_>,
     face: Option<Face>,
     room: Room,
 ) -> Ways<F> {
-    let Tile { ref position, ref velocity, dt, .. } = *of.tile;
-    let (last, [start_x, start_v], time) = (position.len() - 1, of.past.start, dt.seconds());
-    let (all, rows) = (|x| like.all(x), &rows.map(|row| row as usize));
-    let (x0, x1) = (Vectors::gather(like, start_x, last, rows), Vectors::gather(like, position, last, rows));
-    let (v0, v1) = (Vectors::gather(like, start_v, last, rows), Vectors::gather(like, velocity, last, rows));
+    let (time, all) = (of.tile.dt.seconds(), |x| like.all(x));
+    let [[x0, x1], [v0, v1]] = of.ends::<F, true>(like, packet);
     let third = all(time * (1.0 / 3.0));
     let (a, b) = (x0 + v0 * third, x1 - v1 * third);
     let (way, mut low, mut high) = (x1 - x0, x0, x1);
@@ -80,7 +76,7 @@ pub(super) fn ways<F: Eight>(
     let hull = Hull {
         middle: (low + high) * all(0.5),
         half: (high - low) * all(0.5),
-        room: of.radii(like, rows) + all(room.rounding) + all(0.5) * bend,
+        room: of.radii(like, packet) + all(room.rounding) + all(0.5) * bend,
     };
     let excess = (way - (v0 + v1) * all(0.5 * time)).length() + all(1e-17);
     let fast = v0.length().most(v1.length()) * all(1.000_01 * time) + all(1e-17);
@@ -96,7 +92,7 @@ struct Hull<F> {
     room: F,
 }
 
-impl<F: Eight> Hull<F> {
+impl<F: Lanes> Hull<F> {
     /// The ways along these paths, which by the face stray so far from them, and get so far `away` from a face of this normal.
     #[inline(always)]
     fn ways(self, face: Option<Face>, strays: F, away: impl FnOnce(Vectors<F>) -> F, beyond: F) -> Ways<F> {
@@ -115,14 +111,37 @@ impl<F: Eight> Hull<F> {
 }
 
 impl TileSweep<'_, '_> {
+    /// The places of rows where the step begins and where it ends, and, if they are to be `FAST`, their velocities there.
+    #[inline(always)]
+    fn ends<F: Lanes, const FAST: bool>(&self, like: F, packet: &Packet<'_>) -> [[Vectors<F>; 2]; 2] {
+        let Tile { ref position, ref velocity, .. } = *self.tile;
+        let (last, [start_x, start_v]) = (position.len() - 1, self.past.start);
+        let read = like.of_parts(
+            #[inline(always)]
+            |like, nth| {
+                let rows = &packet.rows[nth].map(|row| row as usize);
+                let column = |column| Vectors::gather(like, column, last, rows);
+                let speed = |of| if FAST { column(of) } else { Vectors([like; 3]) };
+                let [[a, b, c], [d, e, f]] = [column(start_x).0, column(position).0];
+                let [[g, h, i], [j, k, l]] = [speed(start_v).0, speed(velocity).0];
+                [a, b, c, d, e, f, g, h, i, j, k, l]
+            },
+        );
+        let [a, b, c, d, e, f, g, h, i, j, k, l] = read;
+        [[Vectors([a, b, c]), Vectors([d, e, f])], [Vectors([g, h, i]), Vectors([j, k, l])]]
+    }
+
     /// The radii of rows.
     #[inline(always)]
-    fn radii<F: Eight>(&self, like: F, rows: &[usize; LANES]) -> F {
-        let (all, mut radii) = (&self.tile.attributes.lives.radius, [0.0; LANES]);
-        if !self.are_points {
-            let all = &all[..self.tile.position.len() - 1];
-            radii.iter_mut().zip(rows).for_each(|(radius, &row)| *radius = all[row]);
+    fn radii<F: Lanes>(&self, like: F, packet: &Packet<'_>) -> F {
+        if self.are_points {
+            return like.all(0.0);
         }
-        like.of(radii)
+        let all = &self.tile.attributes.lives.radius[..self.tile.position.len() - 1];
+        let [radii] = like.of_parts(
+            #[inline(always)]
+            |like, nth| [like.of(packet.rows[nth].map(|row| all[row as usize]))],
+        );
+        radii
     }
 }

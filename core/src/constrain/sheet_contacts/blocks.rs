@@ -80,9 +80,10 @@ impl Block {
             for k in 0..3 {
                 self.corners |= u16::from(face.owns_corner(k)) << (4 * i + k);
                 if face.owns_edge(k) {
+                    let place = self.count as usize;
                     let [a, b] = face.edge(k).map(|corner| &corners[corner as usize]);
-                    self.put(self.count as usize, &a.and(b));
-                    self.edges[self.count as usize] = (4 * i + k) as u8;
+                    self.put(place, &a.and(b));
+                    self.edges[place] = (4 * i + k) as u8;
                     self.marked |= u16::from(is_marked) << self.count;
                     self.count += 1;
                 }
@@ -131,9 +132,26 @@ impl Block {
         (1 << self.count) - 1
     }
 
-    /// Its edges of those, each with its place.
-    pub(super) fn edges(&self, of: Near) -> impl Iterator<Item = (usize, usize)> {
-        each(of.edges & self.there()).map(|i| (i, usize::from(self.edges[i])))
+    /// The places of its edges of those.
+    pub(super) fn edges(&self, of: Near) -> impl Iterator<Item = usize> + use<> {
+        each(of.edges & self.there())
+    }
+
+    /// The number of an edge.
+    pub(super) fn edge(&self, place: usize) -> usize {
+        self.edges[place].into()
+    }
+
+    /// The box around an edge.
+    #[inline(always)]
+    pub(super) fn around(&self, place: usize) -> Bounds {
+        let (half, lane) = (place / LANES, place % LANES);
+        let ends = |of: &[[[[f32; LANES]; 3]; 2]; 2], end: usize| {
+            let [x, y, z] = &of[half][end];
+            [x[lane], y[lane], z[lane], 0.0]
+        };
+        let [low, high] = [&self.low, &self.high].map(|of| [ends(of, 0), ends(of, 1)]);
+        Bounds { low, high }
     }
 
     /// Its corners.
@@ -149,7 +167,7 @@ impl Block {
         Near { edges, faces: last >> (TRIANGLES - LANES) & u32::from(self.faces) }
     }
 
-    /// Its edges of those, from one on, whose boxes overlap another: all of them, or of triangles that count.
+    /// The places of its edges of those, from one on, whose boxes overlap another: all of them, or of triangles that count.
     #[inline(always)]
     pub(super) fn near_edges<F: Eight>(
         &self,
@@ -159,7 +177,7 @@ impl Block {
         first: usize,
         bounds: &Bounds,
     ) -> impl Iterator<Item = usize> {
-        let mut near = of.edges & self.there() & u32::MAX << first & if all { u32::MAX } else { self.marked.into() };
+        let near = of.edges & self.there() & u32::MAX << first & if all { u32::MAX } else { self.marked.into() };
         let mut found = 0;
         if near & 0xff != 0 {
             found = self.overlaps(like, 0, bounds);
@@ -167,8 +185,7 @@ impl Block {
         if near >> LANES != 0 {
             found |= self.overlaps(like, 1, bounds) << LANES;
         }
-        near &= found;
-        each(near).map(|i| usize::from(self.edges[i]))
+        each(near & found)
     }
 
     /// Its triangles of those whose boxes overlap another: all of them, or those that count.
@@ -204,7 +221,7 @@ mod tests {
         fn run<F: Eight>(self, like: F) -> Self::Output {
             let Self(block, first, bounds, all) = self;
             let near = block.near(like, bounds);
-            let edges = block.near_edges(like, near, all, first, bounds).collect();
+            let edges = block.near_edges(like, near, all, first, bounds).map(|place| block.edge(place)).collect();
             (edges, block.near_faces(like, near, all, bounds).collect())
         }
     }
@@ -238,7 +255,8 @@ mod tests {
                 all.filter(|&(i, k)| owns(&faces[i], k)).map(|(i, k)| 4 * i + k).collect()
             };
             let edges = own(Face::owns_edge);
-            assert!(block.edges(Near::ALL).eq(edges.iter().copied().enumerate()));
+            let listed = block.edges(Near::ALL).map(|place| block.edge(place));
+            assert!(listed.eq(edges.iter().copied()));
             assert_eq!(block.corners().collect::<Vec<_>>(), own(Face::owns_corner));
             let first = next(3) as usize;
             let (near, triangles) = lanes::run(Overlapping(&block, first, &bounds, true));

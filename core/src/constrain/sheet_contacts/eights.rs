@@ -1,17 +1,30 @@
-//! Eight pairs of a kind side by side, by the operations of one in their order, and so the same bits.
+//! Pairs of a kind side by side, eight or as many as registers hold, by the operations of one in their order, and so the same bits.
 
 use super::closest::Kind;
-use crate::lanes::{self, Eight, LANES, Vectors, gathered, max, min, negated};
+use crate::lanes::{self, LANES, Lanes, Vectors, gathered, max, min, negated};
 use glam::Vec3;
 
-/// The places of eight times four corners as seen from the first, which is left out.
+/// The places of so many times four corners as seen from the first, which is left out.
 pub(super) type Seen<F> = [Vectors<F>; 3];
 
-/// As [`super::pair::seen`]. None: a corner is the last of all, behind which nothing can be read.
+/// As [`super::pair::seen`], of as many eights as there are at once. None: a corner is the last of all, behind which nothing can be read.
 #[inline(always)]
-pub(super) fn seen<F: Eight>(like: F, of: &[Vec3], corners: &[[u32; 4]; LANES]) -> Option<Seen<F>> {
-    let [a, b, c, d] = gathered(like, of, corners)?;
-    Some([b - a, c - a, d - a])
+pub(super) fn seen<F: Lanes>(like: F, of: &[Vec3], corners: &[[[u32; 4]; LANES]]) -> Option<Seen<F>> {
+    let mut are_there = true;
+    let [ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz] = like.of_parts(
+        #[inline(always)]
+        |like, nth| match gathered(like, of, &corners[nth]) {
+            Some([Vectors([ax, ay, az]), Vectors([bx, by, bz]), Vectors([cx, cy, cz]), Vectors([dx, dy, dz])]) => {
+                [ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz]
+            }
+            None => {
+                are_there = false;
+                [like; 12]
+            }
+        },
+    );
+    let [a, b, c, d] = [[ax, ay, az], [bx, by, bz], [cx, cy, cz], [dx, dy, dz]].map(Vectors);
+    are_there.then_some([b - a, c - a, d - a])
 }
 
 /// As [`super::closest::Closest`].
@@ -21,7 +34,7 @@ pub(super) struct Closest<F> {
     pub(super) gap: Vectors<F>,
 }
 
-impl<F: Eight> Closest<F> {
+impl<F: Lanes> Closest<F> {
     #[inline(always)]
     pub(super) fn of(kind: Kind, all: Seen<F>) -> Self {
         match kind {
@@ -88,12 +101,12 @@ impl<F: Eight> Closest<F> {
 }
 
 #[inline(always)]
-fn none<F: Eight>(like: F) -> Vectors<F> {
+fn none<F: Lanes>(like: F) -> Vectors<F> {
     Vectors([like.all(0.0); 3])
 }
 
 #[inline(always)]
-fn along<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> F {
+fn along<F: Lanes>(a: Vectors<F>, b: Vectors<F>) -> F {
     let e = b - a;
     let far = negated(a.dot(e)) / e.dot(e);
     min(far, far.all(1.0)) & far.simd_gt(far.all(0.0))
@@ -101,7 +114,7 @@ fn along<F: Eight>(a: Vectors<F>, b: Vectors<F>) -> F {
 
 /// As [`super::closest::apart`].
 #[inline(always)]
-pub(super) fn apart<F: Eight>(kind: Kind, [b, c, d]: &Seen<F>, direction: Vectors<F>) -> F {
+pub(super) fn apart<F: Lanes>(kind: Kind, [b, c, d]: &Seen<F>, direction: Vectors<F>) -> F {
     let [b, c, d] = [b.dot(direction), c.dot(direction), d.dot(direction)];
     let a = b.all(0.0);
     match kind {
@@ -117,7 +130,7 @@ pub(super) struct Gaps<F> {
     middles: [F; 2],
 }
 
-impl<F: Eight> Gaps<F> {
+impl<F: Lanes> Gaps<F> {
     #[inline(always)]
     pub(super) fn of(kind: Kind, ends: &[Seen<F>; 2]) -> Self {
         Self { boxes: gap_of_boxes(kind, ends), middles: gap_of_middles(kind, ends) }
@@ -140,7 +153,7 @@ impl<F: Eight> Gaps<F> {
 
 /// How far they are apart along an axis, on the same side at both ends (as [`super::pair::are_apart`]).
 #[inline(always)]
-fn gap_of_boxes<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
+fn gap_of_boxes<F: Lanes>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
     let mut most = ends[0][0].0[0].all(f32::NEG_INFINITY);
     for axis in 0..3 {
         let (above, below) = gaps(kind, &ends[0], axis);
@@ -152,7 +165,7 @@ fn gap_of_boxes<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
 
 /// How far the first is above the second along an axis, and below it.
 #[inline(always)]
-fn gaps<F: Eight>(kind: Kind, of: &Seen<F>, axis: usize) -> (F, F) {
+fn gaps<F: Lanes>(kind: Kind, of: &Seen<F>, axis: usize) -> (F, F) {
     let [b, c, d] = [of[0].0[axis], of[1].0[axis], of[2].0[axis]];
     let a = b.all(0.0);
     match kind {
@@ -163,7 +176,7 @@ fn gaps<F: Eight>(kind: Kind, of: &Seen<F>, axis: usize) -> (F, F) {
 
 /// The square of how far they stay apart along the way between their middles, some times over, and the square of that way.
 #[inline(always)]
-fn gap_of_middles<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> [F; 2] {
+fn gap_of_middles<F: Lanes>(kind: Kind, ends: &[Seen<F>; 2]) -> [F; 2] {
     let [b, c, d] = ends[0];
     let way = match kind {
         Kind::PointTriangle => -(b + c + d),
@@ -175,7 +188,7 @@ fn gap_of_middles<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> [F; 2] {
 
 /// The square of how far any corner of the one goes as seen from any of the other (as in [`super::closest::Meeting`]).
 #[inline(always)]
-pub(super) fn fastest<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
+pub(super) fn fastest<F: Lanes>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
     let [b, c, d] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1], ends[1][2] - ends[0][2]];
     match kind {
         Kind::PointTriangle => max(max(b.dot(b), c.dot(c)), d.dot(d)),
@@ -190,21 +203,28 @@ pub(super) fn fastest<F: Eight>(kind: Kind, ends: &[Seen<F>; 2]) -> F {
 mod tests {
     use super::super::closest;
     use super::*;
-    use crate::lanes::Kernel;
+    use crate::lanes::{BroadKernel, Eight, PARTS};
 
-    struct All<'a>(Kind, &'a [Vec3], [[u32; 4]; LANES]);
+    struct All<'a>(Kind, &'a [Vec3], [[[u32; 4]; LANES]; PARTS]);
 
-    impl Kernel for All<'_> {
-        type Output = ([[f32; 4]; LANES], [[f32; 4]; LANES]);
+    impl BroadKernel for All<'_> {
+        type Output = [[[[f32; 4]; LANES]; 2]; PARTS];
         #[inline(always)]
-        fn run<F: Eight>(self, like: F) -> Self::Output {
-            let of = Closest::of(self.0, seen(like, self.1, &self.2).expect("none is the last"));
-            (F::rows_of(of.weights), of.gap.rows())
+        fn run<F: Lanes>(self, like: F) -> Self::Output {
+            let mut all = Self::Output::default();
+            for first in (0..PARTS).step_by(F::PARTS) {
+                let of = Closest::of(self.0, seen(like, self.1, &self.2[first..]).expect("none is the last"));
+                for (nth, all) in all[first..].iter_mut().enumerate().take(F::PARTS) {
+                    let weights = of.weights.map(|weight| weight.part(nth));
+                    *all = [Eight::rows_of(weights), of.gap.part(nth).rows()];
+                }
+            }
+            all
         }
     }
 
     #[test]
-    fn eight_have_the_nearest_places_of_one() {
+    fn side_by_side_they_have_the_nearest_places_of_one() {
         // Places on a coarse grid are often in a line, in a plane, or the same.
         let mut state = 1u32;
         let mut next = |most: u32| {
@@ -213,16 +233,18 @@ mod tests {
         };
         for round in 0..2000 {
             let grid = [2, 3, 5, 1000][round % 4];
-            let places: [Vec3; 33] =
+            let places: [Vec3; 65] =
                 core::array::from_fn(|_| Vec3::from([0; 3].map(|_| next(grid) as f32 / grid as f32 - 0.3)));
-            let corners = core::array::from_fn(|i| [0, 1, 2, 3].map(|k| 4 * i as u32 + k));
+            let lanes =
+                |part: usize| core::array::from_fn(|lane| [0, 1, 2, 3].map(|k| (4 * (LANES * part + lane) + k) as u32));
+            let corners = core::array::from_fn(lanes);
             for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
-                let (weights, gap) = lanes::run(All(kind, &places, corners));
-                for (lane, &corners) in corners.iter().enumerate() {
+                let all = lanes::run_broad(All(kind, &places, corners));
+                let all = all.iter().flat_map(|[weights, gaps]| weights.iter().zip(gaps));
+                for (&corners, (&weights, &[x, y, z, _])) in corners.as_flattened().iter().zip(all) {
                     let one = closest::Closest::of(kind, super::super::pair::seen(&places, corners));
-                    let [x, y, z, _] = gap[lane];
                     let bits = |all: [f32; 4]| all.map(f32::to_bits);
-                    assert_eq!(bits(weights[lane]), bits(one.weights), "{corners:?} of {places:?}");
+                    assert_eq!(bits(weights), bits(one.weights), "{corners:?} of {places:?}");
                     assert_eq!(bits([x, y, z, 0.0]), bits([one.gap.x, one.gap.y, one.gap.z, 0.0]));
                 }
             }

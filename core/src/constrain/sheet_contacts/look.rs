@@ -1,13 +1,14 @@
-//! Looking at pairs that may come near each other in a sub-step: eight of a kind side by side, and one by one those that have to be followed.
+//! Looking at pairs that may come near each other in a sub-step: as many of a kind side by side as registers hold, and one by one those that have to be followed.
 
 use super::closest::{self, FARTHEST, Kind, MARGIN, Meeting, parts};
 use super::contact::Contact;
 use super::eights::{Closest, Gaps, Seen, apart, fastest, seen};
 use super::listing::thickness;
+use super::near::Listed;
 use super::pair::{self, Pair, are_apart, is_own};
 use super::rest::Rest;
-use super::waiting::Waiting;
-use crate::lanes::{self, ABREAST, Eight, Kernel, LANES, min};
+use super::waiting::{ROOM, Waiting};
+use crate::lanes::{self, ABREAST, BroadKernel, Eight, LANES, Lanes, PARTS, min};
 use crate::math::{self, length};
 use glam::Vec3;
 
@@ -28,6 +29,10 @@ pub(super) struct Look<'m, 'r> {
     /// How far each may be pushed from where it is.
     room: &'m mut [f32],
     contacts: &'m mut [Contact],
+    /// Room for those that come near if they are pushed together by so much more, how much that is \[m\], and their number.
+    close: &'m mut [Listed],
+    more: f32,
+    closed: usize,
     /// The number of contacts, and of those that found no room.
     pub(super) count: usize,
     pub(super) lost: u64,
@@ -37,8 +42,8 @@ pub(super) struct Look<'m, 'r> {
     waiting: [Waiting; 2],
     /// True if each is looked at alone, in the order in which they come.
     alone: bool,
-    /// The outcome for the last eight.
-    met: Met,
+    /// The outcome for the last that have waited.
+    met: [Met; PARTS],
 }
 
 impl<'m, 'r> Look<'m, 'r> {
@@ -47,11 +52,29 @@ impl<'m, 'r> Look<'m, 'r> {
         [from, now]: [&'m [Vec3]; 2],
         room: &'m mut [f32],
         contacts: &'m mut [Contact],
+        (close, more): (&'m mut [Listed], f32),
         alone: bool,
     ) -> Self {
-        let (count, lost, meetings) = (0, 0, 0);
+        let (count, lost, meetings, closed) = (0, 0, 0, 0);
         let waiting = Waiting::none();
-        Self { rest, uniform, from, now, room, contacts, count, lost, meetings, waiting, alone, met: Met::default() }
+        let met = Default::default();
+        Self {
+            rest,
+            uniform,
+            from,
+            now,
+            room,
+            contacts,
+            close,
+            more,
+            closed,
+            count,
+            lost,
+            meetings,
+            waiting,
+            alone,
+            met,
+        }
     }
 
     /// Looks at two that are kept so far apart; no number: that is not known.
@@ -60,37 +83,61 @@ impl<'m, 'r> Look<'m, 'r> {
         if ABREAST < LANES || self.alone {
             self.one(pair, corners, wanted);
         } else if self.waiting[kind as usize].push(pair, corners, wanted) {
-            self.eight(kind);
+            self.all(kind);
         }
     }
 
     /// Looks at all that wait.
     pub(super) fn finish(&mut self) {
         for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
-            if ABREAST == LANES && !self.waiting[kind as usize].len.is_multiple_of(LANES) {
-                self.eight(kind);
+            if ABREAST == LANES && !self.waiting[kind as usize].len.is_multiple_of(ROOM) {
+                self.all(kind);
             }
         }
         self.waiting = Waiting::none();
     }
 
-    fn eight(&mut self, kind: Kind) {
+    /// Looks at all of a kind that wait.
+    fn all(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
-        let Self { rest, uniform, from, now, .. } = *self;
-        let together = Together { rest, uniform, from, now, kind, waiting: &waiting };
-        let Some([near, unsure]) = lanes::run(Meet(together, &mut self.met)) else {
-            waiting.of_mask(u32::MAX).for_each(|(_, pair, corners, wanted)| self.one(pair, corners, wanted));
+        let Self { rest, uniform, from, now, more, .. } = *self;
+        let together = Together { rest, uniform, from, now, more, kind, waiting: &waiting };
+        let Some([near, unsure, close]) = lanes::run_broad(Meet(together, &mut self.met)) else {
+            for (_, pair, corners, wanted) in waiting.of_mask(u32::MAX) {
+                self.keep(pair, wanted);
+                self.one(pair, corners, wanted);
+            }
             return;
         };
+        if !self.close.is_empty() {
+            waiting.of_mask(close).for_each(|(lane, pair, ..)| {
+                self.keep(pair, self.met[lane / LANES].wanted[lane % LANES]);
+            });
+        }
         for (lane, pair, corners, _) in waiting.of_mask(near) {
-            let ([x, y, z, begun], weights) = (self.met.gap[lane], self.met.weights[lane]);
-            let (closest, wanted) = (closest::Closest { weights, gap: Vec3::new(x, y, z) }, self.met.wanted[lane]);
-            let meeting = Meeting { closest, distance: [begun, self.met.ended[lane]], meets: false };
+            let met = &self.met[lane / LANES];
+            let lane = lane % LANES;
+            let ([x, y, z, begun], weights, wanted) = (met.gap[lane], met.weights[lane], met.wanted[lane]);
+            let closest = closest::Closest { weights, gap: Vec3::new(x, y, z) };
+            let meeting = Meeting { closest, distance: [begun, met.ended[lane]], meets: false };
             self.note(pair, corners, wanted, meeting);
         }
         for (_, pair, corners, wanted) in waiting.of_mask(unsure) {
             self.one(pair, corners, wanted);
         }
+    }
+
+    /// Lists two that are close.
+    fn keep(&mut self, pair: Pair, wanted: f32) {
+        if let Some(place) = self.close.get_mut(self.closed) {
+            *place = Listed { pair, apart: 0.0, wanted };
+        }
+        self.closed += 1;
+    }
+
+    /// The number of those that are close; none, if there was no room for them.
+    pub(super) fn closed(&self) -> Option<usize> {
+        Some(self.closed).filter(|&count| !self.close.is_empty() && count <= self.close.len())
     }
 
     /// Looks at two alone.
@@ -147,46 +194,53 @@ impl<'m, 'r> Look<'m, 'r> {
     }
 }
 
-/// Eight pairs of a kind in a sub-step.
+/// Pairs of a kind in a sub-step.
 struct Together<'a, 'r> {
     rest: &'a Rest<'r>,
     uniform: Option<f32>,
     from: &'a [Vec3],
     now: &'a [Vec3],
+    more: f32,
     kind: Kind,
     waiting: &'a Waiting,
 }
 
 impl Together<'_, '_> {
-    /// Their corners at both ends; none, if one of them has to be looked at alone.
+    /// The corners of some from one eight on at both ends; none, if one of them has to be looked at alone.
     #[inline(always)]
-    fn ends<F: Eight>(&self, like: F) -> Option<[Seen<F>; 2]> {
-        let corners = &self.waiting.corners;
+    fn ends<F: Lanes>(&self, like: F, first: usize) -> Option<[Seen<F>; 2]> {
+        let corners = &self.waiting.corners[first..];
         Some([seen(like, self.from, corners)?, seen(like, self.now, corners)?])
     }
 
     /// The bounds that are found at first glance: a direction that keeps them apart counts where they are not too fast.
     #[inline(always)]
-    fn gaps<F: Eight>(&self, like: F, ends: &[Seen<F>; 2]) -> Gaps<F> {
+    fn gaps<F: Lanes>(&self, like: F, ends: &[Seen<F>; 2]) -> Gaps<F> {
         let fast = like.all(2.0 * FARTHEST * self.rest.facts.budget);
         Gaps::of(self.kind, ends).masked(fastest(self.kind, ends).simd_le(fast * fast))
     }
 
     /// How far apart two may be at the most that are looked at.
     #[inline(always)]
-    fn reach<F: Eight>(&self, wanted: F) -> F {
+    fn reach<F: Lanes>(&self, wanted: F) -> F {
         wanted + wanted.all(2.0 * self.rest.facts.budget)
     }
 
     /// Those that something may be found of, if they are kept so far apart.
     #[inline(always)]
-    fn left<F: Eight>(&self, gaps: &Gaps<F>, wanted: F) -> F {
+    fn left<F: Lanes>(&self, gaps: &Gaps<F>, wanted: F) -> F {
         let reach = self.reach(wanted);
         gaps.left(reach, reach * wanted.all(1.0 + MARGIN))
     }
+
+    /// How far apart two may be at the most that are close.
+    #[inline(always)]
+    fn far<F: Lanes>(&self, wanted: F) -> F {
+        self.reach(wanted) * wanted.all(1.0 + MARGIN) + wanted.all(self.more)
+    }
 }
 
-/// The outcome for those that come near each other.
+/// The outcome for those of eight that come near each other.
 #[derive(Default)]
 struct Met {
     weights: [[f32; 4]; LANES],
@@ -198,52 +252,78 @@ struct Met {
 }
 
 /// Finds those of them that come near each other without coming together, and those that have to be followed.
-struct Meet<'a, 'r>(Together<'a, 'r>, &'a mut Met);
+struct Meet<'a, 'r>(Together<'a, 'r>, &'a mut [Met; PARTS]);
 
-impl Kernel for Meet<'_, '_> {
-    /// None: one of them has to be looked at alone.
-    type Output = Option<[u32; 2]>;
-
-    /// As [`Meeting::of`], as far as that goes without following the ways.
+impl Meet<'_, '_> {
+    /// As [`Meeting::of`], as far as that goes without following the ways, of some from one eight on.
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> Self::Output {
+    fn some<F: Lanes>(&mut self, like: F, first: usize) -> Option<[u32; 3]> {
         let Self(this, met) = self;
-        let (kind, budget) = (this.kind, this.rest.facts.budget);
-        let ends = this.ends(like)?;
+        let (kind, budget, corners) = (this.kind, this.rest.facts.budget, &this.waiting.corners[first..]);
+        let ends = this.ends(like, first)?;
         let gaps = this.gaps(like, &ends);
-        let [thickness, alike] = thickness(like, this.rest, this.uniform, kind, &this.waiting.corners);
-        let mut some = this.left(&gaps, thickness);
-        if !some.any() {
-            return Some([0; 2]);
+        let [thickness, alike] = thickness(like, this.rest, this.uniform, kind, corners);
+        let far = this.far(thickness);
+        let mut close = gaps.left(far, far);
+        if !close.any() {
+            return Some([0; 3]);
         }
-        let mut wanted = like.of(this.waiting.wanted);
+        let [mut wanted] = like.of_parts(
+            #[inline(always)]
+            |like, nth| [like.of(this.waiting.wanted[first + nth])],
+        );
         if lanes::not(wanted.simd_le(thickness)).any() {
-            let gap = Closest::of(kind, seen(like, this.rest.places, &this.waiting.corners)?).gap;
+            let gap = Closest::of(kind, seen(like, this.rest.places, corners)?).gap;
             let half = min(like.all(0.5) * gap.length(), thickness);
             wanted = wanted.simd_le(thickness).select(wanted, alike.select(half, thickness));
         }
-        let reach = this.reach(wanted);
-        some = some & this.left(&gaps, wanted);
-        if !some.any() {
-            return Some([0; 2]);
+        for (nth, met) in met[first..].iter_mut().enumerate().take(F::PARTS) {
+            met.wanted = wanted.part(nth).to_array();
         }
-        let first = Closest::of(kind, ends[0]);
-        let begun = first.gap.length();
+        let (reach, far) = (this.reach(wanted), this.far(wanted));
+        close = close & gaps.left(far, far);
+        let mut some = close & this.left(&gaps, wanted);
+        if !close.any() {
+            return Some([0; 3]);
+        }
+        let start = Closest::of(kind, ends[0]);
+        let begun = start.gap.length();
         let (zero, sound) = (like.all(0.0), begun.simd_lt(like.all(f32::INFINITY)));
         some = some & begun.simd_gt(zero) & sound;
-        some = some & lanes::not(apart(kind, &ends[1], first.gap / begun).simd_ge(reach));
+        let still = apart(kind, &ends[1], start.gap / begun);
+        some = some & lanes::not(still.simd_ge(reach));
+        close = close & lanes::not(min(begun, still).simd_ge(far));
         if !some.any() {
-            return Some([0; 2]);
+            return Some([0, 0, close.to_bitmask()]);
         }
         let closest = Closest::of(kind, ends[1]);
         let ended = closest.gap.length();
         let near = min(like.all(NEAR) * lanes::max(wanted, like.all(budget)), like.all(0.5) * begun);
         let straight = ended.simd_gt(near) & apart(kind, &ends[0], closest.gap / ended).simd_gt(zero);
         let [x, y, z] = closest.gap.0;
-        met.weights = F::rows_of(closest.weights);
-        met.gap = F::rows_of([x, y, z, begun]);
-        (met.ended, met.wanted) = (ended.to_array(), wanted.to_array());
+        let [a, b, c, d] = closest.weights;
+        for (nth, met) in met[first..].iter_mut().enumerate().take(F::PARTS) {
+            met.weights = Eight::rows_of([a.part(nth), b.part(nth), c.part(nth), d.part(nth)]);
+            met.gap = Eight::rows_of([x.part(nth), y.part(nth), z.part(nth), begun.part(nth)]);
+            met.ended = ended.part(nth).to_array();
+        }
         let near = some & straight & lanes::not(ended.simd_ge(reach));
-        Some([near.to_bitmask(), (some & lanes::not(straight)).to_bitmask()])
+        Some([near.to_bitmask(), (some & lanes::not(straight)).to_bitmask(), close.to_bitmask()])
+    }
+}
+
+impl BroadKernel for Meet<'_, '_> {
+    /// None: one of them has to be looked at alone.
+    type Output = Option<[u32; 3]>;
+
+    #[inline(always)]
+    fn run<F: Lanes>(mut self, like: F) -> Self::Output {
+        let mut found = [0; 3];
+        for first in (0..PARTS).step_by(F::PARTS) {
+            for (found, some) in found.iter_mut().zip(self.some(like, first)?) {
+                *found |= some << (LANES * first);
+            }
+        }
+        Some(found)
     }
 }

@@ -2,8 +2,11 @@
 //!
 //! Everyone is expected to go on by a mean of how it goes in the sub-step in which they are made and how fast it came. Two are listed unless some direction keeps them apart by more
 //! than they are looked for and two skins, at both ends of the ways expected, and so all along these. Who leaves its expected way by more than a skin, as seen
-//! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are made anew. A pair that is listed is left
+//! from all, is astray: what comes near its triangles is sought anew, and when there are too many of these, lists are given up. A pair that is listed is left
 //! out as long as what its corners have left their ways by cannot have brought it near.
+//!
+//! Where a quarter of all are astray, nobody is expected anywhere for the rest of the step: then each sub-step lists whoever is close as it looks at all for the first
+//! time, and looks again at these alone, and at whom those triangles are near that have been pushed far since.
 //!
 //! Lists thereby find what a search of all finds, bit by bit: pairs that lists leave out are such as [`Look`](super::look::Look) finds nothing of.
 
@@ -22,10 +25,31 @@ pub(super) struct Facts {
     pub(super) horizon: u32,
     /// The number of pairs.
     pub(super) pairs: u32,
-    /// 1 if pairs found no room in this step.
-    pub(super) full: u32,
+    /// What is known besides: any of [`FULL`], [`LOST`] and [`CLOSE`].
+    pub(super) state: u32,
     /// How far anyone may leave the expected way \[m\].
     pub(super) skin: f32,
+}
+
+/// Pairs found no room in this step.
+pub(super) const FULL: u32 = 1;
+/// Too many have left the ways that were expected in this step, and nobody is expected anywhere any more.
+const LOST: u32 = 2;
+/// The pairs are those that are close in the sub-step.
+const CLOSE: u32 = 4;
+
+impl Facts {
+    pub(super) fn is_full(&self) -> bool {
+        self.state & FULL != 0
+    }
+
+    pub(super) fn is_lost(&self) -> bool {
+        self.state & LOST != 0
+    }
+
+    pub(super) fn is_close(&self) -> bool {
+        self.state & CLOSE != 0
+    }
 }
 
 /// Two that may come near each other.
@@ -50,6 +74,14 @@ pub(super) struct Near<'m> {
 
 /// The least and the most that anyone may leave the expected way by, as multiples of how far one may be pushed between searches.
 const SKINS: [f32; 2] = [0.5, 2.0];
+
+/// How far anyone may be pushed until those are sought anew who are close to it, as a multiple of how far one may be pushed between searches.
+const PUSHED: f32 = 0.25;
+
+/// How far that is \[m\].
+pub(super) fn pushed(rest: &Rest<'_>) -> f32 {
+    PUSHED * rest.facts.budget
+}
 
 /// How far anyone may leave the expected way: no farther, if it can be, than leaves neighbours in the sheets out of the lists while these are as
 /// they are at rest, as most triangles' least heights tell.
@@ -101,14 +133,34 @@ impl<'m> Near<'m> {
         *self.facts = Facts { skin: skin(rest), ..bytemuck::Zeroable::zeroed() };
     }
 
+    /// Gives up expecting anyone anywhere in this step.
+    pub(super) fn lose(&mut self) {
+        self.facts.pairs = 0;
+        self.facts.state |= LOST;
+    }
+
+    /// Forgets who is close, as a sub-step begins.
+    pub(super) fn part(&mut self) {
+        if self.facts.is_close() {
+            self.facts.pairs = 0;
+            self.facts.state &= !CLOSE;
+        }
+    }
+
+    /// Takes in that so many are close as all are at these places in the end.
+    pub(super) fn close(&mut self, count: usize, now: &[Vec3]) {
+        self.facts.pairs = count as u32;
+        self.facts.state |= CLOSE;
+        self.base.copy_from_slice(now);
+    }
+
     /// All pairs of triangles that are not astray, which may come near each other in the sub-step; `strays` says how far each triangle has left its way.
     pub(super) fn pairs<'a>(&'a self, rest: &'a Rest<'_>, strays: &'a [f32]) -> impl Iterator<Item = &'a Listed> {
-        let Facts { pairs, skin, .. } = *self.facts;
-        let all = &self.pairs[..pairs as usize];
+        let all = &self.pairs[..self.facts.pairs as usize];
         all.iter().filter(move |listed| {
             let [one, other] = listed.pair.faces().map(|face| strays[face]);
             let least = rest.reach(listed.wanted) * (1.0 + MARGIN);
-            one <= skin && other <= skin && !(listed.apart - one - other > least)
+            one < f32::INFINITY && other < f32::INFINITY && !(listed.apart - one - other > least)
         })
     }
 }

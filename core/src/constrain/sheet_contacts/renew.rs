@@ -5,17 +5,18 @@ use super::bounds::ROUNDING;
 use super::closest::{FARTHEST, MARGIN};
 use super::listing::Listing;
 use super::lists::{Kept, Work};
-use super::near::{Facts, Near};
+use super::near::{FULL, Facts, Near, pushed};
 use super::rest::Rest;
 use super::tree::Ways;
+use crate::lanes::{ABREAST, LANES};
 use crate::math::{dot, largest, length, max, sqrt};
 use glam::Vec3;
 
 /// How far a particle goes on average, as seen from all, until lists end, as a multiple of how far one may be pushed between
 /// searches.
 const STRETCH: f32 = 16.0;
-/// One triangle of so many may be astray before lists are made anew.
-const ASTRAY: usize = 2;
+/// One triangle of so many may be astray before lists are given up.
+const ASTRAY: usize = 4;
 
 impl Near<'_> {
     /// How far off its expected way one is at both ends of a sub-step that comes so many after the first.
@@ -41,14 +42,38 @@ impl Near<'_> {
     fn follow(&self, rest: &Rest<'_>, work: &mut Work<'_>, substep: Substep, drift: Vec3) -> Option<usize> {
         let Facts { first, horizon, skin, .. } = *self.facts;
         let since = substep.number.checked_sub(first).filter(|&since| since < horizon)? as f32;
-        let farthest = FARTHEST * rest.facts.budget;
         let all = self.shared(work, since);
         let shared = max(largest(all[0]), largest(all[1]));
+        let square = |i: usize, ends: [Vec3; 2]| {
+            let off = self.off(i, since, ends);
+            let (begun, ended) = (off[0] - all[0], off[1] - all[1]);
+            max(dot(begun, begun), dot(ended, ended))
+        };
+        Some(self.mark(rest, work, drift, [skin, shared], square))
+    }
+
+    /// The same by how far all have been pushed since those were listed that are close.
+    pub(super) fn follow_close(&self, rest: &Rest<'_>, work: &mut Work<'_>, drift: Vec3) -> usize {
+        let square = |i: usize, [_, now]: [Vec3; 2]| {
+            let off = now - self.base[i];
+            dot(off, off)
+        };
+        self.mark(rest, work, drift, [pushed(rest), 0.0], square)
+    }
+
+    /// Notes how far each is off, of which it is told the square, and whose triangles are astray: by more than a skin; returns how many these are.
+    fn mark(
+        &self,
+        rest: &Rest<'_>,
+        work: &mut Work<'_>,
+        drift: Vec3,
+        [skin, shared]: [f32; 2],
+        square: impl Fn(usize, [Vec3; 2]) -> f32,
+    ) -> usize {
+        let farthest = FARTHEST * rest.facts.budget;
         for (i, stray) in work.strays.iter_mut().enumerate() {
             let (from, now) = (work.from[i], work.now[i]);
-            let (off, way) = (self.off(i, since, [from, now]), now - from - drift);
-            let (begun, ended) = (off[0] - all[0], off[1] - all[1]);
-            let square = max(dot(begun, begun), dot(ended, ended));
+            let (square, way) = (square(i, [from, now]), now - from - drift);
             let sound = dot(way, way) <= farthest * farthest && square < f32::INFINITY;
             let slack = ROUNDING * max(max(largest(from), largest(now)), shared);
             *stray = if sound { sqrt(square) + slack } else { f32::INFINITY };
@@ -57,11 +82,11 @@ impl Near<'_> {
                 *stray = 0.0;
             }
         }
-        Some(work.tree.mark(rest.faces, |face| {
+        work.tree.mark(rest.faces, |face| {
             let stray = |i: u32| work.strays.get(i as usize).copied().unwrap_or(0.0);
             let most = face.corners.iter().fold(0.0, |most, &i| max(stray(i), most));
             if most <= skin { most } else { f32::INFINITY }
-        }))
+        })
     }
 
     /// Makes lists for the sub-steps to come: for fewer of them, if there is no room for more. Tells whether there is.
@@ -88,13 +113,13 @@ impl Near<'_> {
         let most = (STRETCH * rest.0.facts.budget * count / way).clamp(1.0, left as f32) as u32;
         let skin = self.facts.skin;
         for (horizon, skin) in [(most, skin), (1, 0.25 * skin)] {
-            *self.facts = Facts { first: substep.number, horizon, pairs: 0, full: 0, skin };
+            *self.facts = Facts { first: substep.number, horizon, skin, ..bytemuck::Zeroable::zeroed() };
             if let Some(pairs) = self.fill(rest, work) {
                 self.facts.pairs = pairs as u32;
                 return true;
             }
         }
-        *self.facts = Facts { horizon: 0, full: 1, ..*self.facts };
+        *self.facts = Facts { horizon: 0, state: FULL, ..*self.facts };
         false
     }
 
@@ -113,8 +138,7 @@ impl Near<'_> {
     }
 }
 
-/// Has lists that are good for where all are now, and the triangles marked that are astray; returns how many these are. None: there is no room
-/// for lists.
+/// Has lists that are good for where all are now, and the triangles marked that are astray; returns how many these are. None: there are no lists.
 pub(super) fn ready(
     rest: &Rest<'_>,
     kept: &mut Kept<'_>,
@@ -125,9 +149,24 @@ pub(super) fn ready(
     let substep = bodies.substep;
     let uniform = kept.counts.uniform();
     let Kept { near, rows, .. } = kept;
-    let near = near.as_mut().filter(|near| near.facts.full == 0)?;
+    let near = near.as_mut()?;
+    let few = |astray: &usize| astray * ASTRAY <= rest.faces.len();
+    if near.facts.is_close() {
+        let astray = Some(near.follow_close(rest, work, drift)).filter(few);
+        if astray.is_none() {
+            near.part();
+        }
+        return astray;
+    }
+    if near.facts.is_full() || near.facts.is_lost() {
+        return None;
+    }
     match near.follow(rest, work, substep, drift) {
-        Some(astray) if astray * ASTRAY <= rest.faces.len() => return Some(astray),
+        Some(astray) if few(&astray) => return Some(astray),
+        Some(_) if ABREAST == LANES => {
+            near.lose();
+            return None;
+        }
         _ => {}
     }
     let velocity = |i: usize| bodies.before[1].get(rows[i] as usize).copied().unwrap_or(Vec3::ZERO);

@@ -2,10 +2,11 @@
 
 use super::super::Bodies;
 use super::super::contacts::Touch;
-use super::closest::Kind;
+use super::closest::{Kind, MARGIN};
 use super::contact::Contact;
 use super::lists::{Kept, Work};
 use super::look::{Look, SHARE};
+use super::near::pushed;
 use super::renew::ready;
 use super::rest::Rest;
 use super::tree::Ways;
@@ -22,7 +23,8 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     let drift = drift(work);
     let astray = ready(rest, kept, work, bodies, drift);
     let found = look(rest, kept, work, astray);
-    bodies.report.effort.streamed += u64::from(astray.is_none());
+    let has_room = kept.near.as_ref().is_some_and(|near| !near.facts.is_full());
+    bodies.report.effort.streamed += u64::from(astray.is_none() && !has_room);
     bodies.report.caps.contacts += found.lost;
     let contacts = &mut kept.contacts[..found.count];
     arrange(contacts, bytemuck::cast_slice_mut(work.searched));
@@ -45,11 +47,16 @@ struct Found {
     count: usize,
     lost: u64,
     meetings: u32,
+    /// Those that are close, if they have been listed.
+    close: Option<usize>,
 }
 
 /// Looks at all who may come near each other: by lists and at the triangles astray, of which there are so many, or all anew without lists.
 fn look(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Option<usize>) -> Found {
     let found = look_at(rest, kept, work, astray, ABREAST < LANES);
+    if let Some((near, count)) = kept.near.as_mut().zip(found.close) {
+        near.close(count, work.now);
+    }
     // Which of them find room is for the order to say in which a search of all meets them one by one.
     let is_said = ABREAST < LANES && astray.is_none();
     if found.lost > 0 && !is_said { look_at(rest, kept, work, None, true) } else { found }
@@ -61,18 +68,23 @@ fn look_at(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, astray: Op
     work.room.fill(2.0 * SHARE * budget);
     let (from, now) = (&*work.from, &*work.now);
     let uniform = kept.counts.uniform();
-    let mut look = Look::new((rest, uniform), [from, now], work.room, kept.contacts, alone);
-    if let Some(near) = kept.near.as_ref().filter(|_| astray.is_some()) {
+    let (near, free, more): (_, &mut [_], _) = match &mut kept.near {
+        Some(near) if astray.is_some() => (Some(&*near), &mut [], 0.0),
+        Some(near) if !alone => (None, near.pairs, 2.0 * pushed(rest)),
+        _ => (None, &mut [], 0.0),
+    };
+    let mut look = Look::new((rest, uniform), [from, now], work.room, kept.contacts, (free, more), alone);
+    if let Some(near) = near {
         let all = near.pairs(rest, work.tree.strays());
         all.for_each(|listed| look.at(listed.pair, listed.pair.corners(rest.faces), listed.wanted));
         look.finish();
     }
     if astray != Some(0) {
-        work.tree.fit((rest, uniform), Ways { from, to: now }, |half| half + budget);
+        work.tree.fit((rest, uniform), Ways { from, to: now }, |half| (half + budget) * (1.0 + MARGIN) + 0.5 * more);
         work.tree.pairs(rest.faces, astray.is_none(), |pair, corners| look.at(pair, corners, f32::NAN));
         look.finish();
     }
-    Found { count: look.count, lost: look.lost, meetings: look.meetings }
+    Found { count: look.count, lost: look.lost, meetings: look.meetings, close: look.closed() }
 }
 
 /// Puts contacts in the order of their keys: those of each first corner to their places first, as their numbers tell (McIlroy, Bostic and McIlroy,
@@ -153,6 +165,7 @@ fn drift(work: &Work<'_>) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::super::lists;
+    use super::super::near::Listed;
     use super::*;
     use alloc::{vec, vec::Vec};
     use bytemuck::Zeroable;
@@ -194,7 +207,7 @@ mod tests {
         let mut contacts = vec![Contact::zeroed(); room];
         kept.contacts = &mut contacts;
         let all = work.tree.mark(rest.faces, |_| f32::INFINITY);
-        let Found { count, lost, meetings } = if alone {
+        let Found { count, lost, meetings, .. } = if alone {
             look_at(&rest, &mut kept, &mut work, None, true)
         } else {
             look(&rest, &mut kept, &mut work, astray.then_some(all))
@@ -224,5 +237,52 @@ mod tests {
             }
         }
         assert!(unsure > 10, "{unsure}");
+    }
+    #[test]
+    fn who_is_close_is_known_after_pushes() {
+        let (mut close, mut astray_most, mut meetings_most) = (0, 0, 0);
+        for seed in 0..12 {
+            let demand = lists::demand(COUNTS);
+            let [mut fixed, mut step, mut scratch] =
+                [demand.kept, demand.step, demand.scratch].map(|words| vec![0u32; words.fixed]);
+            let mut rest = Rest::of(&mut fixed, COUNTS).expect("the memory is asked for");
+            let mut kept = Kept::of(&mut step, COUNTS).expect("the memory is asked for");
+            let mut work = Work::of(&mut scratch, COUNTS).expect("the memory is asked for");
+            heap(&mut rest, &mut work, seed);
+            let mut contacts = vec![Contact::zeroed(); 10_000];
+            let mut pairs = vec![Listed::zeroed(); 100_000];
+            kept.contacts = &mut contacts;
+            kept.counts.compare(&rest);
+            kept.near.as_mut().expect("the memory is asked for").pairs = &mut pairs;
+            close += look(&rest, &mut kept, &mut work, None).close.expect("there is room");
+            let far = pushed(&rest);
+            for pushes in 1..4 {
+                // Most are pushed by less than brings anybody near who is not close, some by more.
+                for (i, now) in work.now.iter_mut().enumerate() {
+                    let far = if (i + seed as usize).is_multiple_of(7) { 5.0 * far } else { 0.3 * far };
+                    *now += Vec3::new(1.0, -1.0, 1.0) * [far, -far][(i + pushes) % 2] / 1.8;
+                }
+                let drift = drift(&work);
+                let near = kept.near.as_ref().expect("the memory is asked for");
+                let astray = near.follow_close(&rest, &mut work, drift);
+                let mut outcome = |kept: &mut Kept<'_>, alone: bool| {
+                    let found = match alone {
+                        true => look_at(&rest, kept, &mut work, None, true),
+                        false => look(&rest, kept, &mut work, Some(astray)),
+                    };
+                    let contacts = &mut kept.contacts[..found.count];
+                    contacts.sort_by_key(Contact::key);
+                    let mut bits: Vec<u32> = work.room.iter().map(|room| room.to_bits()).collect();
+                    bits.extend_from_slice(bytemuck::cast_slice(contacts));
+                    (found.count, found.lost, found.meetings, bits)
+                };
+                let (of_close, of_all) = (outcome(&mut kept, false), outcome(&mut kept, true));
+                assert!(of_close == of_all, "{seed}, {pushes} pushes, {astray} astray: {} of {}", of_close.0, of_all.0);
+                astray_most = astray.max(astray_most);
+                meetings_most = of_all.2.max(meetings_most);
+                assert!(astray < COUNTS[1], "{astray}");
+            }
+        }
+        assert!(close > 1000 && astray_most > 5 && meetings_most > 0, "{close} {astray_most} {meetings_most}");
     }
 }

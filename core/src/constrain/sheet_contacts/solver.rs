@@ -26,6 +26,9 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
             near.forget(rest);
         }
     }
+    if let Some(near) = &mut kept.near {
+        near.part();
+    }
     scenery::gather(rest, kept, work, bodies);
     let h = bodies.substep.seconds();
     let (mut torque, mut safe) = (Vec3::ZERO, false);

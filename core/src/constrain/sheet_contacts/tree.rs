@@ -121,7 +121,7 @@ impl<'m> Tree<'m> {
 
     /// Visits every two features whose boxes overlap that have no corner in common: of all triangles, or those of which one's is marked.
     pub(super) fn pairs(&mut self, faces: &[Face], all: bool, visit: impl FnMut(Pair, [u32; 4])) {
-        lanes::run(Visit { tree: self, faces, all, visit });
+        lanes::run_at_length(Visit { tree: self, faces, all, visit });
     }
 }
 
@@ -233,15 +233,16 @@ impl<V: FnMut(Pair, [u32; 4])> Visit<'_, '_, V> {
         if other_near.edges == 0 {
             return;
         }
-        for (place, feature) in one.edges(near) {
-            let (i, k) = (feature / 4, feature % 4);
+        for place in one.edges(near) {
+            let (i, k) = (one.edge(place) / 4, one.edge(place) % 4);
             let ([p, q], counts) = (faces[BLOCK * a + i].edge(k), one.marks(i));
             if !(counts || some) {
                 continue;
             }
-            let bounds = tree.corners[p as usize].and(&tree.corners[q as usize]);
+            let bounds = one.around(place);
             let first = if a == b { place + 1 } else { 0 };
-            for feature in other.near_edges(like, other_near, counts, first, &bounds) {
+            for place in other.near_edges(like, other_near, counts, first, &bounds) {
+                let feature = other.edge(place);
                 let (j, l) = (BLOCK * b + feature / 4, feature % 4);
                 let [r, s] = faces[j].edge(l);
                 if p != r && p != s && q != r && q != s {
