@@ -124,8 +124,9 @@ impl<'m> Links<'m> {
     /// Moves all to where the copies are, with their velocities; those that are fixed stay.
     pub(super) fn put_back(&self, bodies: &mut Bodies<'_>) {
         for (particle, row) in living(self.rows).filter(|&(particle, _)| self.weight[particle] > 0.0) {
-            bodies.position[row] +=
-                self.place[particle] - between(self.room.as_ref(), self.origin, bodies.position[row]);
+            let (room, place) = (self.room.as_ref(), self.place[particle]);
+            // The shortest way to there: the copy has gone through the sides on its own.
+            bodies.position[row] += between(room, between(room, self.origin, bodies.position[row]), place);
             bodies.velocity[row] = self.velocity[particle];
             bodies.marks[row] |= SHIFTED;
         }
@@ -394,8 +395,15 @@ impl<'m> Links<'m> {
         self.take_up_leads(bodies, paces);
         self.turn_only(is_slack);
         for (particle, row) in living(self.rows) {
-            self.velocity[particle] += bodies.before[1][row];
+            let moves = self.weight[particle] > 0.0;
+            self.velocity[particle] =
+                if moves { self.velocity[particle] + bodies.before[1][row] } else { self.led(bodies, row) };
         }
+    }
+
+    /// The velocity at which whoever is fixed goes evenly to where he is led in the sub-step \[m/s\].
+    fn led(&self, bodies: &Bodies<'_>, row: usize) -> Vec3 {
+        between(self.room.as_ref(), bodies.before[0][row], bodies.position[row]) / bodies.substep.seconds()
     }
 
     /// Lets forces act for a share of the sub-step, in which the next pace is to be made. Whoever is fixed goes evenly, and who has been made heavier
@@ -411,8 +419,7 @@ impl<'m> Links<'m> {
                 }
                 self.velocity[particle] += (bodies.velocity[row] - bodies.before[1][row]) * share;
             } else {
-                let way = between(self.room.as_ref(), bodies.before[0][row], bodies.position[row]);
-                self.velocity[particle] = way / h;
+                self.velocity[particle] = self.led(bodies, row);
             }
         }
     }
@@ -472,7 +479,8 @@ impl<'m> Links<'m> {
             mass += bodies.mass[row];
         }
         let is_free = living(self.rows).all(|(_, row)| moves(row));
-        let together = if is_free && mass > 0.0 { sum / mass } else { Vec3::ZERO };
+        // One that is no number keeps nobody else from being one.
+        let together = Some(sum / mass).filter(|mean| is_free && mean.is_finite()).unwrap_or(Vec3::ZERO);
         for (particle, row) in living(self.rows).filter(|&(_, row)| moves(row)) {
             self.velocity[particle] = bodies.velocity[row] + (together - way(row)) * (1.0 / h);
         }
