@@ -357,7 +357,7 @@ impl<'m> Links<'m> {
         }
     }
 
-    /// How many times what links have pulled in one pace they have to pull in all: methods of higher order go half as far by forces as velocities lead, and
+    /// The number of times that links have to pull in all what they have pulled in one pace: methods of higher order go half as far by forces as velocities lead, and
     /// leave the other half to settling.
     pub(super) fn shown(&self, bodies: &Bodies<'_>) -> f32 {
         let h = bodies.substep.seconds();
@@ -447,7 +447,7 @@ impl<'m> Links<'m> {
         (0..self.rows.len()).map(square).fold(0.0, max)
     }
 
-    /// What pulls a particle back that swings across its links: their pull over how long they are. Past the end of an open chain nothing does \[kg\].
+    /// The force by its way that pulls a particle back which swings across its links: their pull over how long they are. Past the end of an open chain nothing does \[kg\].
     fn swing(&self, particle: usize, rest: impl Fn(usize) -> f32) -> f32 {
         let before = if particle > 0 { particle - 1 } else { self.rows.len() - 1 };
         let pull = |link: usize| {

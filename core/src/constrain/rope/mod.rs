@@ -23,7 +23,7 @@ use links::{Line, Links, NOBODY};
 /// moves against a rigid motion with the same momenta, and from the ways of soft links too, so that it never gains any, nor does what is left of it
 /// in parts.
 ///
-/// Linear momentum is kept to rounding; so is angular momentum, since links act along the directions that they had when the sub-step began.
+/// Linear momentum is kept to rounding, but not by a free rope whose links are made heavier (below); so is angular momentum, since links act along the directions that they had when the sub-step began.
 /// Where one of them would turn by more than 30° in it (the end of a whip), or where links are so light for what pulls at
 /// them that they would swing faster than the sub-step shows (a heavy bob), the sub-step is gone through in paces that are short enough for that, with the
 /// forces that the method shows (as multiple time steps: Tuckerman, Berne and Martyna, J. Chem. Phys. 97, 1992): a pendulum swings in its time and as wide as

@@ -69,7 +69,7 @@ impl<'m, 'r> Listing<'m, 'r> {
         self.count += 1;
     }
 
-    /// Of all that wait, leaves those that boxes or middles keep apart.
+    /// Leaves those of all that wait that boxes or middles keep apart.
     fn sift(&mut self, kind: Kind) {
         let waiting = self.waiting[kind as usize];
         let Self { rest, uniform, ways, more, .. } = *self;
@@ -85,7 +85,7 @@ impl<'m, 'r> Listing<'m, 'r> {
         }
     }
 
-    /// Of those that are close, lists those that nothing keeps apart.
+    /// Lists those of the close that nothing keeps apart.
     fn list(&mut self, kind: Kind) {
         let waiting = self.close[kind as usize];
         let Self { rest, uniform, ways, more, .. } = *self;

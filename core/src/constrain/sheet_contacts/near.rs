@@ -25,7 +25,7 @@ pub(super) struct Facts {
     pub(super) horizon: u32,
     /// The number of pairs.
     pub(super) pairs: u32,
-    /// What is known besides: any of [`FULL`], [`LOST`] and [`CLOSE`].
+    /// Facts known besides: any of [`FULL`], [`LOST`] and [`CLOSE`].
     pub(super) state: u32,
     /// How far anyone may leave the expected way \[m\].
     pub(super) skin: f32,

@@ -238,6 +238,7 @@ mod tests {
         }
         assert!(unsure > 10, "{unsure}");
     }
+
     #[test]
     fn who_is_close_is_known_after_pushes() {
         let (mut close, mut astray_most, mut meetings_most) = (0, 0, 0);
