@@ -1,7 +1,7 @@
 //! Ropes that nothing holds gain no energy and keep their angular momentum, soft or rigid; nor do parts of them gain any.
 
 use pointmass::{Gravity, Id, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, often, started};
+use pointmass_tests::{Random, f64s, gap, often, run, started};
 
 /// A rope as it begins: as it lies it is at rest.
 struct Flying {
@@ -224,6 +224,37 @@ fn what_falls_goes_on_turning() {
             }
         }
     }
+}
+
+/// What is so heavy at both ends of light links that these are made heavier meanwhile keeps its momentum where nothing holds it, and the report tells of it.
+#[test]
+fn free_ropes_with_heavy_ends_keep_their_momentum() {
+    let (mut random, mut counted) = (Random::new(23), 0);
+    let mut methods = [Method::Symplectic, Method::Verlet, Method::Rk4].into_iter().cycle();
+    for links in [6, 20, 40] {
+        for (ratio, fast) in [(1e2f32, 1.0f32), (1e4, 3.0), (1e6, 10.0)] {
+            let (length, drift, spin) = (1.0 / links as f32, random.vector(1.0), random.vector(fast));
+            let way = random.vector(1.0).normalize();
+            let part = |i: usize| {
+                let position = way * (length * i as f32 - 0.5);
+                let mass = if i == 0 || i == links { 1.0 } else { 1.0 / ratio };
+                Particle { position, velocity: drift + spin.cross(position), mass, ..Particle::REST }
+            };
+            let start: Vec<Particle> = (0..=links).map(part).collect();
+            let rope = Rope::rigid((0..=links as u32).collect::<Vec<_>>(), [length]);
+            let method = methods.next().expect("there is always a next one");
+            let parts = Scene { start: &start, constraints: &rope, ..Scene::EMPTY };
+            let scene = Scene { integrator: method.integrator(), ..parts };
+            let mut system = started(&scene, start.len(), 0);
+            let before = Measures::of(&system, &scene).momentum;
+            run(&mut system, &scene, 1.0 / 24.0, 48);
+            let lost = gap(before, Measures::of(&system, &scene).momentum);
+            counted += system.totals().effort.capped;
+            // Some hundred paces in each of 48 sub-steps round it.
+            assert!(lost < 2e-5 * f64::from(1.0 + fast), "{method}, {links} links, {ratio}, {fast}: {lost}");
+        }
+    }
+    assert!(counted > 0, "nobody had to be made heavier");
 }
 
 /// What is left of a rope of which some have died gains none either: of a ring, and of an open one.

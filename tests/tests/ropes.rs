@@ -81,7 +81,7 @@ fn light_links_hold_heavy_bobs() {
                 }
                 let name = format!("{method}: {links} links, {ratio}, {substeps} sub-steps, {scale} m");
                 let capped = system.totals().effort.capped;
-                assert!(longest < if capped > 0 { 2e-2 } else { 2e-3 }, "{name}: {longest}");
+                assert!(longest < if capped > 0 { 2e-2 } else { 1.2e-3 }, "{name}: {longest}");
                 assert!(ratio > 10.0 || substeps < 5 || capped == 0, "{name}: {capped}");
                 let gained = Measures::of(&system, &scene).energy.total() - begun;
                 let mass = 1.0 + links as f64 / f64::from(ratio);
@@ -442,8 +442,8 @@ fn whips_gain_nothing() {
                 // What is slowed by half a sub-step more than it has been: velocities of a method of first order are as old as that.
                 let old = if method == Method::Symplectic { 0.5 / (60.0 * f64::from(substeps)) } else { 0.0 };
                 let falls: f64 = system.particles().velocity.iter().map(|v| -f64::from(v.y) * 0.01 * G).sum();
-                let gained = Measures::of(&system, &scene).energy.total() - before - old * falls.abs();
-                assert!(gained < 0.05, "{method} in {substeps}, frame {frame}: {gained} J of some 6");
+                let gained = Measures::of(&system, &scene).energy.total() - before + old * falls;
+                assert!(gained < 0.01, "{method} in {substeps}, frame {frame}: {gained} J of some 6");
             }
         }
     }

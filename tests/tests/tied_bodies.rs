@@ -111,15 +111,22 @@ fn ropes_between_bodies_keep_momentum() {
             let scene = Scene { substeps, integrator: method.integrator(), ..parts };
             let mut system = started(&scene, start.len(), 0);
             let before = Measures::of(&system, &scene);
+            run(&mut system, &scene, 1.0 / 60.0, 1);
+            let set_out = Measures::of(&system, &scene);
             run(&mut system, &scene, 1.0 / 60.0, 60);
             let now = Measures::of(&system, &scene);
             let mass: f64 = start.iter().map(|p| f64::from(p.mass)).sum();
             let lost = [gap(before.momentum, now.momentum), gap(before.angular_momentum, now.angular_momentum)];
             let name = format!("{method}, {substeps}, {compliance}");
             assert!(lost[0] < 1e-5 * mass && lost[1] < 1e-3 * mass, "{name}: {lost:?}");
-            // Nothing bounds the energy of what is tied, and in long sub-steps a rope keeps what it has where it is thrown about.
+            // Nothing bounds the energy of what is tied: velocities that no links allow, straight between what is heavy, pull at that in the first sub-step.
             let most = if substeps < 5 { 1.04 } else { 1.01 };
-            assert!(now.energy.total() < most * before.energy.total(), "{name}: {:?} {:?}", before.energy, now.energy);
+            assert!(
+                set_out.energy.total() < most * before.energy.total(),
+                "{name}: {:?}",
+                [set_out.energy, before.energy]
+            );
+            assert!(now.energy.total() < 1.001 * set_out.energy.total(), "{name}: {:?}", [set_out.energy, now.energy]);
         }
     }
 }

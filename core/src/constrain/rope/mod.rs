@@ -1,12 +1,17 @@
 //! Chains of links that are solved as one: ropes, strings, necklaces.
 
 mod bounded;
+mod chain;
+mod fallback;
 mod links;
+mod paces;
+mod solver;
+mod vigour;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
-use crate::math::{max, min, sqrt};
-use bounded::{Bounds, Form};
-use links::{Line, Links, NOBODY};
+use bounded::Bounds;
+use chain::Chain;
+use links::Links;
 
 /// Links between particles, each to the next, all solved at once: C = |x₁ − x₂| − length of every link.
 ///
@@ -84,27 +89,6 @@ pub struct Rope<P, L> {
     pub closed: bool,
 }
 
-/// Rounds of a solution, at the most.
-const ROUNDS: u32 = 8;
-/// Rounds of one that has to go by the directions that links have, at the most.
-const LAST_ROUNDS: u32 = 24;
-/// The cosine of how far a link may turn in a pace: by 30°.
-const COSINE: f32 = 0.866;
-/// The cosine of how far one may turn so that its energy is safe: by 15°.
-const GENTLE: f32 = 0.966;
-/// Paces of a sub-step, at the most.
-const PACES: u32 = 256;
-/// How often paces are tried, at the most.
-const TRIES: u32 = 12;
-/// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: half of what is stable for a long chain.
-const STIFF: f32 = 1.0;
-/// How much of what links were off as a solution began may be left before its last round, and of a rounding: what is heavy is thrown about by the least
-/// of what rounding leaves of the pull of what is light.
-const FINELY: f32 = 1e-3;
-const FINE: f32 = 0.01;
-/// How far a link may be off after all rounds, a share of its length: what is left is rounding.
-const NEARLY: f32 = 1e-4;
-
 impl<P, L> Rope<P, L> {
     /// A chain of rigid links.
     #[must_use]
@@ -143,179 +127,21 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         if self.closed && particles > 2 { particles } else { particles.saturating_sub(1) }
     }
 
-    /// How long a link is to be.
-    fn length(&self, link: usize) -> f32 {
-        self.form().length(link)
-    }
-
-    /// Its form at rest, on which its energy depends.
-    fn form(&self) -> Form<'_> {
-        let (particles, lengths) = (self.particles.as_ref().len(), self.lengths.as_ref());
+    /// The chain that it is, with the rows of its particles, and the words for its links and for its bounds; none, if these are too few.
+    fn chain_of<'m>(&'m self, bodies: &Bodies<'_>, words: &'m mut [u32]) -> Option<(Chain<'m>, [&'m mut [u32]; 2])> {
         let Self { compliance, tether, .. } = *self;
-        Form { particles, lengths, compliance, tether, closed: self.links() == particles }
-    }
-
-    /// Its particles and the memory for its links, with nothing known of these, and what is left of it.
-    fn links_of<'m>(&self, bodies: &Bodies<'_>, scratch: &'m mut [u32]) -> (Links<'m>, &'m mut [u32]) {
-        let (links, rest) = Links::new(scratch, self.particles.as_ref().len(), self.links());
-        for (row, &number) in links.rows.iter_mut().zip(self.particles.as_ref()) {
-            *row = bodies.row_of_start(number).map_or(NOBODY, |row| row as u32);
-        }
-        (links, rest)
+        let (names, lengths) = (self.particles.as_ref(), self.lengths.as_ref());
+        let (particles, closed) = (names.len(), self.closed && names.len() > 2);
+        let (rows, rest) = words.split_at_mut_checked(particles)?;
+        let (links, rest) = rest.split_at_mut_checked(links::WORDS * particles)?;
+        let nobody = Chain { rows: &[], first: 0, particles, lengths, compliance, tether, closed };
+        Some((nobody.filled(bodies, names, rows), [links, rest]))
     }
 
     /// What it asks for where something holds it: nothing is kept of it.
     pub(super) fn demand_held(&self) -> Demand {
-        let fixed = links::WORDS.saturating_mul(self.particles.as_ref().len());
+        let fixed = (1 + links::WORDS).saturating_mul(self.particles.as_ref().len());
         Demand { scratch: Words { per_row: 0, fixed }, ..Demand::NONE }
-    }
-
-    /// Tells whether a link does not pull where it is.
-    fn is_slack(&self) -> impl Fn(usize, &Line) -> bool + use<'_, P, L> {
-        |link, line| self.tether && line.distance <= self.length(link)
-    }
-
-    /// Changes velocities so that all links come to their lengths in a pace of so long \[s\], in a few rounds. Tells whether they have come near.
-    fn meet(&self, links: &mut Links<'_>, time: f32, along: Way) -> bool {
-        let (soft, mut worst, mut begun) = (self.compliance / (time * time), 0.0, 0.0);
-        links.pull.fill(0.0);
-        for round in 0..along.rounds() {
-            let (mut met, mut lets_go, mut fine) = (true, false, true);
-            (links.reach, worst) = (0.0, 0.0);
-            for link in 0..links.count {
-                let Some(line) = links.line(link) else { continue };
-                let rest = self.length(link);
-                let rounding = links.rounding(&line, rest);
-                let open = line.longer + self.due(line.before - rest, links.share) + soft * links.pull[link];
-                let slack = self.tether && links.pull[link] * (line.weight + soft) >= open;
-                links.way[link] = if along == Way::First { line.first } else { line.normal };
-                let turn = links.way[link].dot(line.normal);
-                if turn < COSINE {
-                    if !slack {
-                        return false;
-                    }
-                    links.way[link] = line.normal;
-                } else if !slack {
-                    links.turn = min(links.turn, turn);
-                }
-                links.ask(link, slack, line.normal, open, line.weight);
-                if slack {
-                    lets_go |= links.pull[link] != 0.0;
-                } else {
-                    met &= open.abs() <= rounding;
-                    fine &= open.abs() <= FINE * rounding;
-                    worst = max(worst, open.abs() / (line.distance + rest));
-                }
-            }
-            // Rounding of places is nothing to be made good at once.
-            if !(links.reach > 0.0) || round == 0 && met && !lets_go && links.share == 1.0 {
-                return true;
-            }
-            begun = if round == 0 { worst } else { begun };
-            if along == Way::Now {
-                // Straight across a taut link it takes the root of that to close a gap.
-                let longest = self.lengths.as_ref().iter().copied().fold(0.0, max);
-                links.reach += sqrt(0.5 * links.reach * longest);
-            }
-            if !links.solve(soft) {
-                return false;
-            }
-            links.act(time);
-            if !lets_go && (fine || round > 0 && worst < FINELY * begun) {
-                return true;
-            }
-        }
-        worst < NEARLY
-    }
-
-    /// By how much a link has to get shorter in a share of the sub-step that is so much too long as that begins \[m\]. A rigid one gets so fast as to do it in
-    /// the whole of it: what was drawn out would be shot about, and what is heavy be thrown about by rounding of places.
-    fn due(&self, off: f32, share: f32) -> f32 {
-        let is_rigid = self.compliance == 0.0 && !(self.tether && off < 0.0);
-        if is_rigid { off * share } else { off }
-    }
-
-    /// Goes through the sub-step from where all were as it began, by the forces that the method shows, in so many paces, and keeps to the lengths at each.
-    /// Gives up where links turn too far in a pace or do not come near their lengths, and where particles swing too far across them: tells how far, squared.
-    fn walk(&self, bodies: &Bodies<'_>, links: &mut Links<'_>, paces: u32) -> Result<(), f32> {
-        let share = 1.0 / paces as f32;
-        let time = bodies.substep.seconds() * share;
-        links.set_out(bodies, paces as f32, self.is_slack());
-        let before = links.vigour(bodies, 0.5 * share);
-        for _ in 0..paces {
-            links.kick(bodies, share);
-            let met = self.meet(links, time, Way::First);
-            let stiff = links.stiffness(|link| self.length(link));
-            if !met || stiff > STIFF {
-                return Err(stiff);
-            }
-            if self.tether {
-                links.let_go(time);
-            }
-            links.go();
-        }
-        if links.turn < GENTLE {
-            links.calm(bodies, links.vigour(bodies, 0.5 * share), before + 2.0 * links.work(bodies));
-        }
-        links.arrive(bodies, paces as f32, self.is_slack());
-        Ok(())
-    }
-
-    /// The same in as few paces as will do. Where the most of them will not, who is too light for what pulls at him is made heavier. Tells whether that has
-    /// come to an end.
-    fn walk_through(&self, bodies: &Bodies<'_>, links: &mut Links<'_>) -> bool {
-        let (mut paces, mut stiff) = (1, links.stiffness(|link| self.length(link)));
-        for _ in 0..TRIES {
-            if paces == PACES {
-                links.load(0.5 * STIFF, |link| self.length(link));
-            }
-            // What has not come near tells little: no more than eight times as many.
-            let wanted = paces as f32 * min(sqrt(stiff / STIFF), 8.0);
-            paces *= 2;
-            while (paces as f32) < wanted {
-                paces *= 2;
-            }
-            paces = paces.min(PACES);
-            match self.walk(bodies, links, paces) {
-                Ok(()) => return true,
-                Err(next) if paces == PACES && !(next > STIFF) => return false,
-                Err(next) => stiff = next,
-            }
-        }
-        false
-    }
-
-    /// Goes straight to where lengths are met next to where the method has moved all, by the directions that links have there. Gives a rope that has not
-    /// come near its lengths the form back that it had when the sub-step began, if that was nearer. No energy comes of it.
-    fn jump(&self, bodies: &mut Bodies<'_>, links: &mut Links<'_>) {
-        let h = bodies.substep.seconds();
-        links.take_up(bodies, h);
-        let before = links.vigour(bodies, 0.0);
-        if !self.meet(links, h, Way::Now) {
-            bodies.report.effort.capped += 1;
-            let off = self.worst(links);
-            links.keep_form(bodies);
-            if !(self.worst(links) < off) {
-                links.take_up(bodies, h);
-                let _ = self.meet(links, h, Way::Now);
-            }
-        }
-        if self.tether {
-            links.let_go(h);
-        }
-        links.hand_back(bodies, h);
-        links.calm(bodies, links.vigour(bodies, 0.0), before);
-        links.hand_back(bodies, 0.0);
-    }
-
-    /// How far the worst link is off, as a share of its length.
-    fn worst(&self, links: &Links<'_>) -> f32 {
-        let off = |link| {
-            let (distance, rest) = (links.line(link)?.distance, self.length(link));
-            let off = (distance - rest) / (distance + rest);
-            Some(if self.tether { off } else { off.abs() })
-        };
-        (0..links.count).filter_map(off).fold(0.0, max)
     }
 }
 
@@ -338,30 +164,17 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(h > 0.0) {
             return;
         }
-        let (mut links, work) = self.links_of(bodies, share.scratch);
+        let Some((chain, [own, words])) = self.chain_of(bodies, share.scratch) else { return };
         if self.compliance > 0.0 {
             // Soft links answer forces by what they do in a whole sub-step, along the directions of its beginning, as a method of first order shows it:
             // with others what hangs still would show speed, and what swings would be driven.
-            links.catch_up(bodies, self.is_slack());
+            chain.parts().for_each(|part| Links::of(part, own).catch_up(bodies));
         }
-        let mut bounds = Bounds::of(self.form(), bodies, links.rows, share.kept.fixed, work);
+        let mut bounds = Bounds::of(chain, bodies, share.kept.fixed, words);
         if let Some(bounds) = &mut bounds {
             bounds.limit(bodies);
         }
-        links.take_up(bodies, h);
-        let stiff = |links: &Links<'_>| links.stiffness(|link| self.length(link));
-        if self.meet(&mut links, h, Way::First) && !(links.shown(bodies) * stiff(&links) > STIFF) {
-            if self.tether {
-                links.let_go(h);
-            }
-            if links.has_acted() {
-                links.hand_back(bodies, h);
-            }
-        } else if self.walk_through(bodies, &mut links) {
-            links.put_back(bodies);
-        } else {
-            self.jump(bodies, &mut links);
-        }
+        chain.parts().for_each(|part| Links::of(part, own).close(bodies));
         if let Some(bounds) = &mut bounds {
             bounds.keep_within(bodies);
         }
@@ -373,54 +186,19 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         if !(soft < f32::INFINITY) {
             return;
         }
-        let (mut links, work) = self.links_of(bodies, share.scratch);
-        let mut bounds = Bounds::of(self.form(), bodies, links.rows, share.kept.fixed, work);
+        let Some((chain, [own, words])) = self.chain_of(bodies, share.scratch) else { return };
+        let mut bounds = Bounds::of(chain, bodies, share.kept.fixed, words);
         if let Some(bounds) = &mut bounds {
             bounds.limit_settled(bodies);
         }
-        links.take_up(bodies, 0.0);
-        for _ in 0..if self.tether { ROUNDS } else { 1 } {
-            let mut met = true;
-            links.reach = 0.0;
-            for link in 0..links.count {
-                let Some(line) = links.line(link) else { continue };
-                let rest = self.length(link);
-                let loose = self.tether && line.distance < rest - 4.0 * links.rounding(&line, rest);
-                let open = links.parting(&line).dot(line.normal) + soft * links.pull[link];
-                let slack = loose || self.tether && links.pull[link] * (line.weight + soft) >= open;
-                links.way[link] = line.normal;
-                links.ask(link, slack, line.normal, open, line.weight);
-                met &= slack && links.pull[link] == 0.0;
-            }
-            if met || !links.solve(soft) {
-                break;
-            }
-            links.act(1.0);
+        for part in chain.parts() {
+            let mut links = Links::of(part, own);
+            links.take_up(bodies, 0.0);
+            links.brake(soft);
+            links.hand_back(bodies, 0.0);
         }
-        if self.tether {
-            links.let_go(1.0);
-        }
-        links.hand_back(bodies, 0.0);
         if let Some(bounds) = &mut bounds {
             bounds.keep_settled(bodies);
-        }
-    }
-}
-
-/// The directions along which links act.
-#[derive(Clone, Copy, PartialEq)]
-enum Way {
-    /// Those that they have when the pace begins.
-    First,
-    /// Those that they have at its end.
-    Now,
-}
-
-impl Way {
-    fn rounds(self) -> u32 {
-        match self {
-            Self::First => ROUNDS,
-            Self::Now => LAST_ROUNDS,
         }
     }
 }

@@ -1,0 +1,81 @@
+//! The particles and links of a rope, and the parts in which it is where particles have died.
+
+use super::super::Bodies;
+
+/// The row of a particle that is not there.
+const NOBODY: u32 = u32::MAX;
+
+/// A chain of particles, each linked to the next: a rope, or a part of one that is left between particles that have died.
+#[derive(Clone, Copy)]
+pub(super) struct Chain<'m> {
+    /// The rows of its particles.
+    pub(super) rows: &'m [u32],
+    /// The number of the first of these, and of how many the whole rope has.
+    pub(super) first: usize,
+    pub(super) particles: usize,
+    /// How long the rope's links are at rest, the last of which holds for all further ones \[m\].
+    pub(super) lengths: &'m [f32],
+    /// How far each link gives way \[m/N\].
+    pub(super) compliance: f32,
+    /// True if links only pull.
+    pub(super) tether: bool,
+    /// True if a link joins the last particle to the first.
+    pub(super) closed: bool,
+}
+
+impl<'m> Chain<'m> {
+    /// The number of its links.
+    pub(super) fn links(&self) -> usize {
+        self.rows.len() - usize::from(!self.closed && !self.rows.is_empty())
+    }
+
+    /// How long a link is to be \[m\].
+    pub(super) fn length(&self, link: usize) -> f32 {
+        let number = (self.first + link) % self.particles.max(1);
+        self.lengths.get(number).or(self.lengths.last()).copied().unwrap_or(0.0)
+    }
+
+    /// The numbers of a link's ends among its particles.
+    pub(super) fn ends(&self, link: usize) -> [usize; 2] {
+        let next = link + 1;
+        [link, if next == self.rows.len() { 0 } else { next }]
+    }
+
+    /// The number of the link that ends at a particle, and of the particle before; of the first one, as if the chain were closed.
+    pub(super) fn before(&self, particle: usize) -> usize {
+        particle.checked_sub(1).unwrap_or(self.rows.len() - 1)
+    }
+
+    /// The rows of its particles, with their numbers in it.
+    pub(super) fn members(self) -> impl Iterator<Item = (usize, usize)> + Clone + use<'m> {
+        self.rows.iter().map(|&row| row as usize).enumerate()
+    }
+
+    /// Tells whether nobody in it is fixed.
+    pub(super) fn is_free(&self, bodies: &Bodies<'_>) -> bool {
+        let weight = |row: u32| bodies.inverse_mass.get(row as usize).copied().unwrap_or(0.0);
+        self.rows.iter().all(|&row| weight(row) > 0.0)
+    }
+
+    /// Fills rows by the numbers of the rope's particles. Those of a closed one that is broken begin behind a gap, so that no part goes on at its beginning.
+    pub(super) fn filled(self, bodies: &Bodies<'_>, particles: &[u32], rows: &'m mut [u32]) -> Self {
+        for (row, &number) in rows.iter_mut().zip(particles) {
+            *row = bodies.row_of_start(number).map_or(NOBODY, |row| row as u32);
+        }
+        let gap = rows.iter().position(|&row| row == NOBODY).filter(|_| self.closed);
+        let first = gap.map_or(0, |gap| gap + 1);
+        rows.rotate_left(first);
+        Self { rows, first, ..self }
+    }
+
+    /// The parts in which it is, of two particles or more.
+    pub(super) fn parts(self) -> impl Iterator<Item = Self> + use<'m> {
+        let mut first = self.first;
+        let part = move |rows: &'m [u32]| {
+            let part = Self { rows, first, closed: self.closed && rows.len() == self.particles, ..self };
+            first += rows.len() + 1;
+            part
+        };
+        self.rows.split(|&row| row == NOBODY).map(part).filter(|part| part.rows.len() > 1)
+    }
+}

@@ -1,0 +1,330 @@
+//! The direct solution for what links pull.
+
+use super::links::Links;
+use crate::math::{length, max, min, sqrt};
+use glam::Vec3;
+
+/// What a pivot is at the least for each link, a share of the first end's weight: chains that are stretched straight between two fixed ends
+/// leave the system singular.
+const RIDGE: f32 = 1e-6;
+
+/// Rounds of a solution, at the most.
+const ROUNDS: u32 = 8;
+/// Rounds of one that has to go by the directions that links have, at the most.
+const LAST_ROUNDS: u32 = 24;
+/// The cosine of how far a link may turn in a pace: by 30°.
+const COSINE: f32 = 0.866;
+/// How much of what links were off as a solution began may be left before its last round, and of a rounding: what is heavy is thrown about by the least
+/// of what rounding leaves of the pull of what is light.
+const FINELY: f32 = 1e-3;
+const FINE: f32 = 0.01;
+/// How far a link may be off after all rounds, a share of its length: what is left is rounding.
+const NEARLY: f32 = 1e-4;
+
+/// The directions along which links act.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Way {
+    /// Those that they have when the pace begins.
+    First,
+    /// Those that they have at its end.
+    Now,
+}
+
+impl Way {
+    fn rounds(self) -> u32 {
+        match self {
+            Self::First => ROUNDS,
+            Self::Now => LAST_ROUNDS,
+        }
+    }
+}
+
+/// What all links are to do in a round.
+struct Round {
+    /// True if those that pull are off by no more than rounding.
+    is_met: bool,
+    /// True if one lets go of what it has pulled.
+    lets_go: bool,
+    /// True if those that pull are off by next to nothing.
+    is_fine: bool,
+    /// How far the worst is off, a share of its length.
+    worst: f32,
+}
+
+impl Links<'_> {
+    /// Changes velocities so that all links come to their lengths in a pace of so long \[s\], in a few rounds. Tells whether they have come near.
+    pub(super) fn meet(&mut self, time: f32, along: Way) -> bool {
+        let (soft, mut worst, mut begun) = (self.chain.compliance / (time * time), 0.0, 0.0);
+        self.pull.fill(0.0);
+        for round in 0..along.rounds() {
+            let Some(Round { is_met, lets_go, is_fine, worst: now }) = self.ask_all(soft, along) else { return false };
+            worst = now;
+            // Rounding of places is nothing to be made good at once.
+            if !(self.reach > 0.0) || round == 0 && is_met && !lets_go && self.share == 1.0 {
+                return true;
+            }
+            begun = if round == 0 { worst } else { begun };
+            if along == Way::Now {
+                // Straight across a taut link it takes the root of that to close a gap.
+                let longest = self.chain.lengths.iter().copied().fold(0.0, max);
+                self.reach += sqrt(0.5 * self.reach * longest);
+            }
+            if !self.solve(soft) {
+                return false;
+            }
+            self.act(time);
+            if !lets_go && (is_fine || round > 0 && worst < FINELY * begun) {
+                return true;
+            }
+        }
+        worst < NEARLY
+    }
+
+    /// Asks all links to come to their lengths. None, if one turns too far in the pace.
+    fn ask_all(&mut self, soft: f32, along: Way) -> Option<Round> {
+        let mut all = Round { is_met: true, lets_go: false, is_fine: true, worst: 0.0 };
+        self.reach = 0.0;
+        for link in 0..self.count {
+            let Some(line) = self.line(link) else {
+                self.pass_over(link);
+                continue;
+            };
+            let rounding = self.rounding(&line);
+            let open = line.longer + self.due(line.before - line.rest) + soft * self.pull[link];
+            let slack = self.chain.tether && self.pull[link] * (line.weight + soft) >= open;
+            self.way[link] = if along == Way::First { line.first } else { line.normal };
+            let turn = self.way[link].dot(line.normal);
+            if turn < COSINE {
+                if !slack {
+                    return None;
+                }
+                self.way[link] = line.normal;
+            } else if !slack {
+                self.turn = min(self.turn, turn);
+            }
+            self.ask(link, slack, line.normal, open, line.weight);
+            if slack {
+                all.lets_go |= self.pull[link] != 0.0;
+            } else {
+                all.is_met &= open.abs() <= rounding;
+                all.is_fine &= open.abs() <= FINE * rounding;
+                all.worst = max(all.worst, open.abs() / (line.distance + line.rest));
+            }
+        }
+        Some(all)
+    }
+
+    /// By how much a link has to get shorter in a pace that is so much too long as the sub-step begins \[m\]. A rigid one gets so fast as to do it in
+    /// the whole of it: what was drawn out would be shot about, and what is heavy be thrown about by rounding of places.
+    fn due(&self, off: f32) -> f32 {
+        let is_rigid = self.chain.compliance == 0.0 && !(self.chain.tether && off < 0.0);
+        if is_rigid { off * self.share } else { off }
+    }
+
+    /// A link that has no direction does nothing in a round.
+    fn pass_over(&mut self, link: usize) {
+        (self.normal[link], self.way[link], self.change[link]) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+    }
+
+    /// Takes out of velocities what makes links longer, or shorter if they push, as far as they are softened by so much.
+    pub(super) fn brake(&mut self, soft: f32) {
+        for _ in 0..if self.chain.tether { ROUNDS } else { 1 } {
+            let mut is_met = true;
+            self.reach = 0.0;
+            for link in 0..self.count {
+                let Some(line) = self.line(link) else {
+                    self.pass_over(link);
+                    continue;
+                };
+                let loose = self.chain.tether && line.distance < line.rest - 4.0 * self.rounding(&line);
+                let open = self.parting(&line).dot(line.normal) + soft * self.pull[link];
+                let slack = loose || self.chain.tether && self.pull[link] * (line.weight + soft) >= open;
+                self.way[link] = line.normal;
+                self.ask(link, slack, line.normal, open, line.weight);
+                is_met &= slack && self.pull[link] == 0.0;
+            }
+            if is_met || !self.solve(soft) {
+                break;
+            }
+            self.act(1.0);
+        }
+        if self.chain.tether {
+            self.let_go(1.0);
+        }
+    }
+
+    /// Asks a link to close what it is open by; one that is slack lets go of what it has pulled.
+    pub(super) fn ask(&mut self, link: usize, slack: bool, normal: Vec3, open: f32, weight: f32) {
+        let pull = self.pull[link];
+        (self.normal[link], self.change[link]) = if slack { (Vec3::ZERO, -pull) } else { (normal, -open) };
+        self.reach += if slack { pull.abs() * weight } else { open.abs() };
+    }
+
+    /// Minus what λ of a neighbour changes in a link, through the particle that both have.
+    fn coupling(&self, link: usize, neighbour: usize, particle: usize) -> f32 {
+        self.weight[particle] * self.normal[link].dot(self.way[neighbour])
+    }
+
+    /// What λ of a link changes in itself; one if it is not to act.
+    fn diagonal(&self, link: usize, soft: f32) -> f32 {
+        if self.normal[link] == Vec3::ZERO {
+            return 1.0;
+        }
+        let [p, q] = self.chain.ends(link).map(|end| self.weight[end]);
+        (p + q) * self.normal[link].dot(self.way[link]) * (1.0 + RIDGE) + soft
+    }
+
+    /// What elimination of the links before leaves of a link's λ in itself, through its first end alone.
+    fn remains(&self, link: usize, left: f32, pivot: f32) -> f32 {
+        if self.normal[link] == Vec3::ZERO {
+            return 0.0;
+        }
+        let (own, weight) = (self.normal[link].dot(self.way[link]), self.weight[link]);
+        match link.checked_sub(1).filter(|&i| self.normal[i] != Vec3::ZERO) {
+            // (n₁·w₁)(n₀·w₀) − (n₁·w₀)(n₀·w₁) = (n₁ × n₀)·(w₁ × w₀).
+            Some(i) => {
+                let bend = self.normal[link].cross(self.normal[i]).dot(self.way[link].cross(self.way[i]));
+                weight * ((own * left + weight * bend) / pivot)
+            }
+            None => weight * own,
+        }
+    }
+
+    /// The pivot of a link of whose own such a rest is left.
+    fn pivot(&self, link: usize, left: f32) -> f32 {
+        if self.normal[link] == Vec3::ZERO {
+            return 1.0;
+        }
+        let [first, second] = self.chain.ends(link).map(|end| self.weight[end]);
+        let own = self.normal[link].dot(self.way[link]);
+        let least = if second > 0.0 { 0.5 * second } else { RIDGE * self.count as f32 * first };
+        max(own * second + left, least * own)
+    }
+
+    /// Solves for the changes of λ: elimination from the first link to the last, and back. Tells whether there is a solution.
+    pub(super) fn solve(&mut self, soft: f32) -> bool {
+        let closed = self.count == self.weight.len();
+        let open = self.count - usize::from(closed);
+        let last = self.count - 1;
+        // What is left of a link's own pivot without its second end: no difference of what is nearly the same, which would lose a heavy bob.
+        let mut left = 0.0;
+        for link in 0..open {
+            let lower = if link > 0 { -self.coupling(link, link - 1, link) } else { 0.0 };
+            let upper = if link + 1 < open { -self.coupling(link, link + 1, link + 1) } else { 0.0 };
+            let mut border = 0.0;
+            if closed && link == 0 {
+                border -= self.coupling(link, last, 0);
+            }
+            if closed && link + 1 == open {
+                border -= self.coupling(link, last, last);
+            }
+            let [before, beside, pivot] = match link.checked_sub(1) {
+                Some(i) => [self.change[i], self.border[i], self.pivot(i, left)],
+                None => [0.0, 0.0, 1.0],
+            };
+            left = soft + self.remains(link, left, pivot);
+            let pivot = self.pivot(link, left);
+            self.upper[link] = upper / pivot;
+            self.change[link] = (self.change[link] - lower * before) / pivot;
+            self.border[link] = (border - lower * beside) / pivot;
+        }
+        for link in (0..open.saturating_sub(1)).rev() {
+            let upper = self.upper[link];
+            self.change[link] -= upper * self.change[link + 1];
+            self.border[link] -= upper * self.border[link + 1];
+        }
+        if closed {
+            let first = -self.coupling(last, 0, 0);
+            let lower = -self.coupling(last, last - 1, last);
+            let diagonal = self.diagonal(last, soft);
+            let pivot = diagonal - first * self.border[0] - lower * self.border[last - 1];
+            let rest = self.change[last] - first * self.change[0] - lower * self.change[last - 1];
+            let closing = rest / max(pivot, diagonal * RIDGE);
+            self.change[last] = closing;
+            for link in 0..last {
+                self.change[link] -= self.border[link] * closing;
+            }
+        }
+        self.change[..self.count].iter().all(|change| change.is_finite())
+    }
+
+    /// The sum of a particle's links, along which they act, by such numbers.
+    fn sum_at(&self, particle: usize, of: &[f32]) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        if particle < self.count {
+            sum += self.way[particle] * of[particle];
+        }
+        let before = self.chain.before(particle);
+        if before < self.count {
+            sum -= self.way[before] * of[before];
+        }
+        sum
+    }
+
+    /// By how much the changes of λ move a particle.
+    fn movement(&self, particle: usize) -> Option<Vec3> {
+        let weight = self.weight[particle];
+        let by = self.sum_at(particle, self.change) * weight;
+        (weight > 0.0 && by.is_finite()).then_some(by)
+    }
+
+    /// Lets the changes of λ act, which change velocities by what they move over a time \[s\].
+    pub(super) fn act(&mut self, time: f32) {
+        let mut farthest = 0.0;
+        for particle in 0..self.weight.len() {
+            farthest = self.movement(particle).map_or(farthest, |by| max(farthest, length(by)));
+        }
+        let share = if farthest > 2.0 * self.reach { 2.0 * self.reach / farthest } else { 1.0 };
+        for (pull, change) in self.pull.iter_mut().zip(self.change.iter_mut()) {
+            *change *= share;
+            *pull += *change;
+        }
+        for particle in 0..self.weight.len() {
+            if let Some(by) = self.movement(particle) {
+                self.velocity[particle] += by * (1.0 / time);
+            }
+        }
+    }
+
+    /// The impulse that links give a particle in the pace \[kg m/s\].
+    pub(super) fn pulled(&self, particle: usize) -> Vec3 {
+        self.sum_at(particle, self.pull) * (1.0 / self.time)
+    }
+
+    /// Tells whether any of them pulls or pushes.
+    pub(super) fn has_acted(&self) -> bool {
+        self.pull.iter().any(|&pull| pull != 0.0)
+    }
+
+    /// Takes back what links push.
+    pub(super) fn let_go(&mut self, time: f32) {
+        let mut pushes = false;
+        for (change, &pull) in self.change.iter_mut().zip(self.pull.iter()) {
+            *change = if pull > 0.0 { -pull } else { 0.0 };
+            pushes |= pull > 0.0;
+        }
+        self.reach = f32::MAX;
+        if pushes {
+            self.act(time);
+        }
+    }
+
+    /// Takes out of velocities what makes links longer or shorter, but for those that are slack.
+    pub(super) fn turn_only(&mut self) {
+        self.pull.fill(0.0);
+        (self.reach, self.time) = (0.0, 0.0);
+        for link in 0..self.count {
+            let Some(line) = self.line(link) else {
+                self.pass_over(link);
+                continue;
+            };
+            self.way[link] = line.normal;
+            let open = self.parting(&line).dot(line.normal);
+            self.ask(link, self.is_slack(&line), line.normal, open, line.weight);
+        }
+        if self.reach > 0.0 && self.solve(0.0) {
+            self.act(1.0);
+        }
+        self.pull.fill(0.0);
+    }
+}
