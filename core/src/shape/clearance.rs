@@ -26,6 +26,9 @@ const MOST: usize = 1 << 22;
 #[cfg(feature = "alloc")]
 const SIDES: f32 = 3.0;
 
+/// The corners of a box that nothing meets.
+const NOWHERE: Corners = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
+
 /// What is added to numbers to have the nearest whole ones in their last bits.
 const WHOLE: f32 = 8_388_608.0;
 
@@ -35,6 +38,17 @@ pub struct Clearance<'a> {
     grid: Grid,
     free: &'a [u8],
     nearest: &'a [Nearest],
+    corners: &'a [Corners],
+}
+
+/// The lower and the upper corner of a box, each with some number behind it.
+type Corners = [[f32; 4]; 2];
+
+/// The two boxes that are nearest to each of some places, and how far all others are at the least \[m\].
+pub(crate) struct Two<F> {
+    pub(crate) numbers: [[[u32; 2]; LANES]; PARTS],
+    boxes: [[Vectors<F>; 2]; 2],
+    others: F,
 }
 
 /// The two boxes that are nearest to a cell, how far the second is, and how far all others are from anywhere in it at the least \[units\].
@@ -53,6 +67,8 @@ pub(super) struct ClearanceBuf {
     /// The least distance along the axes from anywhere in each cell to a box, in units; the largest number stands for more as well.
     free: Vec<u8>,
     nearest: Vec<Nearest>,
+    /// The boxes by their numbers.
+    corners: Vec<Corners>,
 }
 
 /// Cells around boxes.
@@ -85,15 +101,20 @@ impl ClearanceBuf {
         }
         let cells = if grid.scale == 0.0 { 0 } else { grid.len() };
         let nobody = Nearest { numbers: [u32::MAX; 2], second: u8::MAX, others: u8::MAX };
-        let mut all = Self { grid, free: vec![u8::MAX; cells], nearest: vec![nobody; cells] };
-        if cells > 0 {
-            boxes.iter().for_each(|(number, bounds)| all.enter(*number, bounds));
+        let count = boxes.iter().map(|(number, _)| *number as usize + 1).max().unwrap_or(0);
+        let corners = vec![NOWHERE; count];
+        let mut all = Self { grid, free: vec![u8::MAX; cells], nearest: vec![nobody; cells], corners };
+        for (number, bounds) in boxes {
+            all.corners[*number as usize] = [bounds.min, bounds.max].map(|corner| corner.extend(0.0).to_array());
+            if cells > 0 {
+                all.enter(*number, bounds);
+            }
         }
         all
     }
 
     pub(super) fn view(&self) -> Clearance<'_> {
-        Clearance { grid: self.grid, free: &self.free, nearest: &self.nearest }
+        Clearance { grid: self.grid, free: &self.free, nearest: &self.nearest, corners: &self.corners }
     }
 }
 
@@ -192,15 +213,54 @@ impl<'a> Clearance<'a> {
         (is_far & (x + y + z).simd_eq(zero), cells)
     }
 
-    /// Those of the two boxes that are nearest to a cell which a cube with its middle there may meet, so far from its middle to its sides; none, if
-    /// it may meet others.
-    #[inline]
-    pub(crate) fn nearest(&self, cell: u32, half: f32) -> Option<&'a [u32]> {
-        let Nearest { numbers, second, others } = self.nearest.get(cell as usize)?;
-        let is_before = |distance: &u8| half < f32::from(*distance) * self.grid.unit;
-        let count = if is_before(second) { 1 } else { 2 };
-        is_before(others).then(|| &numbers[..count])
+    /// The two boxes that are nearest to each of some cells.
+    #[inline(always)]
+    pub(crate) fn two<F: Lanes>(&self, like: F, cells: &[[u32; LANES]; PARTS]) -> Two<F> {
+        let mut numbers = [[[0; 2]; LANES]; PARTS];
+        let read = like.of_parts(
+            #[inline(always)]
+            |like, nth| {
+                let (mut corners, mut distances) = ([[[[0.0; 4]; LANES]; 2]; 2], [0.0; LANES]);
+                for (i, &cell) in cells[nth].iter().enumerate() {
+                    let nobody = Nearest { numbers: [u32::MAX; 2], second: 0, others: 0 };
+                    let Nearest { numbers: both, others, .. } = *self.nearest.get(cell as usize).unwrap_or(&nobody);
+                    (numbers[nth][i], distances[i]) = (both, f32::from(others));
+                    for (corners, number) in corners.iter_mut().zip(both) {
+                        [corners[0][i], corners[1][i]] = *self.corners.get(number as usize).unwrap_or(&NOWHERE);
+                    }
+                }
+                let [[a, b], [c, d]] = corners;
+                let ([a, b], [c, d]) =
+                    ([like.columns_of(a), like.columns_of(b)], [like.columns_of(c), like.columns_of(d)]);
+                let others = like.of(distances);
+                [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2], others]
+            },
+        );
+        let [a, b, c, d, e, f, g, h, i, j, k, l, others] = read;
+        let boxes = [[Vectors([a, b, c]), Vectors([d, e, f])], [Vectors([g, h, i]), Vectors([j, k, l])]];
+        Two { numbers, boxes, others: others * like.all(self.grid.unit) }
     }
+}
+
+impl<F: Lanes> Two<F> {
+    /// Tells which boxes around the middles of the cells, so far from the middles to their sides, meet either of the two, and which surely meet
+    /// no other.
+    #[inline(always)]
+    pub(crate) fn met(&self, middle: Vectors<F>, half: Vectors<F>) -> ([F; 2], F) {
+        let (low, high) = (middle - half, middle + half);
+        let ([x, y, z], [u, v, w]) = (middle.0, half.0);
+        let are_numbers = ((x + y + z) * x.all(0.0)).simd_eq(x.all(0.0));
+        let [one, other] = self.boxes;
+        let met = [meets(one, [low, high]), meets(other, [low, high])];
+        (met, u.most(v).most(w).simd_lt(self.others) & are_numbers)
+    }
+}
+
+/// Tells which of some boxes, by their corners, meet others.
+#[inline(always)]
+fn meets<F: Lanes>([min, max]: [Vectors<F>; 2], [low, high]: [Vectors<F>; 2]) -> F {
+    let ([a, b, c], [d, e, f], [x, y, z], [u, v, w]) = (min.0, max.0, low.0, high.0);
+    (a.simd_le(u) & b.simd_le(v) & c.simd_le(w)) & (d.simd_ge(x) & e.simd_ge(y) & f.simd_ge(z))
 }
 
 #[cfg(all(test, feature = "alloc"))]
@@ -212,12 +272,15 @@ mod tests {
     struct Free<'a>(Clearance<'a>, [[f32; LANES]; 3], [f32; LANES]);
 
     impl Kernel for Free<'_> {
-        type Output = (u32, u32);
+        type Output = (u32, Option<Vec<u32>>);
         #[inline(always)]
-        fn run<F: Eight>(self, like: F) -> (u32, u32) {
-            let [x, y, z] = self.1.map(|lanes| like.of(lanes));
-            let (are_free, cells) = self.0.are_free(Vectors([x, y, z]), like.of(self.2));
-            (are_free.to_bitmask(), cells[0][0])
+        fn run<F: Eight>(self, like: F) -> (u32, Option<Vec<u32>>) {
+            let ([x, y, z], half) = (self.1.map(|lanes| like.of(lanes)), like.of(self.2));
+            let (are_free, cells) = self.0.are_free(Vectors([x, y, z]), half);
+            let two = self.0.two(like, &cells);
+            let (met, are_known) = two.met(Vectors([x, y, z]), Vectors([half; 3]));
+            let met = two.numbers[0][0].into_iter().zip(met).filter(|(_, met)| met.any()).map(|(number, _)| number);
+            (are_free.to_bitmask(), are_known.any().then(|| met.collect()))
         }
     }
 
@@ -226,7 +289,7 @@ mod tests {
         for (count, size, shape) in SPREADS {
             let (boxes, all) = spread((count, size, shape));
             let clearance = ClearanceBuf::new(&(0..).zip(&boxes).collect::<Vec<_>>(), &all);
-            let (mut told, mut apart, mut known) = (0, 0, [0; 2]);
+            let (mut told, mut apart, mut known) = (0, 0, [0; 3]);
             for i in 0..4000 {
                 // One half of them are anywhere around, the others where the boxes are; most are small.
                 let anywhere = vector(i, 3) * shape * 1.5 + 30.0;
@@ -236,22 +299,24 @@ mod tests {
                 let free = Free(clearance.view(), middle.to_array().map(|x| [x; LANES]), [half + 1e-4; LANES]);
                 let meets = |one: &Aabb| one.min.cmple(middle + half).all() && one.max.cmpge(middle - half).all();
                 let is_free = !boxes.iter().any(meets);
-                let (are_free, cell) = run(free);
+                let (are_free, met) = run(free);
                 let is_told = are_free != 0;
-                if let Some(nearest) = clearance.view().nearest(cell, half + 1e-4) {
-                    let is_known = |number: usize| nearest.contains(&(number as u32));
-                    let are_known = boxes.iter().enumerate().all(|(number, one)| is_known(number) || !meets(one));
-                    assert!(are_known, "{count}: {middle} {half}");
-                    for (few, number) in known.iter_mut().zip(1..) {
-                        *few += usize::from(!is_told && nearest.len() == number);
-                    }
+                if let Some(mut met) = met {
+                    met.sort_unstable();
+                    let around = |one: &Aabb| {
+                        let half = half + 1e-4;
+                        one.min.cmple(middle + half).all() && one.max.cmpge(middle - half).all()
+                    };
+                    let all = (0..).zip(&boxes).filter(|(_, one)| around(one)).map(|(number, _)| number);
+                    assert!(all.eq(met.iter().copied()), "{count}: {middle} {half}");
+                    known[met.len()] += 1;
                 }
                 assert!(is_free || !is_told, "{count}: {middle} {half}");
                 (told, apart) = (told + usize::from(is_told), apart + usize::from(is_free));
             }
             // Most of what is free is told to be so.
             assert!(told > apart / 2 && apart > 100, "{count}: {told} of {apart}");
-            assert!(known[0] > 20 && (count == 1 || known[1] > 20), "{count}: {known:?}");
+            assert!(known[1] > 20 && (count == 1 || known[2] > 20), "{count}: {known:?}");
             for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 assert_eq!(run(Free(clearance.view(), [[number; LANES]; 3], [0.1; LANES])).0, 0);
                 assert_eq!(run(Free(clearance.view(), [[50.0; LANES]; 3], [f32::NAN; LANES])).0, 0);

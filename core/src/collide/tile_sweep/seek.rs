@@ -4,8 +4,8 @@ use super::TileSweep;
 use super::packets::ALL;
 use super::ways::{Room, Ways, straight_ways, ways};
 use crate::collide::waiting::{List, Packet};
-use crate::lanes::{BroadKernel, Eight, LANES, Lanes, PARTS, not};
-use crate::shape::{Aabb, Clearance, Face};
+use crate::lanes::{BroadKernel, Eight, LANES, Lanes, PARTS, Vectors, not};
+use crate::shape::{Aabb, Clearance, Face, Few};
 use glam::Vec3;
 
 /// Places for rows that wait: for a word of marks besides some of before.
@@ -18,6 +18,9 @@ const EIGHTS: usize = PLACES / LANES;
 pub(super) struct Asking {
     pub(super) list: List<PLACES>,
     pub(super) sought: [Sought; EIGHTS],
+    /// The places in there of those that may be near things, and what comes of a closer look at them.
+    pub(super) near: List<{ PLACES + LANES }>,
+    pub(super) told: [Told; EIGHTS + 1],
 }
 
 /// Rows of a tile eight by eight, none of which is its last, that may be near things.
@@ -35,13 +38,102 @@ pub(super) struct Seek<'t, 's, 'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Sought {
     pub(super) near: u32,
-    /// The middles of boxes around their ways, and how far these are from the sides of cubes around the boxes \[m\].
+    /// The middles of boxes around their ways, each with some number behind it \[m\].
     pub(super) middle: [[f32; 4]; LANES],
     /// How far the middles are from the sides of the boxes, and how far beyond that rows may get when they are followed on after hits among
     /// things \[m\].
     pub(super) half: [[f32; 4]; LANES],
     /// The cells of the middles.
     pub(super) cells: [u32; LANES],
+}
+
+/// Eight rows held against the two things that are nearest to them: a bit for each.
+#[derive(Clone, Copy)]
+pub(super) struct Told {
+    numbers: [[u32; 2]; LANES],
+    /// Those that are near the first and the second of the two.
+    met: [u32; 2],
+    /// Those that are surely not near any others.
+    known: u32,
+    /// The same wherever they may get when they are followed on after hits, and those that get near no more of the two there.
+    sure: u32,
+    alone: u32,
+}
+
+/// Rows that may be near things, the places of which in what is `sought` these are.
+pub(super) struct Tell<'t> {
+    pub(super) places: &'t [[u32; LANES]],
+    pub(super) len: usize,
+    pub(super) sought: &'t [Sought; EIGHTS],
+    pub(super) clearance: Option<Clearance<'t>>,
+    pub(super) told: &'t mut [Told; EIGHTS + 1],
+}
+
+impl Told {
+    const NOTHING: Self = Self { numbers: [[0; 2]; LANES], met: [0; 2], known: 0, sure: 0, alone: 0 };
+
+    /// Those that are near things, or may be.
+    pub(super) fn may_meet(&self) -> u32 {
+        let [first, second] = self.met;
+        first | second | !self.known
+    }
+
+    /// What one of them is near, if that is known.
+    pub(super) fn few(&self, i: usize) -> Option<Few> {
+        let ([first, second], is) = (self.numbers[i].map(|number| number as usize), |bits: u32| bits >> i & 1 != 0);
+        is(self.known).then(|| match self.met.map(is) {
+            [false, false] => Few::Nothing,
+            [true, false] => Few::One(first),
+            [false, true] => Few::One(second),
+            [true, true] => Few::Two([first.min(second), first.max(second)]),
+        })
+    }
+
+    /// Tells whether one of them gets near nothing else, if that is known.
+    pub(super) fn is_alone(&self, i: usize) -> Option<bool> {
+        (self.sure >> i & 1 != 0).then_some(self.alone >> i & 1 != 0)
+    }
+}
+
+impl BroadKernel for Tell<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Lanes>(self, like: F) {
+        let Self { places, len, sought, clearance, told } = self;
+        let Some(clearance) = clearance else { return told.fill(Told::NOTHING) };
+        for (nth, packet) in Packet::all::<F>(places, len) {
+            let of = |place: u32| (&sought[place as usize / LANES % EIGHTS], place as usize % LANES);
+            let [x, y, z, u, v, w, beyond] = like.of_parts(
+                #[inline(always)]
+                |like, nth| {
+                    let (mut middle, mut half) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES]);
+                    for (i, &place) in packet.rows[nth].iter().enumerate() {
+                        let (sought, lane) = of(place);
+                        (middle[i], half[i]) = (sought.middle[lane], sought.half[lane]);
+                    }
+                    let ([x, y, z], [u, v, w, beyond]) = (like.columns_of(middle), like.quads_of(half));
+                    [x, y, z, u, v, w, beyond]
+                },
+            );
+            let mut cells = [[0; LANES]; PARTS];
+            for (cell, &place) in cells.as_flattened_mut().iter_mut().zip(packet.rows.into_iter().flatten()) {
+                let (sought, lane) = of(place);
+                *cell = sought.cells[lane];
+            }
+            let (two, middle, half) = (clearance.two(like, &cells), Vectors([x, y, z]), Vectors([u, v, w]));
+            let ([first, second], known) = two.met(middle, half);
+            let ([a, b], sure) = two.met(middle, half + Vectors([beyond; 3]));
+            let alone = not((first ^ a) | (second ^ b));
+            let [first, second, known] = [first.to_bitmask(), second.to_bitmask(), known.to_bitmask()];
+            let [sure, alone] = [sure.to_bitmask(), alone.to_bitmask()];
+            for (part, told) in told[nth..].iter_mut().enumerate().take(F::PARTS) {
+                let of = |bits: u32| bits >> (LANES * part) & ALL;
+                let met = [of(first), of(second)];
+                *told = Told { numbers: two.numbers[part], met, known: of(known), sure: of(sure), alone: of(alone) };
+            }
+        }
+    }
 }
 
 impl Sought {
@@ -103,6 +195,7 @@ impl BroadKernel for Seek<'_, '_, '_> {
 
 impl Asking {
     pub(super) fn nobody() -> Self {
-        Self { list: List::empty(), sought: [Sought::NOTHING; EIGHTS] }
+        let (sought, told) = ([Sought::NOTHING; EIGHTS], [Told::NOTHING; EIGHTS + 1]);
+        Self { list: List::empty(), sought, near: List::empty(), told }
     }
 }
