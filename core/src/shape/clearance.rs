@@ -1,4 +1,4 @@
-//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in, and which two are the nearest: most who ask are told
+//! How far the nearest of many boxes is at the least, by the cell of a grid that a point is in, and which are the nearest: most who ask are told
 //! enough by one number, and nearly all others by these.
 
 use super::Aabb;
@@ -26,6 +26,9 @@ const MOST: usize = 1 << 22;
 #[cfg(feature = "alloc")]
 const SIDES: f32 = 3.0;
 
+/// Boxes that are known by cells: with fewer, more who ask are not told all.
+pub(crate) const NEAREST: usize = 3;
+
 /// The corners of a box that nothing meets.
 const NOWHERE: Corners = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
 
@@ -44,18 +47,19 @@ pub struct Clearance<'a> {
 /// The lower and the upper corner of a box, each with some number behind it.
 type Corners = [[f32; 4]; 2];
 
-/// The two boxes that are nearest to each of some places, and how far all others are at the least \[m\].
-pub(crate) struct Two<F> {
-    pub(crate) numbers: [[[u32; 2]; LANES]; PARTS],
-    boxes: [[Vectors<F>; 2]; 2],
+/// The boxes that are nearest to each of some places, and how far all others are at the least \[m\].
+pub(crate) struct NearestBoxes<F> {
+    pub(crate) numbers: [[[u32; NEAREST]; LANES]; PARTS],
+    boxes: [[Vectors<F>; 2]; NEAREST],
     others: F,
 }
 
-/// The two boxes that are nearest to a cell, how far the second is, and how far all others are from anywhere in it at the least \[units\].
+/// The boxes that are nearest to a cell, the nearest first, how far they are, and how far all others are from anywhere in it at the least
+/// \[units\].
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
-    numbers: [u32; 2],
-    second: u8,
+    numbers: [u32; NEAREST],
+    distances: [u8; NEAREST],
     others: u8,
 }
 
@@ -100,7 +104,7 @@ impl ClearanceBuf {
             grid = finer;
         }
         let cells = if grid.scale == 0.0 { 0 } else { grid.len() };
-        let nobody = Nearest { numbers: [u32::MAX; 2], second: u8::MAX, others: u8::MAX };
+        let nobody = Nearest { numbers: [u32::MAX; NEAREST], distances: [u8::MAX; NEAREST], others: u8::MAX };
         let count = boxes.iter().map(|(number, _)| *number as usize + 1).max().unwrap_or(0);
         let corners = vec![NOWHERE; count];
         let mut all = Self { grid, free: vec![u8::MAX; cells], nearest: vec![nobody; cells], corners };
@@ -136,18 +140,25 @@ impl ClearanceBuf {
                 for (column, (free, nearest)) in (x[0]..x[1]).zip(places) {
                     // The cast rounds down and saturates.
                     let distance = (max(gap(0, column), aside) / unit) as u8;
-                    let Nearest { numbers: [first, other], second, others } = *nearest;
-                    if distance < *free {
-                        *nearest = Nearest { numbers: [number, first], second: *free, others: second };
-                        *free = distance;
-                    } else if distance < second {
-                        *nearest = Nearest { numbers: [first, number], second: distance, others: second };
-                    } else {
-                        *nearest = Nearest { numbers: [first, other], second, others: others.min(distance) };
-                    }
+                    *free = distance.min(*free);
+                    nearest.enter(number, distance);
                 }
             }
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Nearest {
+    /// Has one more box, at a distance, go among them.
+    fn enter(&mut self, mut number: u32, mut distance: u8) {
+        for (other, farther) in self.numbers.iter_mut().zip(&mut self.distances) {
+            if distance < *farther {
+                core::mem::swap(&mut number, other);
+                core::mem::swap(&mut distance, farther);
+            }
+        }
+        self.others = self.others.min(distance);
     }
 }
 
@@ -213,45 +224,66 @@ impl<'a> Clearance<'a> {
         (is_far & (x + y + z).simd_eq(zero), cells)
     }
 
-    /// The two boxes that are nearest to each of some cells.
+    /// Tells whether a box is surely free of boxes, as [`are_free`](Self::are_free) has it.
+    #[inline]
+    pub(crate) fn is_free(&self, bounds: &Aabb) -> bool {
+        let Grid { around, scale, counts, unit } = self.grid;
+        let (middle, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min).max_element());
+        // The casts round down and saturate.
+        let cell = |axis: usize| (((middle[axis] - around.min[axis]) * scale) as usize).min(counts[axis] - 1);
+        let free = self.free.get((cell(2) * counts[1] + cell(1)) * counts[0] + cell(0));
+        around.min.cmple(middle).all()
+            && around.max.cmpge(middle).all()
+            && free.is_some_and(|free| half < f32::from(*free) * unit)
+    }
+
+    /// The boxes that are nearest to each of some cells.
     #[inline(always)]
-    pub(crate) fn two<F: Lanes>(&self, like: F, cells: &[[u32; LANES]; PARTS]) -> Two<F> {
-        let mut numbers = [[[0; 2]; LANES]; PARTS];
-        let read = like.of_parts(
+    pub(crate) fn nearest<F: Lanes>(&self, like: F, cells: &[[u32; LANES]; PARTS]) -> NearestBoxes<F> {
+        let mut numbers = [[[0; NEAREST]; LANES]; PARTS];
+        let [others] = like.of_parts(
             #[inline(always)]
             |like, nth| {
-                let (mut corners, mut distances) = ([[[[0.0; 4]; LANES]; 2]; 2], [0.0; LANES]);
-                for (i, &cell) in cells[nth].iter().enumerate() {
-                    let nobody = Nearest { numbers: [u32::MAX; 2], second: 0, others: 0 };
-                    let Nearest { numbers: both, others, .. } = *self.nearest.get(cell as usize).unwrap_or(&nobody);
-                    (numbers[nth][i], distances[i]) = (both, f32::from(others));
-                    for (corners, number) in corners.iter_mut().zip(both) {
-                        [corners[0][i], corners[1][i]] = *self.corners.get(number as usize).unwrap_or(&NOWHERE);
+                let mut distances = [0.0; LANES];
+                for ((numbers, distance), &cell) in numbers[nth].iter_mut().zip(&mut distances).zip(&cells[nth]) {
+                    if let Some(nearest) = self.nearest.get(cell as usize) {
+                        (*numbers, *distance) = (nearest.numbers, f32::from(nearest.others));
                     }
                 }
-                let [[a, b], [c, d]] = corners;
-                let ([a, b], [c, d]) =
-                    ([like.columns_of(a), like.columns_of(b)], [like.columns_of(c), like.columns_of(d)]);
-                let others = like.of(distances);
-                [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2], others]
+                [like.of(distances)]
             },
         );
-        let [a, b, c, d, e, f, g, h, i, j, k, l, others] = read;
-        let boxes = [[Vectors([a, b, c]), Vectors([d, e, f])], [Vectors([g, h, i]), Vectors([j, k, l])]];
-        Two { numbers, boxes, others: others * like.all(self.grid.unit) }
+        let mut boxes = [[Vectors([like; 3]); 2]; NEAREST];
+        for (i, corners) in boxes.iter_mut().enumerate() {
+            let [a, b, c, d, e, f] = like.of_parts(
+                #[inline(always)]
+                |like, nth| {
+                    let (mut low, mut high) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES]);
+                    for (numbers, (low, high)) in numbers[nth].iter().zip(low.iter_mut().zip(&mut high)) {
+                        [*low, *high] = *self.corners.get(numbers[i] as usize).unwrap_or(&NOWHERE);
+                    }
+                    let ([a, b, c], [d, e, f]) = (like.columns_of(low), like.columns_of(high));
+                    [a, b, c, d, e, f]
+                },
+            );
+            *corners = [Vectors([a, b, c]), Vectors([d, e, f])];
+        }
+        NearestBoxes { numbers, boxes, others: others * like.all(self.grid.unit) }
     }
 }
 
-impl<F: Lanes> Two<F> {
-    /// Tells which boxes around the middles of the cells, so far from the middles to their sides, meet either of the two, and which surely meet
-    /// no other.
+impl<F: Lanes> NearestBoxes<F> {
+    /// Tells which boxes around the middles of the cells, so far from the middles to their sides, meet each of them, and which surely meet no
+    /// other.
     #[inline(always)]
-    pub(crate) fn met(&self, middle: Vectors<F>, half: Vectors<F>) -> ([F; 2], F) {
+    pub(crate) fn met(&self, middle: Vectors<F>, half: Vectors<F>) -> ([F; NEAREST], F) {
         let (low, high) = (middle - half, middle + half);
         let ([x, y, z], [u, v, w]) = (middle.0, half.0);
         let are_numbers = ((x + y + z) * x.all(0.0)).simd_eq(x.all(0.0));
-        let [one, other] = self.boxes;
-        let met = [meets(one, [low, high]), meets(other, [low, high])];
+        let mut met = [x; NEAREST];
+        for (met, corners) in met.iter_mut().zip(&self.boxes) {
+            *met = meets(*corners, [low, high]);
+        }
         (met, u.most(v).most(w).simd_lt(self.others) & are_numbers)
     }
 }
@@ -277,9 +309,9 @@ mod tests {
         fn run<F: Eight>(self, like: F) -> (u32, Option<Vec<u32>>) {
             let ([x, y, z], half) = (self.1.map(|lanes| like.of(lanes)), like.of(self.2));
             let (are_free, cells) = self.0.are_free(Vectors([x, y, z]), half);
-            let two = self.0.two(like, &cells);
-            let (met, are_known) = two.met(Vectors([x, y, z]), Vectors([half; 3]));
-            let met = two.numbers[0][0].into_iter().zip(met).filter(|(_, met)| met.any()).map(|(number, _)| number);
+            let nearest = self.0.nearest(like, &cells);
+            let (met, are_known) = nearest.met(Vectors([x, y, z]), Vectors([half; 3]));
+            let met = nearest.numbers[0][0].into_iter().zip(met).filter(|(_, met)| met.any()).map(|(number, _)| number);
             (are_free.to_bitmask(), are_known.any().then(|| met.collect()))
         }
     }
@@ -289,7 +321,7 @@ mod tests {
         for (count, size, shape) in SPREADS {
             let (boxes, all) = spread((count, size, shape));
             let clearance = ClearanceBuf::new(&(0..).zip(&boxes).collect::<Vec<_>>(), &all);
-            let (mut told, mut apart, mut known) = (0, 0, [0; 3]);
+            let (mut told, mut apart, mut known, mut alone) = (0, 0, [0; NEAREST + 1], 0);
             for i in 0..4000 {
                 // One half of them are anywhere around, the others where the boxes are; most are small.
                 let anywhere = vector(i, 3) * shape * 1.5 + 30.0;
@@ -299,6 +331,9 @@ mod tests {
                 let free = Free(clearance.view(), middle.to_array().map(|x| [x; LANES]), [half + 1e-4; LANES]);
                 let meets = |one: &Aabb| one.min.cmple(middle + half).all() && one.max.cmpge(middle - half).all();
                 let is_free = !boxes.iter().any(meets);
+                let bounds = Aabb { min: middle - half, max: middle + half };
+                assert!(is_free || !clearance.view().is_free(&bounds), "{count}: {middle} {half}");
+                alone += usize::from(clearance.view().is_free(&bounds));
                 let (are_free, met) = run(free);
                 let is_told = are_free != 0;
                 if let Some(mut met) = met {
@@ -315,6 +350,7 @@ mod tests {
                 (told, apart) = (told + usize::from(is_told), apart + usize::from(is_free));
             }
             // Most of what is free is told to be so.
+            assert!(alone > told / 3, "{count}: {alone} of {told}");
             assert!(told > apart / 2 && apart > 100, "{count}: {told} of {apart}");
             assert!(known[1] > 20 && (count == 1 || known[2] > 20), "{count}: {known:?}");
             for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {

@@ -178,8 +178,7 @@ pub enum Few {
 
 impl Few {
     /// The same and one more, if it is not among them.
-    #[cfg(feature = "alloc")]
-    pub(super) fn and(self, number: usize) -> Self {
+    pub(crate) fn and(self, number: usize) -> Self {
         match self {
             Self::Nothing => Self::One(number),
             Self::One(one) if one < number => Self::Two([one, number]),

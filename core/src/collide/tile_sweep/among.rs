@@ -250,8 +250,9 @@ impl TileSweep<'_, '_> {
             self.follow(row);
             return true;
         };
-        let Among { many, things, .. } = *among;
-        things.overlaps(&bounds) && many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
+        let Among { many, clearance, things, .. } = *among;
+        let is_near = things.overlaps(&bounds) && !clearance.is_some_and(|clearance| clearance.is_free(&bounds));
+        is_near && many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
     }
 }
 

@@ -5,7 +5,7 @@ use super::packets::ALL;
 use super::ways::{Room, Ways, straight_ways, ways};
 use crate::collide::waiting::{List, Packet};
 use crate::lanes::{BroadKernel, Eight, LANES, Lanes, PARTS, Vectors, not};
-use crate::shape::{Aabb, Clearance, Face, Few};
+use crate::shape::{Aabb, Clearance, Face, Few, NEAREST};
 use glam::Vec3;
 
 /// Places for rows that wait: for a word of marks besides some of before.
@@ -47,15 +47,15 @@ pub(super) struct Sought {
     pub(super) cells: [u32; LANES],
 }
 
-/// Eight rows held against the two things that are nearest to them: a bit for each.
+/// Eight rows held against the things that are nearest to them: a bit for each.
 #[derive(Clone, Copy)]
 pub(super) struct Told {
-    numbers: [[u32; 2]; LANES],
-    /// Those that are near the first and the second of the two.
-    met: [u32; 2],
+    numbers: [[u32; NEAREST]; LANES],
+    /// Those that are near each of these.
+    met: [u32; NEAREST],
     /// Those that are surely not near any others.
     known: u32,
-    /// The same wherever they may get when they are followed on after hits, and those that get near no more of the two there.
+    /// The same wherever they may get when they are followed on after hits, and those that get near no more of these there.
     sure: u32,
     alone: u32,
 }
@@ -70,23 +70,18 @@ pub(super) struct Tell<'t> {
 }
 
 impl Told {
-    const NOTHING: Self = Self { numbers: [[0; 2]; LANES], met: [0; 2], known: 0, sure: 0, alone: 0 };
+    const NOTHING: Self = Self { numbers: [[0; NEAREST]; LANES], met: [0; NEAREST], known: 0, sure: 0, alone: 0 };
 
     /// Those that are near things, or may be.
     pub(super) fn may_meet(&self) -> u32 {
-        let [first, second] = self.met;
-        first | second | !self.known
+        self.met.iter().fold(!self.known, |all, met| all | met)
     }
 
     /// What one of them is near, if that is known.
     pub(super) fn few(&self, i: usize) -> Option<Few> {
-        let ([first, second], is) = (self.numbers[i].map(|number| number as usize), |bits: u32| bits >> i & 1 != 0);
-        is(self.known).then(|| match self.met.map(is) {
-            [false, false] => Few::Nothing,
-            [true, false] => Few::One(first),
-            [false, true] => Few::One(second),
-            [true, true] => Few::Two([first.min(second), first.max(second)]),
-        })
+        let is = |bits: u32| bits >> i & 1 != 0;
+        let met = self.numbers[i].iter().zip(self.met).filter(|(_, met)| is(*met));
+        is(self.known).then(|| met.fold(Few::Nothing, |few, (number, _)| few.and(*number as usize)))
     }
 
     /// Tells whether one of them gets near nothing else, if that is known.
@@ -121,16 +116,20 @@ impl BroadKernel for Tell<'_> {
                 let (sought, lane) = of(place);
                 *cell = sought.cells[lane];
             }
-            let (two, middle, half) = (clearance.two(like, &cells), Vectors([x, y, z]), Vectors([u, v, w]));
-            let ([first, second], known) = two.met(middle, half);
-            let ([a, b], sure) = two.met(middle, half + Vectors([beyond; 3]));
-            let alone = not((first ^ a) | (second ^ b));
-            let [first, second, known] = [first.to_bitmask(), second.to_bitmask(), known.to_bitmask()];
-            let [sure, alone] = [sure.to_bitmask(), alone.to_bitmask()];
+            let nearest = clearance.nearest(like, &cells);
+            let (middle, half) = (Vectors([x, y, z]), Vectors([u, v, w]));
+            let (met, known) = nearest.met(middle, half);
+            let (beyond, sure) = nearest.met(middle, half + Vectors([beyond; 3]));
+            let (mut bits, mut more) = ([0; NEAREST], like.all(0.0));
+            for (bits, (met, beyond)) in bits.iter_mut().zip(met.into_iter().zip(beyond)) {
+                (*bits, more) = (met.to_bitmask(), more | (met ^ beyond));
+            }
+            let [known, sure, more] = [known.to_bitmask(), sure.to_bitmask(), more.to_bitmask()];
             for (part, told) in told[nth..].iter_mut().enumerate().take(F::PARTS) {
                 let of = |bits: u32| bits >> (LANES * part) & ALL;
-                let met = [of(first), of(second)];
-                *told = Told { numbers: two.numbers[part], met, known: of(known), sure: of(sure), alone: of(alone) };
+                let met = bits.map(of);
+                *told =
+                    Told { numbers: nearest.numbers[part], met, known: of(known), sure: of(sure), alone: of(!more) };
             }
         }
     }
