@@ -4,6 +4,7 @@
 
 use super::hits::{Hits, Seats, Segments, Walls};
 use super::walls::slack;
+use crate::collide::waiting::EIGHTS;
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, min, negated, not};
 use crate::shape::{Aabb, Face, Solid};
 
@@ -39,15 +40,16 @@ impl<F: Lanes, const MANY: usize, const KIND: u8> Things<F, MANY, KIND> {
     #[inline(always)]
     pub(in crate::collide) fn of(
         like: F,
-        solids: &[[[Solid; LANES]; PARTS]; MANY],
-        after: &[u32; MANY],
+        solids: &[[[Solid; LANES]; EIGHTS]; MANY],
+        after: &[u64; MANY],
         nth: usize,
         face: Option<Face>,
     ) -> Self {
-        let first = Solids::of(like, [&solids[0][nth], &solids[0][nth + F::PARTS - 1]], after[0] >> (LANES * nth));
+        let first =
+            Solids::of(like, [&solids[0][nth], &solids[0][nth + F::PARTS - 1]], (after[0] >> (LANES * nth)) as u32);
         let mut all = [first; MANY];
         for (all, (solids, after)) in all.iter_mut().zip(solids.iter().zip(after)).skip(1) {
-            *all = Solids::of(like, [&solids[nth], &solids[nth + F::PARTS - 1]], after >> (LANES * nth));
+            *all = Solids::of(like, [&solids[nth], &solids[nth + F::PARTS - 1]], (after >> (LANES * nth)) as u32);
         }
         Self { face, solids: all }
     }

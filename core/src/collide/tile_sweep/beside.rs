@@ -4,17 +4,17 @@ use super::TileSweep;
 use super::packets::Unsettled;
 use crate::collide::packet::Things;
 use crate::collide::tile::Tile;
-use crate::collide::waiting::{Packet, in_place_of};
-use crate::lanes::{BroadKernel, LANES, Lanes, PARTS};
+use crate::collide::waiting::{EIGHTS, Packet, in_place_of, missing};
+use crate::lanes::{BroadKernel, LANES, Lanes};
 use crate::shape::{Face, Solid};
 
 /// Rows that wait until there are so many, each with as `MANY` solids that it is near, in their order.
 pub(super) struct Beside<const MANY: usize> {
-    pub(super) rows: [[u32; LANES]; PARTS],
-    solids: [[[Solid; LANES]; PARTS]; MANY],
+    pub(super) rows: [[u32; LANES]; EIGHTS],
+    solids: [[[Solid; LANES]; EIGHTS]; MANY],
     /// A bit for each whose solid comes after the face in their order, and for each that gets near nothing else whatever it hits.
-    after: [u32; MANY],
-    alone: u32,
+    after: [u64; MANY],
+    alone: u64,
     len: usize,
 }
 
@@ -38,7 +38,7 @@ impl<const MANY: usize, const KIND: u8> BroadKernel for PastThings<'_, '_, '_, M
         for (nth, packet) in Packet::all::<F>(rows, len) {
             let (riders, paths) = of.packet::<F, false, true>(like, &packet, first, None, terms, None);
             let things = Things::<F, MANY, KIND>::of(like, solids, after, nth, face);
-            let alone = alone >> (LANES * nth);
+            let alone = (alone >> (LANES * nth)) as u32;
             let outcome = riders.go(&paths, &things, [packet.present(), alone], dt, max_bounces);
             of.reach(outcome.farthest.largest_lane());
             unsettled.add(of.settle(&packet, first, &outcome), nth);
@@ -49,8 +49,8 @@ impl<const MANY: usize, const KIND: u8> BroadKernel for PastThings<'_, '_, '_, M
 
 impl<const MANY: usize> Beside<MANY> {
     pub(super) const NOBODY: Self = Self {
-        rows: [[0; LANES]; PARTS],
-        solids: [[[Solid::NONE; LANES]; PARTS]; MANY],
+        rows: [[0; LANES]; EIGHTS],
+        solids: [[[Solid::NONE; LANES]; EIGHTS]; MANY],
         after: [0; MANY],
         alone: 0,
         len: 0,
@@ -58,22 +58,22 @@ impl<const MANY: usize> Beside<MANY> {
 
     /// Puts a row in, with its solids and whether these come after the face; true, if all places are taken now.
     pub(super) fn push(&mut self, row: u32, solids: [(Solid, bool); MANY], is_alone: bool) -> bool {
-        let place = self.len % (PARTS * LANES);
+        let place = self.len % (EIGHTS * LANES);
         self.rows.as_flattened_mut()[place] = row;
         for ((all, after), (solid, is_after)) in self.solids.iter_mut().zip(&mut self.after).zip(solids) {
             all.as_flattened_mut()[place] = solid;
-            *after |= u32::from(is_after) << place;
+            *after |= u64::from(is_after) << place;
         }
-        self.alone |= u32::from(is_alone) << place;
+        self.alone |= u64::from(is_alone) << place;
         self.len = place + 1;
-        self.len == PARTS * LANES
+        self.len == EIGHTS * LANES
     }
 
     /// Takes all out that are there, with others [in place of](in_place_of) those that are missing, and says how many.
     pub(super) fn take(&mut self) -> Option<(usize, Self)> {
         let len = self.len;
         let mut taken = core::mem::replace(self, Self::NOBODY);
-        for i in len..PARTS * LANES {
+        for i in missing(len) {
             let other = in_place_of(i, len);
             let rows = taken.rows.as_flattened_mut();
             rows[i] = rows[other];

@@ -12,15 +12,15 @@ use glam::Vec3;
 const PLACES: usize = 2 * u64::BITS as usize;
 
 /// Eights that are looked at at once.
-const EIGHTS: usize = PLACES / LANES;
+const SOUGHT: usize = PLACES / LANES;
 
 /// Rows that wait to be held against things, and what comes of that.
 pub(super) struct Asking {
     pub(super) list: List<PLACES>,
-    pub(super) sought: [Sought; EIGHTS],
+    pub(super) sought: [Sought; SOUGHT],
     /// The places in there of those that may be near things, and what comes of a closer look at them.
     pub(super) near: List<{ PLACES + LANES }>,
-    pub(super) told: [Told; EIGHTS + 1],
+    pub(super) told: [Told; SOUGHT + 1],
 }
 
 /// Rows of a tile eight by eight, none of which is its last, that may be near things.
@@ -31,7 +31,7 @@ pub(super) struct Seek<'t, 's, 'a> {
     pub(super) face: Option<Face>,
     pub(super) clearance: Option<Clearance<'t>>,
     pub(super) room: Room,
-    pub(super) sought: &'t mut [Sought; EIGHTS],
+    pub(super) sought: &'t mut [Sought; SOUGHT],
 }
 
 /// The rows among eight that may be near things, a bit for each, and more about them, if there are any.
@@ -64,9 +64,9 @@ pub(super) struct Told {
 pub(super) struct Tell<'t> {
     pub(super) places: &'t [[u32; LANES]],
     pub(super) len: usize,
-    pub(super) sought: &'t [Sought; EIGHTS],
+    pub(super) sought: &'t [Sought; SOUGHT],
     pub(super) clearance: Option<Clearance<'t>>,
-    pub(super) told: &'t mut [Told; EIGHTS + 1],
+    pub(super) told: &'t mut [Told; SOUGHT + 1],
 }
 
 impl Told {
@@ -98,7 +98,7 @@ impl BroadKernel for Tell<'_> {
         let Self { places, len, sought, clearance, told } = self;
         let Some(clearance) = clearance else { return told.fill(Told::NOTHING) };
         for (nth, packet) in Packet::all::<F>(places, len) {
-            let of = |place: u32| (&sought[place as usize / LANES % EIGHTS], place as usize % LANES);
+            let of = |place: u32| (&sought[place as usize / LANES % SOUGHT], place as usize % LANES);
             let [x, y, z, u, v, w, beyond] = like.of_parts(
                 #[inline(always)]
                 |like, nth| {
@@ -194,7 +194,7 @@ impl BroadKernel for Seek<'_, '_, '_> {
 
 impl Asking {
     pub(super) fn nobody() -> Self {
-        let (sought, told) = ([Sought::NOTHING; EIGHTS], [Told::NOTHING; EIGHTS + 1]);
+        let (sought, told) = ([Sought::NOTHING; SOUGHT], [Told::NOTHING; SOUGHT + 1]);
         Self { list: List::empty(), sought, near: List::empty(), told }
     }
 }
