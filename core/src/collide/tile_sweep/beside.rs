@@ -8,7 +8,7 @@ use crate::collide::waiting::{EIGHTS, Packet, in_place_of, missing};
 use crate::lanes::{BroadKernel, LANES, Lanes};
 use crate::shape::{Face, Solid};
 
-/// Rows that wait until there are so many, each with as `MANY` solids that it is near, in their order.
+/// Rows that wait until there are so many, each with as many solids that it is near, in their order.
 pub(super) struct Beside<const MANY: usize> {
     pub(super) rows: [[u32; LANES]; EIGHTS],
     solids: [[[Solid; LANES]; EIGHTS]; MANY],
@@ -72,6 +72,9 @@ impl<const MANY: usize> Beside<MANY> {
     /// Takes all out that are there, with others [in place of](in_place_of) those that are missing, and says how many.
     pub(super) fn take(&mut self) -> Option<(usize, Self)> {
         let len = self.len;
+        if len == 0 {
+            return None;
+        }
         let mut taken = core::mem::replace(self, Self::NOBODY);
         for i in missing(len) {
             let other = in_place_of(i, len);
@@ -84,6 +87,6 @@ impl<const MANY: usize> Beside<MANY> {
             }
             taken.alone |= (taken.alone >> other & 1) << i;
         }
-        (len > 0).then_some((len, taken))
+        Some((len, taken))
     }
 }
